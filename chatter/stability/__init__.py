@@ -1,0 +1,1 @@
+"""Stability of milling: one module a method, one sweep."""

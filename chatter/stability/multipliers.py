@@ -1,0 +1,115 @@
+"""Dominant Floquet multiplier of a period map, by Arnoldi iteration without forming its matrix."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from chatter.kernels import KERNEL
+from chatter.stability.period_map import apply_period_map
+
+#: residual of the dominant eigenpair, relative to its magnitude, at which the iteration stops
+_TOLERANCE = 1e-8
+#: dimension of the Krylov space at the first look, and how it grows
+_FIRST_LOOK = 12
+_GROWTH = 1.4
+_LARGEST_SPACE = 240
+
+
+@njit(**KERNEL)
+def _start_vector(period, out, state, following):
+    """A fixed pseudo-random vector, smoothed by one pass through the map."""
+    start = np.empty(out.shape[0])
+    seed = 12345
+    for i in range(start.shape[0]):
+        seed = (1103515245 * seed + 12345) % 2147483648
+        start[i] = seed / 1073741824.0 - 1.0
+    scale = 0.0
+    for i in range(state.shape[0]):
+        scale += abs(period.output[0, i])
+    # motion is smaller than the state by the size of the output matrix
+    start[state.shape[0] :] *= scale / state.shape[0]
+    apply_period_map(period, start, out, state, following)
+
+
+@njit(**KERNEL)
+def _dominant_pair(hessenberg):
+    """Eigenvalue of largest magnitude (imaginary part >= 0) and its eigenvector."""
+    values = np.linalg.eigvals(hessenberg)
+    best = 0
+    for i in range(values.shape[0]):
+        if abs(values[i]) > abs(values[best]):
+            best = i
+    value = complex(values[best].real, abs(values[best].imag))
+    shifted = hessenberg.copy()
+    offset = value + 1e-11 * abs(value) + 1e-300
+    for i in range(shifted.shape[0]):
+        shifted[i, i] -= offset
+    vector = np.linalg.solve(shifted, np.ones(shifted.shape[0], dtype=np.complex128))
+    vector /= np.sqrt((np.abs(vector) ** 2).sum())
+    return value, vector
+
+
+@njit(**KERNEL)
+def dominant_multiplier(period):
+    """Multiplier of largest magnitude and its vector.
+
+    Parameters
+    ----------
+    period : PeriodMap
+
+    Returns
+    -------
+    multiplier : complex
+        Imaginary part >= 0.
+    vector : (2n + nodes r,) array of complex
+        State and delayed motion.
+    residual : float
+        Norm of the eigenpair's residual over the multiplier's magnitude.
+    """
+    _, size, rank = period.from_left.shape
+    dimension = size + period.nodes * rank
+    state, following = np.empty(size), np.empty(size)
+    largest = min(dimension, _LARGEST_SPACE)
+    basis = np.empty((largest + 1, dimension))
+    hessenberg = np.zeros((largest + 1, largest), dtype=np.complex128)
+    _start_vector(period, basis[0], state, following)
+    # delayed motion enters the inner product with the weight of the state
+    norm = math.sqrt((basis[0] ** 2).sum())
+    multiplier = complex(0.0, 0.0)
+    if norm == 0.0:
+        return multiplier, np.zeros(dimension, dtype=np.complex128), 0.0
+    basis[0] /= norm
+    look = min(_FIRST_LOOK, largest)
+    residual = np.inf
+    coordinates = np.ones(1, dtype=np.complex128)
+    used = 0
+    for k in range(largest):
+        apply_period_map(period, basis[k], basis[k + 1], state, following)
+        before = math.sqrt((basis[k + 1] ** 2).sum())
+        for _ in range(2):
+            for j in range(k + 1):
+                overlap = 0.0
+                for i in range(dimension):
+                    overlap += basis[j, i] * basis[k + 1, i]
+                hessenberg[j, k] += overlap
+                for i in range(dimension):
+                    basis[k + 1, i] -= overlap * basis[j, i]
+        norm = math.sqrt((basis[k + 1] ** 2).sum())
+        used = k + 1
+        invariant = norm <= 1e-14 * before
+        hessenberg[k + 1, k] = norm
+        if used in (look, largest) or invariant:
+            multiplier, coordinates = _dominant_pair(hessenberg[:used, :used].copy())
+            residual = norm * abs(coordinates[used - 1]) / max(abs(multiplier), 1e-300)
+            look = min(largest, math.ceil(look * _GROWTH))
+            if residual < _TOLERANCE or invariant:
+                break
+        basis[k + 1] /= norm
+    vector = np.zeros(dimension, dtype=np.complex128)
+    for j in range(used):
+        for i in range(dimension):
+            vector[i] += coordinates[j] * basis[j, i]
+    return multiplier, vector, residual

@@ -1,0 +1,73 @@
+"""One sweep for every method: points in chunks, chunks in threads, progress and interruption."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Result = TypeVar("Result")
+
+#: called with (done, total) points
+Progress = Callable[[int, int], None]
+
+#: points a chunk: small enough for a smooth progress bar, large enough to cost nothing
+_POINTS_A_CHUNK = 32
+
+
+def no_progress(done: int, total: int) -> None:
+    """Report nothing."""
+
+
+def worker_count() -> int:
+    """Threads to use: the processors this process may run on."""
+    if hasattr(os, "sched_getaffinity"):
+        return max(1, len(os.sched_getaffinity(0)))
+    return max(1, os.cpu_count() or 1)
+
+
+def sweep(
+    function: Callable[[NDArray[np.int64]], Result],
+    count: int,
+    progress: Progress = no_progress,
+    points_a_chunk: int = _POINTS_A_CHUNK,
+) -> list[Result]:
+    """Evaluate a function on chunks of the indices 0 .. count-1, in parallel threads.
+
+    Parameters
+    ----------
+    function : callable
+        Takes an array of indices; compiled code inside it releases the interpreter lock. The
+        result must not depend on how the points are split, so that it is the same bytes for
+        any number of threads.
+    count : int
+        Number of points.
+    progress : callable, optional
+        Called with (done, total) as chunks finish.
+    points_a_chunk : int
+        Points handed to a thread at once.
+
+    Returns
+    -------
+    list
+        Results of the chunks in order.
+    """
+    chunks = [
+        np.arange(first, min(first + points_a_chunk, count))
+        for first in range(0, count, points_a_chunk)
+    ]
+    results: list[Result] = []
+    with ThreadPoolExecutor(max_workers=worker_count()) as pool:
+        futures = [pool.submit(function, chunk) for chunk in chunks]
+        try:
+            for chunk, future in zip(chunks, futures, strict=True):
+                results.append(future.result())
+                progress(int(chunk[-1]) + 1, count)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    return results

@@ -1,0 +1,105 @@
+"""Limit depth of the zeroth-order frequency solution at given speeds, in compiled code."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from chatter.kernels import DRIVER, KERNEL
+
+_BISECTIONS = 48
+
+
+@njit(**KERNEL)
+def _regeneration_phase(real, imag):
+    """Angle theta in (0, 2 pi) with w (1 - exp(-i theta)) = z, for Re z > 0."""
+    return 2.0 * math.atan2(real, imag)
+
+
+@njit(**KERNEL)
+def _depth(real, imag):
+    """Depth w with w (1 - exp(-i theta)) = z."""
+    return (real * real + imag * imag) / (2.0 * real)
+
+
+@njit(**KERNEL)
+def _excess_phase(delay, omega, step, start, change, t):
+    real = start.real + t * change.real
+    imag = start.imag + t * change.imag
+    return (omega + t * step) * delay - _regeneration_phase(real, imag)
+
+
+@njit(**KERNEL)
+def _lowest_between_lines(delay, omega, step, start, change, limit, frequency):
+    """Lower the limit by the lobes that cross the speed between two frequency lines."""
+    # keep to the part of the interval where the depth is positive
+    first, last = 0.0, 1.0
+    if start.real <= 0.0 and start.real + change.real <= 0.0:
+        return limit, frequency
+    if start.real <= 0.0:
+        first = -start.real / change.real + 1e-12
+    elif start.real + change.real <= 0.0:
+        last = -start.real / change.real - 1e-12
+    at_first = _excess_phase(delay, omega, step, start, change, first)
+    at_last = _excess_phase(delay, omega, step, start, change, last)
+    lowest = math.ceil(min(at_first, at_last) / (2.0 * math.pi))
+    highest = math.floor(max(at_first, at_last) / (2.0 * math.pi))
+    for lobe in range(lowest, highest + 1):
+        target = 2.0 * math.pi * lobe
+        a, b = first, last
+        rising = at_last > at_first
+        for _ in range(_BISECTIONS):
+            t = 0.5 * (a + b)
+            if (_excess_phase(delay, omega, step, start, change, t) < target) == rising:
+                a = t
+            else:
+                b = t
+        t = 0.5 * (a + b)
+        depth = _depth(start.real + t * change.real, start.imag + t * change.imag)
+        if 0.0 < depth < limit:
+            limit, frequency = depth, (omega + t * step) / (2.0 * math.pi)
+    return limit, frequency
+
+
+@njit(**DRIVER)
+def zero_order_limits(omega, inverse, delays):
+    """Lowest depth over all lobes and eigenvalues at each delay.
+
+    Parameters
+    ----------
+    omega : (n,) array of float
+        rad/s, ascending.
+    inverse : (n, r) array of complex
+        z = -1/eigenvalue of G(i omega) H0, m; each column one branch, continuous in omega.
+    delays : (k,) array of float
+        Tooth period, s.
+
+    Returns
+    -------
+    depth : (k,) array of float
+        m; infinite where no lobe reaches the speed.
+    frequency : (k,) array of float
+        Chatter frequency, Hz; nan where the depth is infinite.
+    """
+    depth = np.full(delays.shape[0], np.inf)
+    frequency = np.full(delays.shape[0], np.nan)
+    for i in range(delays.shape[0]):
+        limit, at = np.inf, np.nan
+        for branch in range(inverse.shape[1]):
+            for line in range(omega.shape[0] - 1):
+                start = inverse[line, branch]
+                change = inverse[line + 1, branch] - start
+                if np.isfinite(start.real) and np.isfinite(change.real):
+                    limit, at = _lowest_between_lines(
+                        delays[i],
+                        omega[line],
+                        omega[line + 1] - omega[line],
+                        start,
+                        change,
+                        limit,
+                        at,
+                    )
+        depth[i], frequency[i] = limit, at
+    return depth, frequency

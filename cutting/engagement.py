@@ -1,0 +1,73 @@
+"""Engagement of the teeth: entry and exit angles, cutting speed, removal rate."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal, NamedTuple
+
+MillingMode = Literal["up", "down", "slot"]
+
+
+class Engagement(NamedTuple):
+    """Angles between which a tooth is in the cut, measured clockwise from +y.
+
+    Parameters
+    ----------
+    entry, exit : float
+        rad, ``0 <= entry < exit <= pi``.
+    """
+
+    entry: float
+    exit: float
+
+
+def engagement(mode: MillingMode, radial_depth: float, diameter: float) -> Engagement:
+    """Entry and exit angle of a peripheral cut.
+
+    Parameters
+    ----------
+    mode : {"up", "down", "slot"}
+        Up-milling starts with zero chip thickness, down-milling ends with it.
+    radial_depth, diameter : float
+        m; the radial depth is not used for a slot.
+
+    Returns
+    -------
+    Engagement
+
+    Raises
+    ------
+    ValueError
+        If the radial depth is not in (0, diameter] or the mode is unknown.
+
+    Notes
+    -----
+    Up-milling runs from 0 to acos(1 - a_e/R), down-milling from pi - acos(1 - a_e/R) to pi
+    (Altintas 2012, Manufacturing Automation, section 2.4).
+    """
+    if mode == "slot":
+        return Engagement(0.0, math.pi)
+    if not 0.0 < radial_depth <= diameter:
+        raise ValueError(
+            f"radial depth {radial_depth * 1e3:g} mm is not within (0, diameter = "
+            f"{diameter * 1e3:g} mm]"
+        )
+    arc = math.acos(1.0 - 2.0 * radial_depth / diameter)
+    if mode == "up":
+        return Engagement(0.0, arc)
+    if mode == "down":
+        return Engagement(math.pi - arc, math.pi)
+    raise ValueError(f'milling mode "{mode}" is not one of "up", "down", "slot"')
+
+
+def cutting_speed(diameter: float, spindle_speed: float) -> float:
+    """Speed of the edge, m/s, from diameter in m and spindle speed in rad/s."""
+    return 0.5 * diameter * spindle_speed
+
+
+def removal_rate(
+    axial_depth: float, radial_depth: float, teeth: int, feed_per_tooth: float, spindle_speed: float
+) -> float:
+    """Volume removed per time, m^3/s; lengths in m, spindle speed in rad/s."""
+    feed_speed = feed_per_tooth * teeth * spindle_speed / (2.0 * math.pi)
+    return axial_depth * radial_depth * feed_speed

@@ -1,0 +1,31 @@
+"""Process damping in its viscous form.
+
+The flank ploughs into the wave that it cuts; for small waves the mean force is that of a dashpot
+in the radial direction, F_r = C (b/V) r_dot, with friction mu in the tangential one
+(Tlusty 1978; Schmitz and Smith 2019, Machining Dynamics, section 4.5).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class ViscousProcessDamping:
+    """Radial dashpot of the engaged flank.
+
+    Parameters
+    ----------
+    coefficient : float
+        C, N/m.
+    friction : float
+        mu, tangential over radial ploughing force.
+    """
+
+    coefficient: float
+    friction: float = 0.0
+
+    @property
+    def force_per_radial_velocity(self) -> tuple[float, float, float]:
+        """C mu, C, 0: tangential, radial, axial force per b r_dot / V, N/m."""
+        return (self.coefficient * self.friction, self.coefficient, 0.0)

@@ -1,0 +1,177 @@
+"""Frequency response functions: one container for measured and computed ones."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Quantity = Literal["receptance", "mobility", "accelerance"]
+
+#: power of (i omega) that turns receptance into each quantity
+DERIVATIVE_ORDER: dict[str, int] = {"receptance": 0, "mobility": 1, "accelerance": 2}
+
+#: SI unit of each quantity
+QUANTITY_UNIT: dict[str, str] = {
+    "receptance": "m/N",
+    "mobility": "m/s/N",
+    "accelerance": "m/s^2/N",
+}
+
+
+class MeasurementError(ValueError):
+    """A measured file or signal that cannot be used; the message says which and why."""
+
+
+@dataclass(frozen=True)
+class Point:
+    """A measured degree of freedom: a node of the structure and a direction.
+
+    Parameters
+    ----------
+    node : str
+        Name or number of the node; empty where the file gives none.
+    direction : str
+        ``"x"``, ``"y"`` or ``"z"``; empty where the file gives none.
+    sign : int
+        +1 or -1: the sense of the sensor along the direction.
+    """
+
+    node: str = ""
+    direction: str = ""
+    sign: int = 1
+
+
+@dataclass(frozen=True)
+class Frf:
+    """One frequency response function in SI units.
+
+    Parameters
+    ----------
+    frequency : (n,) array of float
+        Hz, ascending.
+    values : (n,) array of complex
+        Response per force, in the SI unit of `quantity`.
+    quantity : str
+        ``"receptance"``, ``"mobility"`` or ``"accelerance"``.
+    response, reference : Point
+        Where the motion was measured and where the force acted.
+    coherence : (n,) array of float, optional
+        Ordinary coherence, 0 to 1.
+    source : str
+        File (and record) the function came from.
+    """
+
+    frequency: NDArray[np.float64]
+    values: NDArray[np.complex128]
+    quantity: Quantity = "receptance"
+    response: Point = Point()
+    reference: Point = Point()
+    coherence: NDArray[np.float64] | None = None
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        """Check shapes, order and finiteness; raise MeasurementError naming the source."""
+        where = self.source or "FRF"
+        frequency = np.asarray(self.frequency, dtype=np.float64)
+        values = np.asarray(self.values, dtype=np.complex128)
+        if frequency.ndim != 1 or frequency.shape != values.shape:
+            raise MeasurementError(
+                f"{where}: frequency has shape {frequency.shape} and values {values.shape}; "
+                "both must be one column of the same length"
+            )
+        if frequency.size < 2:
+            raise MeasurementError(f"{where}: {frequency.size} lines; an FRF needs at least 2")
+        if not np.all(np.isfinite(frequency)) or not np.all(np.isfinite(values)):
+            line = int(np.argmin(np.isfinite(frequency) & np.isfinite(values)))
+            raise MeasurementError(f"{where}: line {line + 1} of the FRF is not a finite number")
+        if np.any(np.diff(frequency) <= 0.0):
+            line = int(np.argmax(np.diff(frequency) <= 0.0))
+            raise MeasurementError(
+                f"{where}: frequencies must rise; {frequency[line]:g} Hz is followed by "
+                f"{frequency[line + 1]:g} Hz"
+            )
+        if frequency[0] < 0.0:
+            raise MeasurementError(f"{where}: negative frequency {frequency[0]:g} Hz")
+        object.__setattr__(self, "frequency", frequency)
+        object.__setattr__(self, "values", values)
+
+    def as_quantity(self, quantity: Quantity) -> Frf:
+        """Return the same function as receptance, mobility or accelerance.
+
+        A line at 0 Hz cannot be divided by i omega and is dropped then.
+        """
+        order = DERIVATIVE_ORDER[quantity] - DERIVATIVE_ORDER[self.quantity]
+        if order == 0:
+            return self
+        keep = self.frequency > 0.0 if order < 0 else np.ones(self.frequency.size, dtype=bool)
+        factor = (2j * np.pi * self.frequency[keep]) ** order
+        coherence = None if self.coherence is None else self.coherence[keep]
+        return replace(
+            self,
+            frequency=self.frequency[keep],
+            values=self.values[keep] * factor,
+            quantity=quantity,
+            coherence=coherence,
+        )
+
+    def receptance(self) -> Frf:
+        """Return the function as displacement per force, m/N."""
+        return self.as_quantity("receptance")
+
+    def band(self, lowest: float, highest: float) -> Frf:
+        """Return the lines with lowest <= frequency <= highest, both in Hz."""
+        keep = (self.frequency >= lowest) & (self.frequency <= highest)
+        coherence = None if self.coherence is None else self.coherence[keep]
+        return replace(
+            self, frequency=self.frequency[keep], values=self.values[keep], coherence=coherence
+        )
+
+    @property
+    def is_drive_point(self) -> bool:
+        """True where force and response share node and direction."""
+        return (self.response.node, self.response.direction) == (
+            self.reference.node,
+            self.reference.direction,
+        )
+
+
+def on_common_lines(frfs: Sequence[Frf]) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+    """Stack FRFs of one quantity on one frequency axis.
+
+    Parameters
+    ----------
+    frfs : sequence of Frf
+        All of the same quantity. Where the axes differ, the lines of the first FRF inside the
+        range common to all are kept and the others are interpolated linearly to them.
+
+    Returns
+    -------
+    frequency : (n,) array of float
+        Hz.
+    values : (n, len(frfs)) array of complex
+        One column an FRF.
+
+    Raises
+    ------
+    MeasurementError
+        If the quantities differ or the frequency ranges do not overlap.
+    """
+    quantities = {frf.quantity for frf in frfs}
+    if len(quantities) != 1:
+        raise MeasurementError(f"FRFs of different quantities cannot be stacked: {quantities}")
+    lowest = max(frf.frequency[0] for frf in frfs)
+    highest = min(frf.frequency[-1] for frf in frfs)
+    axis = frfs[0].frequency
+    axis = axis[(axis >= lowest) & (axis <= highest)]
+    if axis.size < 2:
+        raise MeasurementError("the FRFs share no frequency range")
+    columns = [
+        np.interp(axis, frf.frequency, frf.values.real)
+        + 1j * np.interp(axis, frf.frequency, frf.values.imag)
+        for frf in frfs
+    ]
+    return axis, np.stack(columns, axis=1)

@@ -1,0 +1,74 @@
+"""Modal model at the tool point: real modes with directions, on the tool or the workpiece side."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Side = Literal["tool", "workpiece"]
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One real mode as the tool point feels it.
+
+    Parameters
+    ----------
+    frequency : float
+        Undamped natural frequency, Hz.
+    damping : float
+        Viscous damping ratio, 1.
+    mass : float
+        Modal mass, kg, for the unit mode vector at the tool point.
+    direction : (3,) tuple of float
+        Unit vector of the motion of the tool point (x feed, y normal, z tool axis).
+    side : str
+        ``"tool"`` or ``"workpiece"``: which side of the contact moves.
+    """
+
+    frequency: float
+    damping: float
+    mass: float
+    direction: tuple[float, float, float] = (1.0, 0.0, 0.0)
+    side: Side = "tool"
+
+    @property
+    def natural_frequency(self) -> float:
+        """Undamped natural frequency, rad/s."""
+        return 2.0 * np.pi * self.frequency
+
+    @property
+    def stiffness(self) -> float:
+        """Modal stiffness, N/m."""
+        return self.mass * self.natural_frequency**2
+
+
+def receptance_matrix(modes: Sequence[Mode], frequency: ArrayLike) -> NDArray[np.complex128]:
+    """Relative receptance between tool and workpiece at the tool point.
+
+    The force acts on the tool and, reversed, on the workpiece, and the displacement is that of
+    the tool against the workpiece: the sign of a workpiece mode enters twice and cancels.
+
+    Parameters
+    ----------
+    modes : sequence of Mode
+    frequency : (n,) array of float
+        Hz.
+
+    Returns
+    -------
+    (n, 3, 3) array of complex
+        m/N.
+    """
+    omega = 2.0 * np.pi * np.atleast_1d(np.asarray(frequency, dtype=np.float64))
+    total = np.zeros((omega.size, 3, 3), dtype=np.complex128)
+    for mode in modes:
+        e = np.asarray(mode.direction, dtype=np.float64)
+        wn = mode.natural_frequency
+        response = 1.0 / (mode.mass * (wn**2 - omega**2 + 2j * mode.damping * wn * omega))
+        total += response[:, None, None] * np.outer(e, e)
+    return total
