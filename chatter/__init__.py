@@ -1,0 +1,68 @@
+"""Chatter and stability of milling: from a case file to lobes, pictures and reports.
+
+    import chatter
+
+    case = chatter.load("case.toml")
+    diagram = chatter.lobes(case)
+    diagram.plot()
+    diagram.save("out")
+
+================== ===================================================================
+module             responsibility
+================== ===================================================================
+case               the case file: units, checks, patches, writing back, schema
+structure          modes of a case, or the measured FRFs that it names
+model              compile a case to flat arrays
+stability          kernels: one module a method, one sweep
+methods            the methods behind one call
+lobe_diagram       `lobes`: limits over speed, pockets, files
+stability_check    `check`: verdict on the operating point
+modal_test         `modes`: measured FRFs or hammer records to modal parameters
+example_cases      `examples`: list, copy and run the shipped examples
+plots              pictures
+cli                the command line
+================== ===================================================================
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from chatter.case import Case as Case
+    from chatter.case import load as load
+    from chatter.case import schema as schema
+    from chatter.errors import InputError as InputError
+    from chatter.errors import RunError as RunError
+    from chatter.example_cases import examples as examples
+    from chatter.lobe_diagram import lobes as lobes
+    from chatter.modal_test import modes as modes
+    from chatter.stability_check import check as check
+
+__version__ = "0.1.0"
+
+#: public name -> module that holds it; imported when first used, so that `import chatter` is quick
+_PUBLIC = {
+    "Case": "chatter.case",
+    "InputError": "chatter.errors",
+    "RunError": "chatter.errors",
+    "check": "chatter.stability_check",
+    "examples": "chatter.example_cases",
+    "load": "chatter.case",
+    "lobes": "chatter.lobe_diagram",
+    "modes": "chatter.modal_test",
+    "schema": "chatter.case",
+}
+
+__all__ = sorted(_PUBLIC)
+
+
+def __getattr__(name: str) -> Any:
+    if name in _PUBLIC:
+        return getattr(import_module(_PUBLIC[name]), name)
+    raise AttributeError(f"module 'chatter' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_PUBLIC])

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from chatter.errors import RunError
 from chatter.stability import limit_kernels
 from chatter.stability.arrays import MillingArrays
+from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.sweep import Progress, no_progress, sweep
 
 #: steps per period of the highest relevant mode; the extrapolated error is then near 1e-4
@@ -39,17 +40,6 @@ class Multiplier(NamedTuple):
     value: complex
     steps: int  # steps a tooth period of the finest resolution
     error: float  # estimated error of |value|
-
-
-class LimitCurve(NamedTuple):
-    """Limits of stability along depth at every spindle speed."""
-
-    spindle_speed: NDArray[np.float64]  # rad/s (n,)
-    critical_depth: NDArray[np.float64]  # m (n,), the first limit; inf where none was found
-    chatter_frequency: NDArray[np.float64]  # Hz (n,), nan where none was found
-    bifurcation: tuple[str, ...]  # "hopf", "flip" or "none" (n,)
-    crossings: tuple[NDArray[np.float64], ...]  # m, all: lost at even places, regained at odd
-    steps: NDArray[np.int64]  # steps a tooth period (n,)
 
 
 def highest_relevant_frequency(arrays: MillingArrays) -> float:

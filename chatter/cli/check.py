@@ -1,0 +1,27 @@
+"""`chatter check CASE`: verdict on the operating point, as JSON."""
+
+from __future__ import annotations
+
+from chatter.cli.errors import reports_errors
+from chatter.cli.options import Assignments, CaseFile, Json, Method, OutputFolder, patched_case
+from chatter.cli.report import announce_compilation, print_json, print_notes, print_written
+
+
+@reports_errors
+def check(
+    case: CaseFile,
+    assignments: Assignments = None,
+    method: Method = None,
+    out: OutputFolder = None,
+    json: Json = True,  # noqa: ARG001  (the output is JSON either way; scripts pass the option)
+) -> None:
+    """Judge the operating point of a case: stable or chatter, and the limit depth."""
+    description = patched_case(case, assignments)
+    from chatter.stability_check import check as run_check
+
+    announce_compilation()
+    result = run_check(description, method)
+    print_json(result.summary())
+    print_notes(result.notes)
+    if out is not None:
+        print_written(result.save(out))

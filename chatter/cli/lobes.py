@@ -1,0 +1,89 @@
+"""`chatter lobes CASE`: the stability lobe diagram."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from chatter.cli.errors import reports_errors
+from chatter.cli.options import (
+    Assignments,
+    CaseFile,
+    Json,
+    Method,
+    OutputFolder,
+    output_folder,
+    patched_case,
+)
+from chatter.cli.report import (
+    announce_compilation,
+    print_json,
+    print_notes,
+    print_table,
+    print_written,
+    progress_bar,
+)
+
+
+@reports_errors
+def lobes(
+    case: CaseFile,
+    assignments: Assignments = None,
+    method: Method = None,
+    grid: Annotated[
+        bool, typer.Option("--grid", help="Also write the spectral radius on the whole grid.")
+    ] = False,
+    out: OutputFolder = None,
+    json: Json = False,
+) -> None:
+    """Compute the stability lobe diagram of a case."""
+    description = patched_case(case, assignments)
+    from chatter.lobe_diagram import lobes as run_lobes
+
+    announce_compilation()
+    with progress_bar("stability limits") as progress:
+        diagram = run_lobes(description, method, grid, progress)
+    written = diagram.save(output_folder(out, case.stem))
+    if json:
+        print_json(diagram.summary())
+    else:
+        _print_pockets(diagram.summary())
+    print_notes(diagram.notes)
+    print_written(written)
+
+
+def _print_pockets(summary: dict) -> None:
+    lowest, operating = summary["lowest_limit"], summary["operating_point"]
+    depth, margin = summary["margin"]["depth"], summary["margin"]["spindle_speed"]
+    rows = [
+        [
+            f"{pocket['spindle_speed_rpm']:.0f}",
+            f"{pocket['axial_depth_mm']:.3f}",
+            _millimetres(pocket["limit_depth_mm"], summary["searched_to_mm"]),
+            f"{pocket['removal_rate_cm3_per_min']:.3g}",
+        ]
+        for pocket in summary["pockets"]
+    ]
+    print_table(
+        f"pockets worth using ({depth:.0%} below the limit, {margin:.1%} off in speed)",
+        ["speed [rpm]", "depth [mm]", "limit [mm]", "removal [cm³/min]"],
+        rows,
+    )
+    if lowest["critical_depth_mm"] is not None:
+        typer.echo(
+            f"stable at any speed below {lowest['critical_depth_mm']:.4g} mm "
+            f"(lowest limit, at {lowest['spindle_speed_rpm']:.0f} rpm, "
+            f"chatter at {lowest['chatter_frequency_Hz']:.0f} Hz)"
+        )
+    limit = operating["critical_depth_mm"]
+    typer.echo(
+        f"operating point {operating['spindle_speed_rpm']:.0f} rpm, "
+        f"{operating['axial_depth_mm']:.4g} mm: "
+        f"{'stable' if operating['stable'] else 'chatter'}; "
+        f"limit there {_millimetres(limit, summary['searched_to_mm'])} mm"
+    )
+
+
+def _millimetres(depth: float | None, searched_to: float) -> str:
+    return f"> {searched_to:.4g}" if depth is None else f"{depth:.4g}"

@@ -1,0 +1,279 @@
+"""Stability lobe diagram of a case: limits over spindle speed by two independent methods."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.case import Case
+from chatter.methods import LimitMethod, chosen_method, resolution, zero_order_of
+from chatter.model import MillingModel, milling_model
+from chatter.pockets import DEPTH_MARGIN, SPEED_MARGIN, Pocket, find_pockets
+from chatter.search_range import axial_depths, deepest_depth, spindle_speeds
+from chatter.stability.limit_curve import LimitCurve
+from chatter.stability.semi_discretization import multipliers
+from chatter.stability.sweep import Progress, no_progress
+from chatter.stability.zero_order import ZeroOrderLimit
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_RPM = 30.0 / math.pi
+
+
+@dataclass(frozen=True)
+class StabilityGrid:
+    """Spectral radius on a grid of speeds and depths.
+
+    Parameters
+    ----------
+    spindle_speed : (n,) array of float
+        rad/s.
+    axial_depth : (m,) array of float
+        m.
+    spectral_radius : (m, n) array of float
+        Over one tooth period; above 1 is chatter.
+    """
+
+    spindle_speed: NDArray[np.float64]
+    axial_depth: NDArray[np.float64]
+    spectral_radius: NDArray[np.float64]
+
+    def save(self, path: Path) -> None:
+        """Write grid.npz: spindle_speed [rpm], axial_depth [mm], spectral_radius."""
+        np.savez_compressed(
+            path,
+            spindle_speed=self.spindle_speed * _RPM,
+            axial_depth=self.axial_depth * 1e3,
+            spectral_radius=self.spectral_radius,
+        )
+
+
+@dataclass(frozen=True)
+class LobeDiagram:
+    """Stability limits of a case over spindle speed.
+
+    Parameters
+    ----------
+    case : Case
+    method : str
+        Key of `chatter.methods.METHODS` that gave the limits.
+    limits : LimitCurve
+        Limit depth (m), chatter frequency (Hz), bifurcation at every speed (rad/s).
+    zero_order : ZeroOrderLimit
+        The zeroth-order solution, for comparison.
+    deepest : float
+        Depth to which limits were looked for, m.
+    pockets : tuple of Pocket
+        Places worth using, highest removal rate first.
+    operating : LimitCurve
+        Limits at the speed of the case alone.
+    natural_frequencies : tuple of float
+        Of the modes, Hz; empty where no modes were needed.
+    grid : StabilityGrid or None
+    notes : tuple of str
+        Assumptions and limits of the result.
+    """
+
+    case: Case
+    method: str
+    limits: LimitCurve
+    zero_order: ZeroOrderLimit
+    deepest: float
+    pockets: tuple[Pocket, ...]
+    operating: LimitCurve
+    natural_frequencies: tuple[float, ...] = ()
+    grid: StabilityGrid | None = None
+    notes: tuple[str, ...] = ()
+
+    @property
+    def operating_is_stable(self) -> bool:
+        """True where the operating depth lies in a stable stretch at its speed."""
+        below = self.operating.crossings[0] < self.case.cut.axial_depth
+        return int(below.sum()) % 2 == 0
+
+    def summary(self) -> dict:
+        """Return the content of summary.json."""
+        cut = self.case.cut
+        depth = self.limits.critical_depth
+        lowest = int(np.argmin(depth))
+        found = bool(np.isfinite(depth[lowest]))
+        return {
+            "title": self.case.title,
+            "method": self.method,
+            "spindle_speeds_rpm": [
+                float(self.limits.spindle_speed[0] * _RPM),
+                float(self.limits.spindle_speed[-1] * _RPM),
+            ],
+            "searched_to_mm": self.deepest * 1e3,
+            "lowest_limit": {
+                "critical_depth_mm": depth[lowest] * 1e3 if found else None,
+                "spindle_speed_rpm": self.limits.spindle_speed[lowest] * _RPM if found else None,
+                "chatter_frequency_Hz": self.limits.chatter_frequency[lowest] if found else None,
+            },
+            "operating_point": {
+                "spindle_speed_rpm": cut.spindle_speed * _RPM,
+                "axial_depth_mm": cut.axial_depth * 1e3,
+                "critical_depth_mm": _or_none(float(self.operating.critical_depth[0]) * 1e3),
+                "stable": self.operating_is_stable,
+            },
+            "pockets": [_pocket_summary(pocket) for pocket in self.pockets],
+            "margin": {"depth": DEPTH_MARGIN, "spindle_speed": SPEED_MARGIN},
+            "zero_order": {
+                "lowest_limit_mm": _or_none(self.zero_order.lowest_depth * 1e3),
+                "chatter_frequency_Hz": self.zero_order.lowest_frequency,
+                **_comparison(self.limits.critical_depth, self.zero_order.critical_depth),
+            },
+            "resolution": {
+                "steps_per_tooth_period": [
+                    int(self.limits.steps.min()),
+                    int(self.limits.steps.max()),
+                ],
+                "depth_step_mm": self.deepest * 1e3 / len(axial_depths(self.case, self.deepest)),
+            },
+            "notes": list(self.notes),
+        }
+
+    def plot(self) -> Figure:
+        """Return the diagram as a matplotlib figure."""
+        from chatter.plots.lobes import plot_lobes
+
+        return plot_lobes(self)
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write lobes.csv, lobes.png, summary.json and, with a grid, grid.npz.
+
+        Returns
+        -------
+        list of Path
+            What was written.
+        """
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        written = [folder / "lobes.csv", folder / "summary.json", folder / "lobes.png"]
+        written[0].write_text(self._table(), encoding="utf-8")
+        written[1].write_text(json.dumps(self.summary(), indent=2) + "\n", encoding="utf-8")
+        self.plot().savefig(written[2])
+        if self.grid is not None:
+            written.append(folder / "grid.npz")
+            self.grid.save(written[-1])
+        return written
+
+    def _table(self) -> str:
+        lines = ["spindle_speed [rpm],critical_depth [mm],chatter_frequency [Hz],bifurcation"]
+        rows = zip(
+            self.limits.spindle_speed * _RPM,
+            self.limits.critical_depth * 1e3,
+            self.limits.chatter_frequency,
+            self.limits.bifurcation,
+            strict=True,
+        )
+        for speed, depth, frequency, kind in rows:
+            heard = f"{frequency:.3f}" if np.isfinite(frequency) else ""
+            lines.append(f"{speed:.4f},{depth:.7g},{heard},{kind}")
+        return "\n".join(lines) + "\n"
+
+
+def _or_none(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def _pocket_summary(pocket: Pocket) -> dict:
+    return {
+        "spindle_speed_rpm": pocket.spindle_speed * _RPM,
+        "axial_depth_mm": pocket.axial_depth * 1e3,
+        "limit_depth_mm": _or_none(pocket.limit_depth * 1e3),
+        "removal_rate_cm3_per_min": pocket.removal_rate * 1e6 * 60.0,
+    }
+
+
+def _comparison(limits: NDArray[np.float64], other: NDArray[np.float64]) -> dict:
+    """How far the zeroth-order limits lie from those of the main method."""
+    both = np.isfinite(limits) & np.isfinite(other) & (limits > 0.0)
+    if not both.any():
+        return {"median_ratio": None, "lowest_ratio": None, "highest_ratio": None}
+    ratio = other[both] / limits[both]
+    return {
+        "median_ratio": float(np.median(ratio)),
+        "lowest_ratio": float(ratio.min()),
+        "highest_ratio": float(ratio.max()),
+    }
+
+
+def lobes(
+    case: Case,
+    method: str | None = None,
+    grid: bool = False,
+    progress: Progress = no_progress,
+) -> LobeDiagram:
+    """Compute the stability lobe diagram of a case.
+
+    Parameters
+    ----------
+    case : Case
+    method : str, optional
+        One of `chatter.methods.METHODS`; by default what the case says, else
+        semi-discretization.
+    grid : bool
+        Also the spectral radius on the whole grid of speeds and depths.
+    progress : callable, optional
+        Called with (done, total) speeds.
+
+    Returns
+    -------
+    LobeDiagram
+
+    Raises
+    ------
+    InputError
+        If the case lacks something or asks for what cannot be computed.
+    """
+    name, limits_of = chosen_method(case, method)
+    model = milling_model(case)
+    speeds = spindle_speeds(case)
+    zero_order = zero_order_of(model, speeds)
+    deepest = deepest_depth(case, zero_order)
+    depths = axial_depths(case, deepest)
+    limits = limits_of(model, speeds, depths, resolution(case), progress)
+    return LobeDiagram(
+        case=case,
+        method=name,
+        limits=limits,
+        zero_order=zero_order,
+        deepest=deepest,
+        pockets=find_pockets(speeds, limits.critical_depth, deepest, removal_area(case)),
+        operating=operating_limit(case, model, limits_of, deepest),
+        natural_frequencies=tuple(mode.frequency for mode in model.structure.modes),
+        grid=stability_grid(case, model, speeds, depths) if grid else None,
+        notes=model.notes,
+    )
+
+
+def operating_limit(
+    case: Case, model: MillingModel, limits_of: LimitMethod, deepest: float
+) -> LimitCurve:
+    """Limits at the operating speed, looked for at least to the operating depth."""
+    depths = axial_depths(case, max(deepest, 1.02 * case.cut.axial_depth))
+    speeds = np.array([case.cut.spindle_speed])
+    return limits_of(model, speeds, depths, resolution(case), no_progress)
+
+
+def removal_area(case: Case) -> float:
+    """Removal rate over axial depth and spindle speed, m^2."""
+    width = case.cut.radial_depth or case.tool.diameter
+    return width * case.cut.feed_per_tooth * case.tool.teeth / (2.0 * math.pi)
+
+
+def stability_grid(
+    case: Case, model: MillingModel, speeds: NDArray[np.float64], depths: NDArray[np.float64]
+) -> StabilityGrid:
+    """Spectral radius by semi-discretization on every pair of speed and depth."""
+    speed, depth = (part.ravel() for part in np.meshgrid(speeds, depths))
+    radius = np.abs(multipliers(model.arrays, speed, depth, resolution(case)))
+    return StabilityGrid(speeds, depths, radius.reshape(len(depths), len(speeds)))

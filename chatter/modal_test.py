@@ -1,0 +1,1 @@
+"""Modal test: measured FRFs or hammer records to modal parameters at the tool point."""

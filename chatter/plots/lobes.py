@@ -1,0 +1,183 @@
+"""Picture of a stability lobe diagram."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from chatter.plots import style
+
+if TYPE_CHECKING:
+    from chatter.lobe_diagram import LobeDiagram
+
+_RPM = 30.0 / math.pi
+_LABELLED_POCKETS = 3
+_LABEL_BOX = {"boxstyle": "round,pad=0.2", "facecolor": "white", "alpha": 0.8, "linewidth": 0}
+
+
+def plot_lobes(diagram: LobeDiagram) -> Figure:
+    """Draw limit depth and chatter frequency over spindle speed.
+
+    Parameters
+    ----------
+    diagram : LobeDiagram
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = style.new_figure(8.0, 6.4)
+    limit, frequency = figure.subplots(2, 1, sharex=True, height_ratios=[2.2, 1.0])
+    draw_limit(limit, diagram)
+    draw_chatter_frequency(frequency, diagram)
+    limit.set_title(diagram.case.title or "Stability limit")
+    return figure
+
+
+def draw_limit(axes: Axes, diagram: LobeDiagram) -> None:
+    """Draw stable and unstable depths, pockets and operating point into axes."""
+    speed = diagram.limits.spindle_speed * _RPM
+    top = _top(diagram)
+    axes.set_facecolor(style.STABLE_FILL)
+    _fill_unstable(axes, speed, diagram, top)
+    label = _METHOD_LABEL[diagram.method]
+    depth = _finite(diagram.limits.critical_depth)
+    axes.plot(speed, depth * 1e3, color=style.BLUE, linewidth=1.6, label=label)
+    if diagram.method != "zero-order":
+        axes.plot(
+            speed,
+            _finite(diagram.zero_order.critical_depth) * 1e3,
+            color=style.GREY,
+            linewidth=1.0,
+            linestyle=(0, (4, 2)),
+            label=_METHOD_LABEL["zero-order"],
+        )
+    _mark_flips(axes, speed, diagram)
+    _mark_pockets(axes, diagram)
+    _mark_operating_point(axes, diagram)
+    axes.set_xlim(speed[0], speed[-1])
+    axes.set_ylim(0.0, top * 1e3)
+    axes.set_ylabel("axial depth [mm]")
+    style.finish(axes)
+    axes.legend(loc="upper left", fontsize=8, framealpha=0.9, ncols=2)
+
+
+_METHOD_LABEL = {
+    "semi-discretization": "limit, semi-discretization",
+    "zero-order": "limit, zeroth-order",
+}
+
+
+def _finite(depth: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Leave a gap in the line where no limit was found."""
+    return np.where(np.isfinite(depth), depth, np.nan)
+
+
+def _top(diagram: LobeDiagram) -> float:
+    """Highest depth shown, m: all of the search where the case gave it, else what matters."""
+    return max(diagram.deepest, 1.05 * diagram.case.cut.axial_depth)
+
+
+def _fill_unstable(
+    axes: Axes, speed: NDArray[np.float64], diagram: LobeDiagram, top: float
+) -> None:
+    """Fill every unstable stretch of depth; closed islands show as such."""
+    crossings = diagram.limits.crossings
+    most = max((len(depths) for depths in crossings), default=0)
+    for lost in range(0, most, 2):
+        low = np.array([d[lost] if len(d) > lost else np.nan for d in crossings])
+        high = np.array([d[lost + 1] if len(d) > lost + 1 else top for d in crossings])
+        axes.fill_between(
+            speed, low * 1e3, high * 1e3, color=style.UNSTABLE_FILL, linewidth=0.0, zorder=0.5
+        )
+        if lost or most > 1:
+            for edge in (low, np.where(np.isnan(low) | (high >= top), np.nan, high)):
+                axes.plot(speed, edge * 1e3, color=style.BLUE, linewidth=0.8, zorder=1.5)
+
+
+def _mark_flips(axes: Axes, speed: NDArray[np.float64], diagram: LobeDiagram) -> None:
+    flip = np.array(diagram.limits.bifurcation) == "flip"
+    if flip.any():
+        depth = np.where(flip, diagram.limits.critical_depth, np.nan)
+        axes.plot(speed, depth * 1e3, color=style.RED, linewidth=2.0, label="limit by flip")
+
+
+def _mark_pockets(axes: Axes, diagram: LobeDiagram) -> None:
+    for number, pocket in enumerate(diagram.pockets):
+        x, y = pocket.spindle_speed * _RPM, pocket.axial_depth * 1e3
+        axes.plot(
+            x,
+            y,
+            marker="v",
+            color=style.GREEN,
+            markersize=6,
+            linestyle="none",
+            label="pocket, with margin" if number == 0 else None,
+        )
+        if number < _LABELLED_POCKETS:
+            rate = pocket.removal_rate * 6e7
+            axes.annotate(
+                f"{x:.0f} rpm\n{y:.3g} mm\n{rate:.3g} cm³/min",
+                (x, y),
+                xytext=(0, -9),
+                textcoords="offset points",
+                fontsize=7,
+                ha="center",
+                va="top",
+                bbox=_LABEL_BOX,
+            )
+
+
+def _mark_operating_point(axes: Axes, diagram: LobeDiagram) -> None:
+    cut = diagram.case.cut
+    stable = diagram.operating_is_stable
+    axes.plot(
+        cut.spindle_speed * _RPM,
+        cut.axial_depth * 1e3,
+        marker="o" if stable else "X",
+        markersize=9,
+        markeredgecolor="black",
+        color=style.GREEN if stable else style.RED,
+        linestyle="none",
+        label=f"operating point, {'stable' if stable else 'chatter'}",
+        zorder=5,
+    )
+
+
+def draw_chatter_frequency(axes: Axes, diagram: LobeDiagram) -> None:
+    """Draw the chatter frequency at the limit, with the modes and tooth-passing harmonics."""
+    speed = diagram.limits.spindle_speed * _RPM
+    flip = np.array(diagram.limits.bifurcation) == "flip"
+    heard = diagram.limits.chatter_frequency
+    axes.plot(speed[~flip], heard[~flip], ".", markersize=3, color=style.BLUE, label="Hopf")
+    if flip.any():
+        axes.plot(speed[flip], heard[flip], ".", markersize=3, color=style.RED, label="flip")
+    low, high = _frequency_range(heard)
+    for number, natural in enumerate(diagram.natural_frequencies):
+        if low <= natural <= high:
+            axes.axhline(
+                natural,
+                color=style.GREY,
+                linewidth=0.8,
+                linestyle=":",
+                label="natural frequency" if number == 0 else None,
+            )
+    axes.set_ylim(low, high)
+    axes.set_xlabel("spindle speed [rpm]")
+    axes.set_ylabel("chatter\nfrequency [Hz]")
+    style.finish(axes)
+    axes.legend(loc="upper left", fontsize=8, framealpha=0.9, ncols=3)
+
+
+def _frequency_range(heard: NDArray[np.float64]) -> tuple[float, float]:
+    finite = heard[np.isfinite(heard)]
+    if finite.size == 0:
+        return 0.0, 1.0
+    low, high = float(finite.min()), float(finite.max())
+    room = max(0.15 * (high - low), 0.02 * high)
+    return max(0.0, low - room), high + 1.6 * room

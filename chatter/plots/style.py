@@ -1,0 +1,34 @@
+"""One look for every picture: readable in print, distinguishable without colour vision."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+#: Okabe and Ito's palette
+BLUE, ORANGE, GREEN, RED, GREY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#666666"
+STABLE_FILL, UNSTABLE_FILL = "#E8F3EE", "#F6E3D8"
+
+_DPI = 160
+_FONT = 9.0
+
+
+def new_figure(width: float, height: float, **layout: Any) -> Figure:
+    """Return an empty figure (inches) that needs no display."""
+    figure = Figure(figsize=(width, height), dpi=_DPI, layout="constrained", **layout)
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def finish(axes: Any) -> None:
+    """Give axes the common look."""
+    axes.grid(visible=True, color="#DDDDDD", linewidth=0.6)
+    axes.set_axisbelow(True)
+    axes.tick_params(labelsize=_FONT)
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
+    for label in (axes.xaxis.label, axes.yaxis.label):
+        label.set_fontsize(_FONT + 1.0)
+    axes.title.set_fontsize(_FONT + 2.0)

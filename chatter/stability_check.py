@@ -1,0 +1,171 @@
+"""Verdict on the operating point of a case."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from chatter.case import Case
+from chatter.methods import chosen_method, resolution, zero_order_of
+from chatter.model import MillingModel, milling_model
+from chatter.search_range import deepest_depth
+from chatter.stability.limit_curve import LimitCurve
+from chatter.stability.semi_discretization import (
+    Multiplier,
+    bifurcation_kind,
+    chatter_frequency,
+    converged_multiplier,
+    multipliers,
+)
+from chatter.stability.sweep import no_progress
+
+_RPM = 30.0 / math.pi
+#: depths looked at for the limit, and the share of the lowest zeroth-order limit between them
+_DEPTH_COUNT = 200
+_SHARE_OF_LOWEST_LIMIT = 0.25
+_MOST_DEPTHS = 1000
+
+
+@dataclass(frozen=True)
+class StabilityCheck:
+    """Stability of the operating point of a case.
+
+    Parameters
+    ----------
+    case : Case
+    method : str
+        That gave the limit depth.
+    multiplier : Multiplier
+        Dominant multiplier at the operating point, by semi-discretization.
+    chatter_frequency : float
+        Hz, of the motion that grows; nan where the cut is stable.
+    limit : LimitCurve
+        At the operating speed alone.
+    searched_to : float
+        m.
+    zero_order_depth : float
+        Limit by the zeroth-order solution, m.
+    notes : tuple of str
+    """
+
+    case: Case
+    method: str
+    multiplier: Multiplier
+    chatter_frequency: float
+    limit: LimitCurve
+    searched_to: float
+    zero_order_depth: float
+    notes: tuple[str, ...] = ()
+
+    @property
+    def spectral_radius(self) -> float:
+        """Magnitude of the dominant multiplier over one tooth period."""
+        return abs(self.multiplier.value)
+
+    @property
+    def stable(self) -> bool:
+        """True where every disturbance dies out."""
+        return self.spectral_radius < 1.0
+
+    @property
+    def bifurcation(self) -> str:
+        """Kind of the instability at the operating point; ``"none"`` where it is stable."""
+        return "none" if self.stable else bifurcation_kind(self.multiplier.value)
+
+    @property
+    def critical_depth(self) -> float:
+        """First limit at the operating speed, m; inf where none was found."""
+        return float(self.limit.critical_depth[0])
+
+    def summary(self) -> dict:
+        """Return what `chatter check` prints."""
+        cut = self.case.cut
+        return {
+            "spectral_radius": self.spectral_radius,
+            "stable": self.stable,
+            "chatter_frequency_Hz": _or_none(self.chatter_frequency),
+            "bifurcation": self.bifurcation,
+            "critical_depth_mm": _or_none(self.critical_depth * 1e3),
+            "spindle_speed_rpm": cut.spindle_speed * _RPM,
+            "axial_depth_mm": cut.axial_depth * 1e3,
+            "limit": {
+                "chatter_frequency_Hz": _or_none(float(self.limit.chatter_frequency[0])),
+                "bifurcation": self.limit.bifurcation[0],
+                "crossings_mm": [float(depth * 1e3) for depth in self.limit.crossings[0]],
+                "searched_to_mm": self.searched_to * 1e3,
+                "zero_order_depth_mm": _or_none(self.zero_order_depth * 1e3),
+            },
+            "method": self.method,
+            "steps_per_tooth_period": self.multiplier.steps,
+            "spectral_radius_error": self.multiplier.error,
+            "notes": list(self.notes),
+        }
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write check.json and return its path in a list."""
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        path = folder / "check.json"
+        path.write_text(json.dumps(self.summary(), indent=2) + "\n", encoding="utf-8")
+        return [path]
+
+
+def _or_none(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def check(case: Case, method: str | None = None) -> StabilityCheck:
+    """Judge the operating point of a case and find the limit depth at its speed.
+
+    Parameters
+    ----------
+    case : Case
+    method : str, optional
+        Gives the limit depth: one of `chatter.methods.METHODS`. The spectral radius is always
+        that of semi-discretization.
+
+    Returns
+    -------
+    StabilityCheck
+
+    Raises
+    ------
+    InputError
+        If the case lacks something or asks for what cannot be computed.
+    """
+    name, limits_of = chosen_method(case, method)
+    model = milling_model(case)
+    speed, depth = case.cut.spindle_speed, case.cut.axial_depth
+    point = _multiplier(case, model, speed, depth)
+    heard = np.nan
+    if abs(point.value) >= 1.0:
+        heard = chatter_frequency(model.arrays, speed, depth)
+    speeds = np.array([speed])
+    zero_order = zero_order_of(model, speeds)
+    deepest = max(deepest_depth(case, zero_order), 1.02 * depth)
+    spacing = min(deepest / _DEPTH_COUNT, _SHARE_OF_LOWEST_LIMIT * zero_order.lowest_depth)
+    count = min(_MOST_DEPTHS, math.ceil(deepest / spacing))
+    depths = np.linspace(0.0, deepest, count + 1)[1:]
+    return StabilityCheck(
+        case=case,
+        method=name,
+        multiplier=point,
+        chatter_frequency=heard,
+        limit=limits_of(model, speeds, depths, resolution(case), no_progress),
+        searched_to=deepest,
+        zero_order_depth=float(zero_order.critical_depth[0]),
+        notes=model.notes,
+    )
+
+
+def _multiplier(case: Case, model: MillingModel, speed: float, depth: float) -> Multiplier:
+    steps = resolution(case)
+    if steps is None:
+        return converged_multiplier(model.arrays, speed, depth)
+    points = np.array([speed]), np.array([depth])
+    coarse, fine = (multipliers(model.arrays, *points, n)[0] for n in (steps, 2 * steps))
+    return Multiplier(complex(coarse), steps, float(abs(abs(coarse) - abs(fine)) * 4.0 / 3.0))
