@@ -237,14 +237,15 @@ def mean_coupling(table, tooth_pitch, start, end, lag, out):
         head = end + turn * tooth_pitch
         tail = start + turn * tooth_pitch
         if lag < _STRAIGHT_LAG:
-            _add_first_integral(table, head - 0.5 * lag, 1.0 / span, out)
-            _add_first_integral(table, tail - 0.5 * lag, -1.0 / span, out)
+            for side in range(2):
+                angle = (head if side == 0 else tail) - 0.5 * lag
+                factor = (1.0 - 2.0 * side) / span
+                _add_first_integral(table, angle, factor, out)
         else:
-            factor = 1.0 / (span * lag)
-            _add_second_integral(table, head, factor, out)
-            _add_second_integral(table, tail, -factor, out)
-            _add_second_integral(table, head - lag, -factor, out)
-            _add_second_integral(table, tail - lag, factor, out)
+            for corner in range(4):
+                angle = (head if corner % 2 == 0 else tail) - (lag if corner > 1 else 0.0)
+                sign = 1.0 if corner in (0, 3) else -1.0
+                _add_second_integral(table, angle, sign / (span * lag), out)
 
 
 def mean_over_turn(table: DirectionalTable, teeth: int) -> NDArray[np.float64]:

@@ -14,9 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.errors import RunError
-from chatter.stability import limit_kernels
+from chatter.stability import drivers
 from chatter.stability.arrays import MillingArrays
+from chatter.stability.crossings import find_crossings, growth_on_net
 from chatter.stability.limit_curve import LimitCurve
+from chatter.stability.multipliers import dominant_multiplier
+from chatter.stability.period_map import build_period_map
 from chatter.stability.sweep import Progress, no_progress, sweep
 
 #: steps per period of the highest relevant mode; the extrapolated error is then near 1e-4
@@ -30,8 +33,11 @@ _MOST_STEPS = 200_000
 #: |Im| below this share of |mu| is a real multiplier
 _REAL_SHARE = 1e-6
 
-_PLAIN = np.array([1])
-_EXTRAPOLATED = np.array([1, 2])
+#: refinements of the steps: plain, or nested ones from which the value is extrapolated
+_PLAIN = (1,)
+_EXTRAPOLATED = (1, 2)
+#: a correction beyond this share means that two multipliers have changed places
+_LARGEST_CORRECTION = 0.2
 
 
 class Multiplier(NamedTuple):
@@ -66,7 +72,8 @@ def automatic_steps(arrays: MillingArrays, speeds: NDArray[np.float64]) -> NDArr
 
 def _resolution(
     arrays: MillingArrays, speeds: NDArray[np.float64], steps: int | None
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+) -> tuple[NDArray[np.int64], tuple[int, ...]]:
+    """Steps (n,) and refinements: plain where the user fixes the steps, else extrapolated."""
     if steps is None:
         return automatic_steps(arrays, speeds), _EXTRAPOLATED
     return np.full(np.shape(speeds), steps, dtype=np.int64), _PLAIN
@@ -98,13 +105,7 @@ def multipliers(
         Imaginary part >= 0.
     """
     count, refinements = _resolution(arrays, speeds, steps)
-
-    def chunk(index: NDArray[np.int64]) -> NDArray[np.complex128]:
-        return limit_kernels.multipliers_at(
-            arrays, speeds[index], depths[index], count[index], refinements
-        )
-
-    return np.concatenate(sweep(chunk, len(speeds), progress, points_a_chunk=256))
+    return _at_points(arrays, speeds, depths, count, refinements, progress)
 
 
 def converged_multiplier(
@@ -125,24 +126,17 @@ def converged_multiplier(
     Multiplier
     """
     point = np.array([speed]), np.array([depth])
-    steps = int(automatic_steps(arrays, point[0])[0])
-    value, error = _extrapolated(arrays, point, steps), np.inf
-    while 4 * steps <= _MOST_STEPS:
-        steps *= 2
-        finer = _extrapolated(arrays, point, steps)
+    steps = automatic_steps(arrays, point[0])
+    value, error = complex(_at_points(arrays, *point, steps, _EXTRAPOLATED)[0]), np.inf
+    while 4 * steps[0] <= _MOST_STEPS:
+        steps = 2 * steps
+        finer = complex(_at_points(arrays, *point, steps, _EXTRAPOLATED)[0])
         # a fourth-order error falls by 16; the difference bounds the finer one generously
         error = abs(abs(finer) - abs(value))
         value = finer
         if error <= tolerance * max(1.0, abs(value)):
             break
-    return Multiplier(value, 2 * steps, float(error))
-
-
-def _extrapolated(
-    arrays: MillingArrays, point: tuple[NDArray[np.float64], NDArray[np.float64]], steps: int
-) -> complex:
-    count = np.array([steps])
-    return complex(limit_kernels.multipliers_at(arrays, *point, count, _EXTRAPOLATED)[0])
+    return Multiplier(value, 2 * int(steps[0]), float(error))
 
 
 def bifurcation_kind(multiplier: complex) -> str:
@@ -157,12 +151,23 @@ def chatter_frequency(arrays: MillingArrays, speed: float, depth: float) -> floa
     A multiplier mu fixes the frequencies (arg mu + 2 pi l)/T only up to the tooth-passing
     frequency; of these the one with the largest amplitude of displacement is what is heard.
     """
-    steps = int(automatic_steps(arrays, np.array([speed]))[0])
-    tooth_passing = speed / arrays.tooth_pitch
-    harmonics = math.ceil(2.0 * arrays.natural_frequency.max() / (2.0 * np.pi) / tooth_passing) + 2
-    _, frequency, amplitude = limit_kernels.motion_harmonics(
-        arrays, speed, depth, 2 * steps, harmonics
+    steps = 2 * int(automatic_steps(arrays, np.array([speed]))[0])
+    period = build_period_map(arrays, speed, depth, steps, 1, steps)
+    value, vector, _ = dominant_multiplier(period)
+    real, imag = (
+        drivers.motion_over_period(period, np.ascontiguousarray(part))
+        for part in (vector.real, vector.imag)
     )
+    time = np.concatenate([[0.0], np.cumsum(period.duration)])
+    decay = np.exp(-np.log(max(abs(value), 1e-300)) * time / time[-1])
+    motion = (real + 1j * imag) * decay[:, None]
+    tooth_passing = 1.0 / time[-1]
+    highest = 2.0 * arrays.natural_frequency.max() / (2.0 * np.pi)
+    harmonic = np.arange(-math.ceil(highest / tooth_passing) - 1, highest / tooth_passing + 2)
+    frequency = (np.angle(value) / (2.0 * np.pi) + harmonic) * tooth_passing
+    wave = np.exp(-2j * np.pi * frequency[:, None] * time)
+    weight = 0.5 * (np.append(period.duration, 0.0) + np.insert(period.duration, 0, 0.0))
+    amplitude = np.linalg.norm((wave * weight) @ motion, axis=1)
     return float(abs(frequency[np.argmax(amplitude)]))
 
 
@@ -186,7 +191,7 @@ def limit_curve(
     steps : int, optional
         As in `multipliers`.
     progress : callable, optional
-        Called with (done, total) speeds.
+        Called with (done, total) points of the net.
 
     Returns
     -------
@@ -194,29 +199,67 @@ def limit_curve(
     """
     count, refinements = _resolution(arrays, speeds, steps)
 
-    def chunk(index: NDArray[np.int64]) -> list[tuple[NDArray[np.float64], float, str]]:
-        found, crossing = limit_kernels.crossings_along_depth(
-            arrays, speeds[index], depths, count[index], refinements
-        )
-        rows = []
-        for i, speed in enumerate(speeds[index]):
-            depths_here = crossing[i, : found[i]].copy()
-            frequency, kind = np.nan, "none"
-            if found[i]:
-                frequency = chatter_frequency(arrays, float(speed), float(depths_here[0]))
-                point = np.array([speed]), depths_here[:1], count[index[i : i + 1]]
-                kind = bifurcation_kind(
-                    complex(limit_kernels.multipliers_at(arrays, *point, refinements)[0])
-                )
-            rows.append((depths_here, frequency, kind))
-        return rows
+    def refined(index: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
+        return _growth(_at_points(arrays, speeds[index], depth, count[index], refinements))
 
-    rows = [row for part in sweep(chunk, len(speeds), progress, points_a_chunk=4) for row in part]
-    return LimitCurve(
-        spindle_speed=speeds,
-        critical_depth=np.array([row[0][0] if row[0].size else np.inf for row in rows]),
-        chatter_frequency=np.array([row[1] for row in rows]),
-        bifurcation=tuple(row[2] for row in rows),
-        crossings=tuple(row[0] for row in rows),
-        steps=count,
+    def plain(index: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
+        points = speeds[index], depth, count[index]
+        return _growth(_at_points(arrays, *points, _PLAIN, progress))
+
+    net = growth_on_net(len(speeds), depths, plain, refined if len(refinements) > 1 else plain)
+    crossings = find_crossings(net, depths, refined)
+    found = np.array([i for i, depth in enumerate(crossings) if depth.size], dtype=np.int64)
+    first = np.full(len(speeds), np.inf)
+    first[found] = [crossings[i][0] for i in found]
+    frequency = np.full(len(speeds), np.nan)
+    kind = ["none"] * len(speeds)
+    at_limit = _at_points(arrays, speeds[found], first[found], count[found], refinements)
+    heard = sweep(
+        lambda chunk: [
+            chatter_frequency(arrays, speeds[i], first[i]) for i in found[chunk].tolist()
+        ],
+        len(found),
+        points_a_chunk=8,
     )
+    frequency[found] = [value for part in heard for value in part]
+    for i, value in zip(found.tolist(), at_limit, strict=True):
+        kind[i] = bifurcation_kind(complex(value))
+    return LimitCurve(speeds, first, frequency, tuple(kind), tuple(crossings), count)
+
+
+def _growth(values: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """Logarithm of the spectral radius: positive is unstable."""
+    return np.log(np.maximum(np.abs(values), 1e-30))
+
+
+def _at_points(
+    arrays: MillingArrays,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    steps: NDArray[np.int64],
+    refinements: tuple[int, ...],
+    progress: Progress = no_progress,
+) -> NDArray[np.complex128]:
+    """Dominant multipliers (n,) at n points, in parallel threads.
+
+    From two refinements the second-order error is removed (Richardson).
+    """
+    if len(speeds) == 0:
+        return np.empty(0, dtype=np.complex128)
+
+    def chunk(index: NDArray[np.int64]) -> NDArray[np.complex128]:
+        points = speeds[index], depths[index], steps[index]
+        values = [drivers.multipliers_at(arrays, *points, r) for r in refinements]
+        return values[0] if len(values) == 1 else _extrapolated(*values, refinements)
+
+    return np.concatenate(sweep(chunk, len(speeds), progress))
+
+
+def _extrapolated(
+    coarse: NDArray[np.complex128], fine: NDArray[np.complex128], refinements: tuple[int, ...]
+) -> NDArray[np.complex128]:
+    ratio = (refinements[1] / refinements[0]) ** 2
+    correction = (fine - coarse) / (ratio - 1.0)
+    correction[np.abs(correction) > _LARGEST_CORRECTION * np.abs(fine)] = 0.0
+    value = fine + correction
+    return value.real + 1j * np.abs(value.imag)
