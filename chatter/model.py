@@ -150,13 +150,12 @@ def _radial_depth(case: Case) -> float:
 
 
 def force_law(case: Case) -> ForceLaw:
-    """Return the force law that the material section names."""
+    """Return the force law that the material section describes."""
     material = case.material
-    cutting = (material.Ktc, material.Krc, material.Kac)
-    edge = (material.Kte, material.Kre, material.Kae)
+    cutting = material.cutting_coefficients(_helix_angles(case)[0])
     if material.law == "exponential":
-        return ExponentialLaw(cutting, material.h0, material.exponent, edge)
-    return LinearLaw(cutting, edge)
+        return ExponentialLaw(cutting, material.h0, material.exponent, material.edge_coefficients)
+    return LinearLaw(cutting, material.edge_coefficients)
 
 
 def _process_damping(case: Case) -> ViscousProcessDamping | None:

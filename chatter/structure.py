@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.case import Case
 from chatter.errors import InputError
-from chatter.measured_frf import MeasuredAxes, measured_axes
+from chatter.measured_frf import MeasuredSide, measured_sides
 from chatter.stability.zero_order import frequency_lines
-from dynamics.frf import MeasurementError, on_common_lines
-from dynamics.identification import ModalFit, identify_modes
+from dynamics.frf import MeasurementError
+from dynamics.identification import ModalFit
 from dynamics.modal import Mode, receptance_matrix
 
-_AXES = {"x": 0, "y": 1, "z": 2}
+if TYPE_CHECKING:
+    from chatter.case import Case
+
 #: chatter is looked for up to this multiple of the highest mode
 _HIGHEST_CHATTER = 4.0
 
@@ -54,47 +56,72 @@ class MeasuredStructure:
 
     Parameters
     ----------
-    axes : tuple of MeasuredAxes
-        One entry for each set of FRFs that is fitted together.
+    sides : tuple of MeasuredSide
     notes : tuple of str
         Assumptions made on reading.
     """
 
-    axes: tuple[MeasuredAxes, ...]
+    sides: tuple[MeasuredSide, ...]
     notes: tuple[str, ...] = ()
 
-    @property
+    @cached_property
     def directions(self) -> NDArray[np.float64]:
         """Directions (n, 3) that were measured."""
-        used = sorted({axis for entry in self.axes for axis in entry.directions})
-        return np.eye(3)[[_AXES[axis] for axis in used]]
+        used = {
+            point.direction
+            for side in self.sides
+            for frf in side.tool_point_frfs()
+            for point in (frf.response, frf.reference)
+        }
+        return np.eye(3)[["xyz".index(axis) for axis in sorted(used)]]
 
     @cached_property
     def fits(self) -> tuple[ModalFit, ...]:
-        """Modal fit of each set of FRFs."""
+        """Modal fit of each side."""
         try:
-            return tuple(identify_modes(entry.frfs) for entry in self.axes)
+            fits = tuple(side.fit() for side in self.sides)
         except MeasurementError as error:
             raise InputError(str(error)) from error
+        without = [fit.no_mass_reason for fit in fits if not fit.modes]
+        if without:
+            raise InputError(
+                [f"structure.frf: no mode at the tool point: {why}" for why in without]
+            )
+        return fits
 
     @cached_property
     def modes(self) -> tuple[Mode, ...]:
         """Fitted real modes in the directions of the case."""
         return tuple(
-            mode
-            for entry, fit in zip(self.axes, self.fits, strict=True)
-            for mode in entry.modes(fit)
+            replace(mode, side=side.side)
+            for side, fit in zip(self.sides, self.fits, strict=True)
+            for mode in fit.modes
         )
 
     def receptance(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
         """Usable lines (m,) in Hz and relative receptance (m, 3, 3) as measured, without a fit."""
-        parts = [(entry, frf) for entry in self.axes for frf in entry.tool_point_frfs()]
-        frequency, columns = on_common_lines([frf for _, frf in parts])
-        total = np.zeros((frequency.size, 3, 3), dtype=np.complex128)
-        for (entry, frf), column in zip(parts, columns.T, strict=True):
-            for response, reference in entry.case_directions(frf):
-                total[:, _AXES[response], _AXES[reference]] += column
-        return frequency, total
+        try:
+            parts = [side.receptance() for side in self.sides]
+        except MeasurementError as error:
+            raise InputError(str(error)) from error
+        lowest = max(float(lines[0]) for lines, _ in parts)
+        highest = min(float(lines[-1]) for lines, _ in parts)
+        lines = parts[0][0][(parts[0][0] >= lowest) & (parts[0][0] <= highest)]
+        if lines.size < 2:
+            raise InputError("structure.frf: tool and workpiece share no frequency range")
+        return lines, sum(_on_lines(lines, *part) for part in parts)
+
+
+def _on_lines(
+    lines: NDArray[np.float64], frequency: NDArray[np.float64], values: NDArray[np.complex128]
+) -> NDArray[np.complex128]:
+    """Interpolate (m, 3, 3) values linearly to other lines."""
+    flat = values.reshape(len(values), 9).T
+    columns = [
+        np.interp(lines, frequency, column.real) + 1j * np.interp(lines, frequency, column.imag)
+        for column in flat
+    ]
+    return np.stack(columns, axis=1).reshape(lines.size, 3, 3)
 
 
 Structure = GivenModes | MeasuredStructure
@@ -112,19 +139,13 @@ def structure_of(case: Case) -> Structure:
     if section.mode:
         return GivenModes(
             tuple(
-                Mode(mode.frequency, mode.damping, mode.mass_kg, tuple(mode.direction), mode.side)
+                Mode(mode.frequency, mode.damping, mode.modal_mass, mode.direction, mode.side)
                 for mode in section.mode
             )
         )
     if section.frf:
-        return measured_structure(case)
+        return MeasuredStructure(*measured_sides(case))
     raise InputError(
         f"{case.name}: structure.machine: stability from a virtual machine is not available yet; "
         "give structure.mode or structure.frf"
     )
-
-
-def measured_structure(case: Case) -> MeasuredStructure:
-    """Read the FRFs that a case names."""
-    axes, notes = measured_axes(case)
-    return MeasuredStructure(axes, notes)

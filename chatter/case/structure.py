@@ -1,0 +1,140 @@
+"""[structure]: modes at the tool point, measured FRFs, or a virtual machine."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    BeforeValidator,
+    Field,
+    ValidationInfo,
+    WithJsonSchema,
+    field_validator,
+    model_validator,
+)
+
+from chatter.case.base import Section, raise_if_any
+from chatter.case.quantities import quantity, shown
+
+#: a direction may miss unit length by this much before it is refused rather than normalised
+_UNIT_TOLERANCE = 0.01
+_DIRECTION = re.compile("[xyz]{1,2}")
+
+
+def _unit_vector(given: Any) -> tuple[float, float, float]:
+    numbers = isinstance(given, (list, tuple)) and all(
+        isinstance(part, (int, float)) and not isinstance(part, bool) and math.isfinite(part)
+        for part in given
+    )
+    if not numbers or len(given) != 3:
+        raise ValueError(
+            f"{shown(given)} is no direction; three numbers are wanted, such as [1, 0, 0]"
+        )
+    length = math.sqrt(sum(part * part for part in given))
+    if abs(length - 1.0) > _UNIT_TOLERANCE:
+        raise ValueError(f"{list(given)} has length {length:.4g}; a unit vector is wanted")
+    return tuple(float(part) / length for part in given)
+
+
+UnitVector = Annotated[
+    tuple[float, float, float],
+    BeforeValidator(_unit_vector),
+    WithJsonSchema({"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}),
+]
+
+
+class ModeSection(Section):
+    """One real mode at the tool point: frequency in Hz, mass in kg, stiffness in N/m."""
+
+    frequency: quantity("frequency", above=0.0)
+    damping: quantity("number", above=0.0, below=1.0) = Field(description="damping ratio")
+    mass: quantity("mass", above=0.0) | None = None
+    stiffness: quantity("stiffness", above=0.0) | None = None
+    direction: UnitVector
+    side: Literal["tool", "workpiece"] = "tool"
+
+    @model_validator(mode="after")
+    def _check_inertia(self) -> ModeSection:
+        given = (self.mass is not None) + (self.stiffness is not None)
+        text = {0: "either mass or stiffness is needed", 2: "give mass or stiffness, not both"}
+        raise_if_any([("", text[given])] if given != 1 else [])
+        return self
+
+    @property
+    def modal_mass(self) -> float:
+        """Modal mass, kg, as given or from the stiffness."""
+        if self.mass is not None:
+            return self.mass
+        return self.stiffness / (2.0 * math.pi * self.frequency) ** 2
+
+
+class MeasuredFrf(Section):
+    """A file of measured FRFs at the tool point."""
+
+    file: Path
+    direction: str | None = Field(
+        None, description='"x", or response and force as in "xy"; where the file does not say'
+    )
+    side: Literal["tool", "workpiece"] = "tool"
+    node: str | None = Field(None, description="node of the tool point, where there are several")
+
+    @field_validator("file", mode="before")
+    @classmethod
+    def _resolve(cls, given: Any, info: ValidationInfo) -> Any:
+        if not isinstance(given, str) or not given:
+            raise ValueError(f"{shown(given)} is no file name")
+        folder = (info.context or {}).get("folder", Path())
+        return folder / given
+
+    @field_validator("direction")
+    @classmethod
+    def _check_direction(cls, given: str | None) -> str | None:
+        if given is not None and not _DIRECTION.fullmatch(given):
+            raise ValueError(f'"{given}" is no direction; "x", "y", "z" or two of them are wanted')
+        return given
+
+    @field_validator("node", mode="before")
+    @classmethod
+    def _as_text(cls, given: Any) -> Any:
+        return str(given) if isinstance(given, int) and not isinstance(given, bool) else given
+
+
+def _as_tables(given: Any) -> Any:
+    """One name, a list of names or of tables: all become tables."""
+    entries = given if isinstance(given, (list, tuple)) else [given]
+    return [{"file": entry} if isinstance(entry, str) else entry for entry in entries]
+
+
+def _also_file_names(schema: dict) -> None:
+    """Let the schema accept what `_as_tables` accepts."""
+    table = schema.pop("items")
+    name = {"type": "string", "examples": ["tap.uff"]}
+    del schema["type"]
+    schema["anyOf"] = [name, {"type": "array", "items": {"anyOf": [name, table]}}, table]
+
+
+class StructureSection(Section):
+    """Where the dynamics at the tool point come from: exactly one of three."""
+
+    mode: tuple[ModeSection, ...] = Field((), description="real modes at the tool point")
+    frf: Annotated[tuple[MeasuredFrf, ...], BeforeValidator(_as_tables)] = Field(
+        (),
+        description="measured FRFs: a file, a list of files or of tables",
+        json_schema_extra=_also_file_names,
+    )
+    machine: str | None = Field(None, description="file of a virtual machine")
+
+    @model_validator(mode="after")
+    def _check_source(self) -> StructureSection:
+        named = [key for key in ("mode", "frf", "machine") if getattr(self, key)]
+        problems = []
+        if len(named) > 1:
+            listed = " and ".join(named)
+            problems.append(("", f"{listed} are both given; the structure comes from one of them"))
+        if not named:
+            problems.append(("", "is empty; give [[structure.mode]], structure.frf or machine"))
+        raise_if_any(problems)
+        return self

@@ -1,0 +1,165 @@
+"""Pictures of a modal identification: measured against fitted, stabilisation diagram."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from chatter.plots import style
+from dynamics.frf import Frf
+from dynamics.identification import FrfModel, ModalFit
+
+#: FRFs side by side in one picture
+_MOST_COLUMNS = 4
+_CURVE_POINTS = 4000
+_UNIT = {"receptance": ("um/N", 1e6), "mobility": ("mm/s/N", 1e3), "accelerance": ("m/s²/N", 1.0)}
+
+
+def plot_fit(fit: ModalFit, title: str) -> Figure:
+    """Draw magnitude and phase of every FRF, measured and fitted.
+
+    Parameters
+    ----------
+    fit : ModalFit
+    title : str
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    columns = min(len(fit.frfs), _MOST_COLUMNS)
+    figure = style.new_figure(max(7.5, 4.2 * columns), 6.0)
+    axes = figure.subplots(2, columns, sharex=True, squeeze=False, height_ratios=[2.0, 1.0])
+    for column in range(columns):
+        frf, model = fit.frfs[column], fit.models[column]
+        draw_magnitude(axes[0, column], fit, frf, model)
+        draw_phase(axes[1, column], fit, frf, model)
+        error = fit.errors[column]
+        axes[0, column].set_title(
+            f"{_name(frf)}\nerror {error.rms:.1%} rms, {error.maximum:.1%} at most, of the peak",
+            fontsize=9,
+        )
+    shown = "" if columns == len(fit.frfs) else f" (first {columns} of {len(fit.frfs)} FRFs)"
+    figure.suptitle(f"{title}: {len(fit.identified)} modes{shown}", fontsize=12)
+    return figure
+
+
+def _name(frf: Frf) -> str:
+    response, reference = (
+        f"{point.node}{point.direction}" for point in (frf.response, frf.reference)
+    )
+    pair = f"{response}/{reference}" if response or reference else ""
+    return " ".join(part for part in (frf.source.rsplit("/", 1)[-1], pair) if part) or "FRF"
+
+
+def _fitted_lines(fit: ModalFit) -> np.ndarray:
+    """Lines for the fitted curve: even, and dense within every resonance."""
+    even = np.linspace(fit.band.lowest, fit.band.highest, _CURVE_POINTS)
+    near = [
+        mode.frequency * (1.0 + mode.damping * np.linspace(-4.0, 4.0, 161))
+        for mode in fit.identified
+    ]
+    lines = np.unique(np.concatenate([even, *near]))
+    return lines[(lines >= fit.band.lowest) & (lines <= fit.band.highest)]
+
+
+def draw_magnitude(axes: Axes, fit: ModalFit, frf: Frf, model: FrfModel) -> None:
+    """Draw the magnitude, logarithmic, with the modes marked."""
+    unit, factor = _UNIT[frf.quantity]
+    lines = _fitted_lines(fit)
+    axes.semilogy(
+        frf.frequency,
+        np.abs(frf.values) * factor,
+        color=style.GREY,
+        linewidth=1.8,
+        alpha=0.7,
+        label="measured",
+    )
+    axes.semilogy(
+        lines,
+        np.abs(model.values(lines)) * factor,
+        color=style.RED,
+        linewidth=1.0,
+        label="fitted",
+    )
+    for mode in fit.identified:
+        colour = style.ORANGE if mode.warning else style.BLUE
+        axes.axvline(mode.frequency, color=colour, linewidth=0.7, linestyle=":")
+    inside = np.abs(frf.band(fit.band.lowest, fit.band.highest).values) * factor
+    floor = max(float(inside.min()), 1e-5 * float(inside.max()))
+    axes.set_ylim(0.5 * floor, 2.0 * float(inside.max()))
+    axes.set_ylabel(f"{frf.quantity} [{unit}]")
+    style.finish(axes)
+    axes.legend(fontsize=8, loc="best")
+
+
+def draw_phase(axes: Axes, fit: ModalFit, frf: Frf, model: FrfModel) -> None:
+    """Draw the phase in degrees."""
+    lines = _fitted_lines(fit)
+    axes.plot(
+        frf.frequency,
+        np.degrees(np.angle(frf.values)),
+        color=style.GREY,
+        marker=".",
+        markersize=1.5,
+        linestyle="none",
+    )
+    fitted = np.degrees(np.angle(model.values(lines)))
+    # a jump from -180 to 180 degrees is no line
+    fitted[np.append(False, np.abs(np.diff(fitted)) > 180.0)] = np.nan
+    axes.plot(lines, fitted, color=style.RED, linewidth=1.0)
+    axes.set_ylim(-190.0, 190.0)
+    axes.set_yticks([-180, -90, 0, 90, 180])
+    axes.set_xlim(frf.frequency[0], frf.frequency[-1])
+    axes.set_xlabel("frequency [Hz]")
+    axes.set_ylabel("phase [deg]")
+    style.finish(axes)
+
+
+def plot_stabilisation(fit: ModalFit, title: str) -> Figure:
+    """Draw the poles of all model orders over frequency, with the FRFs behind them.
+
+    Parameters
+    ----------
+    fit : ModalFit
+    title : str
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = style.new_figure(8.0, 4.6)
+    axes = figure.subplots()
+    behind = axes.twinx()
+    for frf in fit.frfs:
+        behind.semilogy(frf.frequency, np.abs(frf.values), color="#BBBBBB", linewidth=0.8)
+    behind.set_yticks([])
+    behind.set_zorder(0)
+    axes.set_zorder(1)
+    axes.set_facecolor("none")
+    for number, diagram in enumerate(fit.diagrams):
+        for stable, marker, colour, label in (
+            (False, "x", style.ORANGE, "pole"),
+            (True, "o", style.BLUE, "stable pole"),
+        ):
+            chosen = diagram.stable == stable
+            axes.plot(
+                diagram.frequency[chosen],
+                diagram.order[chosen],
+                marker,
+                color=colour,
+                markersize=3 if stable else 2.5,
+                markerfacecolor="none",
+                linestyle="none",
+                label=label if number == 0 else None,
+            )
+    for mode in fit.identified:
+        axes.axvline(mode.frequency, color=style.GREEN, linewidth=0.8)
+    axes.set_xlim(fit.band.lowest, fit.band.highest)
+    axes.set_xlabel("frequency [Hz]")
+    axes.set_ylabel("model order")
+    axes.set_title(f"{title}: stabilisation diagram, modes chosen in green")
+    style.finish(axes)
+    axes.legend(fontsize=8, loc="upper right")
+    return figure
