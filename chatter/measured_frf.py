@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from chatter.errors import InputError
+from chatter.mirror_point import NOT_PASSIVE, is_passive, mirror_point_modes
+from chatter.stability.zero_order import frequency_lines
 from dynamics.formats import read_frfs
 from dynamics.frf import Frf, MeasurementError, Point, on_common_lines
 from dynamics.identification import ModalFit, identify_modes
 from dynamics.identification.prepare import prepare
-from dynamics.modal import Side
+from dynamics.modal import Mode, Side, receptance_matrix
 
 if TYPE_CHECKING:
     from chatter.case import Case
@@ -48,16 +51,53 @@ class MeasuredSide:
             if frf.response.node == frf.reference.node and self.node in (None, frf.response.node)
         )
 
+    @cached_property
     def fit(self) -> ModalFit:
-        """Fit modes to all FRFs of the side."""
-        return identify_modes(self.frfs, tool_point=self.node)
+        """Modal fit of all FRFs of the side.
+
+        Raises
+        ------
+        InputError
+            If no mode at the tool point is found.
+        """
+        try:
+            fit = identify_modes(self.frfs, tool_point=self.node)
+        except MeasurementError as error:
+            raise InputError(str(error)) from error
+        if not fit.modes and not mirror_point_modes(fit):
+            raise InputError(f"structure.frf: no mode at the tool point: {fit.no_mass_reason}")
+        return fit
+
+    @cached_property
+    def modes(self) -> tuple[Mode, ...]:
+        """Real modes at the tool point; magnitudes where the FRFs are not passive (see notes)."""
+        found = self.fit.modes or mirror_point_modes(self.fit)
+        return tuple(replace(mode, side=self.side) for mode in found)
+
+    def notes(self) -> tuple[str, ...]:
+        """Warnings about FRFs that no drive point can have."""
+        return tuple(
+            f"{frf.source}: {NOT_PASSIVE}"
+            for frf in self.tool_point_frfs()
+            if frf.is_drive_point and not is_passive(frf)
+        )
 
     def receptance(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
-        """Usable lines (m,) in Hz and receptance (m, 3, 3) at the tool point, m/N, as measured."""
+        """Usable lines (m,) in Hz and receptance (m, 3, 3) at the tool point, m/N, as measured.
+
+        Where the measurement is not that of a drive point, the receptance of `modes` stands in.
+        """
         measured = self.tool_point_frfs()
-        band = prepare(measured, None).band
+        band = prepare(measured, None).clean
         inside = [frf.receptance().band(band.lowest, band.highest) for frf in measured]
         frequency, columns = on_common_lines(inside)
+        if self.notes():
+            lines = frequency_lines(
+                np.array([mode.frequency for mode in self.modes]),
+                np.array([mode.damping for mode in self.modes]),
+                band.highest,
+            )
+            return lines, receptance_matrix(self.modes, lines)
         total = np.zeros((frequency.size, 3, 3), dtype=np.complex128)
         for frf, column in zip(measured, columns.T, strict=True):
             i, j = (_AXES.index(p.direction) for p in (frf.response, frf.reference))
@@ -115,6 +155,7 @@ def measured_sides(case: Case) -> tuple[tuple[MeasuredSide, ...], tuple[str, ...
         for side, frfs in found.items()
         if frfs
     )
+    notes += [note for side in sides for note in side.notes()]
     return sides, tuple(dict.fromkeys(notes))
 
 
@@ -134,7 +175,7 @@ def _directed(entry: MeasuredFrf, frfs: list[Frf], notes: list[str]) -> list[Frf
             f"{entry.file.name} names no direction: taken as the same in x and y; say so, or "
             'otherwise, with direction = "x" in [[structure.frf]]'
         )
-        return [_turned(frf, axis, axis) for axis in "xy" for frf in frfs]
+        return [with_direction(frf, axis, axis) for axis in "xy" for frf in frfs]
     pairs = {(frf.response.direction, frf.reference.direction) for frf in frfs}
     if len(pairs) > 1:
         listed = ", ".join(sorted("".join(pair) or "none" for pair in pairs))
@@ -143,10 +184,11 @@ def _directed(entry: MeasuredFrf, frfs: list[Frf], notes: list[str]) -> list[Frf
             f'"{entry.direction}" cannot stand for all of them; leave it out'
         )
     response, reference = entry.direction[0], entry.direction[-1]
-    return [_turned(frf, response, reference) for frf in frfs]
+    return [with_direction(frf, response, reference) for frf in frfs]
 
 
-def _turned(frf: Frf, response: str, reference: str) -> Frf:
+def with_direction(frf: Frf, response: str, reference: str) -> Frf:
+    """Return an FRF with the directions of response and force replaced, their senses kept."""
     return replace(
         frf,
         response=Point(frf.response.node, response, frf.response.sign),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -75,28 +75,15 @@ class MeasuredStructure:
         }
         return np.eye(3)[["xyz".index(axis) for axis in sorted(used)]]
 
-    @cached_property
+    @property
     def fits(self) -> tuple[ModalFit, ...]:
         """Modal fit of each side."""
-        try:
-            fits = tuple(side.fit() for side in self.sides)
-        except MeasurementError as error:
-            raise InputError(str(error)) from error
-        without = [fit.no_mass_reason for fit in fits if not fit.modes]
-        if without:
-            raise InputError(
-                [f"structure.frf: no mode at the tool point: {why}" for why in without]
-            )
-        return fits
+        return tuple(side.fit for side in self.sides)
 
-    @cached_property
+    @property
     def modes(self) -> tuple[Mode, ...]:
         """Fitted real modes in the directions of the case."""
-        return tuple(
-            replace(mode, side=side.side)
-            for side, fit in zip(self.sides, self.fits, strict=True)
-            for mode in fit.modes
-        )
+        return tuple(mode for side in self.sides for mode in side.modes)
 
     def receptance(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
         """Usable lines (m,) in Hz and relative receptance (m, 3, 3) as measured, without a fit."""

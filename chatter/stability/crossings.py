@@ -19,21 +19,37 @@ _DEPTH_TOLERANCE = 1e-7
 _GROWTH_TOLERANCE = 1e-9
 _MOST_ITERATIONS = 60
 #: growth on the net may be off by this much
-_DOUBTFUL_GROWTH = 0.2
+_DOUBTFUL_GROWTH = 0.05
 
 
 def growth_on_net(
     speed_count: int, depths: NDArray[np.float64], plain: Growth, refined: Growth
 ) -> NDArray[np.float64]:
-    """Growth (speeds, depths) on the net, refined where the plain value leaves its sign open."""
+    """Growth (speeds, depths) on the net, refined where its sign matters and is in doubt."""
     speed, depth = (
         part.ravel() for part in np.meshgrid(np.arange(speed_count), depths, indexing="ij")
     )
-    growth = plain(speed, depth)
-    if refined is not plain:
-        doubtful = np.flatnonzero(np.abs(growth) < _DOUBTFUL_GROWTH)
-        growth[doubtful] = refined(speed[doubtful], depth[doubtful])
-    return growth.reshape(speed_count, depths.size)
+    growth = plain(speed, depth).reshape(speed_count, depths.size)
+    settled = np.zeros(growth.shape, dtype=bool)
+    # a refined value may change its sign and so put its neighbour in doubt
+    while refined is not plain:
+        row, column = np.nonzero(_in_doubt(growth) & ~settled)
+        if row.size == 0:
+            break
+        growth[row, column] = refined(row, depths[column])
+        settled[row, column] = True
+    return growth
+
+
+def _in_doubt(growth: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Points beside a change of sign, and peaks and valleys that nearly reach zero."""
+    before = np.concatenate([np.full((growth.shape[0], 1), -1e-12), growth[:, :-1]], axis=1)
+    after = np.concatenate([growth[:, 1:], growth[:, -1:]], axis=1)
+    changes = ((before > 0.0) != (growth > 0.0)) | ((after > 0.0) != (growth > 0.0))
+    near = np.abs(growth) < _DOUBTFUL_GROWTH
+    peak = (growth <= 0.0) & (growth >= before) & (growth >= after)
+    valley = (growth > 0.0) & (growth <= before) & (growth <= after)
+    return changes | (near & (peak | valley))
 
 
 def find_crossings(

@@ -8,12 +8,13 @@ import numpy as np
 from numba import njit
 
 from chatter.kernels import KERNEL
+from chatter.stability.hessenberg import hessenberg_eigenvalues, hessenberg_vector
 from chatter.stability.period_map import apply_period_map
 
 #: residual of the dominant eigenpair, relative to its magnitude, at which the iteration stops
 _TOLERANCE = 1e-8
-#: dimension of the Krylov space at the first look, and how it grows
-_FIRST_LOOK = 12
+#: dimension of the Krylov space beyond the state at the first look, and how it grows
+_FIRST_LOOK = 8
 _GROWTH = 1.4
 _LARGEST_SPACE = 240
 
@@ -37,19 +38,13 @@ def _start_vector(period, out, state, following):
 @njit(**KERNEL)
 def _dominant_pair(hessenberg):
     """Eigenvalue of largest magnitude (imaginary part >= 0) and its eigenvector."""
-    values = np.linalg.eigvals(hessenberg)
+    values = hessenberg_eigenvalues(hessenberg.copy())
     best = 0
     for i in range(values.shape[0]):
         if abs(values[i]) > abs(values[best]):
             best = i
     value = complex(values[best].real, abs(values[best].imag))
-    shifted = hessenberg.copy()
-    offset = value + 1e-11 * abs(value) + 1e-300
-    for i in range(shifted.shape[0]):
-        shifted[i, i] -= offset
-    vector = np.linalg.solve(shifted, np.ones(shifted.shape[0], dtype=np.complex128))
-    vector /= np.sqrt((np.abs(vector) ** 2).sum())
-    return value, vector
+    return value, hessenberg_vector(hessenberg, value)
 
 
 @njit(**KERNEL)
@@ -74,7 +69,7 @@ def dominant_multiplier(period):
     state, following = np.empty(size), np.empty(size)
     largest = min(dimension, _LARGEST_SPACE)
     basis = np.empty((largest + 1, dimension))
-    hessenberg = np.zeros((largest + 1, largest), dtype=np.complex128)
+    hessenberg = np.zeros((largest + 1, largest))
     _start_vector(period, basis[0], state, following)
     # delayed motion enters the inner product with the weight of the state
     norm = math.sqrt((basis[0] ** 2).sum())
@@ -82,7 +77,8 @@ def dominant_multiplier(period):
     if norm == 0.0:
         return multiplier, np.zeros(dimension, dtype=np.complex128), 0.0
     basis[0] /= norm
-    look = min(_FIRST_LOOK, largest)
+    # weakly damped modes keep as many multipliers near the unit circle as there are states
+    look = min(_FIRST_LOOK + size, largest)
     residual = np.inf
     coordinates = np.ones(1, dtype=np.complex128)
     used = 0

@@ -1,0 +1,52 @@
+"""`chatter examples [NAME]`: list, copy or run the shipped examples."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from chatter.cli.errors import reports_errors
+from chatter.cli.options import OutputFolder
+from chatter.cli.report import announce_compilation, print_table, print_written
+
+
+@reports_errors
+def examples(
+    name: Annotated[str | None, typer.Argument(metavar="NAME", help="Which one.")] = None,
+    run: Annotated[bool, typer.Option("--run", help="Run it instead of copying it.")] = False,
+    open_picture: Annotated[
+        bool, typer.Option("--open", help="Show the first picture on the desktop.")
+    ] = False,
+    out: OutputFolder = None,
+) -> None:
+    """List the shipped examples, copy one here, or run it."""
+    from chatter.example_cases import example
+    from chatter.example_cases import examples as shipped
+
+    if name is None:
+        print_table(
+            "examples", ["name", "shows"], [[e.name, e.summary] for e in shipped().values()]
+        )
+        return
+    chosen = example(name)
+    if not run:
+        print_written([chosen.copy(out if out is not None else Path(name))])
+        return
+    announce_compilation()
+    written = chosen.run(out if out is not None else Path(f"{name}-out"))
+    print_written(written)
+    pictures = [path for path in written if path.suffix == ".png"]
+    if open_picture and pictures and has_desktop():
+        typer.launch(str(pictures[0]))
+
+
+def has_desktop() -> bool:
+    """Tell whether there is a screen to show a picture on."""
+    import os
+    import sys
+
+    return sys.platform in ("darwin", "win32") or any(
+        os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY")
+    )

@@ -1,0 +1,72 @@
+"""`chatter modes FRF...`: modal parameters of measured FRFs or of a folder of hammer records."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from chatter.cli.errors import reports_errors
+from chatter.cli.options import Json, OutputFolder, output_folder
+from chatter.cli.report import print_json, print_notes, print_table, print_written
+
+
+@reports_errors
+def modes(
+    files: Annotated[
+        list[Path],
+        typer.Argument(metavar="FRF...", help="FRF files (UFF-58, CSV, .frf), or a folder."),
+    ],
+    keep: Annotated[
+        list[str] | None,
+        typer.Option("--keep", metavar="RECORD", help="Use a hammer record in spite of its fault."),
+    ] = None,
+    direction: Annotated[
+        str | None, typer.Option("--direction", help="x, y or z, where the files do not say.")
+    ] = None,
+    side: Annotated[str, typer.Option("--side", help="tool or workpiece.")] = "tool",
+    band: Annotated[
+        tuple[float, float] | None,
+        typer.Option("--band", metavar="LOWEST HIGHEST", help="Fit this band only, in Hz."),
+    ] = None,
+    mode_count: Annotated[
+        int | None, typer.Option("--mode-count", help="Fix the number of modes.")
+    ] = None,
+    out: OutputFolder = None,
+    json: Json = False,
+) -> None:
+    """Identify modal parameters from measured FRFs or hammer records."""
+    from chatter.modal_test import modes as run_modes
+
+    result = run_modes(
+        files, keep=keep or (), direction=direction, side=side, band=band, mode_count=mode_count
+    )
+    written = result.save(output_folder(out, files[0].stem or "modes"))
+    summary = result.summary()
+    if json:
+        print_json(summary)
+    else:
+        _print_modes(summary)
+    print_notes([*result.notes, *result.fit.warnings])
+    print_written(written)
+
+
+def _print_modes(summary: dict) -> None:
+    rows = [
+        [
+            f"{mode['frequency_Hz']:.2f}",
+            f"{mode['damping']:.4f}",
+            "-" if mode["mass_kg"] is None else f"{mode['mass_kg']:.4g}",
+            f"{mode['fit_error']:.1%}",
+        ]
+        for mode in summary["modes"]
+    ]
+    print_table("modes", ["frequency [Hz]", "damping", "mass [kg]", "fit error"], rows)
+    for record in summary["records"]["left_out"]:
+        typer.echo(f"left out {record['record']}: {record['reason']}")
+    typer.echo(
+        f"synthesis error {summary['fit_error']['maximum']:.2%} of the peak at most, "
+        f"{summary['fit_error']['rms']:.2%} rms, {summary['band_Hz'][0]:.0f} to "
+        f"{summary['band_Hz'][1]:.0f} Hz"
+    )
