@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.stability.zero_order_kernels import zero_order_limits
+from chatter.stability.zero_order_kernels import order_like_neighbours, zero_order_limits
 
 
 class ZeroOrderLimit(NamedTuple):
@@ -72,14 +72,7 @@ def zero_order_limit(
 def _continuous(eigenvalues: NDArray[np.complex128]) -> NDArray[np.complex128]:
     """Order the eigenvalues of every line like those of the line before."""
     ordered = eigenvalues.copy()
-    rank = ordered.shape[1]
-    for line in range(1, ordered.shape[0]):
-        left = list(range(rank))
-        row = ordered[line].copy()
-        for branch in range(rank):
-            nearest = min(left, key=lambda j: abs(row[j] - ordered[line - 1, branch]))
-            ordered[line, branch] = row[nearest]
-            left.remove(nearest)
+    order_like_neighbours(ordered)
     return ordered
 
 
@@ -102,11 +95,11 @@ def frequency_lines(
     (m,) array of float
         Hz, ascending.
     """
-    lines = [np.geomspace(0.05 * natural_frequency.min(), highest, 6000)]
+    lines = [np.geomspace(0.05 * natural_frequency.min(), highest, 8000)]
     for f, zeta in zip(natural_frequency, damping, strict=True):
         width = max(zeta, 1e-4) * f
         # evenly in the phase of the resonance: tangent spacing
-        angle = np.linspace(-1.0, 1.0, 1201) * np.arctan(60.0)
+        angle = np.linspace(-1.0, 1.0, 6001) * np.arctan(60.0)
         lines.append(f + width * np.tan(angle))
     merged = np.unique(np.concatenate(lines))
     return merged[(merged > 0.0) & (merged <= highest)]

@@ -64,6 +64,37 @@ def _lowest_between_lines(delay, omega, step, start, change, limit, frequency):
 
 
 @njit(**DRIVER)
+def order_like_neighbours(eigenvalues):
+    """Reorder the rows (n, r) in place so that each column is continuous."""
+    lines, rank = eigenvalues.shape
+    for line in range(1, lines):
+        for branch in range(rank - 1):
+            nearest = branch
+            for other in range(branch + 1, rank):
+                before = eigenvalues[line - 1, branch]
+                if abs(eigenvalues[line, other] - before) < abs(
+                    eigenvalues[line, nearest] - before
+                ):
+                    nearest = other
+            value = eigenvalues[line, branch]
+            eigenvalues[line, branch] = eigenvalues[line, nearest]
+            eigenvalues[line, nearest] = value
+
+
+@njit(**KERNEL)
+def _no_lobe_between(omega, phase, line, branch, delay):
+    """Quick refusal: True where no lobe can cross the speed between two lines."""
+    a, b = phase[line, branch], phase[line + 1, branch]
+    if np.isnan(a) and np.isnan(b):
+        return True
+    if np.isnan(a) or np.isnan(b):
+        return False
+    first = (omega[line] * delay - a) / (2.0 * math.pi)
+    last = (omega[line + 1] * delay - b) / (2.0 * math.pi)
+    return math.floor(first) == math.floor(last)
+
+
+@njit(**DRIVER)
 def zero_order_limits(omega, inverse, delays):
     """Lowest depth over all lobes and eigenvalues at each delay.
 
@@ -85,21 +116,24 @@ def zero_order_limits(omega, inverse, delays):
     """
     depth = np.full(delays.shape[0], np.inf)
     frequency = np.full(delays.shape[0], np.nan)
+    lines, branches = inverse.shape
+    phase = np.full((lines, branches), np.nan)
+    for line in range(lines):
+        for branch in range(branches):
+            z = inverse[line, branch]
+            if z.real > 0.0:
+                phase[line, branch] = _regeneration_phase(z.real, z.imag)
     for i in range(delays.shape[0]):
         limit, at = np.inf, np.nan
-        for branch in range(inverse.shape[1]):
-            for line in range(omega.shape[0] - 1):
+        for branch in range(branches):
+            for line in range(lines - 1):
+                if _no_lobe_between(omega, phase, line, branch, delays[i]):
+                    continue
                 start = inverse[line, branch]
                 change = inverse[line + 1, branch] - start
-                if np.isfinite(start.real) and np.isfinite(change.real):
-                    limit, at = _lowest_between_lines(
-                        delays[i],
-                        omega[line],
-                        omega[line + 1] - omega[line],
-                        start,
-                        change,
-                        limit,
-                        at,
-                    )
+                step = omega[line + 1] - omega[line]
+                limit, at = _lowest_between_lines(
+                    delays[i], omega[line], step, start, change, limit, at
+                )
         depth[i], frequency[i] = limit, at
     return depth, frequency
