@@ -73,14 +73,18 @@ def find_pockets(
 
 
 def _local_maxima(values: NDArray[np.float64]) -> list[int]:
-    """Middle of every plateau that is higher than what surrounds it; the ends do not count."""
+    """Middle of every plateau that is higher than what surrounds it.
+
+    At an end of the range a lone point does not count: what lies beyond is not known.
+    """
     places = []
     first = 0
     for i in range(1, len(values) + 1):
         if i < len(values) and np.isclose(values[i], values[first], rtol=1e-9, atol=0.0):
             continue
-        rises = first > 0 and values[first - 1] < values[first]
-        falls = i < len(values) and values[i] < values[first]
+        is_plateau = i - first > 1
+        rises = values[first - 1] < values[first] if first > 0 else is_plateau
+        falls = values[i] < values[first] if i < len(values) else is_plateau
         if rises and falls:
             places.append((first + i - 1) // 2)
         first = i

@@ -109,7 +109,7 @@ class Case(Section):
         cls, data: Mapping[str, Any], name: str = "case", folder: Path | str = "."
     ) -> Case:
         """Make a case from nested dicts, with the keys and values of a case file."""
-        return _validated(tomlkit.item(dict(data)), name, Path(folder))
+        return _validated(tomlkit.item(_without_none(data)), name, Path(folder))
 
     def require(self, *sections: str) -> None:
         """Raise InputError naming every one of the sections that the case lacks."""
@@ -194,6 +194,13 @@ class Case(Section):
         path.parent.mkdir(parents=True, exist_ok=True)
         move_references(document, self._folder, path.parent)
         path.write_text(tomlkit.dumps(document), encoding="utf-8")
+
+
+def _without_none(item: Any) -> Any:
+    """Drop the keys whose value is None: they are not given."""
+    if isinstance(item, Mapping):
+        return {key: _without_none(value) for key, value in item.items() if value is not None}
+    return [_without_none(value) for value in item] if isinstance(item, (list, tuple)) else item
 
 
 def load(path: str | Path) -> Case:

@@ -7,17 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from chatter.plots import style
+from chatter.pockets import DEPTH_MARGIN, SPEED_MARGIN
 
 if TYPE_CHECKING:
     from chatter.lobe_diagram import LobeDiagram
 
 _RPM = 30.0 / math.pi
-_LABELLED_POCKETS = 3
-_LABEL_BOX = {"boxstyle": "round,pad=0.2", "facecolor": "white", "alpha": 0.8, "linewidth": 0}
+_FILL_ROWS = 1000
 
 
 def plot_lobes(diagram: LobeDiagram) -> Figure:
@@ -31,11 +32,28 @@ def plot_lobes(diagram: LobeDiagram) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    figure = style.new_figure(8.0, 6.4)
+    figure = style.new_figure(8.0, 7.0)
     limit, frequency = figure.subplots(2, 1, sharex=True, height_ratios=[2.2, 1.0])
     draw_limit(limit, diagram)
     draw_chatter_frequency(frequency, diagram)
-    limit.set_title(diagram.case.title or "Stability limit")
+    frequency.text(
+        0.0,
+        -0.42,
+        _pocket_list(diagram),
+        transform=frequency.transAxes,
+        fontsize=8.5,
+        va="top",
+        linespacing=1.5,
+    )
+    limit.legend(
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.02),
+        ncols=3,
+        fontsize=8.5,
+        frameon=False,
+        borderaxespad=0.0,
+    )
+    limit.set_title(diagram.case.title or "Stability limit", pad=52.0, loc="left")
     return figure
 
 
@@ -43,7 +61,6 @@ def draw_limit(axes: Axes, diagram: LobeDiagram) -> None:
     """Draw stable and unstable depths, pockets and operating point into axes."""
     speed = diagram.limits.spindle_speed * _RPM
     top = _top(diagram)
-    axes.set_facecolor(style.STABLE_FILL)
     _fill_unstable(axes, speed, diagram, top)
     label = _METHOD_LABEL[diagram.method]
     depth = _finite(diagram.limits.critical_depth)
@@ -64,7 +81,6 @@ def draw_limit(axes: Axes, diagram: LobeDiagram) -> None:
     axes.set_ylim(0.0, top * 1e3)
     axes.set_ylabel("axial depth [mm]")
     style.finish(axes)
-    axes.legend(loc="upper left", fontsize=8, framealpha=0.9, ncols=2)
 
 
 _METHOD_LABEL = {
@@ -86,18 +102,25 @@ def _top(diagram: LobeDiagram) -> float:
 def _fill_unstable(
     axes: Axes, speed: NDArray[np.float64], diagram: LobeDiagram, top: float
 ) -> None:
-    """Fill every unstable stretch of depth; closed islands show as such."""
+    """Fill every unstable stretch of depth and outline it; closed islands show as such."""
     crossings = diagram.limits.crossings
-    most = max((len(depths) for depths in crossings), default=0)
-    for lost in range(0, most, 2):
-        low = np.array([d[lost] if len(d) > lost else np.nan for d in crossings])
-        high = np.array([d[lost + 1] if len(d) > lost + 1 else top for d in crossings])
-        axes.fill_between(
-            speed, low * 1e3, high * 1e3, color=style.UNSTABLE_FILL, linewidth=0.0, zorder=0.5
-        )
-        if lost or most > 1:
-            for edge in (low, np.where(np.isnan(low) | (high >= top), np.nan, high)):
-                axes.plot(speed, edge * 1e3, color=style.BLUE, linewidth=0.8, zorder=1.5)
+    depth = (np.arange(_FILL_ROWS) + 0.5) * top / _FILL_ROWS
+    passed = np.array([np.searchsorted(found, depth) for found in crossings]).T
+    axes.imshow(
+        passed % 2 == 1,
+        extent=(speed[0], speed[-1], 0.0, top * 1e3),
+        cmap=ListedColormap([style.STABLE_FILL, style.UNSTABLE_FILL]),
+        origin="lower",
+        aspect="auto",
+        interpolation="nearest",
+        vmin=0,
+        vmax=1,
+        zorder=0.5,
+    )
+    most = max((len(found) for found in crossings), default=0)
+    for place in range(1, most):
+        edge = np.array([d[place] if len(d) > place else np.nan for d in crossings])
+        axes.plot(speed, edge * 1e3, color=style.BLUE, linewidth=0.8, zorder=1.5)
 
 
 def _mark_flips(axes: Axes, speed: NDArray[np.float64], diagram: LobeDiagram) -> None:
@@ -108,29 +131,25 @@ def _mark_flips(axes: Axes, speed: NDArray[np.float64], diagram: LobeDiagram) ->
 
 
 def _mark_pockets(axes: Axes, diagram: LobeDiagram) -> None:
-    for number, pocket in enumerate(diagram.pockets):
+    for number, pocket in enumerate(diagram.pockets, start=1):
         x, y = pocket.spindle_speed * _RPM, pocket.axial_depth * 1e3
-        axes.plot(
-            x,
-            y,
-            marker="v",
-            color=style.GREEN,
-            markersize=6,
-            linestyle="none",
-            label="pocket, with margin" if number == 0 else None,
+        label = "pocket, with margin" if number == 1 else None
+        axes.plot(x, y, "o", color=style.GREEN, markersize=11, linestyle="none", label=label)
+        axes.annotate(
+            str(number), (x, y), color="white", fontsize=8, ha="center", va="center", weight="bold"
         )
-        if number < _LABELLED_POCKETS:
-            rate = pocket.removal_rate * 6e7
-            axes.annotate(
-                f"{x:.0f} rpm\n{y:.3g} mm\n{rate:.3g} cm³/min",
-                (x, y),
-                xytext=(0, -9),
-                textcoords="offset points",
-                fontsize=7,
-                ha="center",
-                va="top",
-                bbox=_LABEL_BOX,
-            )
+
+
+def _pocket_list(diagram: LobeDiagram) -> str:
+    """Say below the picture what the numbers in it stand for."""
+    lines = [
+        f"{number}: {pocket.spindle_speed * _RPM:.0f} rpm, {pocket.axial_depth * 1e3:.3g} mm, "
+        f"{pocket.removal_rate * 6e7:.3g} cm³/min"
+        for number, pocket in enumerate(diagram.pockets, start=1)
+    ]
+    rows = ["     ".join(lines[k : k + 3]) for k in range(0, len(lines), 3)]
+    margin = f"pockets ({DEPTH_MARGIN:.0%} below the limit, speed off by {SPEED_MARGIN:.1%}):"
+    return "\n".join([margin, *rows]) if rows else "no pocket between these speeds"
 
 
 def _mark_operating_point(axes: Axes, diagram: LobeDiagram) -> None:
@@ -171,7 +190,7 @@ def draw_chatter_frequency(axes: Axes, diagram: LobeDiagram) -> None:
     axes.set_xlabel("spindle speed [rpm]")
     axes.set_ylabel("chatter\nfrequency [Hz]")
     style.finish(axes)
-    axes.legend(loc="upper left", fontsize=8, framealpha=0.9, ncols=3)
+    axes.legend(loc="best", fontsize=7.5, framealpha=0.85, ncols=3)
 
 
 def _frequency_range(heard: NDArray[np.float64]) -> tuple[float, float]:

@@ -1,0 +1,63 @@
+"""Measured parameters against 85 real cutting tests (Hajdu et al. 2020; BENCHMARKS.md 6.1)."""
+
+import csv
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import chatter
+from chatter.model import milling_model
+from chatter.stability.semi_discretization import limit_curve, multipliers
+
+FOLDER = Path(__file__).resolve().parents[2].parent / "shared/data/stability-hajdu-2020"
+pytestmark = pytest.mark.skipif(not FOLDER.exists(), reason="shared data not at hand")
+RPM = math.pi / 30.0
+
+REFITTED = {
+    "structure.mode[0].frequency": 764.53644,
+    "structure.mode[1].frequency": 714.21176,
+    "structure.mode[0].damping": 0.0329363,
+    "structure.mode[1].damping": 0.02266012,
+    "structure.mode[0].stiffness": 6.555309e6,
+    "structure.mode[1].stiffness": 4.8723407e6,
+    "material.Ktc": 10.952098e8,
+    "material.Krc": 1.7610455e8,
+}
+
+
+def judged(case):
+    """Points judged rightly, of those that are not marginal."""
+    with (FOLDER / "points.csv").open() as file:
+        rows = [row for row in csv.DictReader(file) if row["stable"]]
+    speed = np.array([float(row["spindle_speed [rpm]"]) * RPM for row in rows])
+    depth = np.array([float(row["axial_depth [mm]"]) * 1e-3 for row in rows])
+    stable = np.array([row["stable"] == "1" for row in rows])
+    radius = np.abs(multipliers(milling_model(case).arrays, speed, depth))
+    return int(np.sum((radius < 1.0) == stable)), len(rows)
+
+
+def test_limits_with_declared_and_refitted_parameters():
+    case = chatter.load(FOLDER / "case.toml")
+    depths = np.linspace(0.0, 4e-3, 161)[1:]
+    rpms = (5000, 6000, 7000, 7200, 8000, 9000, 10000, 10500, 11000, 12000, 13000)
+    declared = (0.40355, 0.56184, 0.56715, 0.79920, 0.71424, 0.40306)
+    declared += (0.56534, 0.90671, 1.87905, 1.06049, 0.51214)
+    refitted = (0.70722, 0.60371, 1.26777, 1.86858, 0.63279, 0.68226)
+    refitted += (1.16564, 1.95751, 2.82364, 0.79817, 0.60553)
+    for patched, expected in ((case, declared), (case.patch(REFITTED), refitted)):
+        arrays = milling_model(patched).arrays
+        curve = limit_curve(arrays, np.array(rpms) * RPM, depths)
+        assert curve.critical_depth * 1e3 == pytest.approx(expected, rel=2e-4)
+
+
+def test_score_of_declared_and_refitted_parameters():
+    # all 127 points: 87 and 98 of 118; two thirds of them are here
+    case = chatter.load(FOLDER / "case.toml")
+    right, count = judged(case)
+    better, _ = judged(case.patch(REFITTED))
+    assert count >= 75
+    assert right / count == pytest.approx(87 / 118, abs=0.05)
+    assert better / count == pytest.approx(98 / 118, abs=0.05)
+    assert better > right
