@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.errors import InputError
-from chatter.mirror_point import NOT_PASSIVE, is_passive, mirror_point_modes
+from chatter.mirror_point import NOT_PASSIVE, is_passive, with_magnitudes
 from chatter.stability.zero_order import frequency_lines
 from dynamics.formats import read_frfs
 from dynamics.frf import Frf, MeasurementError, Point, on_common_lines
@@ -61,18 +61,17 @@ class MeasuredSide:
             If no mode at the tool point is found.
         """
         try:
-            fit = identify_modes(self.frfs, tool_point=self.node)
+            fit = with_magnitudes(identify_modes(self.frfs, tool_point=self.node))
         except MeasurementError as error:
             raise InputError(str(error)) from error
-        if not fit.modes and not mirror_point_modes(fit):
+        if not fit.modes:
             raise InputError(f"structure.frf: no mode at the tool point: {fit.no_mass_reason}")
         return fit
 
     @cached_property
     def modes(self) -> tuple[Mode, ...]:
         """Real modes at the tool point; magnitudes where the FRFs are not passive (see notes)."""
-        found = self.fit.modes or mirror_point_modes(self.fit)
-        return tuple(replace(mode, side=self.side) for mode in found)
+        return tuple(replace(mode, side=self.side) for mode in self.fit.modes)
 
     def notes(self) -> tuple[str, ...]:
         """Warnings about FRFs that no drive point can have."""

@@ -8,6 +8,8 @@ beam), every mode has the right magnitude and every second one the wrong sign.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from dynamics.frf import Frf
@@ -47,29 +49,39 @@ def is_passive(frf: Frf) -> bool:
     return bool(min(inflow, 1.0 - inflow) <= _MOST_WRONG)
 
 
-def mirror_point_modes(fit: ModalFit) -> tuple[Mode, ...]:
-    """Real modes with the magnitudes of the residues of a tool-point FRF.
+def with_magnitudes(fit: ModalFit) -> ModalFit:
+    """Give the modes of a drive point that is none the mass that the magnitude of its FRF means.
 
     Parameters
     ----------
     fit : ModalFit
-        Without real modes of its own.
 
     Returns
     -------
-    tuple of Mode
-        Empty where no FRF is labelled a drive point.
+    ModalFit
+        The same where it has real modes at the tool point, or where no FRF is labelled a drive
+        point; else with masses, directions and a warning in every mode.
     """
-    for k, frf in enumerate(fit.frfs):
-        if frf.is_drive_point:
-            return tuple(_mode(mode, k, frf) for mode in fit.identified if _has_part(mode, k))
-    return ()
+    labelled = [k for k, frf in enumerate(fit.frfs) if frf.is_drive_point]
+    if fit.modes or not labelled:
+        return fit
+    k = labelled[0]
+    axis = fit.frfs[k].response.direction or "x"
+    direction = tuple(float(axis == name) for name in "xyz")
+    identified = tuple(_with_magnitude(mode, k, direction) for mode in fit.identified)
+    modes = tuple(
+        Mode(mode.frequency, mode.damping, mode.mass, direction)
+        for mode in identified
+        if mode.mass is not None
+    )
+    notes = (*fit.notes, f"{fit.frfs[k].source}: {NOT_PASSIVE}")
+    return replace(fit, identified=identified, modes=modes, no_mass_reason="", notes=notes)
 
 
-def _has_part(mode: IdentifiedMode, k: int) -> bool:
-    return bool(np.isfinite(mode.residues[k]) and abs(mode.residues[k].real) > 0.0)
-
-
-def _mode(mode: IdentifiedMode, k: int, frf: Frf) -> Mode:
-    direction = tuple(float(axis == (frf.response.direction or "x")) for axis in "xyz")
-    return Mode(mode.frequency, mode.damping, 1.0 / abs(float(mode.residues[k].real)), direction)
+def _with_magnitude(
+    mode: IdentifiedMode, k: int, direction: tuple[float, float, float]
+) -> IdentifiedMode:
+    residue = abs(float(mode.residues[k].real))
+    if not (np.isfinite(residue) and residue > 0.0):
+        return mode
+    return replace(mode, mass=1.0 / residue, direction=direction)

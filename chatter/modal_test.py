@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from chatter.errors import InputError
 from chatter.measured_frf import with_direction
+from chatter.mirror_point import with_magnitudes
 from dynamics.formats import read_frfs
 from dynamics.frf import Frf, MeasurementError
 from dynamics.identification import IdentifiedMode, ModalFit, identify_modes
@@ -137,10 +138,14 @@ def _mode_table(mode: IdentifiedMode, side: Side) -> str:
         f"\n{warning}[[structure.mode]]\n"
         f'frequency = "{mode.frequency:.8g} Hz"    # +- {mode.frequency_std:.2g} Hz\n'
         f"damping = {mode.damping:.6g}    # +- {mode.damping_std:.2g}\n"
-        f'mass = "{mode.mass:.7g} kg"    # +- {mode.mass_std:.2g} kg\n'
+        f'mass = "{mode.mass:.7g} kg"{_spread(mode.mass_std)}\n'
         f"direction = [{direction}]\n"
         f'side = "{side}"\n'
     )
+
+
+def _spread(deviation: float | None) -> str:
+    return "" if deviation is None else f"    # +- {deviation:.2g} kg"
 
 
 def modes(
@@ -185,7 +190,7 @@ def modes(
     try:
         frfs, hammer = _read(given, keep)
         frfs, notes = _with_default_direction(frfs, direction)
-        fit = identify_modes(frfs, band=band, mode_count=mode_count)
+        fit = with_magnitudes(identify_modes(frfs, band=band, mode_count=mode_count))
     except MeasurementError as error:
         raise InputError(str(error)) from error
     if fit.no_mass_reason:

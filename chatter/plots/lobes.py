@@ -147,7 +147,7 @@ def _pocket_list(diagram: LobeDiagram) -> str:
         f"{pocket.removal_rate * 6e7:.3g} cm³/min"
         for number, pocket in enumerate(diagram.pockets, start=1)
     ]
-    rows = ["     ".join(lines[k : k + 3]) for k in range(0, len(lines), 3)]
+    rows = ["     ".join(lines[k : k + 2]) for k in range(0, len(lines), 2)]
     margin = f"pockets ({DEPTH_MARGIN:.0%} below the limit, speed off by {SPEED_MARGIN:.1%}):"
     return "\n".join([margin, *rows]) if rows else "no pocket between these speeds"
 

@@ -127,7 +127,7 @@ def test_fixed_steps_give_plain_semi_discretization():
 
 
 def test_methods_agree_in_slotting_with_many_teeth():
-    case = two_degrees_of_freedom(mode="slot", radial_depth=None).patch({"tool.teeth": 3})
+    case = two_degrees_of_freedom(mode="slot", radial_depth=None).patch({"tool.teeth": 5})
     case = case.patch({"lobes.depths.to": "1 mm", "lobes.speeds.count": 25})
     diagram = chatter.lobes(case)
     ratio = diagram.zero_order.critical_depth / diagram.limits.critical_depth
