@@ -63,6 +63,10 @@ class Frf:
         Ordinary coherence, 0 to 1.
     source : str
         File (and record) the function came from.
+    added_decay : float
+        Decay rate that an exponential window added to every pole, rad/s (1/s); 0 without one. The
+        values are then those of the function at i omega + added_decay, and a damping fitted to
+        them is put right by `without_added_decay`.
     """
 
     frequency: NDArray[np.float64]
@@ -72,6 +76,7 @@ class Frf:
     reference: Point = Point()
     coherence: NDArray[np.float64] | None = None
     source: str = ""
+    added_decay: float = 0.0
 
     def __post_init__(self) -> None:
         """Check shapes, order and finiteness; raise MeasurementError naming the source."""
@@ -96,24 +101,36 @@ class Frf:
             )
         if frequency[0] < 0.0:
             raise MeasurementError(f"{where}: negative frequency {frequency[0]:g} Hz")
+        if self.quantity not in DERIVATIVE_ORDER:
+            raise MeasurementError(
+                f"{where}: quantity {self.quantity!r}; allowed are {', '.join(DERIVATIVE_ORDER)}"
+            )
+        if self.coherence is not None and np.shape(self.coherence) != frequency.shape:
+            raise MeasurementError(
+                f"{where}: coherence has shape {np.shape(self.coherence)} and frequency "
+                f"{frequency.shape}"
+            )
+        if not (0.0 <= self.added_decay < np.inf):
+            raise MeasurementError(f"{where}: added decay {self.added_decay:g} 1/s")
         object.__setattr__(self, "frequency", frequency)
         object.__setattr__(self, "values", values)
 
     def as_quantity(self, quantity: Quantity) -> Frf:
         """Return the same function as receptance, mobility or accelerance.
 
-        A line at 0 Hz cannot be divided by i omega and is dropped then.
+        A line at 0 Hz cannot be divided by i omega and is dropped then, save where an exponential
+        window moved the function off the imaginary axis: there s = i omega + added_decay.
         """
         order = DERIVATIVE_ORDER[quantity] - DERIVATIVE_ORDER[self.quantity]
         if order == 0:
             return self
-        keep = self.frequency > 0.0 if order < 0 else np.ones(self.frequency.size, dtype=bool)
-        factor = (2j * np.pi * self.frequency[keep]) ** order
+        s = self.added_decay + 2j * np.pi * self.frequency
+        keep = np.ones(s.size, dtype=bool) if order > 0 else s != 0.0
         coherence = None if self.coherence is None else self.coherence[keep]
         return replace(
             self,
             frequency=self.frequency[keep],
-            values=self.values[keep] * factor,
+            values=self.values[keep] * s[keep] ** order,
             quantity=quantity,
             coherence=coherence,
         )
@@ -128,6 +145,18 @@ class Frf:
         coherence = None if self.coherence is None else self.coherence[keep]
         return replace(
             self, frequency=self.frequency[keep], values=self.values[keep], coherence=coherence
+        )
+
+    def along_axes(self) -> Frf:
+        """Return the function with response and force taken along the positive axes.
+
+        A sensor (or force) against its axis, sign -1 of its `Point`, turns the sign of the values.
+        """
+        return replace(
+            self,
+            values=self.values * (self.response.sign * self.reference.sign),
+            response=replace(self.response, sign=1),
+            reference=replace(self.reference, sign=1),
         )
 
     @property
@@ -158,8 +187,11 @@ def on_common_lines(frfs: Sequence[Frf]) -> tuple[NDArray[np.float64], NDArray[n
     Raises
     ------
     MeasurementError
-        If the quantities differ or the frequency ranges do not overlap.
+        If the quantities or the decays added by windows differ, or the frequency ranges do not
+        overlap.
     """
+    if len({frf.added_decay for frf in frfs}) != 1:
+        raise MeasurementError("FRFs with different exponential windows cannot be stacked")
     quantities = {frf.quantity for frf in frfs}
     if len(quantities) != 1:
         raise MeasurementError(f"FRFs of different quantities cannot be stacked: {quantities}")
@@ -175,3 +207,35 @@ def on_common_lines(frfs: Sequence[Frf]) -> tuple[NDArray[np.float64], NDArray[n
         for frf in frfs
     ]
     return axis, np.stack(columns, axis=1)
+
+
+def without_added_decay(
+    frequency: float, damping: float, added_decay: float
+) -> tuple[float, float]:
+    """Frequency and damping ratio of a mode, freed of the decay an exponential window added.
+
+    A window exp(-t / tau) moves each pole from -zeta omega_n +- i omega_d to the left by
+    1 / tau: the damped frequency stays (Fladung and Rost, 1997, "Application and correction of the
+    exponential window for frequency response functions").
+
+    Parameters
+    ----------
+    frequency : float
+        Fitted undamped natural frequency, Hz.
+    damping : float
+        Fitted viscous damping ratio, 1.
+    added_decay : float
+        1 / tau, rad/s; see `Frf.added_decay`.
+
+    Returns
+    -------
+    frequency : float
+        Undamped natural frequency of the structure, Hz.
+    damping : float
+        Damping ratio of the structure; negative where the fit fell short of the added decay.
+    """
+    natural = 2.0 * np.pi * frequency
+    damped_squared = natural**2 * (1.0 - damping**2)
+    decay = damping * natural - added_decay
+    natural = float(np.sqrt(damped_squared + decay**2))
+    return natural / (2.0 * np.pi), decay / natural

@@ -126,7 +126,8 @@ def converged_multiplier(
     Multiplier
     """
     point = np.array([speed]), np.array([depth])
-    steps = automatic_steps(arrays, point[0])
+    # the first value is there to be compared with: it may be coarser than what is needed
+    steps = np.maximum(_FEWEST_STEPS, automatic_steps(arrays, point[0]) // 2)
     value, error = complex(_at_points(arrays, *point, steps, _EXTRAPOLATED)[0]), np.inf
     while 4 * steps[0] <= _MOST_STEPS:
         steps = 2 * steps
