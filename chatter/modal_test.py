@@ -13,13 +13,12 @@ from chatter.measured_frf import with_direction
 from chatter.mirror_point import with_magnitudes
 from dynamics.formats import read_frfs
 from dynamics.frf import Frf, MeasurementError
+from dynamics.hammer import HammerTest, hammer_test, read_hammer_folder
 from dynamics.identification import IdentifiedMode, ModalFit, identify_modes
 from dynamics.modal import Side
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from dynamics.hammer import HammerTest
 
 
 @dataclass(frozen=True)
@@ -188,30 +187,34 @@ def modes(
     if direction is not None and direction not in ("x", "y", "z"):
         raise InputError(f'direction "{direction}" is not known; there are "x", "y" and "z"')
     try:
-        frfs, hammer = _read(given, keep)
-        frfs, notes = _with_default_direction(frfs, direction)
+        frfs, hammer, notes = _read(given, keep)
+        frfs, assumed = _with_default_direction(frfs, direction)
         fit = with_magnitudes(identify_modes(frfs, band=band, mode_count=mode_count))
     except MeasurementError as error:
         raise InputError(str(error)) from error
+    notes += assumed
     if fit.no_mass_reason:
         notes.append(f"no modal masses: {fit.no_mass_reason}")
     title = ", ".join(path.name or str(path) for path in given[:3])
     return ModalTest(title, fit, side, hammer, (*notes, *fit.notes))
 
 
-def _read(paths: Sequence[Path], keep: Sequence[str]) -> tuple[list[Frf], HammerTest | None]:
-    """Read FRF files, or the hammer records of one folder."""
+def _read(
+    paths: Sequence[Path], keep: Sequence[str]
+) -> tuple[list[Frf], HammerTest | None, list[str]]:
+    """Read FRF files, or the hammer records of one folder; the notes name what is no record."""
     folders = [path for path in paths if path.is_dir()]
     if folders and len(paths) > 1:
         raise InputError(f"{folders[0]}: is a folder; a folder of hammer records is given alone")
     if folders:
-        from dynamics.hammer import hammer_test
-
-        test = hammer_test(folders[0], keep=keep)
-        return list(test.frfs), test
+        folder = read_hammer_folder(folders[0])
+        test = hammer_test(folder.records, keep=keep)
+        notes = [f"{name} is no hammer record: {reason}" for name, reason in folder.not_records]
+        notes += [f"{finding.record}: {finding.reason}" for finding in test.remarks]
+        return [test.frf_in_band], test, notes
     if keep:
         raise InputError("--keep names hammer records; FRF files were given")
-    return [frf for path in paths for frf in read_frfs(path)], None
+    return [frf for path in paths for frf in read_frfs(path)], None, []
 
 
 def _with_default_direction(
