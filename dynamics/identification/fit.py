@@ -1,0 +1,286 @@
+"""Modal identification of measured FRFs, from band to real modes, with no hand tuning."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.frf import Frf, MeasurementError
+from dynamics.identification.band import Band, widened
+from dynamics.identification.polynomial import polyreference_poles
+from dynamics.identification.prepare import (
+    FrfSet,
+    Measurement,
+    prepare,
+    response_reference_matrix,
+    sets_with_common_poles,
+    tool_point_records,
+)
+from dynamics.identification.refinement import ModalModel, fit_residues, refine
+from dynamics.identification.report import (
+    complex_frf_model,
+    identified_complex_modes,
+    identified_real_modes,
+    mode_of,
+    real_frf_model,
+)
+from dynamics.identification.residual_terms import add_curvature, choose_terms
+from dynamics.identification.residues import ALL_TERMS, Records
+from dynamics.identification.result import (
+    FrfModel,
+    IdentifiedMode,
+    ModalFit,
+    SynthesisError,
+    synthesis_error,
+)
+from dynamics.identification.selection import (
+    add_missing,
+    drop_unsupported,
+    with_mode_count,
+)
+from dynamics.identification.stabilisation import (
+    StabilisationDiagram,
+    stabilisation_diagram,
+    stable_poles,
+)
+from dynamics.identification.tool_point import ToolPointFit, fit_tool_point
+
+#: largest order of the pLSCF model unless there are few lines
+HIGHEST_ORDER = 80
+
+#: delay between force and response that is mentioned, as phase at the highest mode, rad
+NOTED_DELAY_PHASE = 0.01
+
+
+@dataclass(frozen=True)
+class _SetFit:
+    """Everything found for one set of FRFs with common poles."""
+
+    frf_set: FrfSet
+    diagram: StabilisationDiagram
+    complex_model: ModalModel
+    tool: ToolPointFit | None
+    records: Records
+
+
+def identify_modes(
+    frfs: Sequence[Frf],
+    *,
+    band: tuple[float, float] | None = None,
+    mode_count: int | None = None,
+    max_order: int | None = None,
+    tool_point: str | None = None,
+) -> ModalFit:
+    """Identify the modes of a structure from one or several measured FRFs.
+
+    The usable band is found from the noise, poles of all model orders come from the
+    poly-reference least-squares complex frequency-domain estimator (Peeters et al. 2004), those
+    that stay put are kept as far as the data support them, missing ones are added where the
+    residual has structure, and all are refined by weighted nonlinear least squares over all
+    FRFs. Where FRFs of a drive point are among them, real modes with positive mass at the tool
+    point follow, with direction where cross terms were measured.
+
+    Parameters
+    ----------
+    frfs : sequence of Frf
+        Any quantity. FRFs linked by a common degree of freedom are fitted with common poles.
+        A single FRF without point information counts as a drive point.
+    band : (float, float), optional
+        Lowest and highest frequency to fit, Hz; found from the data where not given.
+    mode_count : int, optional
+        Number of modes of each set of FRFs with common poles; found from the data where not
+        given.
+    max_order : int, optional
+        Largest order of the stabilisation diagram.
+    tool_point : str, optional
+        Node at which the modal masses are wanted; that of the first drive point where not given.
+
+    Returns
+    -------
+    ModalFit
+
+    Raises
+    ------
+    MeasurementError
+        For input that cannot be used, or where no mode was found.
+    """
+    if mode_count is not None and mode_count < 1:
+        raise MeasurementError(f"mode_count = {mode_count}; at least 1 mode is needed")
+    if max_order is not None and max_order < 4:
+        raise MeasurementError(f"max_order = {max_order}; at least 4 is needed")
+    measurement = prepare(frfs, band)
+    sets = sets_with_common_poles(measurement.frfs, tool_point)
+    found = [_search(measurement, frf_set, mode_count, max_order) for frf_set in sets]
+    poles = [model.poles_in_hertz for _, model in found]
+    fitted = widened(
+        measurement.clean,
+        measurement.searched,
+        np.concatenate([frequency for frequency, _ in poles]),
+        np.concatenate([damping for _, damping in poles]),
+        float(np.median(np.diff(measurement.records.frequency))),
+    )
+    fits = [
+        _fit_set(frf_set, diagram, model, measurement.of(frf_set.members, fitted))
+        for frf_set, (diagram, model) in zip(sets, found, strict=True)
+    ]
+    result = _assemble(measurement, fitted, fits)
+    if not result.identified:
+        raise MeasurementError(_nothing_found(measurement, sets[0], max_order))
+    if mode_count is not None and len(result.identified) != mode_count * len(sets):
+        note = (
+            f"{mode_count} modes were asked for; the data bear {len(result.identified)} in the "
+            f"{len(sets)} set(s) of FRFs with common poles"
+        )
+        result = replace(result, notes=(*result.notes, note))
+    return result
+
+
+def _nothing_found(measurement: Measurement, frf_set: FrfSet, max_order: int | None) -> str:
+    """Say why there may be no mode: noise, or a spectrum of the other time convention."""
+    source = measurement.frfs[0].source or "FRF"
+    lowest, highest = measurement.searched.lowest, measurement.searched.highest
+    records = measurement.of(frf_set.members, measurement.searched)
+    frfs = [measurement.frfs[i] for i in frf_set.members]
+    mirrored = _diagram(replace(records, values=records.values.conj()), frfs, max_order)
+    said = f"{source}: no mode found between {lowest:g} and {highest:g} Hz"
+    if stable_poles(mirrored)[0].size:
+        said += (
+            "; all resonances have negative damping, as when the imaginary part has the wrong "
+            "sign (time convention exp(-i omega t))"
+        )
+    return said
+
+
+def _search(
+    measurement: Measurement,
+    frf_set: FrfSet,
+    mode_count: int | None,
+    max_order: int | None,
+) -> tuple[StabilisationDiagram, ModalModel]:
+    """Complex modes that the lines searched support."""
+    records = measurement.of(frf_set.members, measurement.searched)
+    frfs = [measurement.frfs[i] for i in frf_set.members]
+    diagram = _diagram(records, frfs, max_order)
+    frequency, damping = stable_poles(diagram)
+    start = fit_residues(records, 2.0 * np.pi * frequency, damping, ALL_TERMS)
+    kept = drop_unsupported(records, refine(records, start))
+    model = add_missing(records, add_curvature(records, kept))
+    if model is not kept:
+        model = drop_unsupported(records, model)
+    if mode_count is not None:
+        model = with_mode_count(records, model, mode_count)
+    return diagram, model
+
+
+def _fit_set(
+    frf_set: FrfSet, diagram: StabilisationDiagram, model: ModalModel, records: Records
+) -> _SetFit:
+    """Refine the complex modes on the lines of the band, then real ones."""
+    start = fit_residues(records, model.natural_frequency, model.damping, model.terms)
+    model = choose_terms(records, refine(records, start))
+    tool = None
+    if not frf_set.reason and model.count:
+        tool = fit_tool_point(tool_point_records(records, frf_set), model)
+    return _SetFit(frf_set, diagram, model, tool, records)
+
+
+def _diagram(records: Records, frfs: Sequence[Frf], max_order: int | None) -> StabilisationDiagram:
+    """Poles of all orders."""
+    matrix = response_reference_matrix(records, frfs)
+    relative = records.noise / np.median(records.noise, axis=0)
+    weight = 1.0 / np.sqrt(np.mean(relative**2, axis=1))
+    references = matrix.shape[2]
+    highest = max_order or HIGHEST_ORDER // references
+    highest = max(6, min(highest, records.frequency.size // 3))
+    orders = polyreference_poles(records.frequency, matrix, weight, range(4, highest + 1, 2))
+    if records.added_decay:
+        orders = [replace(o, poles=o.poles + records.added_decay) for o in orders]
+    return stabilisation_diagram(orders, records.frequency[0], records.frequency[-1])
+
+
+def _assemble(measurement: Measurement, band: Band, fits: Sequence[_SetFit]) -> ModalFit:
+    """Put the sets together in the order of the FRFs given."""
+    count = len(measurement.frfs)
+    models: list[FrfModel | None] = [None] * count
+    complex_models: list[FrfModel | None] = [None] * count
+    identified: list[IdentifiedMode] = []
+    notes: list[str] = []
+    reasons: list[str] = []
+    for fit in fits:
+        senses = measurement.senses[list(fit.frf_set.members)]
+        for k, i in enumerate(fit.frf_set.members):
+            complex_models[i] = models[i] = complex_frf_model(
+                fit.records, fit.complex_model, k, senses[k]
+            )
+        found = identified_complex_modes(fit.records, fit.complex_model)
+        if fit.tool is not None:
+            notes += fit.tool.notes
+        if fit.tool is not None and fit.tool.model is not None:
+            for k, i in enumerate(fit.frf_set.members):
+                models[i] = real_frf_model(
+                    fit.tool.tool, fit.tool.model, k, senses[k] * fit.tool.senses[k]
+                )
+            found = identified_real_modes(fit.tool.tool, fit.tool.model, fit.complex_model)
+            notes += _delay_note(fit.tool)
+        else:
+            reasons.append(fit.frf_set.reason if fit.tool is None else fit.tool.reason)
+        identified += [_spread(mode, fit.frf_set, senses, count) for mode in found]
+    identified.sort(key=lambda mode: mode.frequency)
+    modes = tuple(mode_of(mode) for mode in identified if mode.mass is not None)
+    ready = [model for model in models if model is not None]
+    ready_complex = [model for model in complex_models if model is not None]
+    inside = [f.band(band.lowest, band.highest) for f in measurement.frfs]
+    lines = measurement.records.frequency
+    noise = [
+        np.interp(f.frequency, lines, column)
+        for f, column in zip(inside, measurement.records.noise.T, strict=True)
+    ]
+    return ModalFit(
+        frfs=measurement.frfs,
+        band=band,
+        identified=tuple(identified),
+        modes=modes,
+        no_mass_reason="" if modes else "; ".join(dict.fromkeys(reasons)),
+        models=tuple(ready),
+        complex_models=tuple(ready_complex),
+        errors=_errors(inside, ready, noise, FrfModel.values),
+        complex_errors=_errors(inside, ready_complex, noise, FrfModel.values),
+        mode_errors=_errors(inside, ready, noise, FrfModel.values_of_modes),
+        diagrams=tuple(fit.diagram for fit in fits),
+        notes=tuple(dict.fromkeys(notes)),
+    )
+
+
+def _errors(
+    frfs: Sequence[Frf],
+    models: Sequence[FrfModel],
+    noise: Sequence[NDArray[np.float64]],
+    values: Callable[[FrfModel, NDArray[np.float64]], NDArray[np.complex128]],
+) -> tuple[SynthesisError, ...]:
+    return tuple(
+        synthesis_error(frf, values(model, frf.frequency), level)
+        for frf, model, level in zip(frfs, models, noise, strict=True)
+    )
+
+
+def _spread(
+    mode: IdentifiedMode, frf_set: FrfSet, senses: NDArray[np.float64], count: int
+) -> IdentifiedMode:
+    """Place the residues of a set at the positions of its FRFs among all."""
+    residues = np.full(count, np.nan + 0j)
+    residues[list(frf_set.members)] = mode.residues * senses
+    return replace(mode, residues=residues)
+
+
+def _delay_note(tool: ToolPointFit) -> list[str]:
+    model = tool.model
+    if model is None or model.delay is None:
+        return []
+    if abs(model.delay) * float(np.max(model.natural_frequency)) < NOTED_DELAY_PHASE:
+        return []
+    return [
+        f"the response lags the force by {model.delay * 1e6:.2f} us; this was taken off the modes"
+    ]

@@ -1,0 +1,219 @@
+"""Maximum-likelihood refinement of the poles: variable projection over all FRFs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.identification.marquardt import PRECISE, levenberg_marquardt
+from dynamics.identification.residues import (
+    Records,
+    as_real,
+    design_matrix,
+    mode_shapes_in_frequency,
+)
+from dynamics.identification.tall import factorise, gram, product
+
+#: damping ratios outside these bounds are not followed
+DAMPING_BOUNDS = (1e-6, 0.9)
+
+
+@dataclass(frozen=True)
+class ModalModel:
+    """Poles common to all FRFs with the residues of each FRF.
+
+    Parameters
+    ----------
+    natural_frequency, damping : (m,) array of float
+        rad/s and 1.
+    coefficients : (2m + terms, k) array of float
+        Per FRF: m real parts, m parts in quadrature (multiplying s / w), residual terms.
+    terms : tuple[int, ...]
+    chi_square : float
+        Sum of squared residuals over the noise variance (per complex line: |e|^2 / sigma^2).
+    gradient : (2m,) array of float
+        Half the gradient of the chi-square by [ln w, ln zeta], residues eliminated.
+    normal : (2m, 2m) array of float
+        Gauss-Newton matrix of the same.
+    """
+
+    natural_frequency: NDArray[np.float64]
+    damping: NDArray[np.float64]
+    coefficients: NDArray[np.float64]
+    terms: tuple[int, ...]
+    chi_square: float
+    gradient: NDArray[np.float64]
+    normal: NDArray[np.float64]
+
+    @property
+    def count(self) -> int:
+        """Number of modes."""
+        return self.natural_frequency.size
+
+    @property
+    def poles_in_hertz(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Undamped natural frequencies, Hz, and damping ratios."""
+        return self.natural_frequency / (2.0 * np.pi), self.damping
+
+    def synthesis(self, records: Records) -> NDArray[np.complex128]:
+        """Fitted values on the lines of `records`, (n, k)."""
+        shapes = mode_shapes_in_frequency(
+            records.laplace, self.natural_frequency, self.damping, records.derivative
+        )
+        columns = design_matrix(records, shapes, self.natural_frequency, self.terms)
+        return product(columns, self.coefficients)
+
+    def mode_contribution(self, records: Records, mode: int) -> NDArray[np.complex128]:
+        """What one mode adds to each FRF, (n, k)."""
+        shapes = mode_shapes_in_frequency(
+            records.laplace,
+            self.natural_frequency[mode : mode + 1],
+            self.damping[mode : mode + 1],
+            records.derivative,
+        )
+        turn = records.laplace[:, None] / self.natural_frequency[mode]
+        real, quadrature = self.coefficients[mode], self.coefficients[self.count + mode]
+        return shapes.unit * (real + turn * quadrature)
+
+
+def fit_residues(
+    records: Records,
+    natural_frequency: NDArray[np.float64],
+    damping: NDArray[np.float64],
+    terms: tuple[int, ...],
+) -> ModalModel:
+    """Least-squares residues and residual terms for known poles (LSFD).
+
+    Parameters
+    ----------
+    records : Records
+    natural_frequency, damping : (m,) array of float
+        rad/s and 1.
+    terms : tuple[int, ...]
+
+    Returns
+    -------
+    ModalModel
+    """
+    shapes = mode_shapes_in_frequency(
+        records.laplace, natural_frequency, damping, records.derivative
+    )
+    columns = design_matrix(records, shapes, natural_frequency, terms)
+    modes = natural_frequency.size
+    size = 2 * modes
+    coefficients = np.zeros((columns.shape[1], records.count))
+    normal = np.zeros((size, size))
+    gradient = np.zeros(size)
+    chi_square = 0.0
+    turn = records.laplace[:, None] / natural_frequency
+    for k in range(records.count):
+        noise = records.noise[:, k]
+        solution, residual, basis = solve_linear(columns, records.values[:, k], noise)
+        coefficients[:, k] = solution
+        chi_square += float(residual @ residual)
+        amplitude = solution[:modes] + turn * solution[modes : 2 * modes]
+        slope = [shapes.by_frequency * amplitude, shapes.by_damping * amplitude]
+        jacobian = -as_real(np.concatenate(slope, axis=1), noise)
+        jacobian -= product(basis, gram(basis, jacobian))
+        normal += gram(jacobian, jacobian)
+        gradient += gram(jacobian, residual[:, None])[:, 0]
+    return ModalModel(natural_frequency, damping, coefficients, terms, chi_square, gradient, normal)
+
+
+def refine(records: Records, start: ModalModel, least_gain: float = PRECISE) -> ModalModel:
+    """Move the poles to the weighted nonlinear least-squares optimum.
+
+    The residues are linear and are eliminated at every step (variable projection, Golub and
+    Pereyra 1973, with the Jacobian of Kaufman 1975); what is left is a small problem in
+    [ln w, ln zeta], solved by the Levenberg-Marquardt method.
+
+    Parameters
+    ----------
+    records : Records
+    start : ModalModel
+        Poles and residual terms to begin with.
+    least_gain : float
+        Relative fall of the chi-square in one step at which the iteration ends.
+
+    Returns
+    -------
+    ModalModel
+        Never worse than `start` with residues refitted.
+    """
+    modes = start.count
+
+    def evaluate(parameters: NDArray[np.float64]) -> ModalModel:
+        return fit_residues(records, *bounded_poles(records, parameters, modes), start.terms)
+
+    def limit(parameters: NDArray[np.float64], step: NDArray[np.float64]) -> NDArray[np.float64]:
+        return limited_pole_step(parameters, step, modes)
+
+    poles = np.concatenate([np.log(start.natural_frequency), np.log(start.damping)])
+    return levenberg_marquardt(evaluate, poles, limit, least_gain)[1]
+
+
+def pole_range(records: Records) -> tuple[float, float]:
+    """Frequencies that a pole may have: two octaves beyond either end of the lines, Hz."""
+    return float(records.frequency[0]) / 4.0, float(records.frequency[-1]) * 4.0
+
+
+def bounded_poles(
+    records: Records, parameters: NDArray[np.float64], modes: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Poles from [ln w, ln zeta, ...], kept within two octaves of the band and damped.
+
+    Parameters
+    ----------
+    records : Records
+    parameters : (p,) array of float
+    modes : int
+
+    Returns
+    -------
+    natural_frequency, damping : (m,) array of float
+        rad/s and 1.
+    """
+    lowest, highest = 2.0 * np.pi * np.array(pole_range(records))
+    natural_frequency = np.exp(np.clip(parameters[:modes], np.log(lowest), np.log(highest)))
+    damping = np.exp(np.clip(parameters[modes : 2 * modes], *np.log(DAMPING_BOUNDS)))
+    return natural_frequency, damping
+
+
+def limited_pole_step(
+    parameters: NDArray[np.float64], step: NDArray[np.float64], modes: int
+) -> NDArray[np.float64]:
+    """Cut a step so that no pole leaves its half-power band or halves its damping at once.
+
+    Parameters
+    ----------
+    parameters, step : (p,) array of float
+        ln w of all modes, ln zeta of all modes, then others.
+    modes : int
+
+    Returns
+    -------
+    (p,) array of float
+    """
+    step = step.copy()
+    reach = np.maximum(np.exp(parameters[modes : 2 * modes]), 1e-5)
+    step[:modes] = np.clip(step[:modes], -reach, reach)
+    step[modes : 2 * modes] = np.clip(step[modes : 2 * modes], -0.7, 0.7)
+    return step
+
+
+def solve_linear(
+    columns: NDArray[np.complex128], values: NDArray[np.complex128], noise: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Weighted linear solution of one FRF: unknowns, residual, orthonormal basis."""
+    matrix = as_real(columns, noise)
+    target = as_real(values, noise)
+    if matrix.shape[1] == 0:
+        return np.zeros(0), target, matrix
+    scale = np.linalg.norm(matrix, axis=0)
+    scale[scale == 0.0] = 1.0
+    basis, triangle = factorise(matrix / scale)
+    projected = gram(basis, target[:, None])
+    solution = np.linalg.lstsq(triangle, projected[:, 0], rcond=1e-13)[0] / scale
+    return solution, target - product(basis, projected)[:, 0], basis

@@ -1,0 +1,251 @@
+"""Fitted models turned into what is reported: modes with uncertainty, warnings, FRF models."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.identification.judgement import TINY, near_mode, peak_share
+from dynamics.identification.real_modes import RealModel, ToolPointRecords
+from dynamics.identification.refinement import ModalModel
+from dynamics.identification.residues import Records
+from dynamics.identification.result import FrfModel, IdentifiedMode
+from dynamics.identification.tool_point import share_of_real_mode
+from dynamics.modal import Mode
+
+#: relative standard deviation of damping or mass above which a mode is doubtful
+DOUBTFUL_STD = 0.1
+
+#: relative standard deviation of the mass from which a mode is not felt at the tool point
+UNFELT_STD = 0.67
+UNFELT = "not felt at the tool point: no mass"
+
+#: relative deviation in the half-power band above which a mode is doubtful
+DOUBTFUL_FIT = 0.1
+
+#: share of the peak below which a mode is doubtful
+DOUBTFUL_WEIGHT = 0.02
+
+#: phase off a real mode above which a mode is doubtful, degrees
+DOUBTFUL_PHASE = 20.0
+
+_UNIT = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+
+
+def complex_frf_model(records: Records, model: ModalModel, k: int, sense: float) -> FrfModel:
+    """Model of FRF k of a set with complex modes, in the sense of the sensors."""
+    modes = model.count
+    rest = sense * model.coefficients[2 * modes :, k]
+    return FrfModel(
+        records.derivative,
+        records.added_decay,
+        model.natural_frequency,
+        model.damping,
+        sense * model.coefficients[:modes, k],
+        sense * model.coefficients[modes : 2 * modes, k],
+        0.0,
+        tuple((p, float(c)) for p, c in zip(model.terms, rest, strict=True)),
+    )
+
+
+def real_frf_model(tool: ToolPointRecords, model: RealModel, k: int, sense: float) -> FrfModel:
+    """Model of FRF k of a set with real modes, in the sense of the sensors."""
+    rest = sense * model.free[k][model.free[k].size - len(model.terms) :]
+    return FrfModel(
+        tool.records.derivative,
+        tool.records.added_decay,
+        model.natural_frequency,
+        model.damping,
+        sense * model.residues(tool.pairs)[:, k],
+        np.zeros(model.count),
+        model.delay or 0.0,
+        tuple((p, float(c)) for p, c in zip(model.terms, rest, strict=True)),
+    )
+
+
+def identified_complex_modes(records: Records, model: ModalModel) -> list[IdentifiedMode]:
+    """Report of modes without mass."""
+    error = (records.values - model.synthesis(records)) / records.noise
+    covariance = _covariance(model.normal)
+    found = []
+    for r in range(model.count):
+        hertz = float(model.natural_frequency[r] / (2.0 * np.pi))
+        if not records.frequency[0] <= hertz <= records.frequency[-1]:
+            continue  # stands for modes beyond the band
+        damping = float(model.damping[r])
+        inflation = _inflation(records, error, hertz, damping)
+        real = model.coefficients[r]
+        quadrature = model.coefficients[model.count + r]
+        residues = real + 1j * quadrature
+        std_frequency = hertz * inflation * np.sqrt(covariance[r, r])
+        std_damping = damping * inflation * np.sqrt(covariance[r + model.count][r + model.count])
+        fit_error = _fit_error(records, model.synthesis(records), hertz, damping)
+        weight = peak_share(records, model, r)
+        phase = _phase_deviation(residues, 0.0)
+        warning = _warning(damping, std_damping, None, fit_error, weight, phase)
+        found.append(
+            IdentifiedMode(
+                hertz,
+                damping,
+                float(std_frequency),
+                float(std_damping),
+                residues,
+                None,
+                None,
+                None,
+                fit_error,
+                weight,
+                phase,
+                warning,
+            )
+        )
+    return found
+
+
+def identified_real_modes(
+    tool: ToolPointRecords, model: RealModel, complex_model: ModalModel
+) -> list[IdentifiedMode]:
+    """Report of real modes with mass and direction at the tool point."""
+    records = tool.records
+    synthesis = model.synthesis(tool)
+    error = (records.values - synthesis) / records.noise
+    covariance = _covariance(model.normal)
+    residues = model.residues(tool.pairs)
+    axes = len(tool.axes)
+    found = []
+    for r in range(model.count):
+        hertz = float(model.natural_frequency[r] / (2.0 * np.pi))
+        if not records.frequency[0] <= hertz <= records.frequency[-1]:
+            continue  # stands for modes beyond the band
+        damping = float(model.damping[r])
+        inflation = _inflation(records, error, hertz, damping)
+        std_frequency = hertz * inflation * np.sqrt(covariance[r, r])
+        std_damping = damping * inflation * np.sqrt(covariance[model.count + r, model.count + r])
+        vector = model.vectors[r]
+        inverse_mass = float(vector @ vector)
+        own = slice(2 * model.count + r * axes, 2 * model.count + (r + 1) * axes)
+        # 1/m = u.u, so that the relative deviation of m is 2 u.du / u.u
+        variance = float(vector @ covariance[own, own] @ vector)
+        mass_std = 2.0 * inflation * np.sqrt(max(variance, 0.0)) / inverse_mass**2
+        mass = 1.0 / inverse_mass
+        fit_error = _fit_error(records, synthesis, hertz, damping)
+        weight = share_of_real_mode(tool, model, r)
+        phase = _complex_phase(complex_model, model.natural_frequency[r], model.delay or 0.0)
+        warning = _warning(damping, std_damping, mass_std / mass, fit_error, weight, phase)
+        felt = mass_std < UNFELT_STD * mass
+        if not felt:
+            warning = "; ".join(part for part in (UNFELT, warning) if part)
+        found.append(
+            IdentifiedMode(
+                hertz,
+                damping,
+                float(std_frequency),
+                float(std_damping),
+                residues[r].astype(np.complex128),
+                mass if felt else None,
+                float(mass_std) if felt else None,
+                _direction(tool.axes, vector) if felt else None,
+                fit_error,
+                weight,
+                phase,
+                warning,
+            )
+        )
+    return found
+
+
+def mode_of(mode: IdentifiedMode) -> Mode:
+    """Mode at the tool point, for simulation and stability."""
+    if mode.mass is None or mode.direction is None:
+        message = f"the mode at {mode.frequency:.1f} Hz has no mass: no drive point was measured"
+        raise ValueError(message)
+    return Mode(mode.frequency, mode.damping, mode.mass, mode.direction)
+
+
+def _direction(axes: tuple[str, ...], vector: NDArray[np.float64]) -> tuple[float, float, float]:
+    """Unit vector of a mode; the largest component is positive. An axis without name is x."""
+    total = np.zeros(3)
+    for name, value in zip(axes, vector, strict=True):
+        total += value * np.array(_UNIT.get(name.lower(), _UNIT["x"]))
+    total /= np.linalg.norm(total)
+    total *= np.sign(total[np.argmax(np.abs(total))])
+    return (float(total[0]), float(total[1]), float(total[2]))
+
+
+def _covariance(normal: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Inverse of the Gauss-Newton matrix, for unit variance of the weighted residuals.
+
+    Real and imaginary part of a line share the variance of its noise.
+    """
+    scale = np.sqrt(np.maximum(np.diag(normal), 1e-300))
+    return (
+        0.5 * np.linalg.pinv(normal / scale[:, None] / scale, rcond=1e-14) / scale[:, None] / scale
+    )
+
+
+def _inflation(
+    records: Records, error: NDArray[np.complex128], hertz: float, damping: float
+) -> float:
+    """Root of the chi-square per line near a mode, scaled for correlated errors."""
+    near = error[near_mode(records, hertz, damping)]
+    power = float(np.sum(np.abs(near) ** 2))
+    neighbours = float(np.sum(near[1:] * near[:-1].conj()).real)
+    correlation = float(np.clip(neighbours / max(power, 1e-300), 0.0, 0.9))
+    return float(np.sqrt(power / near.size * (1.0 + correlation) / (1.0 - correlation)))
+
+
+def _fit_error(
+    records: Records, synthesis: NDArray[np.complex128], hertz: float, damping: float
+) -> float:
+    """Deviation in the half-power band (three lines at least) over the largest value there."""
+    distance = np.abs(records.frequency - hertz)
+    near = distance <= max(damping * hertz, float(np.sort(distance)[min(2, distance.size - 1)]))
+    deviation = np.sqrt(np.mean(np.abs(records.values[near] - synthesis[near]) ** 2))
+    return float(deviation / max(float(np.max(np.abs(records.values[near]))), TINY))
+
+
+def _phase_deviation(residues: NDArray[np.complex128], lag: float) -> float:
+    """Mean angle of the residues off the real axis, degrees, weighted by their size.
+
+    Parameters
+    ----------
+    residues : (k,) array of complex
+    lag : float
+        Phase lag of the measuring chain at the mode, rad.
+    """
+    turned = residues * np.exp(1j * lag)
+    size = np.abs(turned)
+    angle = np.abs(np.arctan2(turned.imag, np.abs(turned.real)))
+    return float(np.degrees(np.sum(angle * size**2) / max(float(np.sum(size**2)), 1e-300)))
+
+
+def _complex_phase(model: ModalModel, natural_frequency: float, delay: float) -> float:
+    """Phase deviation of the complex mode nearest to a real one."""
+    if model.count == 0:
+        return 0.0
+    r = int(np.argmin(np.abs(model.natural_frequency - natural_frequency)))
+    residues = model.coefficients[r] + 1j * model.coefficients[model.count + r]
+    return _phase_deviation(residues, natural_frequency * delay)
+
+
+def _warning(
+    damping: float,
+    damping_std: float,
+    relative_mass_std: float | None,
+    fit_error: float,
+    weight: float,
+    phase: float,
+) -> str:
+    """What makes a mode doubtful, in words; empty where nothing does."""
+    said = []
+    if damping_std > DOUBTFUL_STD * damping:
+        said.append(f"damping uncertain by {100 * damping_std / damping:.0f} %")
+    if relative_mass_std is not None and relative_mass_std > DOUBTFUL_STD:
+        said.append(f"mass uncertain by {100 * relative_mass_std:.0f} %")
+    if fit_error > DOUBTFUL_FIT:
+        said.append(f"the fit misses the resonance by {100 * fit_error:.0f} %")
+    if weight < DOUBTFUL_WEIGHT:
+        said.append(f"weak: adds {100 * weight:.1f} % of the peak")
+    if phase > DOUBTFUL_PHASE:
+        said.append(f"complex: {phase:.0f} degrees off a real mode")
+    return "; ".join(said)

@@ -1,0 +1,213 @@
+"""How many modes the data support: candidates dropped and missing modes added."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
+
+from dynamics.identification.judgement import inside, judge, without_mode
+from dynamics.identification.marquardt import ROUGH
+from dynamics.identification.refinement import (
+    ModalModel,
+    fit_residues,
+    pole_range,
+    refine,
+)
+from dynamics.identification.residues import Records
+from dynamics.identification.stabilisation import HIGHEST_DAMPING
+
+#: gain from which a mode that stands alone needs no second look
+CLEAR_GAIN = 10.0
+
+#: dampings at which a missing mode is first tried
+TRIAL_DAMPINGS = (0.001, 0.004, 0.015, 0.05, 0.15)
+
+#: places at which a missing mode is tried in one round
+TRIAL_PLACES = 4
+
+#: poles that may stand for the modes beyond either end of the lines
+MOST_BEYOND = 2
+
+#: rounds of adding modes one by one
+MOST_ADDED = 30
+
+
+def drop_unsupported(records: Records, model: ModalModel) -> ModalModel:
+    """Leave out, one by one, the modes that the data do not support, weakest first.
+
+    Parameters
+    ----------
+    records : Records
+    model : ModalModel
+        Refined.
+
+    Returns
+    -------
+    ModalModel
+        Refined; every mode in it is supported.
+    """
+    while model.count:
+        astray = _astray(records, model)
+        doubtful = int(astray[0]) if astray.size else _unsupported(records, model)
+        if doubtful is None:
+            return model
+        model = refine(records, without_mode(records, model, doubtful))
+    return model
+
+
+def _unsupported(records: Records, model: ModalModel) -> int | None:
+    """The mode of least weight that is not supported, None where all are."""
+    for mode in _by_contribution(records, model):
+        without = without_mode(records, model, mode)
+        first = judge(records, model, mode, without)
+        distance = _distance(model, mode)
+        alone = first.gain > CLEAR_GAIN and distance > 5.0
+        if first.supported and (alone or (first.gain > 100.0 * CLEAR_GAIN and distance > 1.5)):
+            continue  # no other mode could take its place
+        if not first.supported:
+            return mode
+        without = refine(records, without, ROUGH)
+        if not judge(records, model, mode, without).supported:
+            return mode
+    return None
+
+
+def _distance(model: ModalModel, mode: int) -> float:
+    """Distance of the nearest other mode in half-power bandwidths, those of the broader one."""
+    others = np.arange(model.count) != mode
+    if not np.any(others):
+        return np.inf
+    bandwidth = 2.0 * (model.damping * model.natural_frequency)
+    apart = np.abs(model.natural_frequency - model.natural_frequency[mode])[others]
+    return float(np.min(apart / np.maximum(bandwidth[others], bandwidth[mode])))
+
+
+def add_missing(records: Records, model: ModalModel) -> ModalModel:
+    """Add modes where the residual still has structure, as long as the data support them.
+
+    Parameters
+    ----------
+    records : Records
+    model : ModalModel
+        Refined.
+
+    Returns
+    -------
+    ModalModel
+        Refined.
+    """
+    for _ in range(MOST_ADDED):
+        grown = _best_addition(records, model)
+        if grown is None:
+            return model
+        model = grown
+    return model
+
+
+def with_mode_count(records: Records, model: ModalModel, count: int) -> ModalModel:
+    """Bring a model to a number of modes that the user wants.
+
+    Parameters
+    ----------
+    records : Records
+    model : ModalModel
+        Refined.
+    count : int
+
+    Returns
+    -------
+    ModalModel
+        Fewer modes only where no more could be placed inside the band.
+    """
+    while np.sum(inside(records, model)) > count:
+        lesser = [refine(records, without_mode(records, model, r)) for r in range(model.count)]
+        model = min(lesser, key=lambda m: m.chi_square)
+    while np.sum(inside(records, model)) < count:
+        grown = [g for g, r in _additions(records, model) if inside(records, g)[r]]
+        if not grown:
+            return model
+        model = refine(records, min(grown, key=lambda m: m.chi_square))
+    return model
+
+
+def _astray(records: Records, model: ModalModel) -> NDArray[np.int64]:
+    """Poles that are no modes: two octaves off the lines, or on them and overdamped."""
+    hertz = model.natural_frequency / (2.0 * np.pi)
+    lowest, highest = pole_range(records)
+    off = (hertz < 1.01 * lowest) | (hertz > 0.99 * highest)
+    return np.flatnonzero(off | (inside(records, model) & (model.damping > HIGHEST_DAMPING)))
+
+
+def _by_contribution(records: Records, model: ModalModel) -> list[int]:
+    """Modes by rising weight of their contribution."""
+    weight = [
+        float(np.sum(np.abs(model.mode_contribution(records, r) / records.noise) ** 2))
+        for r in range(model.count)
+    ]
+    return [int(r) for r in np.argsort(weight)]
+
+
+def _best_addition(records: Records, model: ModalModel) -> ModalModel | None:
+    """The model with the one more mode that helps most, None where none is supported."""
+    for grown, newcomer in _additions(records, model):
+        if judge(records, grown, newcomer, model).supported:
+            return refine(records, grown)
+    return None
+
+
+def _additions(records: Records, model: ModalModel) -> Iterator[tuple[ModalModel, int]]:
+    """Refined models with one more mode, the most promising first, and which is the new one."""
+    best = []
+    for frequency in _places(records, model):
+        trials = [_with_pole(records, model, frequency, damping) for damping in TRIAL_DAMPINGS]
+        best.append(min(trials, key=lambda trial: trial.chi_square))
+    low, high = float(records.frequency[0]), float(records.frequency[-1])
+    hertz = model.natural_frequency / (2.0 * np.pi)
+    beyond = (0.4 * low, 0.8 * low) if np.sum(hertz < low) < MOST_BEYOND else ()
+    beyond += (1.1 * high, 1.6 * high) if np.sum(hertz > high) < MOST_BEYOND else ()
+    if beyond:
+        trials = [_with_pole(records, model, f, TRIAL_DAMPINGS[2]) for f in beyond]
+        best.append(min(trials, key=lambda trial: trial.chi_square))
+    for trial in sorted(best, key=lambda trial: trial.chi_square):
+        grown = refine(records, trial, ROUGH)
+        if _astray(records, grown).size == 0:
+            yield grown, _newcomer(model, grown)
+
+
+def _with_pole(records: Records, model: ModalModel, frequency: float, damping: float) -> ModalModel:
+    return fit_residues(
+        records,
+        np.append(model.natural_frequency, 2.0 * np.pi * frequency),
+        np.append(model.damping, damping),
+        model.terms,
+    )
+
+
+def _newcomer(model: ModalModel, grown: ModalModel) -> int:
+    """Index of the mode in `grown` that no mode of `model` turned into."""
+    left = set(range(grown.count))
+    for r in range(model.count):
+        near = min(
+            left,
+            key=lambda i: abs(np.log(grown.natural_frequency[i] / model.natural_frequency[r])),
+        )
+        left.discard(near)
+    return left.pop()
+
+
+def _places(records: Records, model: ModalModel) -> list[float]:
+    """Frequencies at which the residual stands out most from the noise, Hz."""
+    error = (records.values - model.synthesis(records)) / records.noise
+    excess = np.sum(np.abs(error) ** 2, axis=1)
+    places: list[float] = []
+    for width in (1, 5, 21):
+        smooth = uniform_filter1d(excess, size=min(width, excess.size), mode="nearest")
+        for line in np.argsort(smooth)[::-1]:
+            frequency = float(records.frequency[line])
+            if all(abs(frequency - p) > 0.01 * p for p in places):
+                places.append(frequency)
+                break
+    return places[:TRIAL_PLACES]
