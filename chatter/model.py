@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from chatter.case import Case
 from chatter.errors import InputError
+from chatter.plausibility import check_plausible
 from chatter.stability.arrays import MillingArrays
 from chatter.structure import Structure, structure_of
 from cutting.directional import DirectionalTable, directional_table, mean_over_turn
@@ -90,6 +91,7 @@ def milling_model(case: Case) -> MillingModel:
         If a section is missing, or the case holds what no stability method can treat yet.
     """
     case.require("tool", "material", "cut", "structure")
+    check_plausible(case)
     _refuse_unsupported(case)
     structure = structure_of(case)
     basis = _motion_basis(structure.directions)
