@@ -13,7 +13,7 @@ from chatter.measured_frf import with_direction
 from chatter.mirror_point import with_magnitudes
 from dynamics.formats import read_frfs
 from dynamics.frf import Frf, MeasurementError
-from dynamics.hammer import HammerTest, hammer_test, read_hammer_folder
+from dynamics.hammer import HammerTest, hammer_test
 from dynamics.identification import IdentifiedMode, ModalFit, identify_modes
 from dynamics.modal import Side
 
@@ -202,16 +202,14 @@ def modes(
 def _read(
     paths: Sequence[Path], keep: Sequence[str]
 ) -> tuple[list[Frf], HammerTest | None, list[str]]:
-    """Read FRF files, or the hammer records of one folder; the notes name what is no record."""
+    """Read FRF files, or the hammer records of one folder; the notes hold the remarks."""
     folders = [path for path in paths if path.is_dir()]
     if folders and len(paths) > 1:
         raise InputError(f"{folders[0]}: is a folder; a folder of hammer records is given alone")
     if folders:
-        folder = read_hammer_folder(folders[0])
-        test = hammer_test(folder.records, keep=keep)
-        notes = [f"{name} is no hammer record: {reason}" for name, reason in folder.not_records]
-        notes += [f"{finding.record}: {finding.reason}" for finding in test.remarks]
-        return [test.frf_in_band], test, notes
+        test = hammer_test(folders[0], keep=keep)
+        notes = [f"{finding.record}: {finding.reason}" for finding in test.remarks]
+        return list(test.frfs), test, notes
     if keep:
         raise InputError("--keep names hammer records; FRF files were given")
     return [frf for path in paths for frf in read_frfs(path)], None, []
