@@ -1,7 +1,8 @@
 """Quantities with units: text such as "20 mm" to SI and back.
 
 pint does the units. Angle is no dimension to it, so that "840 rpm" and "14 Hz" would differ by
-2 pi; angular speeds and frequencies are therefore told apart here.
+2 pi; angular speeds and frequencies are therefore told apart here: both are turns per second,
+whatever they are written in.
 """
 
 from __future__ import annotations
@@ -11,6 +12,8 @@ import re
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
+
+from chatter.shown import shown
 
 if TYPE_CHECKING:
     import pint
@@ -46,10 +49,10 @@ DIMENSIONS: dict[str, Dimension] = {
     "angular_speed": Dimension("a spindle speed", "rad/s", "12000 rpm"),
     "frequency": Dimension("a frequency", "Hz", "922 Hz"),
     "mass": Dimension("a mass", "kg", "0.5 kg"),
+    "line_force": Dimension("a force per length", "N/m", "25 N/mm"),
     "stiffness": Dimension("a stiffness", "N/m", "12 N/um"),
     "damping": Dimension("a damping coefficient", "N*s/m", "350 N*s/m"),
     "pressure": Dimension("a pressure (force per area)", "Pa", "1650 MPa"),
-    "line_force": Dimension("a force per length", "N/m", "25 N/mm"),
     "force": Dimension("a force", "N", "80 N"),
     "torque": Dimension("a torque", "N*m", "2 N*m"),
     "time": Dimension("a time", "s", "0.5 s"),
@@ -59,24 +62,40 @@ DIMENSIONS: dict[str, Dimension] = {
     "number": Dimension("a plain number", "", "0.03"),
 }
 
+#: what else may be written by mistake, by SI unit
+_FOREIGN = {
+    "m^2": "an area",
+    "m^3": "a volume",
+    "m/s^2": "an acceleration",
+    "kg/m^3": "a density",
+    "kg*m^2": "a moment of inertia",
+    "m/N": "a compliance",
+    "W": "a power",
+    "K": "a temperature",
+    "V": "a voltage",
+    "A": "a current",
+}
 _CYCLIC = ("angular_speed", "frequency")
-_ANGLE_UNITS = (
-    "radian",
-    "degree",
-    "turn",
-    "revolution",
-    "grade",
-    "arcminute",
-    "arcsecond",
-    "cycle",
-)
-_NUMBER = r"[+-]?(?:\d[\d_]*\.?[\d_]*|\.\d[\d_]*)(?:[eE][+-]?\d+)?"
+#: pint's names of units of angle, apart from prefixes
+_ANGLE_UNITS = ("radian", "degree", "turn", "revolution", "grade", "arcminute", "arcsecond")
+_NUMBER_UNITS = {"%": 0.01, "percent": 0.01, "ppm": 1e-6, "dimensionless": 1.0}
+
+NUMBER = r"[+-]?(?:[0-9]+(?:_[0-9]+)*\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _QUANTITY = re.compile(
-    rf"^\s*(?P<value>{_NUMBER}|[+-]?(?:nan|inf|infinity))"
-    rf"(?:\s*(?:\+-|\+/-|±)\s*(?P<deviation>{_NUMBER}))?\s*(?P<unit>.*?)\s*$",
+    rf"^\s*(?P<value>{NUMBER}|[+-]?(?:nan|inf|infinity)\b)"
+    rf"(?:\s*(?:\+-|\+/-|±)\s*(?P<deviation>{NUMBER}))?\s*(?P<unit>.*?)\s*$",
     re.IGNORECASE,
 )
-_LONGEST_TEXT = 200
+_DECIMAL_COMMA = re.compile(r"^\s*[+-]?[0-9]+,[0-9]")
+#: pint evaluates what it reads, powers of powers too: only names and powers of a digit reach it
+_UNIT = re.compile(
+    r"(?:1\s*/|[A-Za-z_][A-Za-z_0-9]*|%|\*\*-?[0-9](?![0-9]|\s*\*\*)|[*/()\s])+", re.ASCII
+)
+_SPELLINGS = str.maketrans(
+    {"µ": "u", "μ": "u", "·": "*", "⋅": "*", "×": "*", ".": "*", "°": "deg", "^": "**"}
+)
+_SUPERSCRIPT = re.compile("(⁻?)([¹²³])")
+_LONGEST_TEXT = 100
 
 
 @dataclass(frozen=True)
@@ -119,24 +138,41 @@ def unit_factor(unit: str, dimension: str) -> float:
     Raises
     ------
     QuantityError
-        If the unit is unknown or of another dimension.
+        If the unit is unknown or of another dimension; the message does not name the value.
     """
     if not unit:
         return 1.0
-    ureg = registry()
-    try:
-        parsed = ureg.Unit(unit.replace("µ", "u").replace("μ", "u").replace("·", "*"))
-        one = ureg.Quantity(1.0, parsed)
-        expected = ureg.Unit(DIMENSIONS[dimension].unit or "dimensionless")
-    except Exception as error:
-        raise QuantityError(f'"{unit}" is no unit; {_wanted(dimension)}') from error
-    angle_for_number = dimension == "number" and _is_angle(parsed)
-    if one.dimensionality != expected.dimensionality or angle_for_number:
-        raise QuantityError(f"is {_name_of(one)}; {_wanted(dimension)}")
+    parsed, one = _parsed_unit(unit, dimension)
+    if dimension == "number":
+        if unit in _NUMBER_UNITS:
+            return _NUMBER_UNITS[unit]
+        raise QuantityError(f"has the unit {shown(unit)}; {_wanted(dimension)}")
+    expected = registry().Unit(DIMENSIONS[dimension].unit)
+    no_angle = dimension == "angle" and not _is_angle(parsed)
+    if one.dimensionality != expected.dimensionality or no_angle:
+        raise QuantityError(f"is {_name_of(one, parsed)}; {_wanted(dimension)}")
     if dimension in _CYCLIC:
         turns_per_second = _turns_per_second(one, parsed)
         return turns_per_second * (2.0 * math.pi if dimension == "angular_speed" else 1.0)
     return float(one.to(expected).magnitude)
+
+
+def _parsed_unit(unit: str, dimension: str) -> tuple[Any, Any]:
+    """Return pint's unit and one of it in base units."""
+    raised = _SUPERSCRIPT.sub(lambda m: f"**{'-' * len(m[1])}{'¹²³'.index(m[2]) + 1}", unit)
+    text = raised.translate(_SPELLINGS)
+    if not _UNIT.fullmatch(text):
+        raise QuantityError(f"has the unknown unit {shown(unit)}; {_wanted(dimension)}")
+    try:
+        parsed = registry().Unit(text)
+        one, two = (registry().Quantity(value, parsed).to_base_units() for value in (1.0, 2.0))
+        proportional = math.isclose(two.magnitude, 2.0 * one.magnitude)
+    except Exception as error:
+        raise QuantityError(f"has the unknown unit {shown(unit)}; {_wanted(dimension)}") from error
+    if not proportional:
+        # decibels, degrees Celsius
+        raise QuantityError(f"has the unit {shown(unit)}; {_wanted(dimension)}")
+    return parsed, one
 
 
 def _is_angle(unit: Any) -> bool:
@@ -144,17 +180,23 @@ def _is_angle(unit: Any) -> bool:
 
 
 def _turns_per_second(one: Any, unit: Any) -> float:
-    if _is_angle(unit) or "revolutions_per_minute" in unit._units or "rpm" in str(unit):
+    if _is_angle(unit):
         return float(one.to("radian/second").magnitude) / (2.0 * math.pi)
     return float(one.to("1/second").magnitude)
 
 
-def _name_of(one: Any) -> str:
+def _name_of(one: Any, unit: Any) -> str:
     """Name the dimension of what was given."""
-    for entry in DIMENSIONS.values():
-        if entry.unit and one.dimensionality == registry().Unit(entry.unit).dimensionality:
-            return entry.name
-    return f"of dimension {one.dimensionality}" if str(one.dimensionality) else "a plain number"
+    ureg = registry()
+    if one.dimensionality == ureg.Unit("Hz").dimensionality:
+        return "an angular speed" if _is_angle(unit) else "a frequency"
+    if one.dimensionality == ureg.Unit("").dimensionality:
+        return "an angle" if _is_angle(unit) else "a plain number"
+    named = {entry.unit: entry.name for entry in reversed(DIMENSIONS.values()) if entry.unit}
+    for si, name in {**named, **_FOREIGN}.items():
+        if one.dimensionality == ureg.Unit(si).dimensionality:
+            return name
+    return "of another dimension"
 
 
 def parse(given: Any, dimension: str) -> Quantity:
@@ -177,41 +219,49 @@ def parse(given: Any, dimension: str) -> Quantity:
         If it is no quantity, of another dimension or not finite.
     """
     if isinstance(given, bool) or not isinstance(given, (int, float, str)):
-        raise QuantityError(f"{_shown(given)} is no quantity; {_wanted(dimension)}")
+        raise QuantityError(f"{shown(given)} is no quantity; {_wanted(dimension)}")
     if not isinstance(given, str):
-        try:
-            value = float(given)
-        except OverflowError:
-            value = math.inf
-        return Quantity(_finite(value, given), 0.0, "")
-    if len(given) > _LONGEST_TEXT:
-        raise QuantityError(f"{_shown(given[:40])}... is too long for a quantity")
-    match = _QUANTITY.match(given)
+        return Quantity(_finite(_as_float(given), given), 0.0, "")
+    match = _QUANTITY.match(given) if len(given) <= _LONGEST_TEXT else None
     if match is None:
-        raise QuantityError(f'"{given}" is no quantity; {_wanted(dimension)}')
+        raise QuantityError(f"{shown(given)} is no quantity; {_wanted(dimension)}")
+    if _DECIMAL_COMMA.match(given):
+        raise QuantityError(f"{shown(given)} has a decimal comma; write a decimal point")
     unit = match["unit"]
     try:
         factor = unit_factor(unit, dimension)
     except QuantityError as error:
-        text = str(error)
-        raise QuantityError(text if text.startswith('"') else f'"{given}" {text}') from None
+        raise QuantityError(f"{shown(given)} {error}") from None
     if not unit and DIMENSIONS[dimension].unit and float(match["value"]) != 0.0:
-        raise QuantityError(f'"{given}" has no unit; {_wanted(dimension)}')
-    value = _finite(float(match["value"]) * factor, given)
-    deviation = float(match["deviation"] or 0.0) * factor
+        raise QuantityError(f"{shown(given)} has no unit; {_wanted(dimension)}")
+    value = _finite(_times(float(match["value"]), factor), given)
+    deviation = _times(float(match["deviation"] or 0.0), factor)
     if deviation < 0.0:
-        raise QuantityError(f'"{given}" has a negative standard deviation')
+        raise QuantityError(f"{shown(given)} has a negative standard deviation")
     return Quantity(value, _finite(deviation, given), unit)
+
+
+def _times(number: float, factor: float) -> float:
+    """Multiply so that decimal numbers stay so: 5 um is 5e-6, not 4.9999999999999996e-6."""
+    if factor >= 1.0 and math.isclose(factor, round(factor), rel_tol=1e-14):
+        return number * round(factor)
+    inverse = round(1.0 / factor) if 1e-15 < factor < 1.0 else 0
+    if inverse and math.isclose(inverse * factor, 1.0, rel_tol=1e-14):
+        return number / inverse
+    return number * factor
+
+
+def _as_float(given: int | float) -> float:
+    try:
+        return float(given)
+    except OverflowError:
+        return math.inf
 
 
 def _finite(value: float, given: Any) -> float:
     if not math.isfinite(value):
-        raise QuantityError(f"{_shown(given)} is not a finite number")
+        raise QuantityError(f"{shown(given)} is not a finite number")
     return value
-
-
-def _shown(given: Any) -> str:
-    return f'"{given}"' if isinstance(given, str) else str(given)
 
 
 def write(value: float, unit: str, dimension: str) -> str | float:

@@ -1,23 +1,27 @@
 """The case file.
 
-========== ========================================================================
-module     responsibility
-========== ========================================================================
-case       Case: reading, patching, writing back
-tool       [tool]
-material   [material]
-cut        [cut]
-structure  [structure]
-sections   the smaller sections
-quantities field types: dimension and range of each key, declared once
-path       dotted paths into a case
-document   the TOML document behind a case
-wording    sentences for what is wrong
-schema     JSON schema
-========== ========================================================================
+=========== ========================================================================
+module      responsibility
+=========== ========================================================================
+case        Case: reading, patching, writing back
+tool        [tool]
+material    [material]
+cut         [cut]
+structure   [structure]
+sections    the smaller sections
+checks      checks across sections
+quantities  field types: dimension and range of each key, declared once
+path        dotted paths into a case
+assignments ``--set PATH=VALUE`` of the command line
+document    the TOML document behind a case: text, values, file names
+editing     changes of the document that keep its comments
+wording     sentences for what is wrong
+schema      JSON schema
+=========== ========================================================================
 """
 
-from chatter.case.case import Case, load, loads, parse_assignments
+from chatter.case.assignments import parse_assignments
+from chatter.case.case import Case, load, loads
 from chatter.case.schema import schema
 
 __all__ = ["Case", "load", "loads", "parse_assignments", "schema"]

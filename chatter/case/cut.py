@@ -2,29 +2,40 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, field_validator
 
-from chatter.case.base import Section, raise_if_any
+from chatter.case.base import Section
 from chatter.case.quantities import PositiveLength, quantity
+
+#: no tooth takes a thicker chip, so that a number meant in mm is not taken for one in m
+_LARGEST_FEED = 0.02
 
 
 class Cut(Section):
-    """The operation: spindle speed in rad/s, lengths in m."""
+    """The operation: speed, feed and engagement."""
 
     mode: Literal["up", "down", "slot"]
     spindle_speed: quantity("angular_speed", above=0.0)
-    feed_per_tooth: PositiveLength
+    feed_per_tooth: quantity("length", above=0.0, at_most=_LARGEST_FEED)
     axial_depth: PositiveLength
     radial_depth: PositiveLength | None = Field(
-        None, description="width of cut; a slot is as wide as the tool"
+        None, validate_default=True, description="width of cut; a slot is as wide as the tool"
     )
 
-    @model_validator(mode="after")
-    def _check_width(self) -> Cut:
-        missing = self.radial_depth is None and self.mode != "slot"
-        raise_if_any(
-            [("radial_depth", f'is missing; mode = "{self.mode}" needs it')] if missing else []
-        )
-        return self
+    @field_validator("radial_depth")
+    @classmethod
+    def _check_width(cls, given: float | None, info: ValidationInfo) -> float | None:
+        mode = info.data.get("mode")
+        if given is None and mode in ("up", "down"):
+            raise ValueError(
+                f'is missing; mode = "{mode}" needs a length, such as radial_depth = "4 mm"'
+            )
+        return given
+
+    @property
+    def spindle_speed_rpm(self) -> float:
+        """Spindle speed in revolutions a minute, for output."""
+        return self.spindle_speed * 30.0 / math.pi

@@ -1,43 +1,48 @@
-"""The TOML document behind a case: reading, changing in place, keeping comments and units."""
+"""The TOML document behind a case: reading text, values for it, file names in it."""
 
 from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Mapping
+from datetime import date, time
 from pathlib import Path
 from typing import Any
 
 import tomlkit
-from tomlkit.exceptions import TOMLKitError
 
 from chatter.case.path import Step, join_path
 from chatter.errors import InputError
+from chatter.shown import printable, shown
 
-_LARGEST_FILE = 4 * 1024 * 1024
-#: giving one of these keys takes the other away
-_ALTERNATIVES = {
-    "mass": "stiffness",
-    "stiffness": "mass",
-    "duration": "revolutions",
-    "revolutions": "duration",
+_LARGEST_FILE = 256 * 1024
+#: TOML's whole numbers have 64 bits
+_LARGEST_INTEGER = 2**63 - 1
+#: what the parsers say -> what people say
+_PLAIN_WORDS = {
+    "Cannot overwrite a value": "a key is given twice",
+    "Cannot declare": "the table is given twice:",
 }
 
 
 def read_text(path: Path) -> str:
     """Read a case file as text; raise InputError saying why that cannot be done."""
-    if path.is_dir():
-        raise InputError(f"{path}: is a folder; a case file is wanted")
     try:
-        size = path.stat().st_size
-        if size > _LARGEST_FILE:
-            raise InputError(f"{path}: has {size} bytes; no case file is that large")
-        raw = path.read_bytes()
+        if path.is_dir():
+            raise InputError(f"{path}: is a folder; a case file is wanted")
+        with path.open("rb") as file:
+            # a size is no use: pipes and devices have none
+            raw = file.read(_LARGEST_FILE + 1)
     except FileNotFoundError:
         raise InputError(f"{path}: there is no such file") from None
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from None
+    except ValueError:
+        raise InputError(f"{shown(str(path))}: is no name of a file") from None
     if b"\0" in raw:
         raise InputError(f"{path}: is a binary file; a case file is TOML text")
+    if len(raw) > _LARGEST_FILE:
+        raise InputError(f"{path}: has more than {_LARGEST_FILE} bytes; no case file is that large")
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -58,68 +63,48 @@ def parse_document(text: str, name: str) -> tomlkit.TOMLDocument:
             # its messages name the line even of a duplicate key
             tomllib.loads(text)
         return tomlkit.parse(text)
-    except (ValueError, TOMLKitError, RecursionError) as error:
-        reason = str(error).replace("\n", " ") or "too deeply nested"
-        raise InputError(f"{name}: is no valid TOML: {reason}") from None
+    except Exception as error:
+        # whatever a parser of untrusted text stumbles over
+        raise InputError(f"{name}: is no valid TOML: {_reason(error)}") from None
 
 
-def set_value(document: Any, steps: tuple[Step, ...], value: Any) -> None:
-    """Set, or with None remove, the value at a path; ``"*"`` stands for every place of a list.
+def _reason(error: Exception) -> str:
+    if isinstance(error, RecursionError):
+        return "it is too deeply nested"
+    text = printable(str(error).replace("\n", " "), 200)
+    for words, plain in _PLAIN_WORDS.items():
+        text = text.replace(words, plain)
+    return text
+
+
+def plain(value: Any, steps: tuple[Step, ...] = ()) -> Any:
+    """Return a value of Python as one of TOML; None stands for a key that is not there.
+
+    Parameters
+    ----------
+    value : object
+    steps : tuple
+        Its place, for messages.
 
     Raises
     ------
     InputError
-        If the path leads through something that is no table or list, or past the end of a list.
+        If TOML has nothing for it.
     """
-    containers = [document]
-    for place, step in enumerate(steps[:-1]):
-        create = tomlkit.table if place == 0 else tomlkit.inline_table
-        containers = [
-            inner for item in containers for inner in _enter(item, step, create, steps, place)
-        ]
-    for item in containers:
-        _assign(item, steps[-1], value, steps)
-
-
-def _enter(item: Any, step: Step, create: Any, steps: tuple[Step, ...], place: int) -> list[Any]:
-    if isinstance(step, str) and step != "*":
-        if not isinstance(item, dict):
-            raise InputError(f"{join_path(steps)}: {join_path(steps[:place])} is no table")
-        if step not in item:
-            item[step] = create()
-        return [item[step]]
-    return [item[k] for k in _places(item, step, steps, place)]
-
-
-def _places(item: Any, step: Step, steps: tuple[Step, ...], place: int) -> range:
-    where = join_path(steps[:place])
-    if not isinstance(item, list):
-        raise InputError(f"{join_path(steps)}: {where} is no list")
-    if step == "*":
-        return range(len(item))
-    if step >= len(item):
-        raise InputError(
-            f"{join_path(steps)}: {where} has {len(item)} entries; the last is {where}"
-            f"[{len(item) - 1}]"
-        )
-    return range(step, step + 1)
-
-
-def _assign(item: Any, step: Step, value: Any, steps: tuple[Step, ...]) -> None:
-    if isinstance(step, str) and step != "*":
-        if not isinstance(item, dict):
-            raise InputError(f"{join_path(steps)}: {join_path(steps[:-1])} is no table")
-        if value is None:
-            item.pop(step, None)
-            return
-        if step in _ALTERNATIVES:
-            item.pop(_ALTERNATIVES[step], None)
-        item[step] = value
-        return
-    for k in _places(item, step, steps, len(steps) - 1):
-        if value is None:
-            raise InputError(f"{join_path(steps)}: an entry of a list cannot be removed")
-        item[k] = value
+    if hasattr(value, "tolist"):
+        # numbers and arrays of numpy
+        value = value.tolist()
+    if isinstance(value, Path):
+        return value.as_posix()
+    if isinstance(value, Mapping):
+        given = {str(key): plain(entry, (*steps, str(key))) for key, entry in value.items()}
+        return {key: entry for key, entry in given.items() if entry is not None}
+    if isinstance(value, (list, tuple)):
+        return [plain(entry, (*steps, place)) for place, entry in enumerate(value)]
+    known = value is None or isinstance(value, (bool, int, float, str, date, time))
+    if not known or (isinstance(value, int) and abs(value) > _LARGEST_INTEGER):
+        raise InputError(f"{join_path(steps)}: {shown(value)} is no value of a case file")
+    return value
 
 
 def value_at(document: Any, steps: tuple[Step, ...]) -> Any:

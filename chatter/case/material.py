@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import difflib
+import math
 from typing import Any, Literal
 
 from pydantic import Field, model_validator
 
 from chatter.case.base import Section, SectionError, raise_if_any
 from chatter.case.quantities import PositiveLength, quantity
+from chatter.shown import shown
 from cutting.force_law import Coefficients, oblique_cutting_coefficients
 from cutting.material_table import MATERIALS
 
 Pressure = quantity("pressure")
 PositivePressure = quantity("pressure", above=0.0)
 LineForce = quantity("line_force")
-ShearAngle = quantity("angle", above=0.0, below=1.5707963267948966)
-FrictionAngle = quantity("angle", at_least=0.0, below=1.5707963267948966)
-RakeAngle = quantity("angle", above=-1.5707963267948966, below=1.5707963267948966)
+ShearAngle = quantity("angle", above=0.0, below=0.5 * math.pi)
+FrictionAngle = quantity("angle", at_least=0.0, below=0.5 * math.pi)
+RakeAngle = quantity("angle", above=-0.5 * math.pi, below=0.5 * math.pi)
 
 _CUTTING = ("Ktc", "Krc", "Kac")
 _EDGE = ("Kte", "Kre", "Kae")
@@ -25,19 +27,32 @@ _EXPONENTIAL = ("h0", "exponent")
 _OBLIQUE = ("shear_stress", "friction_angle", "shear_angle", "rake_angle")
 
 
+def _no_such_row(name: str) -> str:
+    near = difflib.get_close_matches(name[:60], MATERIALS, n=1, cutoff=0.4)
+    known = ", ".join(f'"{row}"' for row in MATERIALS)
+    hint = f'did you mean "{near[0]}"? There are {known}' if near else f"there are {known}"
+    return f"{shown(name)} is not in the table of materials; {hint}"
+
+
 class Material(Section):
-    """Cutting coefficients: pressures in Pa, edge coefficients in N/m."""
+    """Force law and cutting coefficients."""
 
     law: Literal["linear", "exponential", "oblique"] = "linear"
-    name: str | None = Field(None, description="row of the table of materials")
-    Ktc: PositivePressure | None = None
-    Krc: Pressure = 0.0
-    Kac: Pressure = 0.0
-    Kte: LineForce = 0.0
-    Kre: LineForce = 0.0
-    Kae: LineForce = 0.0
+    name: str | None = Field(
+        None,
+        description="row of the table of materials; coefficients given beside it override its own",
+        json_schema_extra={"enum": list(MATERIALS)},
+    )
+    Ktc: PositivePressure | None = Field(None, description="tangential cutting coefficient")
+    Krc: Pressure = Field(0.0, description="radial cutting coefficient")
+    Kac: Pressure = Field(0.0, description="axial cutting coefficient")
+    Kte: LineForce = Field(0.0, description="tangential edge coefficient")
+    Kre: LineForce = Field(0.0, description="radial edge coefficient")
+    Kae: LineForce = Field(0.0, description="axial edge coefficient")
     h0: PositiveLength | None = Field(None, description="reference chip thickness")
-    exponent: quantity("number", above=0.0, at_most=1.0) | None = None
+    exponent: quantity("number", above=0.0, at_most=1.0) | None = Field(
+        None, description="p of K h0 (h/h0)^p"
+    )
     shear_stress: PositivePressure | None = None
     friction_angle: FrictionAngle | None = None
     shear_angle: ShearAngle | None = None
@@ -50,11 +65,10 @@ class Material(Section):
             return data
         row = MATERIALS.get(data["name"])
         if row is None:
-            near = difflib.get_close_matches(data["name"], MATERIALS, n=1, cutoff=0.4)
-            hint = f'; did you mean "{near[0]}"?' if near else ""
-            known = ", ".join(f'"{name}"' for name in MATERIALS)
-            text = f'"{data["name"]}" is not in the table of materials{hint} There are {known}'
-            raise SectionError([("name", text)])
+            raise SectionError([("name", _no_such_row(data["name"]))])
+        if data.get("law", "linear") != "linear":
+            text = f"has coefficients of the linear law, not of law = {shown(data['law'])}"
+            raise SectionError([("name", f"{shown(data['name'])} {text}")])
         return {**row.coefficients(), **data}
 
     @model_validator(mode="after")
@@ -68,12 +82,12 @@ class Material(Section):
         foreign = {
             "linear": (*_EXPONENTIAL, *_OBLIQUE),
             "exponential": _OBLIQUE,
-            "oblique": (*_EXPONENTIAL, "Ktc"),
+            "oblique": (*_EXPONENTIAL, *_CUTTING),
         }
         problems += [
             (key, f'does not belong to law = "{self.law}"')
             for key in foreign[self.law]
-            if getattr(self, key) is not None
+            if key in self.model_fields_set
         ]
         raise_if_any(problems)
         return self

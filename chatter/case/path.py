@@ -7,9 +7,11 @@ from types import UnionType
 from typing import Annotated, Any, Union, get_args, get_origin
 
 from pydantic import BaseModel
+from pydantic.fields import FieldInfo
 
 from chatter.case.quantities import QuantityField
 from chatter.errors import InputError
+from chatter.shown import shown
 
 #: a key, a place in a list, or ``"*"`` for every place
 Step = str | int
@@ -25,6 +27,8 @@ def parse_path(text: str) -> tuple[Step, ...]:
     InputError
         If it is no path.
     """
+    if not isinstance(text, str):
+        raise InputError(f"{shown(text)} is no path into a case, such as cut.axial_depth")
     steps: list[Step] = []
     position = 0
     while position < len(text):
@@ -36,7 +40,7 @@ def parse_path(text: str) -> tuple[Step, ...]:
         steps.append(key if key else "*" if place == "*" else int(place))
         position = match.end()
     if not steps or position < len(text) or not isinstance(steps[0], str):
-        raise InputError(f'"{text}" is no path into a case, such as cut.axial_depth')
+        raise InputError(f"{shown(text)} is no path into a case, such as cut.axial_depth")
     return tuple(steps)
 
 
@@ -44,7 +48,8 @@ def join_path(steps: tuple[Step, ...]) -> str:
     """Write steps as a dotted path."""
     text = ""
     for step in steps:
-        text += f"[{step}]" if isinstance(step, int) else f".{step}" if text else step
+        place = isinstance(step, int) or step == "*"
+        text += f"[{step}]" if place else f".{step}" if text else step
     return text
 
 
@@ -65,15 +70,20 @@ def model_at(model: type[BaseModel], steps: tuple[Step, ...]) -> type[BaseModel]
     return sections[0] if sections and not _is_mapping(annotation) else None
 
 
-def field_at(model: type[BaseModel], steps: tuple[Step, ...]) -> QuantityField | None:
-    """Quantity field that a path leads to; None where it leads to something else."""
-    if not steps or not isinstance(steps[-1], str):
-        return None
-    section = model_at(model, steps[:-1])
+def info_at(model: type[BaseModel], steps: tuple[Step, ...]) -> FieldInfo | None:
+    """Declaration of the field that a path leads to or into; None where there is none."""
+    while steps and (isinstance(steps[-1], int) or steps[-1] == "*"):
+        steps = steps[:-1]
+    section = model_at(model, steps[:-1]) if steps else None
     name = key_of(section, steps[-1]) if section else None
-    if name is None:
+    return section.model_fields[name] if name else None
+
+
+def field_at(model: type[BaseModel], steps: tuple[Step, ...]) -> QuantityField | None:
+    """Quantity field that a path leads to, or into where it is a list; None for other fields."""
+    info = info_at(model, steps)
+    if info is None:
         return None
-    info = section.model_fields[name]
     return next(iter(_quantity_fields([*info.metadata, info.annotation])), None)
 
 

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, WithJsonSchema
 
 from chatter import units
+from chatter.shown import shown
 
-_LONGEST_VALUE = 60
-
-
-def shown(value: Any) -> str:
-    """Show a value as it stands in the file, shortened."""
-    text = f'"{value}"' if isinstance(value, str) else str(value)
-    return text if len(text) <= _LONGEST_VALUE else text[:_LONGEST_VALUE] + "..."
+#: what an editor can check: a number, perhaps a deviation, and a unit unless it is zero
+_TEXT_PATTERN = (
+    rf"^\s*({units.NUMBER}(\s*(\+-|\+/-|±)\s*{units.NUMBER})?\s*[A-Za-z%°\u00b5\u03bc(1].*"
+    r"|[+-]?0+\.?0*)\s*$"
+)
 
 
 @dataclass(frozen=True)
@@ -40,24 +40,45 @@ class QuantityField:
         for bound, holds, words in checks:
             if bound is not None and not holds:
                 raise ValueError(
-                    f"{shown(given)} is out of range; it must be {words} {self._shown(bound)}"
+                    f"{shown(given)}{self._bare_unit(given)} is out of range; "
+                    f"it must be {words} {self._shown(bound)}"
                 )
         return value
 
+    @property
+    def noun(self) -> str:
+        """What is wanted, with its article."""
+        return units.DIMENSIONS[self.dimension].name
+
+    @property
+    def example(self) -> str:
+        """How such a quantity is written in a case file."""
+        entry = units.DIMENSIONS[self.dimension]
+        return f'"{entry.example}"' if entry.unit else entry.example
+
+    def _bare_unit(self, given: Any) -> str:
+        """Say the unit in which a bare number was understood."""
+        unit = units.DIMENSIONS[self.dimension].unit
+        return "" if isinstance(given, str) or not unit else f" (a bare number is in {unit})"
+
     def _shown(self, bound: float) -> str:
-        if self.dimension == "angle" and bound:
-            return f"{bound * 180.0 / 3.141592653589793:g} deg"
-        return f"{bound:g}"
+        if not bound:
+            return "0"
+        if self.dimension == "angle":
+            return f"{math.degrees(bound):g} deg"
+        return f"{bound:g} {units.DIMENSIONS[self.dimension].unit}".rstrip()
 
     def json_schema(self) -> dict:
         """Return the JSON schema of the field."""
         entry = units.DIMENSIONS[self.dimension]
         if not entry.unit:
-            return {"type": "number", **self._bounds()}
+            percent = {"type": "string", "pattern": _TEXT_PATTERN, "examples": ["3 %"]}
+            return {"anyOf": [{"type": "number", **self._bounds()}, percent]}
+        wanted = f"{self.noun}, such as {self.example}"
         return {
-            "description": f'such as "{entry.example}"; a bare number is in {entry.unit}',
+            "description": f"{wanted}; a bare number is in {entry.unit}",
             "anyOf": [
-                {"type": "string", "examples": [entry.example]},
+                {"type": "string", "pattern": _TEXT_PATTERN, "examples": [entry.example]},
                 {"type": "number", **self._bounds()},
             ],
         }
@@ -86,8 +107,11 @@ def quantity(dimension: str, **bounds: float) -> Any:
     return Annotated[float, BeforeValidator(field.read), WithJsonSchema(field.json_schema()), field]
 
 
-Length = quantity("length", at_least=0.0)
-PositiveLength = quantity("length", above=0.0)
+#: no cutter is larger, so that a number meant in mm is not taken for one in m
+_LARGEST_LENGTH = 2.0
+
+Length = quantity("length", at_least=0.0, at_most=_LARGEST_LENGTH)
+PositiveLength = quantity("length", above=0.0, at_most=_LARGEST_LENGTH)
 
 
 def _whole(given: Any) -> int:
@@ -102,7 +126,9 @@ def whole_number(at_least: int, at_most: int, meaning: str) -> Any:
     def read(given: Any) -> int:
         value = _whole(given)
         if not at_least <= value <= at_most:
-            raise ValueError(f"{value} is out of range; {meaning} go from {at_least} to {at_most}")
+            raise ValueError(
+                f"{shown(value)} is out of range; {meaning} go from {at_least} to {at_most}"
+            )
         return value
 
     schema = {"type": "integer", "minimum": at_least, "maximum": at_most}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
 from pydantic import Field, model_validator
@@ -15,10 +16,10 @@ MOST_POINTS = 20_000_000
 
 
 class ProcessDamping(Section):
-    """Viscous process damping: coefficient C in N/m, friction mu."""
+    """Process damping in its viscous form: F_r += C (b/V) r_dot, F_t += mu times the same."""
 
-    coefficient: quantity("line_force", at_least=0.0)
-    friction: quantity("number", at_least=0.0) = 0.0
+    coefficient: quantity("line_force", at_least=0.0) = Field(description="C")
+    friction: quantity("number", at_least=0.0) = Field(0.0, description="mu")
 
 
 class Contact(Section):
@@ -28,16 +29,45 @@ class Contact(Section):
     damping: quantity("damping", at_least=0.0) = 0.0
 
 
-class Friction(Section):
-    """Friction of a guide or drive; forces in N, velocities in m/s."""
+#: law of friction -> its keys
+FRICTION_LAWS: dict[str, tuple[str, ...]] = {
+    "coulomb": ("coulomb", "viscous"),
+    "coulomb-stribeck": ("coulomb", "static", "stribeck_velocity", "viscous"),
+    "tanh": ("coulomb", "viscous", "presliding_stiffness"),
+    "lugre": ("coulomb", "static", "stribeck_velocity", "sigma0", "sigma1", "sigma2"),
+}
 
-    law: Literal["lugre", "coulomb", "coulomb-stribeck", "tanh"] = "coulomb"
+
+class Friction(Section):
+    """Friction of a guide or drive."""
+
+    law: Literal["coulomb", "coulomb-stribeck", "tanh", "lugre"] = "coulomb"
     coulomb: quantity("force", at_least=0.0) | None = None
     static: quantity("force", at_least=0.0) | None = None
     viscous: quantity("damping", at_least=0.0) | None = None
     stribeck_velocity: quantity("velocity", above=0.0) | None = None
-    sigma0: quantity("stiffness", at_least=0.0) | None = None
-    sigma1: quantity("damping", at_least=0.0) | None = None
+    presliding_stiffness: quantity("stiffness", above=0.0) | None = None
+    sigma0: quantity("stiffness", at_least=0.0) | None = Field(
+        None, description="stiffness of the bristles"
+    )
+    sigma1: quantity("damping", at_least=0.0) | None = Field(
+        None, description="damping of the bristles"
+    )
+    sigma2: quantity("damping", at_least=0.0) | None = Field(
+        None, description="viscous part of the LuGre law"
+    )
+
+    @model_validator(mode="after")
+    def _check_law(self) -> Friction:
+        known = ("law", *FRICTION_LAWS[self.law])
+        raise_if_any(
+            [
+                (key, f'does not belong to law = "{self.law}"')
+                for key in type(self).model_fields
+                if key not in known and getattr(self, key) is not None
+            ]
+        )
+        return self
 
 
 class Axis(Section):
@@ -71,7 +101,7 @@ Count = whole_number(2, MOST_POINTS_A_SIDE, "counts")
 
 
 class SpeedRange(Section):
-    """Spindle speeds of the diagram, rad/s."""
+    """Spindle speeds of the diagram."""
 
     from_: quantity("angular_speed", above=0.0) = Field(alias="from")
     to: quantity("angular_speed", above=0.0)
@@ -79,13 +109,14 @@ class SpeedRange(Section):
 
     @model_validator(mode="after")
     def _check_order(self) -> SpeedRange:
-        problem = ("", "the range is empty: from is not less than to")
-        raise_if_any([problem] if self.from_ >= self.to else [])
+        first, last = (value * 30.0 / math.pi for value in (self.from_, self.to))
+        text = f"the range is empty: from ({first:g} rpm) is not less than to ({last:g} rpm)"
+        raise_if_any([("", text)] if self.from_ >= self.to else [])
         return self
 
 
 class DepthRange(Section):
-    """Axial depths of the diagram, m."""
+    """Axial depths of the diagram."""
 
     to: PositiveLength
     count: Count = 100
@@ -96,7 +127,7 @@ class Lobes(Section):
 
     speeds: SpeedRange | None = None
     depths: DepthRange | None = None
-    method: str | None = Field(None, description="semi-discretization or zero-order")
+    method: Literal["semi-discretization", "zero-order"] | None = None
     steps: whole_number(4, 20_000, "steps a tooth period") | None = Field(
         None, description="fixes the steps a tooth period; by default they are chosen"
     )

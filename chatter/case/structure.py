@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import (
     BeforeValidator,
+    ConfigDict,
     Field,
     ValidationInfo,
     WithJsonSchema,
@@ -17,7 +18,8 @@ from pydantic import (
 )
 
 from chatter.case.base import Section, raise_if_any
-from chatter.case.quantities import quantity, shown
+from chatter.case.quantities import quantity
+from chatter.shown import shown
 
 #: a direction may miss unit length by this much before it is refused rather than normalised
 _UNIT_TOLERANCE = 0.01
@@ -26,16 +28,16 @@ _DIRECTION = re.compile("[xyz]{1,2}")
 
 def _unit_vector(given: Any) -> tuple[float, float, float]:
     numbers = isinstance(given, (list, tuple)) and all(
-        isinstance(part, (int, float)) and not isinstance(part, bool) and math.isfinite(part)
+        isinstance(part, (int, float)) and not isinstance(part, bool) and -1e9 < part < 1e9
         for part in given
     )
     if not numbers or len(given) != 3:
         raise ValueError(
             f"{shown(given)} is no direction; three numbers are wanted, such as [1, 0, 0]"
         )
-    length = math.sqrt(sum(part * part for part in given))
+    length = math.hypot(*given)
     if abs(length - 1.0) > _UNIT_TOLERANCE:
-        raise ValueError(f"{list(given)} has length {length:.4g}; a unit vector is wanted")
+        raise ValueError(f"{shown(given)} has length {length:.4g}; a unit vector is wanted")
     return tuple(float(part) / length for part in given)
 
 
@@ -47,13 +49,19 @@ UnitVector = Annotated[
 
 
 class ModeSection(Section):
-    """One real mode at the tool point: frequency in Hz, mass in kg, stiffness in N/m."""
+    """One real mode at the tool point."""
+
+    model_config = ConfigDict(
+        json_schema_extra={"oneOf": [{"required": ["mass"]}, {"required": ["stiffness"]}]}
+    )
 
     frequency: quantity("frequency", above=0.0)
     damping: quantity("number", above=0.0, below=1.0) = Field(description="damping ratio")
     mass: quantity("mass", above=0.0) | None = None
     stiffness: quantity("stiffness", above=0.0) | None = None
-    direction: UnitVector
+    direction: UnitVector = Field(
+        description="unit vector: x feed, y normal, z tool axis", examples=[[1, 0, 0]]
+    )
     side: Literal["tool", "workpiece"] = "tool"
 
     @model_validator(mode="after")
@@ -71,23 +79,33 @@ class ModeSection(Section):
         return self.stiffness / (2.0 * math.pi * self.frequency) ** 2
 
 
+def _in_case_folder(given: Any, info: ValidationInfo) -> Path:
+    if not isinstance(given, (str, Path)) or not str(given) or not str(given).isprintable():
+        raise ValueError(f'{shown(given)} is no file name; one is wanted, such as "tap.uff"')
+    return (info.context or {}).get("folder", Path()) / given
+
+
+#: a file named relative to the folder of the case file
+FileName = Annotated[
+    Path, BeforeValidator(_in_case_folder), WithJsonSchema({"type": "string", "minLength": 1})
+]
+
+
 class MeasuredFrf(Section):
     """A file of measured FRFs at the tool point."""
 
-    file: Path
+    file: FileName = Field(examples=["tap.uff"])
     direction: str | None = Field(
-        None, description='"x", or response and force as in "xy"; where the file does not say'
+        None,
+        description='"x", or response and force as in "xy"; where the file does not say',
+        json_schema_extra={"pattern": f"^{_DIRECTION.pattern}$"},
     )
     side: Literal["tool", "workpiece"] = "tool"
-    node: str | None = Field(None, description="node of the tool point, where there are several")
-
-    @field_validator("file", mode="before")
-    @classmethod
-    def _resolve(cls, given: Any, info: ValidationInfo) -> Any:
-        if not isinstance(given, str) or not given:
-            raise ValueError(f"{shown(given)} is no file name")
-        folder = (info.context or {}).get("folder", Path())
-        return folder / given
+    node: str | None = Field(
+        None,
+        description="node of the tool point, where there are several",
+        json_schema_extra={"type": ["string", "integer"]},
+    )
 
     @field_validator("direction")
     @classmethod
@@ -105,6 +123,11 @@ class MeasuredFrf(Section):
 def _as_tables(given: Any) -> Any:
     """One name, a list of names or of tables: all become tables."""
     entries = given if isinstance(given, (list, tuple)) else [given]
+    for entry in entries:
+        if not isinstance(entry, (str, dict)):
+            raise ValueError(
+                f"{shown(entry)} is no measured FRF; a file name is wanted, or a table with file"
+            )
     return [{"file": entry} if isinstance(entry, str) else entry for entry in entries]
 
 
@@ -125,7 +148,7 @@ class StructureSection(Section):
         description="measured FRFs: a file, a list of files or of tables",
         json_schema_extra=_also_file_names,
     )
-    machine: str | None = Field(None, description="file of a virtual machine")
+    machine: FileName | None = Field(None, description="file of a virtual machine")
 
     @model_validator(mode="after")
     def _check_source(self) -> StructureSection:

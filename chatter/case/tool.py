@@ -5,17 +5,17 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, ValidationInfo, WithJsonSchema, field_validator
 
-from chatter.case.base import Section, raise_if_any
+from chatter.case.base import Section
 from chatter.case.quantities import (
     Length,
     PositiveLength,
     QuantityField,
     quantity,
-    shown,
     whole_number,
 )
+from chatter.shown import shown
 
 _HELIX = QuantityField("angle", above=-0.5 * math.pi, below=0.5 * math.pi)
 _PITCH = QuantityField("angle", above=0.0)
@@ -49,6 +49,7 @@ HelixAngles = Annotated[
             "description": 'one angle, or one for each flute, such as "30 deg"',
         }
     ),
+    _HELIX,
 ]
 PitchAngles = Annotated[
     tuple[float, ...],
@@ -60,6 +61,7 @@ PitchAngles = Annotated[
             "description": "angle from each tooth to the next; they make a turn",
         }
     ),
+    _PITCH,
 ]
 
 
@@ -74,7 +76,7 @@ class Tool(Section):
     """Cutter geometry; lengths in m, angles in rad."""
 
     kind: Literal["end mill", "ball", "bull nose", "taper", "inserted"] = "end mill"
-    teeth: whole_number(1, 200, "numbers of teeth")
+    teeth: whole_number(1, 200, "numbers of teeth") = Field(examples=[4])
     diameter: PositiveLength
     helix: HelixAngles = 0.0
     pitch: PitchAngles | None = None
@@ -83,30 +85,28 @@ class Tool(Section):
     edge_radius: Length = 0.0
     taper_angle: quantity("angle", at_least=0.0, below=0.5 * math.pi) = 0.0
 
-    @model_validator(mode="after")
-    def _check_geometry(self) -> Tool:
-        problems = []
-        if isinstance(self.helix, tuple) and len(self.helix) != self.teeth:
-            problems.append(
-                ("helix", f"{len(self.helix)} angles for {self.teeth} teeth; give one a flute")
+    @field_validator("helix", "pitch")
+    @classmethod
+    def _check_count(cls, given: Any, info: ValidationInfo) -> Any:
+        teeth = info.data.get("teeth")
+        if isinstance(given, tuple) and teeth is not None and len(given) != teeth:
+            raise ValueError(f"{len(given)} angles for {teeth} teeth; give one for each tooth")
+        return given
+
+    @field_validator("pitch")
+    @classmethod
+    def _check_turn(cls, given: tuple[float, ...] | None) -> tuple[float, ...] | None:
+        if given is not None and abs(sum(given) - 2.0 * math.pi) > _TURN_TOLERANCE:
+            total = math.degrees(sum(given))
+            raise ValueError(f"the angles add up to {total:g} deg, not to 360 deg")
+        return given
+
+    @field_validator("corner_radius", "edge_radius")
+    @classmethod
+    def _check_radius(cls, given: float, info: ValidationInfo) -> float:
+        diameter = info.data.get("diameter")
+        if diameter is not None and given > 0.5 * diameter * (1.0 + 1e-9):
+            raise ValueError(
+                f"{given * 1e3:g} mm is more than the radius of the tool, {diameter * 500.0:g} mm"
             )
-        if self.pitch is not None and len(self.pitch) != self.teeth:
-            problems.append(
-                ("pitch", f"{len(self.pitch)} angles for {self.teeth} teeth; give one a tooth")
-            )
-        elif self.pitch is not None and abs(sum(self.pitch) - 2.0 * math.pi) > _TURN_TOLERANCE:
-            total = math.degrees(sum(self.pitch))
-            problems.append(("pitch", f"the angles add up to {total:g} deg, not to 360 deg"))
-        radius = 0.5 * self.diameter
-        if self.corner_radius > radius * (1.0 + 1e-12):
-            problems.append(
-                (
-                    "corner_radius",
-                    f"{self.corner_radius * 1e3:g} mm is more than the radius of the tool, "
-                    f"{radius * 1e3:g} mm",
-                )
-            )
-        if self.edge_radius >= radius:
-            problems.append(("edge_radius", "is not smaller than the radius of the tool"))
-        raise_if_any(problems)
-        return self
+        return given

@@ -15,8 +15,8 @@ from dynamics.hammer.hit import Hit
 from dynamics.hammer.naming import named
 from dynamics.hammer.record import HammerRecord
 
-#: least deviation of a gain from the others' that counts
-_GAIN = 0.06
+#: least deviation of a gain from the others' that may count, and least that always does
+_GAIN, _WIDEST_GAIN = 0.06, 0.25
 #: least delay against the others that counts, samples
 _DELAY = 0.3
 #: least share of the predicted response by which two blows of a hand may differ
@@ -26,7 +26,7 @@ _MISFIT = 0.1
 #: chance with which scatter alone may put a good record beyond its limits
 _CHANCE = 1e-3
 #: agreeing records from which their spread says something
-_ENOUGH_FOR_SPREAD = 3
+_ENOUGH_FOR_SPREAD = 4
 #: noise over peak, against the median of the set and absolutely, above which nothing is coherent
 _NOISE_OVER_OTHERS = 5.0
 _NOISE_OVER_PEAK = 0.025
@@ -163,7 +163,7 @@ def _limits(others: list[Comparison], agreement: float) -> Limits:
     misfit = float(np.median([comparison.misfit for comparison in others]))
     few = len(others) < _ENOUGH_FOR_SPREAD
     return Limits(
-        gain=max(_GAIN, _unlikely([comparison.gain for comparison in others])),
+        gain=min(max(_GAIN, _unlikely([comparison.gain for comparison in others])), _WIDEST_GAIN),
         delay=max(_DELAY, _unlikely([comparison.delay for comparison in others])),
         misfit=max(_MISFIT, agreement if few else 0.0, 3.0 * misfit),
         tolerance=max(_TOLERANCE, 2.0 * misfit),

@@ -1,24 +1,66 @@
-"""Floquet multipliers of milling by multi-interval Chebyshev collocation.
+"""Milling as a periodic delay equation, and its multipliers over a tooth period.
 
-Written from the conventions alone: x feed, y normal, phi clockwise from +y, h = dx sin + dy cos,
-Fx = -Ft cos - Fr sin, Fy = Ft sin - Fr cos, Fz = Fa; a point at height z lags by z tan(helix)/R.
-Intervals end at every entry and exit of tip and top of every tooth, so that the solution is
-smooth inside each and converges spectrally.
+Conventions: x feed, y normal, z tool axis; phi is clockwise from +y and the first tooth is at +y
+when the spindle angle is zero; a point at height z lags by z tan(helix)/R. With u the displacement
+of the tool relative to the workpiece and d = u(t) - u(t - tooth period)
+
+    h  = dx sin(phi) + dy cos(phi)               r' = ux' sin(phi) + uy' cos(phi)
+    Ft = Ktc b h + friction C (b/V) r'           V  = pi D n
+    Fr = Krc b h +          C (b/V) r'           Fa = Kac b h
+    Fx = -Ft cos(phi) - Fr sin(phi)   Fy = Ft sin(phi) - Fr cos(phi)   Fz = Fa
+
+are the forces on the tool. The edge stands at 90 degrees of axial immersion, so that z neither
+makes the chip thicker nor is it delayed, and the axial force pushes the tool along +z.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(16)
+from . import collocation
+
+#: exact to rounding for the sines of half a turn
+_GAUSS_NODES, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(16)
+#: longest interval as an angle of the spindle, rad, however slow the structure is
+_LONGEST_ANGLE = 1.0
+
+
+class Mode(NamedTuple):
+    """A real mode: Hz, damping ratio, modal mass in kg along the unit vector `direction`."""
+
+    frequency: float
+    damping: float
+    mass: float
+    direction: tuple[float, float, float]
+    side: str = "tool"
+
+    @property
+    def angular(self):
+        """Angular natural frequency, rad/s."""
+        return 2.0 * math.pi * self.frequency
+
+    @property
+    def shape(self):
+        """Mass-normalised direction of the relative motion (3,).
+
+        A mode of the workpiece is pushed by the opposite force and moves the workpiece away, which
+        together change nothing.
+        """
+        sign = {"tool": 1.0, "workpiece": -1.0}[self.side]
+        return sign * np.array(self.direction) / math.sqrt(self.mass)
 
 
 @dataclass(frozen=True)
 class MillingCase:
-    """A linear milling problem, SI; modes are (frequency Hz, damping, mass, direction)."""
+    """A linear milling problem, SI.
+
+    `entry` and `exit` bound the cut, `coefficients` are Ktc, Krc, Kac, `modes` are of type Mode or
+    plain tuples in its order, `speed` is that of the spindle in rad/s, `depth` the axial depth.
+    """
 
     teeth: int
     diameter: float
@@ -26,135 +68,140 @@ class MillingCase:
     entry: float
     exit: float
     coefficients: tuple[float, float, float]
-    modes: tuple[tuple[float, float, float, tuple[float, float, float]], ...]
+    modes: tuple[Mode, ...]
     speed: float
     depth: float
     process_damping: float = 0.0
     friction: float = 0.0
 
+    @property
+    def pitch(self):
+        """Angle between teeth, rad."""
+        return 2.0 * math.pi / self.teeth
 
-def tooth_matrix(phi, kt, kr, ka):
-    """dF = -H d for one tooth, per length of edge."""
-    s, c = math.sin(phi), math.cos(phi)
-    force = np.array([-kt * c - kr * s, kt * s - kr * c, ka])
-    return -np.outer(force, [s, c, 0.0])
+    @property
+    def tooth_period(self):
+        """Time between teeth, s."""
+        return self.pitch / self.speed
+
+    @property
+    def lag_per_height(self):
+        """Angle by which the edge lags for each metre of height."""
+        return math.tan(self.helix) / (0.5 * self.diameter)
 
 
-def edge_matrix(case, tip, kt, kr, ka):
-    """Sum over teeth of the integral of H along the engaged edge, tip of tooth 0 at `tip`."""
-    lag_per_depth = math.tan(case.helix) / (0.5 * case.diameter)
-    total = np.zeros((3, 3))
+def engagement(mode, radial_depth, diameter):
+    """Return entry and exit angle of an "up", "down" or "slot" cut."""
+    if mode == "slot":
+        return 0.0, math.pi
+    arc = math.acos(1.0 - radial_depth / (0.5 * diameter))
+    return (0.0, arc) if mode == "up" else (math.pi - arc, math.pi)
+
+
+def _force_per_motion(phi, tangential, radial, axial):
+    """Force on the tool for unit motion of the tooth, (..., 3, 3), at angles phi (...)."""
+    s, c = np.sin(phi), np.cos(phi)
+    force = np.stack(
+        [-tangential * c - radial * s, tangential * s - radial * c, axial * np.ones_like(s)], -1
+    )
+    thickness = np.stack([s, c, np.zeros_like(s)], -1)
+    return force[..., :, None] * thickness[..., None, :]
+
+
+def edge_integral(case, spindle_angles, coefficients):
+    """Integrate the force for unit motion along the engaged edges, (k, 3, 3) at (k,) angles."""
+    total = np.zeros((len(spindle_angles), 3, 3))
+    lag = case.lag_per_height
+    if lag < 0.0:
+        raise ValueError("the reference takes no left-hand helix")
+    turns = math.ceil((case.exit + lag * case.depth) / (2.0 * math.pi))
     for tooth in range(case.teeth):
-        top_lag = lag_per_depth * case.depth
-        angle = tip + 2.0 * math.pi * tooth / case.teeth
-        turns = range(-2 - int(top_lag // (2 * math.pi)), 3)
-        for turn in turns:
-            phi = angle % (2.0 * math.pi) + 2.0 * math.pi * turn
-            if lag_per_depth == 0.0:
-                if case.entry < phi < case.exit:
-                    total += case.depth * tooth_matrix(phi, kt, kr, ka)
-                continue
-            # heights z with entry < phi - lag z < exit
-            low = max(0.0, (phi - case.exit) / lag_per_depth)
-            high = min(case.depth, (phi - case.entry) / lag_per_depth)
-            if high > low:
-                for node, weight in zip(GAUSS_NODES, GAUSS_WEIGHTS, strict=True):
-                    z = low + 0.5 * (1.0 + node) * (high - low)
-                    part = tooth_matrix(phi - lag_per_depth * z, kt, kr, ka)
-                    total += 0.5 * (high - low) * weight * part
+        tip = np.mod(spindle_angles + tooth * case.pitch, 2.0 * math.pi)
+        if lag == 0.0:
+            engaged = (case.entry < tip) & (tip < case.exit)
+            total[engaged] += case.depth * _force_per_motion(tip[engaged], *coefficients)
+            continue
+        for turn in range(turns):
+            # heights at which the edge is between entry and exit
+            turned = tip + 2.0 * math.pi * turn
+            low = np.clip((turned - case.exit) / lag, 0.0, case.depth)
+            high = np.clip((turned - case.entry) / lag, 0.0, case.depth)
+            half = 0.5 * (high - low)
+            height = low[:, None] + half[:, None] * (1.0 + _GAUSS_NODES)
+            parts = _force_per_motion(turned[:, None] - lag * height, *coefficients)
+            total += half[:, None, None] * np.tensordot(parts, _GAUSS_WEIGHTS, axes=(1, 0))
     return total
 
 
-def chebyshev(count):
-    """Nodes on [0, 1] ascending and the differentiation matrix (Trefethen 2000, cheb)."""
-    k = np.arange(count)
-    x = -np.cos(math.pi * k / (count - 1))
-    c = np.where((k == 0) | (k == count - 1), 2.0, 1.0) * (-1.0) ** k
-    difference = x[:, None] - x[None, :]
-    d = np.outer(c, 1.0 / c) / (difference + np.eye(count))
-    d -= np.diag(d.sum(axis=1))
-    return 0.5 * (x + 1.0), 2.0 * d
+def stiffness_of_cut(case, spindle_angles):
+    """Force on the tool for unit d, N/m, (k, 3, 3)."""
+    return edge_integral(case, spindle_angles, case.coefficients)
 
 
-def borders(case, longest):
-    """Tip angles in one pitch at which an edge enters or leaves, cut into pieces."""
-    pitch = 2.0 * math.pi / case.teeth
-    lag = case.depth * math.tan(case.helix) / (0.5 * case.diameter)
-    marks = [0.0, pitch]
-    for angle in (case.entry, case.exit, case.entry + lag, case.exit + lag):
-        marks.append(angle % pitch)
-    marks = sorted(marks)
-    pieces = [0.0]
-    for mark in marks[1:]:
-        if mark - pieces[-1] > 1e-12:
-            count = max(1, math.ceil((mark - pieces[-1]) / longest))
-            pieces += list(np.linspace(pieces[-1], mark, count + 1)[1:])
-    return np.array(pieces)
+def damping_of_cut(case, spindle_angles):
+    """Force on the tool for unit velocity by process damping, N s/m, (k, 3, 3)."""
+    coefficient = case.process_damping / (0.5 * case.diameter * case.speed)
+    damping = (case.friction * coefficient, coefficient, 0.0)
+    return edge_integral(case, spindle_angles, damping)
 
 
-def multipliers(case, nodes=14, waves_a_piece=0.6):
-    """All multipliers over one tooth period, largest magnitude first."""
-    count = len(case.modes)
-    directions = np.array([mode[3] for mode in case.modes])
-    omega = 2.0 * math.pi * np.array([mode[0] for mode in case.modes])
-    zeta = np.array([mode[1] for mode in case.modes])
-    mass = np.array([mode[2] for mode in case.modes])
-    # scaled state (omega x, v)
-    free = np.zeros((2 * count, 2 * count))
-    for i in range(count):
-        free[2 * i, 2 * i + 1] = omega[i]
-        free[2 * i + 1, 2 * i] = -omega[i]
-        free[2 * i + 1, 2 * i + 1] = -2.0 * zeta[i] * omega[i]
-    out = np.zeros((3, 2 * count))
-    out_rate = np.zeros((3, 2 * count))
-    into = np.zeros((2 * count, 3))
-    out[:, 0::2] = (directions / omega[:, None]).T
-    out_rate[:, 1::2] = directions.T
-    into[1::2] = directions / mass[:, None]
-    cutting_speed = 0.5 * case.diameter * case.speed
-
-    longest = waves_a_piece * 2.0 * math.pi * case.speed / omega.max()
-    marks = borders(case, longest)
-    node, d = chebyshev(nodes)
-    size, pieces = 2 * count, len(marks) - 1
-    # unknown history: displacement (3) at every node of every piece of the last period
-    history = 3 * nodes * pieces
-    width = size + history
-    state = np.zeros((size, width))
-    state[:, :size] = np.eye(size)
-    recorded = np.zeros((history, width))
-    for piece in range(pieces):
-        start, end = marks[piece], marks[piece + 1]
-        h = (end - start) / case.speed
-        left = np.kron(d / h, np.eye(size))
-        right = np.zeros((size * nodes, width))
-        for k in range(nodes):
-            # one-sided limits: a hair inside the piece
-            share = min(max(node[k], 1e-12), 1.0 - 1e-12)
-            tip = start + share * (end - start)
-            stiffness = edge_matrix(case, tip, *case.coefficients)
-            rows = slice(k * size, (k + 1) * size)
-            a = free - into @ stiffness @ out
-            if case.process_damping:
-                c = case.process_damping
-                dashpot = edge_matrix(case, tip, case.friction * c, c, 0.0) / cutting_speed
-                a = a - into @ dashpot @ out_rate
-            left[rows, rows] -= a
-            first = size + 3 * (piece * nodes + k)
-            right[rows, first : first + 3] = into @ stiffness
-        left[:size] = 0.0
-        left[:size, :size] = np.eye(size)
-        right[:size] = state
-        solution = np.linalg.solve(left, right)
-        for k in range(nodes):
-            first = 3 * (piece * nodes + k)
-            recorded[first : first + 3] = out @ solution[k * size : (k + 1) * size]
-        state = solution[-size:]
-    monodromy = np.vstack([state, recorded])
-    values = np.linalg.eigvals(monodromy)
-    return values[np.argsort(-np.abs(values))]
+def border_angles(case):
+    """Angles of the first tooth in a pitch at which tip or top of a tooth enters or leaves."""
+    top = case.lag_per_height * case.depth
+    angles = (case.entry, case.exit, case.entry + top, case.exit + top)
+    return np.unique(np.mod(angles, case.pitch))
 
 
-def spectral_radius(case, nodes=14, waves_a_piece=0.6):
-    """Largest magnitude of the multipliers."""
+def delay_equation(case):
+    """Return the problem over one tooth period as a PeriodicDelayEquation.
+
+    The state is (omega eta, eta') of the mass-normalised modes; delayed are x and y of the tool.
+    """
+    modes = [Mode(*mode) for mode in case.modes]
+    count = len(modes)
+    omega = np.array([mode.angular for mode in modes])
+    damping = np.array([mode.damping for mode in modes])
+    shapes = np.array([mode.shape for mode in modes])
+    free = np.block(
+        [
+            [np.zeros((count, count)), np.diag(omega)],
+            [-np.diag(omega), -2.0 * np.diag(damping * omega)],
+        ]
+    )
+    displacement = np.hstack([shapes.T / omega, np.zeros((3, count))])
+    velocity = np.hstack([np.zeros((3, count)), shapes.T])
+    force = np.vstack([np.zeros((count, 3)), shapes])
+
+    def present(times):
+        angles = case.speed * times
+        matrix = free + force @ stiffness_of_cut(case, angles) @ displacement
+        if case.process_damping:
+            matrix = matrix + force @ damping_of_cut(case, angles) @ velocity
+        return matrix
+
+    def delayed(times):
+        return -force @ stiffness_of_cut(case, case.speed * times)[:, :, :2]
+
+    return collocation.PeriodicDelayEquation(
+        present,
+        delayed,
+        displacement[:2],
+        period=case.tooth_period,
+        delay=case.tooth_period,
+        borders=tuple(border_angles(case) / case.speed),
+    )
+
+
+def multipliers(case, nodes=16, waves_a_piece=1.0):
+    """Return all multipliers over one tooth period, largest magnitude first.
+
+    No interval is longer than `waves_a_piece` periods of the highest mode.
+    """
+    highest = max(mode[0] for mode in case.modes)
+    longest = min(waves_a_piece / highest, _LONGEST_ANGLE / case.speed)
+    return collocation.multipliers(delay_equation(case), nodes, longest)
+
+
+def spectral_radius(case, nodes=16, waves_a_piece=1.0):
+    """Return the largest magnitude of the multipliers over one tooth period."""
     return float(abs(multipliers(case, nodes, waves_a_piece)[0]))

@@ -1,0 +1,58 @@
+"""Checks across sections of a case."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from chatter.case.cut import Cut
+from chatter.case.path import field_at
+from chatter.case.tool import Tool
+
+_WIDTH = "cut.radial_depth"
+
+
+def engagement_problems(
+    mode: str | None, radial_depth: float | None, diameter: float | None
+) -> list[tuple[str, str]]:
+    """Check the radial depth (m) against the diameter (m) of the tool.
+
+    Parameters
+    ----------
+    mode, radial_depth, diameter
+        None where it is not known.
+
+    Returns
+    -------
+    list of (str, str)
+        Path and sentence of what is wrong.
+    """
+    if radial_depth is None or diameter is None:
+        return []
+    width, size = f"{radial_depth * 1e3:g} mm", f"{diameter * 1e3:g} mm"
+    if radial_depth > diameter * (1.0 + 1e-9):
+        return [(_WIDTH, f"{width} is more than the diameter of the tool, {size}")]
+    if mode == "slot" and radial_depth < diameter * (1.0 - 1e-6):
+        text = f'{width} is not the diameter, {size}, that mode = "slot" cuts; '
+        return [(_WIDTH, text + 'leave it out, or choose "up" or "down"')]
+    return []
+
+
+def engagement_problems_of_draft(data: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Make the same check on a case that has other faults, as far as its values can be read."""
+    tool, cut = data.get("tool"), data.get("cut")
+    return engagement_problems(
+        cut.get("mode") if isinstance(cut, Mapping) else None,
+        _length(Cut, cut, "radial_depth"),
+        _length(Tool, tool, "diameter"),
+    )
+
+
+def _length(section: type, table: Any, key: str) -> float | None:
+    if not isinstance(table, Mapping) or key not in table:
+        return None
+    try:
+        return field_at(section, (key,)).read(table[key])
+    except ValueError:
+        # told by the section itself
+        return None

@@ -1,0 +1,30 @@
+"""Values as messages show them: short, printable, as they stand in a case file."""
+
+from __future__ import annotations
+
+from typing import Any
+
+_LONGEST = 60
+
+
+def shown(value: Any) -> str:
+    """Show a value as it stands in a case file, shortened and in printable characters."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return f'"{printable(value)}"'
+    if isinstance(value, dict):
+        return "a table"
+    if isinstance(value, (list, tuple)):
+        return printable(f"[{', '.join(shown(entry) for entry in value[:10])}]")
+    try:
+        return printable(str(value))
+    except ValueError:
+        # Python refuses to write integers of thousands of digits
+        return "a number of thousands of digits"
+
+
+def printable(text: str, longest: int = _LONGEST) -> str:
+    """Return text without control characters and cut to what fits a message."""
+    clean = "".join(part if part.isprintable() else "?" for part in text[: longest + 1])
+    return clean if len(clean) <= longest else clean[:longest] + "..."
