@@ -140,12 +140,19 @@ def test_refusals(given_text, dimension, words):
     assert message.isprintable()
 
 
+def _read_or_refusal(text, dimension):
+    """What is read, or the sentence that refuses it."""
+    try:
+        return parse(text, dimension)
+    except QuantityError as error:
+        return str(error)
+
+
 @given(st.text(max_size=40), st.sampled_from(sorted(DIMENSIONS)))
 def test_any_text_is_a_finite_quantity_or_refused(text, dimension):
-    try:
-        read = parse(text, dimension)
-    except QuantityError as error:
-        assert str(error).isprintable()
+    read = _read_or_refusal(text, dimension)
+    if isinstance(read, str):
+        assert read.isprintable()
     else:
         assert math.isfinite(read.value)
         assert math.isfinite(read.deviation)
@@ -156,7 +163,5 @@ def test_any_text_is_a_finite_quantity_or_refused(text, dimension):
     st.sampled_from(sorted(DIMENSIONS)),
 )
 def test_any_unit_is_read_or_refused(text, dimension):
-    try:
-        assert math.isfinite(parse(text, dimension).value)
-    except QuantityError as error:
-        assert str(error).isprintable()
+    read = _read_or_refusal(text, dimension)
+    assert read.isprintable() if isinstance(read, str) else math.isfinite(read.value)

@@ -13,6 +13,7 @@ period later. Its eigenvalues are the Floquet multipliers.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -157,7 +158,7 @@ def monodromy(equation, nodes, longest):
     history = _History(equation, edges, polynomial)
     size = history.states
     state = np.eye(size, history.width)
-    for left, right in zip(edges[:-1], edges[1:], strict=True):
+    for left, right in itertools.pairwise(edges):
         times = left + (right - left) * polynomial.points[1:]
         earlier = np.vstack([history.at(time - equation.delay) for time in times])
         from_left, from_earlier = _interval_response(equation, polynomial, left, right - left)
