@@ -162,7 +162,7 @@ def force_law(case: Case) -> ForceLaw:
 
 def _process_damping(case: Case) -> ViscousProcessDamping | None:
     section = case.process_damping
-    if section is None or section.coefficient == 0.0:
+    if section is None or not section.coefficient:
         return None
     return ViscousProcessDamping(section.coefficient, section.friction)
 

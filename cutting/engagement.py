@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from typing import Literal, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 MillingMode = Literal["up", "down", "slot"]
 
 
@@ -58,6 +61,36 @@ def engagement(mode: MillingMode, radial_depth: float, diameter: float) -> Engag
     if mode == "down":
         return Engagement(math.pi - arc, math.pi)
     raise ValueError(f'milling mode "{mode}" is not one of "up", "down", "slot"')
+
+
+def slice_engagement(
+    mode: MillingMode, radial_depth: float, tool_radius: float, slice_radius: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Entry and exit angle of each slice of a tool whose radius varies along the axis.
+
+    The stock ends at the same place for all of them, R - a_e from the axis.
+
+    Parameters
+    ----------
+    mode : {"up", "down", "slot"}
+    radial_depth, tool_radius : float
+        m; the radial depth is not used for a slot.
+    slice_radius : (L,) array of float
+        m.
+
+    Returns
+    -------
+    pair of (L,) arrays of float
+        rad; entry above exit where a slice does not reach the stock.
+    """
+    if mode == "slot":
+        return np.zeros(slice_radius.size), np.full(slice_radius.size, math.pi)
+    cosine = (tool_radius - radial_depth) / slice_radius
+    arc = np.arccos(np.clip(cosine, -1.0, 1.0))
+    none = cosine >= 1.0
+    if mode == "up":
+        return np.where(none, np.inf, 0.0), np.where(none, -np.inf, arc)
+    return np.where(none, np.inf, math.pi - arc), np.where(none, -np.inf, math.pi)
 
 
 def cutting_speed(diameter: float, spindle_speed: float) -> float:

@@ -18,7 +18,7 @@ from chatter.case.document import move_references, parse_document, plain, read_t
 from chatter.case.editing import set_value
 from chatter.case.material import Material
 from chatter.case.path import Step, field_at, join_path, key_of, model_at, parse_path
-from chatter.case.sections import Axis, Contact, Friction, Lobes, ProcessDamping, Simulation
+from chatter.case.sections import Axis, Contact, Friction, Lobes, ProcessDamping, Simulation, Stock
 from chatter.case.structure import StructureSection
 from chatter.case.tool import Tool
 from chatter.case.wording import sentences, unknown_key
@@ -44,6 +44,7 @@ class Case(Section):
     friction: dict[str, Friction] = Field(default_factory=dict)
     axis: Axis | None = None
     simulation: Simulation | None = None
+    stock: Stock | None = None
     lobes: Lobes | None = None
 
     _document: Any = PrivateAttr(default=None)

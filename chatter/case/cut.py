@@ -14,6 +14,16 @@ from chatter.case.quantities import PositiveLength, quantity
 _LARGEST_FEED = 0.02
 
 
+class SpeedVariation(Section):
+    """Spindle speed that is made to vary around its mean."""
+
+    amplitude: quantity("number", above=0.0, at_most=0.5) = Field(
+        description="share of the mean speed"
+    )
+    frequency: quantity("frequency", above=0.0)
+    shape: Literal["sine", "triangle"] = "sine"
+
+
 class Cut(Section):
     """The operation: speed, feed and engagement."""
 
@@ -24,6 +34,8 @@ class Cut(Section):
     radial_depth: PositiveLength | None = Field(
         None, validate_default=True, description="width of cut; a slot is as wide as the tool"
     )
+
+    speed_variation: SpeedVariation | None = None
 
     @field_validator("radial_depth")
     @classmethod

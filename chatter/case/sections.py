@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
 
 from chatter.case.base import Section, raise_if_any
-from chatter.case.quantities import PositiveLength, quantity, whole_number
+from chatter.case.quantities import PositiveLength, QuantityField, quantity, whole_number
+from chatter.shown import shown
 
 #: most points a side of a diagram, and in all
 MOST_POINTS_A_SIDE = 20_000
@@ -16,10 +17,30 @@ MOST_POINTS = 20_000_000
 
 
 class ProcessDamping(Section):
-    """Process damping in its viscous form: F_r += C (b/V) r_dot, F_t += mu times the same."""
+    """Process damping: viscous, F_r += C (b/V) r_dot, or by the material that the flank ploughs."""
 
-    coefficient: quantity("line_force", at_least=0.0) = Field(description="C")
-    friction: quantity("number", at_least=0.0) = Field(0.0, description="mu")
+    coefficient: quantity("line_force", at_least=0.0) | None = Field(
+        None, description="C of the viscous form"
+    )
+    indentation_force: quantity("pressure_gradient", above=0.0) | None = Field(
+        None, description="force per ploughed volume; the form for the time domain"
+    )
+    friction: quantity("number", at_least=0.0) = Field(
+        0.0, description="mu, tangential over radial force"
+    )
+
+    @model_validator(mode="after")
+    def _check_form(self) -> ProcessDamping:
+        given = [
+            key for key in ("coefficient", "indentation_force") if getattr(self, key) is not None
+        ]
+        problems = []
+        if not given:
+            problems.append(("coefficient", "is missing; give it, or indentation_force"))
+        if len(given) == 2:
+            problems.append(("", "coefficient and indentation_force are both given; give one form"))
+        raise_if_any(problems)
+        return self
 
 
 class Contact(Section):
@@ -82,13 +103,69 @@ class Axis(Section):
     presliding_damping: quantity("damping", at_least=0.0) | None = None
 
 
+def _plane_point(given: Any) -> tuple[float, float]:
+    if not isinstance(given, (list, tuple)) or len(given) != 2:
+        raise ValueError(f'{shown(given)} is no point; two lengths are wanted: ["0 mm", "5 mm"]')
+    x, y = (_COORDINATE.read(part) for part in given)
+    return x, y
+
+
+_COORDINATE = QuantityField("length", above=-100.0, below=100.0)
+PlanePoint = Annotated[
+    tuple[float, float],
+    BeforeValidator(_plane_point),
+    WithJsonSchema(
+        {
+            "type": "array",
+            "items": {"anyOf": _COORDINATE.json_schema()["anyOf"]},
+            "minItems": 2,
+            "maxItems": 2,
+        }
+    ),
+    _COORDINATE,
+]
+
+
+class StockBox(Section):
+    """A block of material, or a pocket in it; the tool starts with its tip at the origin."""
+
+    x: PlanePoint = Field(description="from and to")
+    y: PlanePoint = Field(description="from and to")
+    z: PlanePoint = Field(description="from and to")
+    remove: bool = Field(False, description="take this block away instead")
+
+    @field_validator("x", "y", "z")
+    @classmethod
+    def _check_order(cls, given: tuple[float, float]) -> tuple[float, float]:
+        if given[0] >= given[1]:
+            raise ValueError(f"is empty: from {given[0]:g} m is not less than to {given[1]:g} m")
+        return given
+
+
+class Stock(Section):
+    """The workpiece before the cut, as blocks added and taken away in their order."""
+
+    box: tuple[StockBox, ...] = Field(min_length=1)
+
+
 class Simulation(Section):
     """Time-domain simulation."""
 
     chip: Literal["delay", "dexel", "voxel"] = "delay"
     duration: quantity("time", above=0.0) | None = None
     revolutions: quantity("number", above=0.0) | None = None
-    resolution: PositiveLength | None = None
+    resolution: PositiveLength | None = Field(
+        None, description="spacing of dexels or size of voxels"
+    )
+    steps: whole_number(16, 4_000_000, "steps a revolution") | None = Field(
+        None, description="steps a revolution; by default they are chosen"
+    )
+    slices: whole_number(1, 5_000, "slices of the edge") | None = Field(
+        None, description="slices of the straight edge; by default they are chosen"
+    )
+    path: tuple[PlanePoint, ...] | None = Field(
+        None, description="corners of the tool path, [x, y] each; dexel and voxel chips follow it"
+    )
 
     @model_validator(mode="after")
     def _check_length(self) -> Simulation:
@@ -127,7 +204,7 @@ class Lobes(Section):
 
     speeds: SpeedRange | None = None
     depths: DepthRange | None = None
-    method: Literal["semi-discretization", "zero-order"] | None = None
+    method: Literal["semi-discretization", "zero-order", "time"] | None = None
     steps: whole_number(4, 20_000, "steps a tooth period") | None = Field(
         None, description="fixes the steps a tooth period; by default they are chosen"
     )

@@ -5,9 +5,16 @@ from __future__ import annotations
 import math
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, ValidationInfo, WithJsonSchema, field_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    ValidationInfo,
+    WithJsonSchema,
+    field_validator,
+    model_validator,
+)
 
-from chatter.case.base import Section
+from chatter.case.base import Section, raise_if_any
 from chatter.case.quantities import (
     Length,
     PositiveLength,
@@ -65,6 +72,38 @@ PitchAngles = Annotated[
 ]
 
 
+_ERROR = QuantityField("length", above=-0.1, below=0.1)
+
+
+def _list_of_errors(given: Any) -> tuple[float, ...]:
+    if not isinstance(given, (list, tuple)):
+        raise ValueError(
+            f'{shown(given)} is no list; one length for each tooth is wanted, such as ["5 um", ...]'
+        )
+    return tuple(_ERROR.read(error) for error in given)
+
+
+ToothErrors = Annotated[
+    tuple[float, ...],
+    BeforeValidator(_list_of_errors),
+    WithJsonSchema(
+        {
+            "type": "array",
+            "items": {"anyOf": _ERROR.json_schema()["anyOf"]},
+            "description": "deviation of each tooth, positive outwards",
+        }
+    ),
+    _ERROR,
+]
+
+
+class SerrationSection(Section):
+    """Sinusoidal wave of the edge along the axis, shifted by 1/teeth of a wave each tooth."""
+
+    depth: PositiveLength = Field(description="crest to valley")
+    wavelength: PositiveLength
+
+
 class Runout(Section):
     """Offset of the tool axis from the spindle axis."""
 
@@ -83,14 +122,27 @@ class Tool(Section):
     runout: Runout | None = None
     corner_radius: Length = 0.0
     edge_radius: Length = 0.0
-    taper_angle: quantity("angle", at_least=0.0, below=0.5 * math.pi) = 0.0
+    taper_angle: quantity("angle", at_least=0.0, below=0.5 * math.pi) = Field(
+        0.0, description="of the envelope against the axis"
+    )
+    cutting_edge_angle: quantity("angle", above=0.0, at_most=0.5 * math.pi) = Field(
+        0.5 * math.pi, description="of an insert against the plane of the feed; 90 deg for a wall"
+    )
+    radial_error: ToothErrors | None = None
+    axial_error: ToothErrors | None = None
+    serration: SerrationSection | None = None
+    clearance_angle: quantity("angle", above=0.0, below=0.5 * math.pi) | None = Field(
+        None, description="of the flank; ploughing needs it"
+    )
+    flank_wear: Length = Field(0.0, description="length of the worn land")
 
-    @field_validator("helix", "pitch")
+    @field_validator("helix", "pitch", "radial_error", "axial_error")
     @classmethod
     def _check_count(cls, given: Any, info: ValidationInfo) -> Any:
         teeth = info.data.get("teeth")
         if isinstance(given, tuple) and teeth is not None and len(given) != teeth:
-            raise ValueError(f"{len(given)} angles for {teeth} teeth; give one for each tooth")
+            what = "lengths" if info.field_name.endswith("error") else "angles"
+            raise ValueError(f"{len(given)} {what} for {teeth} teeth; give one for each tooth")
         return given
 
     @field_validator("pitch")
@@ -110,3 +162,17 @@ class Tool(Section):
                 f"{given * 1e3:g} mm is more than the radius of the tool, {diameter * 500.0:g} mm"
             )
         return given
+
+    @model_validator(mode="after")
+    def _check_kind(self) -> Tool:
+        foreign = {"taper_angle": ("taper",), "cutting_edge_angle": ("inserted",)}
+        foreign["corner_radius"] = ("end mill", "bull nose", "taper", "inserted")
+        problems = [
+            (key, f'does not belong to kind = "{self.kind}"')
+            for key, kinds in foreign.items()
+            if key in self.model_fields_set and self.kind not in kinds and getattr(self, key)
+        ]
+        if self.kind == "bull nose" and not self.corner_radius:
+            problems.append(("corner_radius", 'is missing; kind = "bull nose" needs it'))
+        raise_if_any(problems)
+        return self

@@ -1,0 +1,111 @@
+"""Steps, slices and length of a run, chosen where the case is silent."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from chatter.case import Case
+from cutting.tool import Cutter, slice_counts
+from dynamics.modal import Mode
+
+#: steps within a period of the highest mode: the delayed motion is then kept within 0.1 %
+_STEPS_A_PERIOD = 80
+#: steps of a turn, and of the time that a tooth is in the cut, at the least
+_LEAST_STEPS_A_TURN = 720
+_STEPS_A_CUT = 60
+#: turns of a run, at the least and at the most, and time constants of the slowest mode in it
+_LEAST_TURNS = 40.0
+_MOST_TURNS = 400.0
+_TIME_CONSTANTS = 12.0
+#: rows of the record, at the most
+_MOST_ROWS = 120_000
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """Steps and slices of a run.
+
+    Parameters
+    ----------
+    steps_a_turn : int
+        Time steps, and bins of the surface memory.
+    counts : (int, int)
+        Slices of the corner and of the straight edge.
+    turns : float
+        Length of the run in revolutions.
+    stride : int
+        Steps from one row of the record to the next.
+    """
+
+    steps_a_turn: int
+    counts: tuple[int, int]
+    turns: float
+    stride: int
+
+    @property
+    def steps(self) -> int:
+        """Steps of the run."""
+        return max(1, round(self.turns * self.steps_a_turn))
+
+
+def resolution_of(
+    case: Case, cutter: Cutter, modes: Sequence[Mode], shortest_arc: float
+) -> Resolution:
+    """Choose steps, slices and length of a run.
+
+    Parameters
+    ----------
+    case : Case
+    cutter : Cutter
+    modes : sequence of Mode
+    shortest_arc : float
+        Angle within which a tooth crosses the cut, rad.
+    """
+    section = case.simulation
+    steps = section.steps if section and section.steps else None
+    if steps is None:
+        steps = steps_a_turn(case, modes, shortest_arc)
+    steps = _divisible(steps, math.lcm(4, case.tool.teeth))
+    corner, straight = slice_counts(cutter, case.cut.axial_depth)
+    if section and section.slices and straight:
+        straight = section.slices
+    turns = turns_of(case, modes)
+    total = max(1, round(turns * steps))
+    return Resolution(steps, (corner, straight), turns, _stride(steps, total))
+
+
+def steps_a_turn(case: Case, modes: Sequence[Mode], shortest_arc: float) -> int:
+    """Steps a revolution that resolve the highest mode and the time of a tooth in the cut."""
+    highest = max((mode.frequency for mode in modes), default=0.0)
+    a_turn = 2.0 * math.pi / case.cut.spindle_speed
+    return max(
+        _LEAST_STEPS_A_TURN,
+        math.ceil(_STEPS_A_PERIOD * highest * a_turn),
+        math.ceil(_STEPS_A_CUT * 2.0 * math.pi / shortest_arc),
+    )
+
+
+def turns_of(case: Case, modes: Sequence[Mode]) -> float:
+    """Length of the run in revolutions: as the case says, else until transients have died out."""
+    section = case.simulation
+    per_second = case.cut.spindle_speed / (2.0 * math.pi)
+    if section and section.revolutions:
+        return section.revolutions
+    if section and section.duration:
+        return section.duration * per_second
+    slowest = max((1.0 / (mode.damping * mode.natural_frequency) for mode in modes), default=0.0)
+    wanted = _TIME_CONSTANTS * slowest * per_second
+    return float(math.ceil(min(_MOST_TURNS, max(_LEAST_TURNS, wanted))))
+
+
+def _divisible(steps: int, by: int) -> int:
+    """Teeth and quarter turns fall on whole steps."""
+    return math.ceil(steps / by) * by
+
+
+def _stride(steps: int, total: int) -> int:
+    """Divisor of a turn that keeps the record within bounds."""
+    least = math.ceil(total / _MOST_ROWS)
+    return next(stride for stride in range(least, steps + 1) if steps % stride == 0 or stride == steps)

@@ -1,0 +1,207 @@
+"""A case compiled to law groups, modes and record."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.case import Case
+from chatter.errors import InputError
+from chatter.plausibility import check_plausible
+from chatter.simulation.cutter import cutter_of, edge_law, flank_table
+from chatter.simulation.resolution import Resolution, resolution_of
+from chatter.simulation.spindle import (
+    Spindle,
+    ToolPath,
+    path_of,
+    path_of_last_turn,
+    spindle_of,
+)
+from chatter.structure import structure_of
+from cutting.contact import ToolContact
+from cutting.delayed_chip import DelayedCut
+from cutting.engagement import slice_engagement
+from cutting.regeneration import delayed_cut
+from cutting.tool import Cutter, EdgeSlices, edge_slices
+from dynamics.modal import Mode
+
+#: the model of the chip holds while the tool moves by less than this share of its radius
+_FURTHEST = 0.2
+
+
+@dataclass(frozen=True)
+class Setup:
+    """What the engine needs to run a case.
+
+    Parameters
+    ----------
+    case : Case
+    cutter : Cutter
+    slices : EdgeSlices
+    modes : tuple of Mode
+        Empty for a rigid tool.
+    resolution : Resolution
+    spindle : Spindle
+    path : ToolPath
+    groups : tuple
+        Law groups; the cut comes first. They hold the state of one run.
+    furthest : float
+        Displacement at which the run stops, m.
+    notes : tuple of str
+    """
+
+    case: Case
+    cutter: Cutter
+    slices: EdgeSlices
+    modes: tuple[Mode, ...]
+    resolution: Resolution
+    spindle: Spindle
+    path: ToolPath
+    groups: tuple
+    furthest: float
+    notes: tuple[str, ...]
+
+    @property
+    def step(self) -> float:
+        """Time step, s."""
+        return 2.0 * math.pi / (self.spindle.speed * self.resolution.steps_a_turn)
+
+
+def radial_depth(case: Case) -> float:
+    """Width of cut, m; a slot need not give it."""
+    return case.tool.diameter if case.cut.radial_depth is None else case.cut.radial_depth
+
+
+def set_up(case: Case) -> Setup:
+    """Compile a case for the time domain.
+
+    Raises
+    ------
+    InputError
+        If a section is missing, or the case holds what cannot be simulated.
+    """
+    case.require("tool", "material", "cut")
+    check_plausible(case)
+    modes, notes = _modes_of(case)
+    cutter = cutter_of(case)
+    arcs = _arcs(case, cutter)
+    resolution = resolution_of(case, cutter, modes, _shortest_arc(case, cutter))
+    slices = edge_slices(cutter, case.cut.axial_depth, resolution.counts)
+    _refuse_crossing_flutes(case, slices)
+    _refuse_tool_too_short(case, cutter)
+    spindle, path = spindle_of(case), path_of(case)
+    groups: tuple = (_cut_group(case, cutter, slices, resolution, spindle, path),)
+    if case.contact is not None:
+        groups += (ToolContact(case.contact.stiffness, case.contact.damping),)
+    return Setup(
+        case=case,
+        cutter=cutter,
+        slices=slices,
+        modes=modes,
+        resolution=resolution,
+        spindle=spindle,
+        path=path,
+        groups=groups,
+        furthest=_FURTHEST * cutter.radius,
+        notes=notes,
+    )
+
+
+def _modes_of(case: Case) -> tuple[tuple[Mode, ...], tuple[str, ...]]:
+    if case.structure is None:
+        return (), ("no [structure]: tool and workpiece are rigid",)
+    structure = structure_of(case)
+    return structure.modes, tuple(structure.notes)
+
+
+def _arcs(case: Case, cutter: Cutter) -> tuple[float, float]:
+    """Entry and exit angle at the full radius, rad."""
+    entry, leave = slice_engagement(
+        case.cut.mode, radial_depth(case), cutter.radius, np.array([cutter.radius])
+    )
+    return float(entry[0]), float(leave[0])
+
+
+def _shortest_arc(case: Case, cutter: Cutter) -> float:
+    """Angle within which an edge crosses the cut, with the lag of its helix, rad."""
+    entry, leave = _arcs(case, cutter)
+    lag = min(abs(math.tan(helix)) for helix in cutter.helix) * case.cut.axial_depth / cutter.radius
+    return max(leave - entry + lag, 1e-3)
+
+
+def _refuse_crossing_flutes(case: Case, slices: EdgeSlices) -> None:
+    """Flutes of different helix must keep their order along the edge."""
+    order = np.argsort(np.mod(slices.angle - slices.angle[:1], 2.0 * math.pi), axis=0)
+    if np.any(order != order[:, :1]):
+        height = slices.height[np.argmax(np.any(order != order[:, :1], axis=0))]
+        raise InputError(
+            f"{case.name}: tool.helix: flutes of these angles run into each other "
+            f"{height * 1e3:.3g} mm above the tip"
+        )
+
+
+def _refuse_tool_too_short(case: Case, cutter: Cutter) -> None:
+    """Refuse a radial depth that no slice of the edge reaches."""
+    slices = edge_slices(cutter, case.cut.axial_depth, (4, 4) if cutter.corner_radius else (0, 4))
+    entry, leave = slice_engagement(
+        case.cut.mode, radial_depth(case), cutter.radius, slices.radius
+    )
+    if np.all(entry >= leave):
+        raise InputError(
+            f"{case.name}: cut.radial_depth: at an axial depth of {case.cut.axial_depth * 1e3:g} mm "
+            f"the edge is nowhere wider than {slices.radius.max() * 2e3:.4g} mm, so that a radial "
+            f"depth of {radial_depth(case) * 1e3:g} mm is not reached"
+        )
+
+
+def _cut_group(
+    case: Case,
+    cutter: Cutter,
+    slices: EdgeSlices,
+    resolution: Resolution,
+    spindle: Spindle,
+    path: ToolPath,
+) -> DelayedCut:
+    """Group of the cutting force with the chip that the case asks for."""
+    chip = case.simulation.chip if case.simulation else "delay"
+    bins = resolution.steps_a_turn
+    return CHIPS[chip](case, cutter, slices, bins, resolution, spindle, path)
+
+
+def _delayed(
+    case: Case,
+    cutter: Cutter,
+    slices: EdgeSlices,
+    bins: int,
+    resolution: Resolution,
+    spindle: Spindle,
+    path: ToolPath,
+) -> DelayedCut:
+    if case.stock is not None or (case.simulation and case.simulation.path):
+        raise InputError(
+            f'{case.name}: simulation.chip: "delay" knows the engagement of [cut] alone, along a '
+            'straight line; [stock] and simulation.path need chip = "dexel" or "voxel"'
+        )
+    arcs = slice_engagement(case.cut.mode, radial_depth(case), cutter.radius, slices.radius)
+    return delayed_cut(
+        slices,
+        arcs,
+        edge_law(case),
+        flank_table(case, slices.radius, 2.0 * math.pi / bins),
+        bins,
+        path_of_last_turn(spindle, path, bins),
+        (mark_angles(case), math.ceil(resolution.turns) + 2),
+    )
+
+
+#: name in a case file -> group of the cutting force
+CHIPS = {"delay": _delayed}
+
+
+def mark_angles(case: Case) -> NDArray[np.float64]:
+    """Angles at which the edges leave the walls and the floor behind, rad: walls first."""
+    walls = {"up": [0.0], "down": [math.pi], "slot": [0.0, math.pi]}[case.cut.mode]
+    return np.array([*walls, 0.5 * math.pi])

@@ -1,0 +1,152 @@
+"""Turn of the spindle and path of the tool over the steps of a run."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.case import Case
+from chatter.simulation.engine import Prescribed
+
+_TURN = 2.0 * math.pi
+
+
+@dataclass(frozen=True)
+class Spindle:
+    """Prescribed turn: a mean speed, and a variation around it where there is one.
+
+    Parameters
+    ----------
+    speed : float
+        Mean, rad/s.
+    amplitude : float
+        Share of the mean by which the speed varies; 0 for none.
+    frequency : float
+        Of the variation, Hz.
+    shape : str
+        ``"sine"`` or ``"triangle"``.
+    """
+
+    speed: float
+    amplitude: float = 0.0
+    frequency: float = 1.0
+    shape: str = "sine"
+
+    def speed_at(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Speed, rad/s."""
+        cycle = np.mod(self.frequency * np.asarray(time), 1.0)
+        if self.shape == "triangle":
+            wave = 1.0 - np.abs(np.mod(4.0 * cycle + 1.0, 4.0) - 2.0)
+        else:
+            wave = np.sin(_TURN * cycle)
+        return self.speed * (1.0 + self.amplitude * wave)
+
+    def angle_at(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Angle turned since time zero, rad."""
+        time = np.asarray(time)
+        cycle = np.mod(self.frequency * time, 1.0)
+        if self.shape == "triangle":
+            swing = _triangle_integral(cycle)
+        else:
+            swing = (1.0 - np.cos(_TURN * cycle)) / _TURN
+        return self.speed * (time + self.amplitude / self.frequency * swing)
+
+
+def _triangle_integral(cycle: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Integral over a cycle of the triangle 0, 1, 0, -1, 0 from its start."""
+    rising = 2.0 * cycle**2
+    falling = 0.25 - 2.0 * (cycle - 0.5) ** 2
+    last = 2.0 * (1.0 - cycle) ** 2
+    return np.where(cycle < 0.25, rising, np.where(cycle < 0.75, falling, last))
+
+
+@dataclass(frozen=True)
+class ToolPath:
+    """Straight lines from corner to corner, run through at a constant feed.
+
+    Parameters
+    ----------
+    corners : (c, 2) array of float
+        m; the tool starts at the first, and runs on beyond the last.
+    feed : float
+        m/s.
+    """
+
+    corners: NDArray[np.float64]
+    feed: float
+
+    def place_at(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Place (2, ...) of the tool axis, m; before time zero it came straight to the first."""
+        way = self.feed * np.asarray(time)
+        legs = np.diff(self.corners, axis=0)
+        length = np.hypot(*legs.T)
+        start = np.concatenate([[0.0], np.cumsum(length)[:-1]])
+        leg = np.clip(np.searchsorted(start, way, side="right") - 1, 0, len(legs) - 1)
+        along = (way - start[leg]) / length[leg]
+        return (self.corners[leg] + along[..., None] * legs[leg]).T
+
+
+def spindle_of(case: Case) -> Spindle:
+    """Spindle that a case describes."""
+    variation = case.cut.speed_variation
+    if variation is None:
+        return Spindle(case.cut.spindle_speed)
+    return Spindle(
+        case.cut.spindle_speed, variation.amplitude, variation.frequency, variation.shape
+    )
+
+
+def path_of(case: Case) -> ToolPath:
+    """Path that a case describes: along x where it gives none."""
+    cut = case.cut
+    feed = cut.feed_per_tooth * case.tool.teeth * cut.spindle_speed / _TURN
+    given = case.simulation.path if case.simulation else None
+    corners = np.array(given if given else [(0.0, 0.0), (1.0, 0.0)], dtype=np.float64)
+    return ToolPath(corners, feed)
+
+
+def prescribed(
+    spindle: Spindle, path: ToolPath, bins: int, step: float, first: int, count: int
+) -> Prescribed:
+    """Turn and path at the steps first .. first + count.
+
+    Parameters
+    ----------
+    spindle : Spindle
+    path : ToolPath
+    bins : int
+        Of a turn; a step turns the spindle by one of them at its mean speed.
+    step : float
+        s.
+    first, count : int
+    """
+    number = np.arange(first - 1, first + count + 1)
+    time = number * step
+    if spindle.amplitude == 0.0:
+        # counted, so that the last bit of an angle never moves a bin
+        whole, part = number % bins, np.zeros(number.size)
+        advance = np.ones(number.size - 1)
+    else:
+        place = spindle.angle_at(time) * (bins / _TURN)
+        floor = np.floor(place)
+        whole, part = floor.astype(np.int64) % bins, place - floor
+        advance = np.diff(place)
+    x, y = path.place_at(time)
+    return Prescribed(
+        whole=whole[1:],
+        part=part[1:],
+        advance=advance,
+        speed=spindle.speed_at(time[1:]),
+        x=np.ascontiguousarray(x[1:]),
+        y=np.ascontiguousarray(y[1:]),
+    )
+
+
+def path_of_last_turn(spindle: Spindle, path: ToolPath, bins: int) -> NDArray[np.float64]:
+    """Place (2, bins + 1) of the tool axis at every bin of the turn before the start."""
+    behind = np.arange(bins, -1, -1)
+    time = -behind * _TURN / bins / float(spindle.speed_at(np.zeros(1))[0])
+    return path.place_at(time)

@@ -1,0 +1,355 @@
+"""Chip thickness from the true positions of the edge against what every earlier tooth left.
+
+The motion of the tool is kept over the last turn, at every bin of the spindle angle. An edge at a
+place meets what each tooth left there within the turn before it, at the moment when that tooth
+passed; the outermost of them bounds the chip, so that a tooth that stayed in the air leaves the
+work of the earlier ones. What lies more than a turn back is forgotten. The memory does not grow
+with the length of the run, nor with the number of slices. Edges that are partly in the cut are
+taken in part, and each slice is integrated by two Gauss points, so that forces of a still tool
+converge with the fourth power of the slice height and vary smoothly in time.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba.extending import register_jitable
+from numpy.typing import NDArray
+
+from cutting.edge_force import INLINED, ExponentialEdge, LinearEdge, edge_force
+from cutting.edges import (
+    GAUSS_PLACE,
+    EdgeTable,
+    direction,
+    force_on_tool,
+    place_of,
+    signed_place,
+)
+from cutting.flank import BareFlank, end_contact, flank_force, note_surface
+from cutting.ploughing import PloughingFlank
+from cutting.process_damping import ViscousFlank
+
+#: marks are noted up to this many bins outside the engaged arc
+_MARGIN = 2.0
+
+
+class DelayedCut(NamedTuple):
+    """Cut of a tool through the waves that its teeth have left in the last turn."""
+
+    edges: EdgeTable
+    law: LinearEdge | ExponentialEdge
+    flank: BareFlank | ViscousFlank | PloughingFlank
+    entry: NDArray[np.float64]  # of each slice, bins, (L,)
+    exit: NDArray[np.float64]  # bins, (L,)
+    helices: int  # 1 where all flutes have one helix, else the number of slices
+    earlier: NDArray[np.int64]  # tooth of the k-th pass back, (N, L, N)
+    delay: NDArray[np.float64]  # turn of the spindle since that pass, bins, (N, helices, N)
+    inset: NDArray[np.float64]  # of the edge behind that of the pass, m, (N, L, N)
+    history: NDArray[np.float64]  # x, y, z of the tool against the work at each bin of the last
+    # turn, path and vibration, m, and its change to the next bin by its slope, m, (2, bins, 3)
+    since: NDArray[np.float64]  # scratch: motion since each pass, m, (N, 3)
+    mark_bins: NDArray[np.int64]  # angles at which the motion is noted, (M,)
+    marks: NDArray[np.float64]  # x, y, z of the edge when it passed, m, (M, turns, N, L, 3)
+    turns: NDArray[np.int64]  # turns noted by each edge at each mark, (M, N, L)
+
+
+@register_jitable(**INLINED)
+def _place_now(turn, point):
+    """Place of the tool against the work, m: path and vibration."""
+    u = point.displacement
+    return turn.x + u[0], turn.y + u[1], u[2]
+
+
+@register_jitable(**INLINED)
+def _note_motion_since(cut, tooth, piece, turn, now):
+    """Fill the scratch with the motion of the tool since each earlier pass, m."""
+    bins = cut.edges.bins
+    for k in range(cut.since.shape[0]):
+        place = turn.whole + turn.part - cut.delay[tooth, piece, k]
+        if place < 0.0:
+            place += bins
+        whole = int(place)
+        t = place - whole
+        if whole >= bins:
+            whole -= bins
+        after = whole + 1
+        if after >= bins:
+            after = 0
+        for axis in range(3):
+            left, right = cut.history[0, whole, axis], cut.history[0, after, axis]
+            if t > 0.0:
+                # cubic Hermite, from the values and slopes at the bins on both sides
+                rise, fall = cut.history[1, whole, axis], cut.history[1, after, axis]
+                step = right - left
+                bend = (1.0 - t) * (rise - step) + t * (step - fall)
+                left += t * step + t * (1.0 - t) * bend
+            cut.since[k, axis] = now[axis] - left
+
+
+@register_jitable(**INLINED)
+def _chip(cut, tooth, piece, sine, cosine):
+    """Chip thickness of an edge at an angle, m; negative in the air."""
+    sk, ck = cut.edges.sine_immersion[piece], cut.edges.cosine_immersion[piece]
+    across, along = sk * sine, sk * cosine
+    since, inset = cut.since, cut.inset
+    thinnest = math.inf
+    for k in range(since.shape[0]):
+        chip = since[k, 0] * across + since[k, 1] * along - since[k, 2] * ck
+        chip -= inset[tooth, piece, k]
+        if chip < thinnest:
+            thinnest = chip
+    return thinnest
+
+
+@register_jitable(**INLINED)
+def _add_edge_force(cut, tooth, piece, sine, cosine, chip, length, total):
+    """Add the force and torque of a length of edge to a total (x, y, z, torque, length)."""
+    ft, fr, fa = edge_force(cut.law, tooth, chip)
+    fx, fy, fz = force_on_tool(cut.edges, piece, sine, cosine, ft, fr, fa)
+    return (
+        total[0] + length * fx,
+        total[1] + length * fy,
+        total[2] + length * fz,
+        total[3] + length * ft * cut.edges.radius[piece],
+        total[4] + length,
+    )
+
+
+@register_jitable(**INLINED)
+def _whole_slice(cut, tooth, piece, turn):
+    """Force of a slice that is wholly inside the arc; second value: none of it in the air."""
+    total = (0.0, 0.0, 0.0, 0.0, 0.0)
+    half = 0.5 * cut.edges.edge_length[piece]
+    s1, c1 = direction(cut.edges, tooth, piece, 1, turn)
+    s2, c2 = direction(cut.edges, tooth, piece, 2, turn)
+    chip1 = _chip(cut, tooth, piece, s1, c1)
+    chip2 = _chip(cut, tooth, piece, s2, c2)
+    if chip1 > 0.0 and chip2 > 0.0:
+        total = _add_edge_force(cut, tooth, piece, s1, c1, chip1, half, total)
+        total = _add_edge_force(cut, tooth, piece, s2, c2, chip2, half, total)
+        return total, True
+    return total, chip1 <= 0.0 and chip2 <= 0.0
+
+
+@register_jitable(**INLINED)
+def _clear_of_air(cut, tooth, piece, low, high):
+    """Part of a span of places in which the chip is positive, as if it varied linearly."""
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    angle = 2.0 * math.pi / cut.edges.bins
+    first, last = middle - GAUSS_PLACE * half, middle + GAUSS_PLACE * half
+    a = _chip(cut, tooth, piece, math.sin(first * angle), math.cos(first * angle))
+    b = _chip(cut, tooth, piece, math.sin(last * angle), math.cos(last * angle))
+    if a > 0.0 and b > 0.0:
+        return low, high
+    if a <= 0.0 and b <= 0.0:
+        return low, low
+    if first == last:
+        return low, high
+    root = min(max(first + a / (a - b) * (last - first), low), high)
+    return (root, high) if b > 0.0 else (low, root)
+
+
+@register_jitable(**INLINED)
+def _part_of_slice(cut, tooth, piece, low, high, width):
+    """Force of the part of a slice between two places, of a whole that is `width` bins wide."""
+    total = (0.0, 0.0, 0.0, 0.0, 0.0)
+    if high < low:
+        return total
+    clear_low, clear_high = _clear_of_air(cut, tooth, piece, low, high)
+    share = 1.0
+    if width > 0.0:
+        share = (clear_high - clear_low) / width
+    elif clear_high < clear_low:
+        return total
+    if share <= 0.0:
+        return total
+    angle = 2.0 * math.pi / cut.edges.bins
+    middle, half = 0.5 * (clear_low + clear_high), 0.5 * (clear_high - clear_low)
+    length = 0.5 * share * cut.edges.edge_length[piece]
+    for side in range(2):
+        place = middle + (2.0 * side - 1.0) * GAUSS_PLACE * half
+        sine, cosine = math.sin(place * angle), math.cos(place * angle)
+        chip = _chip(cut, tooth, piece, sine, cosine)
+        if chip > 0.0:
+            total = _add_edge_force(cut, tooth, piece, sine, cosine, chip, length, total)
+    return total
+
+
+@register_jitable(**INLINED)
+def _straight_mean(cut, tooth, piece, place, turn):
+    """Force of a straight edge over the turn of a step, so that a jump keeps its impulse."""
+    half = 0.5 * turn.advance
+    low = max(place - half, cut.entry[piece])
+    high = min(place + half, cut.exit[piece])
+    return _part_of_slice(cut, tooth, piece, low, high, turn.advance)
+
+
+@register_jitable(**INLINED)
+def _outward(cut, tooth, piece, sine, cosine, point):
+    """Place of the edge along its outward normal, m, from its nominal path."""
+    sk, ck = cut.edges.sine_immersion[piece], cut.edges.cosine_immersion[piece]
+    u = point.displacement
+    return cut.edges.normal_offset[tooth, piece] + sk * (u[0] * sine + u[1] * cosine) - ck * u[2]
+
+
+@register_jitable(**INLINED)
+def _add_flank_force(cut, tooth, piece, turn, point, total):
+    """Add the force on the flank of the length of edge that is in the cut."""
+    length = total[4]
+    if length <= 0.0:
+        return total
+    sine, cosine = direction(cut.edges, tooth, piece, 0, turn)
+    sk, ck = cut.edges.sine_immersion[piece], cut.edges.cosine_immersion[piece]
+    v = point.velocity
+    rate = sk * (v[0] * sine + v[1] * cosine) - ck * v[2]
+    own = _outward(cut, tooth, piece, sine, cosine, point)
+    speed = turn.speed * cut.edges.radius[cut.edges.radius.shape[0] - 1]
+    ft, fr = flank_force(cut.flank, tooth, piece, own, rate, speed)
+    fx, fy, fz = force_on_tool(cut.edges, piece, sine, cosine, ft, fr, 0.0)
+    return (
+        total[0] + length * fx,
+        total[1] + length * fy,
+        total[2] + length * fz,
+        total[3] + length * ft * cut.edges.radius[piece],
+        total[4],
+    )
+
+
+@register_jitable(**INLINED)
+def delayed_forces(group, turn, point):
+    """Add the cutting force on the tool at the motion of the tool point."""
+    cut, edges = group, group.edges
+    now = _place_now(turn, point)
+    teeth, pieces = edges.whole.shape
+    sx = sy = sz = mx = my = mz = torque = contact = 0.0
+    for tooth in range(teeth):
+        looked_back = False
+        for piece in range(pieces):
+            whole, part = place_of(edges, tooth, piece, turn.whole, turn.part)
+            place = signed_place(edges, whole, part)
+            half = edges.half_width[tooth, piece]
+            entry, leave = cut.entry[piece], cut.exit[piece]
+            straight = half < 0.5 * turn.advance
+            blur = 0.5 * turn.advance if straight else half
+            if place + blur < entry or place - blur > leave:
+                continue
+            if cut.helices > 1 or not looked_back:
+                _note_motion_since(cut, tooth, piece if cut.helices > 1 else 0, turn, now)
+                looked_back = True
+            settled = False
+            force = (0.0, 0.0, 0.0, 0.0, 0.0)
+            if place - blur >= entry and place + blur <= leave:
+                force, settled = _whole_slice(cut, tooth, piece, turn)
+            if not settled:
+                low, high = max(place - half, entry), min(place + half, leave)
+                force = _part_of_slice(cut, tooth, piece, low, high, 2.0 * half)
+            force = _add_flank_force(cut, tooth, piece, turn, point, force)
+            mean = force
+            if straight and not settled:
+                mean = _straight_mean(cut, tooth, piece, place, turn)
+                mean = _add_flank_force(cut, tooth, piece, turn, point, mean)
+            sx += force[0]
+            sy += force[1]
+            sz += force[2]
+            torque += force[3]
+            contact += force[4] / edges.edge_length[piece] * edges.share[piece]
+            mx += mean[0]
+            my += mean[1]
+            mz += mean[2]
+    point.sample[0] += sx
+    point.sample[1] += sy
+    point.sample[2] += sz
+    point.force[0] += mx
+    point.force[1] += my
+    point.force[2] += mz
+    point.torque[0] += torque
+    point.contact[0] += contact
+
+
+@register_jitable(**INLINED)
+def _vibration(point, axis, share, step):
+    """Displacement at a share of the step, m, and its change over the step at that rate, m."""
+    u0, u1 = point.displacement_before[axis], point.displacement[axis]
+    rise, fall = point.velocity_before[axis] * step, point.velocity[axis] * step
+    gain = u1 - u0
+    bend = (1.0 - share) * (rise - gain) + share * (gain - fall)
+    place = u0 + share * gain + share * (1.0 - share) * bend
+    rate = gain + (1.0 - 2.0 * share) * bend + share * (1.0 - share) * (2.0 * gain - rise - fall)
+    return place, rate
+
+
+@register_jitable(**INLINED)
+def _note_motion(cut, turn, point):
+    """Keep the place of the tool at the bins that the spindle has passed in the step."""
+    bins = cut.edges.bins
+    crossed = int(turn.part_before + turn.advance)
+    for k in range(1, crossed + 1):
+        share = (k - turn.part_before) / turn.advance
+        passed = turn.whole_before + k
+        if passed >= bins:
+            passed -= bins
+        for axis in range(3):
+            place, rate = _vibration(point, axis, share, turn.step)
+            if axis == 0:
+                place += turn.x_before + share * (turn.x - turn.x_before)
+                rate += turn.x - turn.x_before
+            if axis == 1:
+                place += turn.y_before + share * (turn.y - turn.y_before)
+                rate += turn.y - turn.y_before
+            cut.history[0, passed, axis] = place
+            cut.history[1, passed, axis] = rate / turn.advance
+
+
+@register_jitable(**INLINED)
+def _note_marks(cut, tooth, piece, before, part, turn, point):
+    """Keep the motion of an edge as it passes the angles where the surface stays."""
+    bins = cut.edges.bins
+    for k in range(1, int(part + turn.advance) + 1):
+        passed = before + k
+        if passed >= bins:
+            passed -= bins
+        for mark in range(cut.mark_bins.shape[0]):
+            count = cut.turns[mark, tooth, piece]
+            if cut.mark_bins[mark] != passed or count >= cut.marks.shape[1]:
+                continue
+            share = (k - part) / turn.advance
+            for axis in range(3):
+                place, _ = _vibration(point, axis, share, turn.step)
+                cut.marks[mark, count, tooth, piece, axis] = place
+            cut.turns[mark, tooth, piece] = count + 1
+
+
+@register_jitable(**INLINED)
+def _note_wave(cut, tooth, piece, place, turn, point):
+    """Tell the flank what surface lies behind the edge now."""
+    if place < cut.entry[piece] or place > cut.exit[piece]:
+        end_contact(cut.flank, tooth, piece)
+        return
+    sine, cosine = direction(cut.edges, tooth, piece, 0, turn)
+    own = _outward(cut, tooth, piece, sine, cosine, point)
+    # where the edge is in the air the old surface stays, further out than the edge
+    note_surface(cut.flank, tooth, piece, own - min(_chip(cut, tooth, piece, sine, cosine), 0.0))
+
+
+@register_jitable(**INLINED)
+def delayed_commit(group, turn, point):
+    """Remember the motion of the step: what the edges have left behind."""
+    cut, edges = group, group.edges
+    now = _place_now(turn, point)
+    teeth, pieces = edges.whole.shape
+    for tooth in range(teeth):
+        looked_back = False
+        for piece in range(pieces):
+            before, part = place_of(edges, tooth, piece, turn.whole_before, turn.part_before)
+            place = signed_place(edges, before, part) + turn.advance
+            margin = edges.half_width[tooth, piece] + _MARGIN
+            if place < cut.entry[piece] - margin or place > cut.exit[piece] + margin:
+                continue
+            _note_marks(cut, tooth, piece, before, part, turn, point)
+            if cut.helices > 1 or not looked_back:
+                _note_motion_since(cut, tooth, piece if cut.helices > 1 else 0, turn, now)
+                looked_back = True
+            _note_wave(cut, tooth, piece, place, turn, point)
+    _note_motion(cut, turn, point)

@@ -1,0 +1,110 @@
+"""Set up the delayed chip: which teeth passed before, and where the tool was at that time."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cutting.delayed_chip import DelayedCut
+from cutting.edge_force import ExponentialEdge, LinearEdge
+from cutting.edges import edge_table
+from cutting.flank import BareFlank
+from cutting.ploughing import PloughingFlank
+from cutting.process_damping import ViscousFlank
+from cutting.tool import EdgeSlices
+
+_TURN = 2.0 * math.pi
+
+
+def earlier_passes(
+    angle: NDArray[np.float64],
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Teeth that passed a place within the turn before each tooth, and how far ahead they are.
+
+    Parameters
+    ----------
+    angle : (N, L) array of float
+        Of the edges on the tool, rad.
+
+    Returns
+    -------
+    (N, L, N) array of int, (N, L, N) array of float
+        The teeth, latest pass first, and the angle to them, rad, > 0; the last is the tooth
+        itself, a turn ago.
+    """
+    ahead = np.mod(angle[None, :, :] - angle[:, None, :], _TURN)
+    ahead = np.where(ahead < 1e-9, _TURN, ahead)
+    ahead = np.moveaxis(ahead, 1, 2)
+    order = np.argsort(ahead, axis=2)
+    return order, np.take_along_axis(ahead, order, axis=2)
+
+
+def delayed_cut(
+    slices: EdgeSlices,
+    arc: tuple[NDArray[np.float64], NDArray[np.float64]],
+    law: LinearEdge | ExponentialEdge,
+    flank: BareFlank | ViscousFlank | PloughingFlank,
+    bins: int,
+    path: NDArray[np.float64],
+    marks: tuple[NDArray[np.float64], int],
+) -> DelayedCut:
+    """Set up a cut from rest in full immersion.
+
+    Parameters
+    ----------
+    slices : EdgeSlices
+    arc : pair of (L,) arrays of float
+        Entry and exit angle of each slice, rad; entry above exit where a slice cuts nothing.
+    law, flank
+        Tables of the force laws.
+    bins : int
+        Of a turn.
+    path : (2, bins + 1) array of float
+        Place of the tool axis over the last turn before the start, m, which comes last.
+    marks : (M,) array of float, int
+        Angles at which the motion of the edges is kept, rad, and turns to keep.
+
+    Returns
+    -------
+    DelayedCut
+    """
+    edges = edge_table(slices, bins)
+    earlier, ahead = earlier_passes(slices.angle)
+    delay = ahead * bins / _TURN
+    near = np.round(delay)
+    delay = np.where(np.abs(delay - near) < 1e-9 * bins, near, delay)
+    alike = np.all(np.abs(delay - delay[:, :1]) < 1e-9 * bins)
+    offset = edges.normal_offset
+    pieces = np.arange(offset.shape[1])[None, :, None]
+    mark_angles, turns = marks
+    teeth = len(offset)
+    return DelayedCut(
+        edges=edges,
+        law=law,
+        flank=flank,
+        entry=arc[0] * bins / _TURN,
+        exit=arc[1] * bins / _TURN,
+        helices=1 if alike else offset.shape[1],
+        earlier=earlier,
+        delay=np.ascontiguousarray(delay[:, :1] if alike else delay),
+        inset=np.ascontiguousarray(offset[earlier, pieces] - offset[:, :, None]),
+        history=_history(path),
+        since=np.zeros((teeth, 3)),
+        mark_bins=np.round(mark_angles * bins / _TURN).astype(np.int64) % bins,
+        marks=np.full((len(mark_angles), turns, *offset.shape, 3), np.nan),
+        turns=np.zeros((len(mark_angles), *offset.shape), dtype=np.int64),
+    )
+
+
+def _history(path: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Motion over the last turn before the start, of a tool that has not vibrated: (2, bins, 3)."""
+    bins = path.shape[1] - 1
+    history = np.zeros((2, bins, 3))
+    history[0, :, :2] = path[:, :-1].T
+    history[0, 0, :2] = path[:, -1]
+    slope = np.diff(path, axis=1)
+    history[1, 1:, :2] = 0.5 * (slope[:, 1:] + slope[:, :-1]).T
+    history[1, 0, :2] = slope[:, -1]
+    return history

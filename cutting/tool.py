@@ -1,0 +1,279 @@
+"""Tool geometry: teeth around the axis, and their edges cut into slices along it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: an edge may trail by this much within a slice, rad: the error goes with its square over 24
+_LARGEST_SLICE_LAG = 0.1
+#: a curved profile turns by at most this within a slice, rad
+_LARGEST_SLICE_TURN = math.radians(5.0)
+#: slices within one wave of a serrated edge
+_SLICES_A_WAVE = 16
+
+
+@dataclass(frozen=True)
+class Serration:
+    """Sinusoidal wave of the edge along the axis, shifted from tooth to tooth by 1/N of a wave.
+
+    Parameters
+    ----------
+    depth : float
+        Crest to valley, m.
+    wavelength : float
+        m.
+    """
+
+    depth: float
+    wavelength: float
+
+    def radius_change(self, height: NDArray[np.float64], tooth: int, teeth: int) -> NDArray:
+        """Return the change of the radius, m, zero at a crest and -depth in a valley."""
+        phase = 2.0 * math.pi * (height / self.wavelength + tooth / teeth)
+        return 0.5 * self.depth * (np.cos(phase) - 1.0)
+
+
+@dataclass(frozen=True)
+class Cutter:
+    """A milling tool; lengths in m, angles in rad.
+
+    Parameters
+    ----------
+    diameter : float
+        At the tip, where the profile is a cone or has a corner: of the cylinder that the corner
+        blends into.
+    helix : tuple of float
+        One for each tooth; a point at height z trails the tip by z tan(helix)/R.
+    pitch : tuple of float
+        Angle from each tooth to the next one; they make a turn.
+    corner_radius : float
+        0 for a sharp corner, half the diameter for a ball.
+    edge_angle : float
+        Angle between the axis and the normal of the straight part of the edge: pi/2 for a
+        cylinder, less for a taper or a face mill with a lead angle.
+    runout_offset, runout_angle : float
+        The axis of the teeth lies off the spindle axis by the offset, in the direction `angle`
+        of the tool.
+    radial_error, axial_error : tuple of float
+        Of each tooth; positive is further out and further down; empty for none.
+    serration : Serration, optional
+    """
+
+    diameter: float
+    helix: tuple[float, ...]
+    pitch: tuple[float, ...]
+    corner_radius: float = 0.0
+    edge_angle: float = 0.5 * math.pi
+    runout_offset: float = 0.0
+    runout_angle: float = 0.0
+    radial_error: tuple[float, ...] = ()
+    axial_error: tuple[float, ...] = ()
+    serration: Serration | None = None
+
+    @property
+    def teeth(self) -> int:
+        """Number of teeth."""
+        return len(self.pitch)
+
+    @property
+    def radius(self) -> float:
+        """Half the diameter, m."""
+        return 0.5 * self.diameter
+
+    @property
+    def tooth_angles(self) -> NDArray[np.float64]:
+        """Angle (N,) of each tooth on the tool, rad; zero for the first."""
+        return np.concatenate([[0.0], np.cumsum(self.pitch)[:-1]])
+
+    @property
+    def radial_offsets(self) -> NDArray[np.float64]:
+        """Deviation (N,) of the radius of each tooth by runout and setting error, m."""
+        runout = self.runout_offset * np.cos(self.runout_angle - self.tooth_angles)
+        return runout + self._each(self.radial_error)
+
+    @property
+    def axial_offsets(self) -> NDArray[np.float64]:
+        """Deviation (N,) of each tooth along the axis, m; positive reaches deeper."""
+        return self._each(self.axial_error)
+
+    def _each(self, given: tuple[float, ...]) -> NDArray[np.float64]:
+        return np.asarray(given, dtype=np.float64) if given else np.zeros(self.teeth)
+
+
+@dataclass(frozen=True)
+class EdgeSlices:
+    """Edges of a tool cut into L slices along the axis, for N teeth.
+
+    Parameters
+    ----------
+    height : (L,) array of float
+        Of the middle of the slice above the tip, m.
+    thickness : (L,) array of float
+        Along the axis, m.
+    radius : (L,) array of float
+        Of the nominal edge, m.
+    immersion : (L,) array of float
+        Axial immersion angle: between the axis and the normal of the edge, rad.
+    edge_length : (L,) array of float
+        Length of edge in the plane of its profile, m.
+    angle : (N, L) array of float
+        Of the middle of the slice on the tool, rad.
+    lag : (N, L) array of float
+        By which the upper end trails the lower one, rad.
+    normal_offset : (N, L) array of float
+        Deviation of the edge from its nominal place along its normal, outwards, m.
+    """
+
+    height: NDArray[np.float64]
+    thickness: NDArray[np.float64]
+    radius: NDArray[np.float64]
+    immersion: NDArray[np.float64]
+    edge_length: NDArray[np.float64]
+    angle: NDArray[np.float64]
+    lag: NDArray[np.float64]
+    normal_offset: NDArray[np.float64]
+
+
+Piece = tuple[NDArray[np.float64], ...]
+
+
+def _corner(cutter: Cutter, top: float, count: int) -> Piece:
+    """Slices of equal length along the corner arc from the tip to the height `top`."""
+    corner = cutter.corner_radius
+    bounds = np.linspace(0.0, math.acos(1.0 - top / corner), count + 1)
+    middle = 0.5 * (bounds[1:] + bounds[:-1])
+    height = corner * (1.0 - np.cos(middle))
+    thickness = corner * -np.diff(np.cos(bounds))
+    radius = cutter.radius - corner + corner * np.sin(middle)
+    return height, thickness, radius, middle, corner * np.diff(bounds)
+
+
+def _straight(cutter: Cutter, bottom: float, top: float, count: int) -> Piece:
+    """Slices of equal height of the straight part of the edge."""
+    bounds = np.linspace(bottom, top, count + 1)
+    middle = 0.5 * (bounds[1:] + bounds[:-1])
+    thickness = np.diff(bounds)
+    slope = 1.0 / math.tan(cutter.edge_angle) if cutter.edge_angle < 0.5 * math.pi else 0.0
+    start = cutter.radius - cutter.corner_radius * (1.0 - math.sin(cutter.edge_angle))
+    radius = start + slope * (middle - bottom)
+    immersion = np.full(count, cutter.edge_angle)
+    return middle, thickness, radius, immersion, thickness / math.sin(cutter.edge_angle)
+
+
+def corner_height(cutter: Cutter) -> float:
+    """Height at which the corner arc runs into the straight edge, m."""
+    return cutter.corner_radius * (1.0 - math.cos(cutter.edge_angle))
+
+
+def slice_counts(
+    cutter: Cutter, depth: float, largest_lag: float = _LARGEST_SLICE_LAG
+) -> tuple[int, int]:
+    """Slices of the corner and of the straight edge that resolve lag, curvature and waves.
+
+    Parameters
+    ----------
+    cutter : Cutter
+    depth : float
+        Axial depth, m.
+    largest_lag : float
+        Lag within a slice, rad.
+
+    Returns
+    -------
+    (int, int)
+    """
+    arc_top = min(depth, corner_height(cutter))
+    lag_per_height = max(abs(math.tan(helix)) for helix in cutter.helix) / cutter.radius
+    wave = cutter.serration.wavelength / _SLICES_A_WAVE if cutter.serration else math.inf
+
+    def count(height: float) -> int:
+        return max(math.ceil(height * lag_per_height / largest_lag), math.ceil(height / wave))
+
+    corner = 0
+    if arc_top > 0.0:
+        turn = math.acos(1.0 - arc_top / cutter.corner_radius)
+        corner = max(math.ceil(turn / _LARGEST_SLICE_TURN), count(arc_top))
+    straight = max(1, count(depth - arc_top)) if depth > arc_top else 0
+    return corner, straight
+
+
+def edge_slices(cutter: Cutter, depth: float, counts: tuple[int, int]) -> EdgeSlices:
+    """Cut the edges of a tool into slices from the tip to an axial depth.
+
+    Parameters
+    ----------
+    cutter : Cutter
+    depth : float
+        m.
+    counts : (int, int)
+        Slices of the corner and of the straight edge, as from `slice_counts`.
+
+    Returns
+    -------
+    EdgeSlices
+
+    Notes
+    -----
+    Geometry of the general cutter after Engin and Altintas 2001, Int. J. Mach. Tools Manuf. 41,
+    section 2, with constant lead: the lag is z tan(helix)/R at every height.
+    """
+    corner, straight = counts
+    arc_top = min(depth, corner_height(cutter))
+    parts: list[Piece] = []
+    if corner:
+        parts.append(_corner(cutter, arc_top, corner))
+    if straight:
+        parts.append(_straight(cutter, arc_top, depth, straight))
+    height, thickness, radius, immersion, length = (
+        np.concatenate(column) for column in zip(*parts, strict=True)
+    )
+    lag_per_height = np.tan(np.asarray(cutter.helix)) / cutter.radius
+    return EdgeSlices(
+        height=height,
+        thickness=thickness,
+        radius=radius,
+        immersion=immersion,
+        edge_length=length,
+        angle=cutter.tooth_angles[:, None] - np.outer(lag_per_height, height),
+        lag=np.outer(lag_per_height, thickness),
+        normal_offset=_normal_offset(cutter, height, immersion),
+    )
+
+
+def _normal_offset(
+    cutter: Cutter, height: NDArray[np.float64], immersion: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    radial = np.repeat(cutter.radial_offsets[:, None], height.size, axis=1)
+    if cutter.serration is not None:
+        radial += np.array(
+            [
+                cutter.serration.radius_change(height, tooth, cutter.teeth)
+                for tooth in range(cutter.teeth)
+            ]
+        )
+    return radial * np.sin(immersion) + np.outer(cutter.axial_offsets, np.cos(immersion))
+
+
+def tool_profile(
+    kind: str, diameter: float, corner_radius: float, edge_angle: float
+) -> tuple[float, float]:
+    """Corner radius (m) and edge angle (rad) of a kind of tool.
+
+    Parameters
+    ----------
+    kind : str
+        "end mill", "ball", "bull nose", "taper" or "inserted".
+    diameter, corner_radius : float
+        m.
+    edge_angle : float
+        Of the straight edge, rad; tapers and inserts alone have one of their own.
+    """
+    if kind == "ball":
+        return 0.5 * diameter, 0.5 * math.pi
+    if kind in ("taper", "inserted"):
+        return corner_radius, edge_angle
+    return corner_radius, 0.5 * math.pi

@@ -1,0 +1,47 @@
+"""Where the cut meets the machine: the tool point, and the turn of the tool in a step."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class ToolPoint(NamedTuple):
+    """Motion of the tool against the workpiece and the force on the tool; x, y, z."""
+
+    displacement: NDArray[np.float64]  # m, (3,)
+    velocity: NDArray[np.float64]  # m/s, (3,)
+    displacement_before: NDArray[np.float64]  # at the step before, m, (3,)
+    velocity_before: NDArray[np.float64]  # m/s, (3,)
+    force: NDArray[np.float64]  # that moves the structure, N, (3,)
+    sample: NDArray[np.float64]  # force at the very instant, N, (3,)
+    torque: NDArray[np.float64]  # on the spindle, against its turning, N m, (1,)
+    contact: NDArray[np.float64]  # engaged share of the depth of cut, (1,)
+
+
+class Turn(NamedTuple):
+    """Turn of the spindle and place on the tool path at a step and the one before.
+
+    Angles are counted in bins, `bins` to a turn: a whole number below `bins` and a part below 1.
+    """
+
+    whole: int
+    part: float
+    sine: float
+    cosine: float
+    whole_before: int
+    part_before: float
+    advance: float  # bins from the step before
+    speed: float  # rad/s
+    step: float  # s
+    x: float  # m
+    y: float
+    x_before: float
+    y_before: float
+
+
+def tool_point() -> ToolPoint:
+    """Return a tool point at rest."""
+    return ToolPoint(*(np.zeros(3) for _ in range(6)), np.zeros(1), np.zeros(1))
