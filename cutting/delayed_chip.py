@@ -15,7 +15,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba.extending import register_jitable
+from numba import types
+from numba.extending import overload, register_jitable
 from numpy.typing import NDArray
 
 from cutting.edge_force import INLINED, ExponentialEdge, LinearEdge, edge_force
@@ -31,7 +32,7 @@ from cutting.flank import BareFlank, end_contact, flank_force, note_surface
 from cutting.ploughing import PloughingFlank
 from cutting.process_damping import ViscousFlank
 
-#: marks are noted up to this many bins outside the engaged arc
+#: an edge that is this many bins outside the arc has left the cut
 _MARGIN = 2.0
 
 
@@ -43,6 +44,8 @@ class DelayedCut(NamedTuple):
     flank: BareFlank | ViscousFlank | PloughingFlank
     entry: NDArray[np.float64]  # of each slice, bins, (L,)
     exit: NDArray[np.float64]  # bins, (L,)
+    arc: NDArray[np.float64]  # first entry and last exit of all slices, bins, (2,)
+    reach: NDArray[np.float64]  # of an edge behind and before its first slice, bins, (N, 2)
     helices: int  # 1 where all flutes have one helix, else the number of slices
     earlier: NDArray[np.int64]  # tooth of the k-th pass back, (N, L, N)
     delay: NDArray[np.float64]  # turn of the spindle since that pass, bins, (N, helices, N)
@@ -50,9 +53,6 @@ class DelayedCut(NamedTuple):
     history: NDArray[np.float64]  # x, y, z of the tool against the work at each bin of the last
     # turn, path and vibration, m, and its change to the next bin by its slope, m, (2, bins, 3)
     since: NDArray[np.float64]  # scratch: motion since each pass, m, (N, 3)
-    mark_bins: NDArray[np.int64]  # angles at which the motion is noted, (M,)
-    marks: NDArray[np.float64]  # x, y, z of the edge when it passed, m, (M, turns, N, L, 3)
-    turns: NDArray[np.int64]  # turns noted by each edge at each mark, (M, N, L)
 
 
 @register_jitable(**INLINED)
@@ -118,6 +118,13 @@ def _add_edge_force(cut, tooth, piece, sine, cosine, chip, length, total):
 
 
 @register_jitable(**INLINED)
+def _at_ends(first, last):
+    """Chip at the ends of a span whose Gauss points are known, as if it varied linearly."""
+    middle, rise = 0.5 * (first + last), 0.5 * (last - first) / GAUSS_PLACE
+    return middle - rise, middle + rise
+
+
+@register_jitable(**INLINED)
 def _whole_slice(cut, tooth, piece, turn):
     """Force of a slice that is wholly inside the arc; second value: none of it in the air."""
     total = (0.0, 0.0, 0.0, 0.0, 0.0)
@@ -126,11 +133,12 @@ def _whole_slice(cut, tooth, piece, turn):
     s2, c2 = direction(cut.edges, tooth, piece, 2, turn)
     chip1 = _chip(cut, tooth, piece, s1, c1)
     chip2 = _chip(cut, tooth, piece, s2, c2)
-    if chip1 > 0.0 and chip2 > 0.0:
+    at_low, at_high = _at_ends(chip1, chip2)
+    if at_low > 0.0 and at_high > 0.0:
         total = _add_edge_force(cut, tooth, piece, s1, c1, chip1, half, total)
         total = _add_edge_force(cut, tooth, piece, s2, c2, chip2, half, total)
         return total, True
-    return total, chip1 <= 0.0 and chip2 <= 0.0
+    return total, at_low <= 0.0 and at_high <= 0.0
 
 
 @register_jitable(**INLINED)
@@ -141,14 +149,13 @@ def _clear_of_air(cut, tooth, piece, low, high):
     first, last = middle - GAUSS_PLACE * half, middle + GAUSS_PLACE * half
     a = _chip(cut, tooth, piece, math.sin(first * angle), math.cos(first * angle))
     b = _chip(cut, tooth, piece, math.sin(last * angle), math.cos(last * angle))
-    if a > 0.0 and b > 0.0:
+    at_low, at_high = _at_ends(a, b)
+    if at_low > 0.0 and at_high > 0.0:
         return low, high
-    if a <= 0.0 and b <= 0.0:
+    if at_low <= 0.0 and at_high <= 0.0:
         return low, low
-    if first == last:
-        return low, high
-    root = min(max(first + a / (a - b) * (last - first), low), high)
-    return (root, high) if b > 0.0 else (low, root)
+    root = min(max(low + at_low / (at_low - at_high) * (high - low), low), high)
+    return (root, high) if at_high > 0.0 else (low, root)
 
 
 @register_jitable(**INLINED)
@@ -218,6 +225,17 @@ def _add_flank_force(cut, tooth, piece, turn, point, total):
 
 
 @register_jitable(**INLINED)
+def _all_in_air(cut, tooth, turn):
+    """Tell whether no part of an edge is in the arc of the cut."""
+    whole, part = place_of(cut.edges, tooth, 0, turn.whole, turn.part)
+    place = signed_place(cut.edges, whole, part)
+    if place + cut.reach[tooth, 1] < cut.arc[0] or place + cut.reach[tooth, 0] > cut.arc[1]:
+        place += cut.edges.bins
+        return place + cut.reach[tooth, 0] > cut.arc[1]
+    return False
+
+
+@register_jitable(**INLINED)
 def delayed_forces(group, turn, point):
     """Add the cutting force on the tool at the motion of the tool point."""
     cut, edges = group, group.edges
@@ -225,6 +243,8 @@ def delayed_forces(group, turn, point):
     teeth, pieces = edges.whole.shape
     sx = sy = sz = mx = my = mz = torque = contact = 0.0
     for tooth in range(teeth):
+        if _all_in_air(cut, tooth, turn):
+            continue
         looked_back = False
         for piece in range(pieces):
             whole, part = place_of(edges, tooth, piece, turn.whole, turn.part)
@@ -303,25 +323,6 @@ def _note_motion(cut, turn, point):
 
 
 @register_jitable(**INLINED)
-def _note_marks(cut, tooth, piece, before, part, turn, point):
-    """Keep the motion of an edge as it passes the angles where the surface stays."""
-    bins = cut.edges.bins
-    for k in range(1, int(part + turn.advance) + 1):
-        passed = before + k
-        if passed >= bins:
-            passed -= bins
-        for mark in range(cut.mark_bins.shape[0]):
-            count = cut.turns[mark, tooth, piece]
-            if cut.mark_bins[mark] != passed or count >= cut.marks.shape[1]:
-                continue
-            share = (k - part) / turn.advance
-            for axis in range(3):
-                place, _ = _vibration(point, axis, share, turn.step)
-                cut.marks[mark, count, tooth, piece, axis] = place
-            cut.turns[mark, tooth, piece] = count + 1
-
-
-@register_jitable(**INLINED)
 def _note_wave(cut, tooth, piece, place, turn, point):
     """Tell the flank what surface lies behind the edge now."""
     if place < cut.entry[piece] or place > cut.exit[piece]:
@@ -334,22 +335,44 @@ def _note_wave(cut, tooth, piece, place, turn, point):
 
 
 @register_jitable(**INLINED)
-def delayed_commit(group, turn, point):
-    """Remember the motion of the step: what the edges have left behind."""
-    cut, edges = group, group.edges
+def _note_waves(flank, cut, turn, point):  # noqa: ARG001
+    """Tell the flank of every edge what surface lies behind it now."""
+    edges = cut.edges
     now = _place_now(turn, point)
     teeth, pieces = edges.whole.shape
     for tooth in range(teeth):
         looked_back = False
         for piece in range(pieces):
-            before, part = place_of(edges, tooth, piece, turn.whole_before, turn.part_before)
-            place = signed_place(edges, before, part) + turn.advance
-            margin = edges.half_width[tooth, piece] + _MARGIN
-            if place < cut.entry[piece] - margin or place > cut.exit[piece] + margin:
+            whole, part = place_of(edges, tooth, piece, turn.whole, turn.part)
+            place = signed_place(edges, whole, part)
+            if place < cut.entry[piece] - _MARGIN or place > cut.exit[piece] + _MARGIN:
                 continue
-            _note_marks(cut, tooth, piece, before, part, turn, point)
             if cut.helices > 1 or not looked_back:
                 _note_motion_since(cut, tooth, piece if cut.helices > 1 else 0, turn, now)
                 looked_back = True
             _note_wave(cut, tooth, piece, place, turn, point)
-    _note_motion(cut, turn, point)
+
+
+@register_jitable(**INLINED)
+def _no_waves(flank, cut, turn, point):
+    """Note nothing: the flank has no memory."""
+
+
+_NOTING = {BareFlank: _no_waves, ViscousFlank: _no_waves, PloughingFlank: _note_waves}
+
+
+def note_waves(flank, cut, turn, point):
+    """Let the flank take in the surface behind every edge, where it has a memory."""
+    _NOTING[type(flank)](flank, cut, turn, point)
+
+
+@overload(note_waves, jit_options=INLINED)
+def _note_waves_of(flank, cut, turn, point):  # noqa: ARG001
+    return _NOTING.get(flank.instance_class) if isinstance(flank, types.BaseNamedTuple) else None
+
+
+@register_jitable(**INLINED)
+def delayed_commit(group, turn, point):
+    """Remember the motion of the step: what the edges have left behind."""
+    note_waves(group.flank, group, turn, point)
+    _note_motion(group, turn, point)

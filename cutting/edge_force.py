@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from cutting.force_law import ExponentialLaw, ForceLaw, LinearLaw
 
-INLINED = {"error_model": "numpy", "forceinline": True}
+INLINED = {"error_model": "numpy", "forceinline": True, "_nrt": False}
 
 
 class LinearEdge(NamedTuple):

@@ -48,7 +48,6 @@ def delayed_cut(
     flank: BareFlank | ViscousFlank | PloughingFlank,
     bins: int,
     path: NDArray[np.float64],
-    marks: tuple[NDArray[np.float64], int],
 ) -> DelayedCut:
     """Set up a cut from rest in full immersion.
 
@@ -63,8 +62,6 @@ def delayed_cut(
         Of a turn.
     path : (2, bins + 1) array of float
         Place of the tool axis over the last turn before the start, m, which comes last.
-    marks : (M,) array of float, int
-        Angles at which the motion of the edges is kept, rad, and turns to keep.
 
     Returns
     -------
@@ -78,23 +75,21 @@ def delayed_cut(
     alike = np.all(np.abs(delay - delay[:, :1]) < 1e-9 * bins)
     offset = edges.normal_offset
     pieces = np.arange(offset.shape[1])[None, :, None]
-    mark_angles, turns = marks
-    teeth = len(offset)
+    entry, leave = (angle * bins / _TURN for angle in arc)
     return DelayedCut(
         edges=edges,
         law=law,
         flank=flank,
-        entry=arc[0] * bins / _TURN,
-        exit=arc[1] * bins / _TURN,
+        entry=entry,
+        exit=leave,
+        arc=np.array([entry.min(), leave.max()]),
+        reach=_reach(slices, bins),
         helices=1 if alike else offset.shape[1],
         earlier=earlier,
         delay=np.ascontiguousarray(delay[:, :1] if alike else delay),
         inset=np.ascontiguousarray(offset[earlier, pieces] - offset[:, :, None]),
         history=_history(path),
-        since=np.zeros((teeth, 3)),
-        mark_bins=np.round(mark_angles * bins / _TURN).astype(np.int64) % bins,
-        marks=np.full((len(mark_angles), turns, *offset.shape, 3), np.nan),
-        turns=np.zeros((len(mark_angles), *offset.shape), dtype=np.int64),
+        since=np.zeros((len(offset), 3)),
     )
 
 
@@ -103,8 +98,17 @@ def _history(path: NDArray[np.float64]) -> NDArray[np.float64]:
     bins = path.shape[1] - 1
     history = np.zeros((2, bins, 3))
     history[0, :, :2] = path[:, :-1].T
-    history[0, 0, :2] = path[:, -1]
     slope = np.diff(path, axis=1)
     history[1, 1:, :2] = 0.5 * (slope[:, 1:] + slope[:, :-1]).T
-    history[1, 0, :2] = slope[:, -1]
+    history[1, 0, :2] = slope[:, 0]
     return history
+
+
+def _reach(slices: EdgeSlices, bins: int) -> NDArray[np.float64]:
+    """How far each edge reaches behind and before its first slice, bins, (N, 2)."""
+    offset = slices.angle - slices.angle[:, :1]
+    half = 0.5 * np.abs(slices.lag)
+    # half a bin more for the turn of a step, which blurs a straight edge
+    low = (offset - half).min(axis=1) * bins / _TURN - 1.0
+    high = (offset + half).max(axis=1) * bins / _TURN + 1.0
+    return np.stack([low, high], axis=1)

@@ -17,7 +17,7 @@ from scipy.linalg import expm
 
 from dynamics.modal import Mode
 
-_INLINED = {"error_model": "numpy", "forceinline": True}
+_INLINED = {"error_model": "numpy", "forceinline": True, "_nrt": False}
 
 
 class ModalSteps(NamedTuple):
@@ -73,6 +73,15 @@ def modal_steps(modes: Sequence[Mode], step: float) -> ModalSteps:
         energy=np.zeros(2),
         step=step,
     )
+
+
+@register_jitable(**_INLINED)
+def take_force(modes, point):
+    """Take the force at the tool point as the one with which the next step begins."""
+    for i in range(modes.mass.shape[0]):
+        modes.force[i] = 0.0
+        for axis in range(3):
+            modes.force[i] += modes.shape[i, axis] * point.force[axis]
 
 
 @register_jitable(**_INLINED)

@@ -7,8 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-#: multipliers fitted at most; weakest direction that is kept, weakest part that counts, as shares of
-#: the strongest
+#: multipliers fitted at most; weakest direction kept and weakest part that counts, of the strongest
 _MOST_MULTIPLIERS = 8
 _WEAKEST = 1e-3
 _TAKES_PART = 0.2

@@ -28,7 +28,9 @@ class ChatterLine(NamedTuple):
     amplitude: float  # of that line, unit of the values
 
 
-def strongest_line(values: NDArray[np.float64], growth: float = 0.0) -> ChatterLine:
+def strongest_line(
+    values: NDArray[np.float64], growth: float = 0.0, rotation: float | None = None
+) -> ChatterLine:
     """Fit one rotating motion to the change from period to period.
 
     At every point of the period the signal is taken as a + growth^r (b cos(r theta) + c
@@ -42,6 +44,8 @@ def strongest_line(values: NDArray[np.float64], growth: float = 0.0) -> ChatterL
     values : (periods, points, k) array of float
     growth : float
         Logarithm of the growth a period.
+    rotation : float, optional
+        rad a period, where it is known; fitted otherwise.
 
     Returns
     -------
@@ -57,7 +61,8 @@ def strongest_line(values: NDArray[np.float64], growth: float = 0.0) -> ChatterL
     scores = left[:, :kept] * singular[:kept]
     right = scores.T @ centred / singular[:kept, None] ** 2
     total = float(np.sum(scores**2))
-    rotation = _rotation(scores, growth)
+    if rotation is None:
+        rotation = _rotation(scores, growth)
     base = _columns(rotation, growth, count)
     # at a doubled period the sine vanishes and must not be fitted
     parts, *_ = np.linalg.lstsq(base, scores, rcond=_WEAK_COLUMN)

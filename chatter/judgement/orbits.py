@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.judgement.deviations import directions_of
 from chatter.judgement.lines import ChatterLine
 
 #: periods of an orbit that are looked for
@@ -15,6 +16,8 @@ _LONGEST = 12
 _UNEXPLAINED = 0.01
 #: angle by which a doubled period may seem to drift over the window, rad
 _DRIFT = 0.5
+#: share of the variance that one alternating shape has to explain
+_ONE_SHAPE = 0.97
 #: steady enough for an orbit to close, growth over the window
 _STEADY = 0.3
 
@@ -41,7 +44,8 @@ def kind_of_orbit(
         "flip" and 2; "period-n" and n; "hopf" and 0.
     """
     count = len(values)
-    if abs(math.pi - line.rotation) * count < _DRIFT:
+    drift = abs(math.pi - line.rotation) * count
+    if drift < _DRIFT or (drift < 2.0 * math.pi and _only_alternates(values, noise)):
         return "flip", 2
     if abs(growth) * count > _STEADY:
         return "hopf", 0
@@ -49,6 +53,20 @@ def kind_of_orbit(
         if _unexplained(values, period, noise) < _UNEXPLAINED:
             return ("flip", 2) if period == 2 else ("period-n", period)
     return "hopf", 0
+
+
+def _only_alternates(values: NDArray[np.float64], noise: float) -> bool:
+    """Whether one shape changes its sign every period, however its size changes.
+
+    The multiplier of a flip is real. The fit of a rotation of steady growth is misled while such a
+    motion saturates; a complex multiplier would turn the shape.
+    """
+    differences = np.diff(values, axis=0).reshape(len(values) - 1, -1)
+    differences[1::2] *= -1.0
+    left, singular = directions_of(differences)
+    total = np.sum(singular**2) - 2.0 * noise**2 * differences.size
+    one_shape = singular[0] ** 2 > _ONE_SHAPE * total
+    return bool(one_shape and (np.all(left[:, 0] > 0.0) or np.all(left[:, 0] < 0.0)))
 
 
 def _unexplained(values: NDArray[np.float64], period: int, noise: float) -> float:

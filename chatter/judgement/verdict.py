@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.judgement.deviations import Deviations, deviations_of, growth_of, slowest_growth
-from chatter.judgement.doubling import grew_to_doubled_period
+from chatter.judgement.doubling import doubling_within_turn
 from chatter.judgement.lines import strongest_line
 from chatter.judgement.orbits import kind_of_orbit
 from chatter.judgement.record import CutRecord
@@ -28,6 +28,8 @@ _CERTAIN = 3.0
 _SHARE_OF_RATE = 0.4
 #: share of the deviations that multipliers may leave unpredicted if they are to be relied on
 _GOOD_MAP = 0.05
+#: drift over the later half that counts as slow, rad: no more can be told from a swell
+_SLOW = 4.0
 #: part of the mean that counts as motion: a slot with three or more teeth leaves little else
 _PART_OF_MEAN = 0.3
 
@@ -113,30 +115,47 @@ def judge(record: CutRecord) -> Judgement:
     deviations = deviations_of(periods.values)
     trend = _trend_of(deviations, periods)
     verdict, confidence, reason = _decide(trend, periods)
-    doubled = False
+    kind = "none", 1, math.nan, math.nan, per_turn
     if verdict == "stable" and _may_hide_doubling(record):
-        doubled = grew_to_doubled_period(record, deviations)
-        if doubled:
+        doubling = doubling_within_turn(record)
+        if doubling.grew:
             verdict, confidence = "chatter", 0.6
             reason = "the motion grew until it repeats with every second tooth"
-    bifurcation, period, frequency, unit = "none", 1, math.nan, _unit(per_turn)
-    if doubled:
-        per_turn = record.teeth
-        periods = cut_into_periods(record, per_turn)
-        unit = "tooth"
-    share = math.nan
-    if verdict == "chatter":
-        growth = max(trend.slope, 0.0) if not doubled else 0.0
-        later = periods.values[len(periods.values) // 2 :]
-        line = strongest_line(later, growth)
-        frequency, share = line.cycles / periods.period, line.share
-        bifurcation, period = kind_of_orbit(later, line, growth, deviations.noise)
+            kind = _kind(cut_into_periods(record, record.teeth), deviations.noise, 0.0)
+        elif doubling.is_there:
+            confidence = min(confidence, 0.6)
+            reason += "; every second tooth is alike, by runout or by a flip that grew at once"
+    elif verdict == "chatter":
+        kind = _kind(periods, deviations.noise, max(trend.slope, 0.0))
+        if kind[0] == "hopf" and per_turn == 1 and record.has_equal_pitch and _is_slow(periods):
+            # a motion that all but repeats with the turn is a flip if it does so with two teeth
+            by_tooth = _kind(cut_into_periods(record, record.teeth), deviations.noise, 0.0)
+            kind = by_tooth if by_tooth[0] == "flip" else kind
+    bifurcation, period, frequency, share, per_turn = kind
     turns, teeth = once_a_turn(record), once_a_tooth(record)
     return Judgement(
-        verdict, confidence, reason, bifurcation, period, unit, frequency,
+        verdict, confidence, reason, bifurcation, period, _unit(per_turn), frequency,
         trend.slope / periods.period if deviations.rank else math.nan, turns, teeth,
         _metrics(turns, periods, deviations, trend, share),
     )  # fmt: skip
+
+
+def _kind(periods: Periods, noise: float, growth: float) -> tuple[str, int, float, float, int]:
+    """Bifurcation, period, chatter frequency, share of its line, periods in a turn."""
+    later = periods.values[len(periods.values) // 2 :]
+    line = strongest_line(later, growth)
+    bifurcation, period = kind_of_orbit(later, line, growth, noise)
+    if period > 0:
+        # a closed orbit has its lines exactly at multiples of 1/period
+        order = max(round(line.rotation * period / (2.0 * math.pi)), 1)
+        line = strongest_line(later, growth, 2.0 * math.pi * order / period)
+    return bifurcation, period, line.cycles / periods.period, line.share, periods.per_turn
+
+
+def _is_slow(periods: Periods) -> bool:
+    """Whether the motion drifts less than a fifth of a cycle or so over the later half."""
+    later = periods.values[len(periods.values) // 2 :]
+    return strongest_line(later).rotation * len(later) < _SLOW
 
 
 def _unit(per_turn: int) -> str:

@@ -14,7 +14,7 @@ from chatter.kernels import DRIVER
 from chatter.simulation.laws import all_act, all_settle
 from cutting.edge_force import INLINED
 from cutting.tool_point import Turn
-from dynamics.modal_steps import correct, predict
+from dynamics.modal_steps import correct, predict, take_force
 
 #: columns of the record
 COLUMNS = ("Fx", "Fy", "Fz", "x", "y", "z", "torque")
@@ -82,28 +82,7 @@ def _keep(record, row, point):
     record.rows[row, 6] = point.torque[0]
 
 
-@njit(**DRIVER)
-def start(groups, modes, point, prescribed, record, bins):
-    """Let the cut act on the structure at rest: the force with which the first step begins.
-
-    Parameters
-    ----------
-    groups, modes, point, record, bins
-        As for `run`.
-    prescribed : Prescribed
-        Row 0 is the start.
-    """
-    turn = _turn(prescribed, 0, 0, 1.0, 2.0 * math.pi / bins, modes.step)
-    _clear(point)
-    all_act(groups, turn, point)
-    for i in range(modes.mass.shape[0]):
-        modes.force[i] = 0.0
-        for axis in range(3):
-            modes.force[i] += modes.shape[i, axis] * point.force[axis]
-    _keep(record, 0, point)
-
-
-@njit(**DRIVER)
+@njit(**DRIVER, _nrt=False)
 def run(groups, modes, point, prescribed, record, scratch, first, furthest, bins):
     """Integrate a chunk of steps.
 
@@ -118,7 +97,8 @@ def run(groups, modes, point, prescribed, record, scratch, first, furthest, bins
     scratch : (modes, 2) array of float
         Overwritten.
     first : int
-        Number of the step that row 0 stands for.
+        Number of the step that row 0 stands for; step 0 is the start, where nothing has moved
+        yet and the cut takes hold of the structure.
     furthest : float
         Displacement at which the model is left, m.
     bins : int
@@ -137,9 +117,13 @@ def run(groups, modes, point, prescribed, record, scratch, first, furthest, bins
             point.displacement_before[axis] = point.displacement[axis]
             point.velocity_before[axis] = point.velocity[axis]
         _clear(point)
-        predict(modes, scratch, point)
+        if first + i > 0:
+            predict(modes, scratch, point)
         all_act(groups, turn, point)
-        correct(modes, scratch, point)
+        if first + i > 0:
+            correct(modes, scratch, point)
+        else:
+            take_force(modes, point)
         reach = max(
             abs(point.displacement[0]), abs(point.displacement[1]), abs(point.displacement[2])
         )

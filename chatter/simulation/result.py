@@ -1,21 +1,222 @@
-"""Result of a simulation."""
+"""Result of a simulation: signals, verdict, surface; pictures and files."""
 
 from __future__ import annotations
 
+import json
+import math
 from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
+
+from chatter.judgement import CutRecord, Judgement, judge
+from chatter.simulation.finish import Finish, finish_of
+from chatter.simulation.setup import Setup
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_RPM = 30.0 / math.pi
+#: a record of fewer turns is not judged
+_LEAST_TURNS_TO_JUDGE = 5.0
+#: means are taken over the last whole turns within this share of the run
+_SETTLED_SHARE = 0.5
 
 
 @dataclass(frozen=True)
 class SimulationResult:
-    setup: object
-    rows: np.ndarray
-    energy: dict
-    complete: bool
+    """Signals of a simulated cut and what follows from them.
+
+    Parameters
+    ----------
+    setup : Setup
+        Case, tool, slices and resolution of the run; its groups hold the final state.
+    rows : (n, 7) array of float
+        Record: force on the tool (x, y, z), N; displacement of the tool against the workpiece
+        (x, y, z), m; torque on the spindle, N m.
+    energy : dict
+        Work of the cutting force on the structure, energy dissipated in it and stored at the end,
+        J.
+    complete : bool
+        False where the run was left early.
+    """
+
+    setup: Setup
+    rows: NDArray[np.float64]
+    energy: dict[str, float]
+    complete: bool = True
+
     @property
-    def force(self): return self.rows[:, :3]
+    def case(self):  # noqa: ANN201
+        """Case that was simulated."""
+        return self.setup.case
+
+    @cached_property
+    def time(self) -> NDArray[np.float64]:
+        """Time (n,) of the rows, s."""
+        return np.arange(len(self.rows)) * (self.setup.resolution.stride * self.setup.step)
+
+    @cached_property
+    def spindle_angle(self) -> NDArray[np.float64]:
+        """Angle (n,) turned by the spindle, rad."""
+        return self.setup.spindle.angle_at(self.time)
+
+    @cached_property
+    def spindle_speed(self) -> NDArray[np.float64]:
+        """Speed (n,) of the spindle, rad/s."""
+        return self.setup.spindle.speed_at(self.time)
+
     @property
-    def displacement(self): return self.rows[:, 3:6]
+    def force(self) -> NDArray[np.float64]:
+        """Force (n, 3) on the tool, N."""
+        return self.rows[:, 0:3]
+
     @property
-    def time(self): return np.arange(len(self.rows))*self.setup.resolution.stride*self.setup.step
+    def displacement(self) -> NDArray[np.float64]:
+        """Displacement (n, 3) of the tool against the workpiece, m."""
+        return self.rows[:, 3:6]
+
+    @property
+    def torque(self) -> NDArray[np.float64]:
+        """Torque (n,) of the cut on the spindle, N m."""
+        return self.rows[:, 6]
+
+    @property
+    def power(self) -> NDArray[np.float64]:
+        """Cutting power (n,) drawn from the spindle, W."""
+        return self.torque * self.spindle_speed
+
+    @property
+    def turns(self) -> float:
+        """Revolutions that were simulated."""
+        return float(self.spindle_angle[-1]) / (2.0 * math.pi)
+
+    @cached_property
+    def judgement(self) -> Judgement | None:
+        """Chatter or not; None where the run is too short, or nothing can vibrate."""
+        if self.turns < _LEAST_TURNS_TO_JUDGE or not self.setup.modes:
+            return None
+        cutter = self.setup.cutter
+        helix = self.setup.slices
+        alike = np.allclose(helix.angle - helix.angle[:, :1], (helix.angle - helix.angle[:, :1])[0])
+        offsets = helix.normal_offset[:, -1] if alike else None
+        return judge(
+            CutRecord(
+                time=self.time,
+                spindle_angle=self.spindle_angle,
+                displacements=self.displacement,
+                tooth_angles=np.sort(cutter.tooth_angles),
+                feed_per_tooth=self.case.cut.feed_per_tooth,
+                forces=self.force,
+                runout=offsets,
+            )
+        )
+
+    @cached_property
+    def finish(self) -> Finish:
+        """Surface that the cut leaves behind."""
+        return finish_of(self)
+
+    @cached_property
+    def settled(self) -> slice:
+        """Rows of the last whole turns, after the start has died out."""
+        turns = math.floor(self.turns)
+        if turns < 1:
+            return slice(0, len(self.rows))
+        kept = max(1, math.floor(turns * _SETTLED_SHARE))
+        last = 2.0 * math.pi * turns
+        first, end = np.searchsorted(
+            self.spindle_angle, [last - 2.0 * math.pi * kept - 1e-9, last - 1e-9]
+        )
+        return slice(int(first), int(max(end, first + 1)))
+
+    def summary(self) -> dict:
+        """Return the content of summary.json."""
+        settled = self.settled
+        cut = self.case.cut
+        names = ("Fx", "Fy", "Fz")
+        return {
+            "title": self.case.title,
+            **self._verdict(),
+            "spindle_speed_rpm": cut.spindle_speed * _RPM,
+            "axial_depth_mm": cut.axial_depth * 1e3,
+            "peak_force_N": {
+                name: float(np.abs(self.force[:, axis]).max()) for axis, name in enumerate(names)
+            },
+            "mean_force_N": {
+                name: float(self.force[settled, axis].mean()) for axis, name in enumerate(names)
+            },
+            "peak_resultant_N": float(np.linalg.norm(self.force, axis=1).max()),
+            "peak_displacement_um": float(np.linalg.norm(self.displacement, axis=1).max() * 1e6),
+            "power": {
+                "mean_W": float(self.power[settled].mean()),
+                "peak_W": float(self.power.max()),
+                "mean_torque_Nm": float(self.torque[settled].mean()),
+            },
+            **self.finish.summary(),
+            "energy_J": self.energy,
+            "revolutions": self.turns,
+            "resolution": {
+                "chip": self.case.simulation.chip if self.case.simulation else "delay",
+                "steps_per_revolution": self.setup.resolution.steps_a_turn,
+                "slices": int(sum(self.setup.resolution.counts)),
+                "time_step_us": self.setup.step * 1e6,
+            },
+            "notes": list(self.setup.notes),
+        }
+
+    def _verdict(self) -> dict:
+        found = self.judgement
+        if found is None:
+            return {
+                "verdict": "not judged",
+                "chatter_frequency_Hz": None,
+                "reason": "the tool is rigid"
+                if not self.setup.modes
+                else f"fewer than {_LEAST_TURNS_TO_JUDGE:g} revolutions were simulated",
+            }
+        return {
+            "verdict": found.verdict,
+            "chatter_frequency_Hz": _or_none(found.chatter_frequency),
+            "bifurcation": found.bifurcation,
+            "confidence": found.confidence,
+            "growth_rate_per_s": _or_none(found.growth_rate),
+            "reason": found.reason,
+        }
+
+    def plot(self) -> Figure:
+        """Return the picture of the run as a matplotlib figure."""
+        from chatter.plots.simulation import plot_simulation
+
+        return plot_simulation(self)
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write signals.csv, summary.json and simulate.png.
+
+        Returns
+        -------
+        list of Path
+            What was written.
+        """
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        written = [folder / "signals.csv", folder / "summary.json", folder / "simulate.png"]
+        self._write_signals(written[0])
+        written[1].write_text(json.dumps(self.summary(), indent=2) + "\n", encoding="utf-8")
+        self.plot().savefig(written[2])
+        return written
+
+    def _write_signals(self, path: Path) -> None:
+        header = "time [s],spindle_angle [rad],Fx [N],Fy [N],Fz [N],x [um],y [um],z [um]"
+        table = np.column_stack(
+            [self.time, self.spindle_angle, self.force, self.displacement * 1e6]
+        )
+        columns = ["%.9g", "%.9g", *["%.6g"] * 6]
+        np.savetxt(path, table, fmt=columns, delimiter=",", header=header, comments="")
+
+
+def _or_none(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from chatter.case import Case
 from chatter.errors import InputError
@@ -193,15 +192,9 @@ def _delayed(
         flank_table(case, slices.radius, 2.0 * math.pi / bins),
         bins,
         path_of_last_turn(spindle, path, bins),
-        (mark_angles(case), math.ceil(resolution.turns) + 2),
     )
 
 
 #: name in a case file -> group of the cutting force
 CHIPS = {"delay": _delayed}
 
-
-def mark_angles(case: Case) -> NDArray[np.float64]:
-    """Angles at which the edges leave the walls and the floor behind, rad: walls first."""
-    walls = {"up": [0.0], "down": [math.pi], "slot": [0.0, math.pi]}[case.cut.mode]
-    return np.array([*walls, 0.5 * math.pi])

@@ -8,7 +8,7 @@ import numpy as np
 
 from chatter.case import Case
 from chatter.errors import InputError, RunError
-from chatter.simulation.engine import COLUMNS, Record, run, start
+from chatter.simulation.engine import COLUMNS, Record, run
 from chatter.simulation.result import SimulationResult
 from chatter.simulation.setup import Setup, set_up
 from chatter.simulation.spindle import prescribed
@@ -68,10 +68,8 @@ def run_setup(setup: Setup, progress: Progress = no_progress) -> tuple[Simulatio
     point = tool_point()
     record = Record(resolution.stride, np.zeros((steps // resolution.stride + 1, len(COLUMNS))))
     scratch = np.zeros((len(setup.modes), 2))
-    begin = prescribed(setup.spindle, setup.path, bins, setup.step, 0, 0)
-    start(setup.groups, modes, point, begin, record, bins)
     furthest = setup.furthest if setup.modes else math.inf
-    done = 0
+    done = -1
     while done < steps:
         count = min(_STEPS_A_CHUNK, steps - done)
         turns = prescribed(setup.spindle, setup.path, bins, setup.step, done, count)

@@ -123,7 +123,7 @@ def prescribed(
         s.
     first, count : int
     """
-    number = np.arange(first - 1, first + count + 1)
+    number = np.arange(first, first + count + 1)
     time = number * step
     if spindle.amplitude == 0.0:
         # counted, so that the last bit of an angle never moves a bin
@@ -136,12 +136,12 @@ def prescribed(
         advance = np.diff(place)
     x, y = path.place_at(time)
     return Prescribed(
-        whole=whole[1:],
-        part=part[1:],
+        whole=whole,
+        part=part,
         advance=advance,
-        speed=spindle.speed_at(time[1:]),
-        x=np.ascontiguousarray(x[1:]),
-        y=np.ascontiguousarray(y[1:]),
+        speed=spindle.speed_at(time),
+        x=np.ascontiguousarray(x),
+        y=np.ascontiguousarray(y),
     )
 
 
