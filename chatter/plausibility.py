@@ -38,7 +38,7 @@ def check_plausible(case: Case) -> None:
         section = path.partition(".")[0]
         value = _value(case, path) if getattr(case, section) is not None else None
         problems += _problem(case.name, path, value, bounds)
-    for place, mode in enumerate(case.structure.mode):
+    for place, mode in enumerate(case.structure.mode if case.structure else ()):
         for key, bounds in PLAUSIBLE_MODE.items():
             path = f"structure.mode[{place}].{key.removeprefix('modal_')}"
             problems += _problem(case.name, path, getattr(mode, key), bounds)

@@ -16,12 +16,13 @@ import math
 from numba.extending import register_jitable
 
 from cutting.dexel_stock import CAPACITY
+from cutting.edge_force import UNCOUNTED
 
 #: pieces shorter than this fraction of the spacing are rounding, not material
 _SPECK = 1e-6
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def _drop_smallest(ends, low, high):
     """Put low..high in place of the smallest interval of a full line if that is smaller.
 
@@ -36,7 +37,7 @@ def _drop_smallest(ends, low, high):
     return smallest
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def _interval_count(ends):
     """Return the number of intervals on a line; empty places come last."""
     number = 0
@@ -45,7 +46,7 @@ def _interval_count(ends):
     return number
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def _remove_interval(ends, low, high, speck, overflow):
     """Remove low..high from a line with the given interval ends; the length removed, m."""
     removed = 0.0
@@ -82,7 +83,7 @@ def _remove_interval(ends, low, high, speck, overflow):
     return removed
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def _material(interval, layer, family, line, a, b):
     """Length of material on a line between two coordinates, m."""
     low, high = min(a, b), max(a, b)
@@ -96,7 +97,7 @@ def _material(interval, layer, family, line, a, b):
     return length
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def _cut_oldest(stock, layer, tooth, family):
     """Carry out the oldest waiting cut; the length of material removed, m."""
     at = stock.queue[layer, tooth, family, 0]
@@ -108,7 +109,7 @@ def _cut_oldest(stock, layer, tooth, family):
     return _remove_interval(ends, low, high, _SPECK * stock.spacing, stock.overflow)
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def _cut_what_lies_behind(stock, layer, tooth, family, along, across):
     """Carry out the waiting cuts farther than the delay from an edge; length removed, m."""
     removed = 0.0
@@ -123,7 +124,7 @@ def _cut_what_lies_behind(stock, layer, tooth, family, along, across):
     return removed
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def _carve_family(stock, layer, tooth, family, ca0, ct0, ea0, et0, ca1, ct1, ea1, et1):
     """Cut the lines of a family; a is the coordinate along the lines, t across them."""
     removed = 0.0
@@ -169,7 +170,7 @@ def _carve_family(stock, layer, tooth, family, ca0, ct0, ea0, et0, ca1, ct1, ea1
     return removed
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def _out_of_reach(box, cx, cy, ex0, ey0, ex1, ey1):
     """Whether axis and edge are beyond the same side of the box around the stock."""
     return (
@@ -180,7 +181,7 @@ def _out_of_reach(box, cx, cy, ex0, ey0, ex1, ey1):
     )
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def dexel_carve(stock, layer, tooth, cx0, cy0, ex0, ey0, cx1, cy1, ex1, ey1):
     """Remove what the rake line of a tooth sweeps in a step.
 
@@ -207,7 +208,7 @@ def dexel_carve(stock, layer, tooth, cx0, cy0, ex0, ey0, cx1, cy1, ex1, ey1):
     return 0.5 * stock.spacing * removed
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def dexel_flush(stock):
     """Carry out all waiting cuts; the area removed from all layers, m^2."""
     removed = 0.0
@@ -220,7 +221,7 @@ def dexel_flush(stock):
     return 0.5 * stock.spacing * removed
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def _thickness_on_family(stock, layer, family, ca, ct, ea, et):
     """Chip thickness at an edge from lines more along than across its radius.
 
@@ -270,7 +271,7 @@ def _thickness_on_family(stock, layer, family, ca, ct, ea, et):
     return max(thickness0 - air, 0.0)
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def dexel_chip_thickness(stock, layer, tooth, cx0, cy0, ex0, ey0, cx1, cy1, ex1, ey1):
     """Chip thickness at the end of a step, along the radius; to be read before `dexel_carve`.
 

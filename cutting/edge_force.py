@@ -15,7 +15,10 @@ from numpy.typing import NDArray
 
 from cutting.force_law import ExponentialLaw, ForceLaw, LinearLaw
 
-INLINED = {"error_model": "numpy", "forceinline": True, "_nrt": False}
+#: nothing is allocated in the time loop, so that references need no counting: it costs more there
+#: than the physics
+UNCOUNTED = {"error_model": "numpy", "_nrt": False}
+INLINED = {**UNCOUNTED, "forceinline": True}
 
 
 class LinearEdge(NamedTuple):

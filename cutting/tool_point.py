@@ -31,6 +31,8 @@ class Turn(NamedTuple):
     part: float
     sine: float
     cosine: float
+    sine_before: float
+    cosine_before: float
     whole_before: int
     part_before: float
     advance: float  # bins from the step before

@@ -15,6 +15,8 @@ import math
 import numpy as np
 from numba.extending import register_jitable
 
+from cutting.edge_force import UNCOUNTED
+
 _ALL = np.uint64(0xFFFFFFFFFFFFFFFF)
 _PAIRS = np.uint64(0x5555555555555555)
 _NIBBLES = np.uint64(0x3333333333333333)
@@ -23,7 +25,7 @@ _SHIFTS = tuple(np.uint64(n) for n in (1, 2, 4, 8, 16, 32))
 _LOW = np.uint64(0x7F)
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def _bits(word):
     """Return the number of set bits of a word (Warren 2012, section 5-1, without multiplying)."""
     word = word - ((word >> _SHIFTS[0]) & _PAIRS)
@@ -35,7 +37,7 @@ def _bits(word):
     return int(word & _LOW)
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def _span(stock, layer, row, left, right, keep):
     """Return the number of material cells of a row in columns left <= i < right.
 
@@ -61,7 +63,7 @@ def _span(stock, layer, row, left, right, keep):
     return number
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def _crossing(y, ax, ay, bx, by):
     """X at which the line a b reaches y, the same to the last bit in both directions."""
     if ay > by:
@@ -69,7 +71,7 @@ def _crossing(y, ax, ay, bx, by):
     return ax + (y - ay) / (by - ay) * (bx - ax)
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def _quadrilateral(stock, layer, ax, ay, bx, by, px, py, qx, qy, keep):
     """Return the numbers of material cells and of all cells in the convex quadrilateral a b p q.
 
@@ -103,14 +105,14 @@ def _quadrilateral(stock, layer, ax, ay, bx, by, px, py, qx, qy, keep):
     return number, every
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def _inner_end(stock, cx, cy, ex, ey):
     """Return the point of a rake line at the inner limit of what is looked at."""
     share = min(stock.window / math.hypot(ex - cx, ey - cy), 1.0)
     return ex - share * (ex - cx), ey - share * (ey - cy)
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def _out_of_reach(stock, cx, cy, ex, ey):
     """Whether a rake line cannot meet the stock: edge and axis beyond the same side of its box."""
     margin = stock.window
@@ -124,7 +126,7 @@ def _out_of_reach(stock, cx, cy, ex, ey):
     )
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def _movement(cx0, cy0, ex0, ey0, cx1, cy1, ex1, ey1):
     """Return the movement of the edge across the mean rake line (m) and its rotation (rad)."""
     ax, ay, bx, by = ex0 - cx0, ey0 - cy0, ex1 - cx1, ey1 - cy1
@@ -134,7 +136,7 @@ def _movement(cx0, cy0, ex0, ey0, cx1, cy1, ex1, ey1):
     return across, rotation
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def _reaches_deeper(stock, layer, cx, cy, ix, iy):
     """Whether material lies inward of the inner end of a rake line.
 
@@ -151,7 +153,7 @@ def _reaches_deeper(stock, layer, cx, cy, ix, iy):
     return number > 0
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def voxel_chip_thickness(stock, layer, tooth, cx0, cy0, ex0, ey0, cx1, cy1, ex1, ey1):
     """Chip thickness in a step, along the radius; to be read before `voxel_carve`.
 
@@ -199,7 +201,7 @@ def voxel_chip_thickness(stock, layer, tooth, cx0, cy0, ex0, ey0, cx1, cy1, ex1,
     return min(2.0 * area / (movement + root), depth)
 
 
-@register_jitable
+@register_jitable(**UNCOUNTED)
 def voxel_carve(stock, layer, tooth, cx0, cy0, ex0, ey0, cx1, cy1, ex1, ey1):
     """Remove what the rake line of a tooth sweeps in a step.
 

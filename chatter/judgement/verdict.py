@@ -19,7 +19,7 @@ from chatter.judgement.sections import Periods, cut_into_periods, once_a_tooth, 
 #: deviation from period to period, as a share of the rms of the signal, that counts as none
 _NEGLIGIBLE = 5e-3
 #: deviation per relative variation of the speed that may be its doing
-_BY_SPEED = 40.0
+_BY_SPEED = 60.0
 #: logarithm of the decay a turn below which a motion counts as sustained
 _SUSTAINED = -0.004
 #: standard errors by which a decay has to be certain
@@ -234,7 +234,7 @@ def _metrics(
     values = periods.values[len(periods.values) // 2 :]
     about_mean = np.sum((values - values.mean(axis=(0, 1))) ** 2)
     off = np.sum((values - values.mean(axis=0)) ** 2)
-    return {
+    metrics = {
         "once_a_turn_variance": float(np.sum(np.var(later, axis=0))),
         "off_harmonic_share": float(off / about_mean) if about_mean > 0.0 else 0.0,
         "deviation": trend.level,
@@ -248,3 +248,5 @@ def _metrics(
         "rank": float(deviations.rank),
         "line_share": share,
     }
+    # where nothing stands out of the noise there is no rate
+    return {name: value if math.isfinite(value) else math.nan for name, value in metrics.items()}

@@ -46,11 +46,14 @@ def _turn(prescribed, i, before, advance, angle, step):
     """Turn of the spindle at a row, with the row before it."""
     whole, part = prescribed.whole[i], prescribed.part[i]
     spindle = (whole + part) * angle
+    spindle_before = (prescribed.whole[before] + prescribed.part[before]) * angle
     return Turn(
         whole,
         part,
         math.sin(spindle),
         math.cos(spindle),
+        math.sin(spindle_before),
+        math.cos(spindle_before),
         prescribed.whole[before],
         prescribed.part[before],
         advance,

@@ -14,6 +14,6 @@ class Finish:
         return {}
 
 
-def finish_of(result) -> Finish:  # noqa: ANN001
+def finish_of(result) -> Finish:
     """Evaluate the surface of a result."""
     return Finish()

@@ -12,10 +12,21 @@ from numba.extending import overload
 
 from cutting.contact import ToolContact, contact_commit, contact_forces
 from cutting.delayed_chip import DelayedCut, delayed_commit, delayed_forces
+from cutting.discrete_chip import DiscreteCut, discrete_commit, discrete_forces
 from cutting.edge_force import INLINED
 
-ACTING = {DelayedCut: delayed_forces, ToolContact: contact_forces}
-SETTLING = {DelayedCut: delayed_commit, ToolContact: contact_commit}
+#: table -> kernel that adds its force
+ACTING = {
+    DelayedCut: delayed_forces,
+    DiscreteCut: discrete_forces,
+    ToolContact: contact_forces,
+}
+#: table -> kernel that takes in the motion of the step
+SETTLING = {
+    DelayedCut: delayed_commit,
+    DiscreteCut: discrete_commit,
+    ToolContact: contact_commit,
+}
 
 
 def _kernel(kernels, group):

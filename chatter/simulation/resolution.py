@@ -19,6 +19,8 @@ _STEPS_A_CUT = 60
 _LEAST_TURNS = 40.0
 _MOST_TURNS = 400.0
 _TIME_CONSTANTS = 12.0
+#: lag within a slice, rad, by the kind of chip: layers of a carved workpiece are cut as a whole
+LARGEST_LAG = {"delay": 0.1, "dexel": 0.01, "voxel": 0.01}
 #: rows of the record, at the most
 _MOST_ROWS = 120_000
 
@@ -68,7 +70,8 @@ def resolution_of(
     if steps is None:
         steps = steps_a_turn(case, modes, shortest_arc)
     steps = _divisible(steps, math.lcm(4, case.tool.teeth))
-    corner, straight = slice_counts(cutter, case.cut.axial_depth)
+    chip = section.chip if section else "delay"
+    corner, straight = slice_counts(cutter, case.cut.axial_depth, LARGEST_LAG[chip])
     if section and section.slices and straight:
         straight = section.slices
     turns = turns_of(case, modes)
@@ -108,4 +111,5 @@ def _divisible(steps: int, by: int) -> int:
 def _stride(steps: int, total: int) -> int:
     """Divisor of a turn that keeps the record within bounds."""
     least = math.ceil(total / _MOST_ROWS)
-    return next(stride for stride in range(least, steps + 1) if steps % stride == 0 or stride == steps)
+    divisors = (stride for stride in range(least, steps + 1) if steps % stride == 0)
+    return next(divisors, steps)

@@ -50,7 +50,7 @@ class SimulationResult:
     complete: bool = True
 
     @property
-    def case(self):  # noqa: ANN201
+    def case(self):
         """Case that was simulated."""
         return self.setup.case
 

@@ -19,9 +19,11 @@ from chatter.simulation.spindle import (
     path_of_last_turn,
     spindle_of,
 )
+from chatter.simulation.stock import discrete_cut
 from chatter.structure import structure_of
 from cutting.contact import ToolContact
 from cutting.delayed_chip import DelayedCut
+from cutting.discrete_chip import DiscreteCut
 from cutting.engagement import slice_engagement
 from cutting.regeneration import delayed_cut
 from cutting.tool import Cutter, EdgeSlices, edge_slices
@@ -64,6 +66,12 @@ class Setup:
     notes: tuple[str, ...]
 
     @property
+    def turns_before(self) -> int:
+        """Turns before the start in which the tool, at rest, carves what it finds at the start."""
+        carved = isinstance(self.groups[0], DiscreteCut) and self.case.stock is None
+        return 2 if carved else 0
+
+    @property
     def step(self) -> float:
         """Time step, s."""
         return 2.0 * math.pi / (self.spindle.speed * self.resolution.steps_a_turn)
@@ -92,7 +100,8 @@ def set_up(case: Case) -> Setup:
     _refuse_crossing_flutes(case, slices)
     _refuse_tool_too_short(case, cutter)
     spindle, path = spindle_of(case), path_of(case)
-    groups: tuple = (_cut_group(case, cutter, slices, resolution, spindle, path),)
+    chip = case.simulation.chip if case.simulation else "delay"
+    groups: tuple = (CHIPS[chip](case, cutter, slices, modes, resolution, spindle, path),)
     if case.contact is not None:
         groups += (ToolContact(case.contact.stiffness, case.contact.damping),)
     return Setup(
@@ -145,9 +154,7 @@ def _refuse_crossing_flutes(case: Case, slices: EdgeSlices) -> None:
 def _refuse_tool_too_short(case: Case, cutter: Cutter) -> None:
     """Refuse a radial depth that no slice of the edge reaches."""
     slices = edge_slices(cutter, case.cut.axial_depth, (4, 4) if cutter.corner_radius else (0, 4))
-    entry, leave = slice_engagement(
-        case.cut.mode, radial_depth(case), cutter.radius, slices.radius
-    )
+    entry, leave = slice_engagement(case.cut.mode, radial_depth(case), cutter.radius, slices.radius)
     if np.all(entry >= leave):
         raise InputError(
             f"{case.name}: cut.radial_depth: at an axial depth of {case.cut.axial_depth * 1e3:g} mm "
@@ -156,25 +163,11 @@ def _refuse_tool_too_short(case: Case, cutter: Cutter) -> None:
         )
 
 
-def _cut_group(
-    case: Case,
-    cutter: Cutter,
-    slices: EdgeSlices,
-    resolution: Resolution,
-    spindle: Spindle,
-    path: ToolPath,
-) -> DelayedCut:
-    """Group of the cutting force with the chip that the case asks for."""
-    chip = case.simulation.chip if case.simulation else "delay"
-    bins = resolution.steps_a_turn
-    return CHIPS[chip](case, cutter, slices, bins, resolution, spindle, path)
-
-
 def _delayed(
     case: Case,
     cutter: Cutter,
     slices: EdgeSlices,
-    bins: int,
+    modes: tuple[Mode, ...],  # noqa: ARG001  (every chip has the same signature)
     resolution: Resolution,
     spindle: Spindle,
     path: ToolPath,
@@ -184,10 +177,10 @@ def _delayed(
             f'{case.name}: simulation.chip: "delay" knows the engagement of [cut] alone, along a '
             'straight line; [stock] and simulation.path need chip = "dexel" or "voxel"'
         )
-    arcs = slice_engagement(case.cut.mode, radial_depth(case), cutter.radius, slices.radius)
+    bins = resolution.steps_a_turn
     return delayed_cut(
         slices,
-        arcs,
+        slice_engagement(case.cut.mode, radial_depth(case), cutter.radius, slices.radius),
         edge_law(case),
         flank_table(case, slices.radius, 2.0 * math.pi / bins),
         bins,
@@ -196,5 +189,4 @@ def _delayed(
 
 
 #: name in a case file -> group of the cutting force
-CHIPS = {"delay": _delayed}
-
+CHIPS = {"delay": _delayed, "dexel": discrete_cut, "voxel": discrete_cut}

@@ -55,6 +55,18 @@ def simulate(case: Case, progress: Progress = no_progress) -> SimulationResult:
     return result
 
 
+def _run_before(setup: Setup, record: Record) -> None:
+    """Carve the workpiece with the tool at rest for the turns before the start."""
+    bins = setup.resolution.steps_a_turn
+    count = setup.turns_before * bins
+    rigid = modal_steps((), setup.step)
+    turns = prescribed(setup.spindle, setup.path, bins, setup.step, -1 - count, count)
+    # a stride beyond the end of the chunk records nothing
+    unrecorded = Record(count + 2, record.rows)
+    run(setup.groups, rigid, tool_point(), turns, unrecorded, np.zeros((0, 2)), 0, math.inf, bins)
+    setup.groups[0].removed[0] = 0.0
+
+
 def run_setup(setup: Setup, progress: Progress = no_progress) -> tuple[SimulationResult, int]:
     """Run what was set up, once, and return the result and the number of steps done."""
     resolution = setup.resolution
@@ -68,14 +80,14 @@ def run_setup(setup: Setup, progress: Progress = no_progress) -> tuple[Simulatio
     point = tool_point()
     record = Record(resolution.stride, np.zeros((steps // resolution.stride + 1, len(COLUMNS))))
     scratch = np.zeros((len(setup.modes), 2))
+    if setup.turns_before:
+        _run_before(setup, record)
     furthest = setup.furthest if setup.modes else math.inf
     done = -1
     while done < steps:
         count = min(_STEPS_A_CHUNK, steps - done)
         turns = prescribed(setup.spindle, setup.path, bins, setup.step, done, count)
-        ran = run(
-            setup.groups, modes, point, turns, record, scratch, done, furthest, bins
-        )
+        ran = run(setup.groups, modes, point, turns, record, scratch, done, furthest, bins)
         done += ran
         progress(done, steps)
         if ran < count:

@@ -39,8 +39,8 @@ class ReferenceCut:
 
     ``pitch`` lists the angle from each tooth to the next (N values that add up to 2 pi); ``helix``
     holds one angle for each tooth.  ``exponent`` of ``None`` means the linear law.  ``passes`` is
-    how many earlier passes the chip looks back on, 0 for twice the number of teeth; the sets in
-    shared/measurements were made with as many as there are teeth.  ``runout_follows_helix`` takes
+    how many earlier passes the chip looks back on, 0 for the number of teeth: one revolution, as
+    the sets in shared/measurements were made.  ``runout_follows_helix`` takes
     the runout at the angle of the tooth at height z instead of at the tip; it is no convention of
     the package, only a variant to hold against measurements (which refute it).
     """
@@ -364,7 +364,7 @@ def simulate_at(
     angles = times * cut.spindle_speed
     revolutions = max(1, int(np.ceil(angles.max() / TWO_PI - 1e-9)))
     count = revolutions * steps
-    passes = cut.passes or 2 * teeth
+    passes = cut.passes or teeth
     same_helix = bool(np.all(slope == slope[0]))
     shortest = min(cut.pitch) - cut.axial_depth * float(np.ptp(slope))
     if shortest <= 2.0 * TWO_PI / steps_per_revolution:

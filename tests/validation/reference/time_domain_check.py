@@ -99,9 +99,8 @@ def row(values) -> str:
 def variants(name: str, cut: ReferenceCut) -> dict[str, ReferenceCut]:
     """Readings of the conventions to hold against a set."""
     change = dataclasses.replace
-    found = {"2 N passes": cut}
-    cut = change(cut, passes=cut.teeth)
-    found["N passes"] = cut
+    found = {"N passes": cut}
+    found["2 N passes"] = change(cut, passes=2 * cut.teeth)
     found["1 pass"] = change(cut, passes=1)
     if cut.runout_offset:
         found["runout at height z"] = change(cut, runout_follows_helix=True)

@@ -1,0 +1,203 @@
+"""Workpiece of dexels or voxels that a case describes, and the cut through it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.case import Case
+from chatter.errors import InputError
+from chatter.simulation.cutter import edge_law, flank_table
+from chatter.simulation.resolution import Resolution
+from chatter.simulation.spindle import Spindle, ToolPath
+from cutting.dexel_stock import DexelStock, dexel_remove_path, dexel_stock, dexel_wall_profile
+from cutting.discrete_chip import DiscreteCut
+from cutting.edges import edge_table
+from cutting.tool import Cutter, EdgeSlices
+from cutting.voxel_stock import VoxelStock, voxel_remove_path, voxel_stock, voxel_wall_profile
+from dynamics.modal import Mode
+
+#: stock left behind the wall and ahead of the last place of the tool, in radii
+_MARGIN = 0.15
+#: dexels within the wave that the highest mode leaves, and the coarsest spacing, m
+_DEXELS_A_WAVE = 24
+_COARSEST_DEXEL = 5e-5
+#: voxels within the thickest chip
+_VOXELS_A_CHIP = 12
+#: the stock may take this much memory, bytes
+_MOST_MEMORY = 4e9
+
+Rectangle = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class DiscreteChip:
+    """A kind of discrete workpiece.
+
+    Parameters
+    ----------
+    build, remove_path, wall_profile : callable
+        Of the module of the workpiece.
+    resolution : callable
+        Spacing (m) for a case, where it gives none.
+    memory : callable
+        Bytes for a rectangle, a number of layers and a spacing.
+    """
+
+    build: Callable[..., DexelStock | VoxelStock]
+    remove_path: Callable[..., None]
+    wall_profile: Callable[..., NDArray[np.float64]]
+    resolution: Callable[[Case, tuple[Mode, ...]], float]
+    memory: Callable[[Rectangle, int, float], float]
+
+
+def _dexel_spacing(case: Case, modes: tuple[Mode, ...]) -> float:
+    """Fine enough for the shortest wave, and for the radius."""
+    highest = max((mode.frequency for mode in modes), default=0.0)
+    speed = 0.5 * case.tool.diameter * case.cut.spindle_speed
+    wave = speed / highest if highest else math.inf
+    return min(_COARSEST_DEXEL, 0.005 * case.tool.diameter, wave / _DEXELS_A_WAVE)
+
+
+def _voxel_size(case: Case, modes: tuple[Mode, ...]) -> float:
+    """Fine enough for the chip, and for the shortest wave."""
+    return min(case.cut.feed_per_tooth / _VOXELS_A_CHIP, _dexel_spacing(case, modes))
+
+
+def _dexel_memory(box: Rectangle, layers: int, spacing: float) -> float:
+    return 192.0 * layers * max(box[1] - box[0], box[3] - box[2]) / spacing
+
+
+def _voxel_memory(box: Rectangle, layers: int, size: float) -> float:
+    return layers * (box[1] - box[0]) * (box[3] - box[2]) / size**2 / 8.0
+
+
+#: name in a case file -> workpiece
+DISCRETE_CHIPS: dict[str, DiscreteChip] = {
+    "dexel": DiscreteChip(
+        dexel_stock, dexel_remove_path, dexel_wall_profile, _dexel_spacing, _dexel_memory
+    ),
+    "voxel": DiscreteChip(
+        voxel_stock, voxel_remove_path, voxel_wall_profile, _voxel_size, _voxel_memory
+    ),
+}
+
+
+def discrete_cut(
+    case: Case,
+    cutter: Cutter,
+    slices: EdgeSlices,
+    modes: tuple[Mode, ...],
+    resolution: Resolution,
+    spindle: Spindle,
+    path: ToolPath,
+) -> DiscreteCut:
+    """Cut through a workpiece as it is before the first step.
+
+    Raises
+    ------
+    InputError
+        If the workpiece would need too much memory.
+    """
+    kind = DISCRETE_CHIPS[case.simulation.chip]
+    size = case.simulation.resolution or kind.resolution(case, modes)
+    corners = _swept(resolution, spindle, path)
+    boxes = _boxes(case, cutter, slices, corners)
+    _refuse_too_large(case, kind, boxes, size)
+    stock = kind.build(boxes, len(slices.height), size, cutter.teeth, _window(case, cutter))
+    if case.stock is None:
+        _cut_before(kind, stock, cutter, slices, case, path)
+    return DiscreteCut(
+        edges=edge_table(slices, resolution.steps_a_turn),
+        law=edge_law(case),
+        flank=flank_table(case, slices.radius, 2.0 * math.pi / resolution.steps_a_turn),
+        stock=stock,
+        depth=float(slices.thickness.sum()),
+        removed=np.zeros(1),
+    )
+
+
+def _window(case: Case, cutter: Cutter) -> float:
+    """Depth from the edge inwards within which material is looked for, m."""
+    thickest = case.cut.feed_per_tooth * cutter.teeth * max(cutter.pitch) / (2.0 * math.pi)
+    spread = np.ptp(cutter.radial_offsets) + np.ptp(cutter.axial_offsets)
+    return 3.0 * thickest + float(spread) + 5e-5
+
+
+def _swept(resolution: Resolution, spindle: Spindle, path: ToolPath) -> NDArray[np.float64]:
+    """Places (2, n) of the tool axis over the run, m, with all corners between."""
+    end = resolution.turns * 2.0 * math.pi / spindle.speed
+    legs = np.hypot(*np.diff(path.corners, axis=0).T)
+    times = np.concatenate([[0.0], np.cumsum(legs) / path.feed, [end]])
+    return path.place_at(np.sort(times[times <= end]))
+
+
+def _boxes(
+    case: Case, cutter: Cutter, slices: EdgeSlices, places: NDArray[np.float64]
+) -> list[list[tuple[Rectangle, bool]]]:
+    """Rectangles of every layer: those of the case, else a stock of the radial depth of cut."""
+    if case.stock is not None:
+        layers = [
+            [
+                ((*box.x, *box.y), not box.remove)
+                for box in case.stock.box
+                if box.z[0] <= height < box.z[1]
+            ]
+            for height in slices.height
+        ]
+        if not any(adds for layer in layers for _, adds in layer):
+            raise InputError(
+                f"{case.name}: stock: no box lies at the height of the edge, 0 to "
+                f"{case.cut.axial_depth * 1e3:g} mm above the tip at z = 0"
+            )
+        return layers
+    radius = float(slices.radius.max())
+    margin = _MARGIN * radius
+    x0 = float(places[0].min()) - 3.0 * radius - margin
+    x1 = float(places[0].max()) + radius + margin
+    low, high = -radius - margin, radius + margin
+    width = case.cut.radial_depth
+    if case.cut.mode == "up":
+        low = cutter.radius - width
+    elif case.cut.mode == "down":
+        high = width - cutter.radius
+    return [[((x0, x1, low, high), True)] for _ in slices.height]
+
+
+def _refuse_too_large(
+    case: Case, kind: DiscreteChip, boxes: list[list[tuple[Rectangle, bool]]], size: float
+) -> None:
+    shapes = np.array([shape for layer in boxes for shape, adds in layer if adds])
+    low, high = shapes.min(axis=0), shapes.max(axis=0)
+    box = (low[0], high[1], low[2], high[3])
+    needed = kind.memory(box, len(boxes), size)
+    if needed > _MOST_MEMORY:
+        raise InputError(
+            f"{case.name}: simulation.resolution: {size * 1e6:.3g} um over a stock of "
+            f"{(box[1] - box[0]) * 1e3:.3g} by {(box[3] - box[2]) * 1e3:.3g} mm in {len(boxes)} "
+            f"layers needs {needed / 1e9:.3g} GB, at most {_MOST_MEMORY / 1e9:g} GB are allowed; "
+            "choose a coarser resolution or a shorter run"
+        )
+
+
+def _cut_before(
+    kind: DiscreteChip,
+    stock: DexelStock | VoxelStock,
+    cutter: Cutter,
+    slices: EdgeSlices,
+    case: Case,
+    path: ToolPath,
+) -> None:
+    """Take away what the tool has cut until two turns before the start."""
+    a_turn = case.cut.feed_per_tooth * cutter.teeth
+    heading = np.diff(path.corners[:2], axis=0)[0]
+    heading = heading / np.hypot(*heading)
+    end = path.corners[0] - 2.0 * a_turn * heading
+    start = path.corners[0] - 4.0 * slices.radius.max() * heading
+    inner = slices.normal_offset.min(axis=0) / np.sin(slices.immersion)
+    for layer, (radius, offset) in enumerate(zip(slices.radius, inner, strict=True)):
+        kind.remove_path(stock, layer, *start, *end, radius + offset)
