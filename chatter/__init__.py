@@ -17,6 +17,8 @@ stability          kernels: one module a method, one sweep
 methods            the methods behind one call
 lobe_diagram       `lobes`: limits over speed, pockets, files
 stability_check    `check`: verdict on the operating point
+simulation         `simulate`: the cut in the time domain
+judgement          chatter or not, from the signals of a cut
 modal_test         `modes`: measured FRFs or hammer records to modal parameters
 example_cases      `examples`: list, copy and run the shipped examples
 plots              pictures
@@ -38,6 +40,8 @@ if TYPE_CHECKING:
     from chatter.example_cases import examples as examples
     from chatter.lobe_diagram import lobes as lobes
     from chatter.modal_test import modes as modes
+    from chatter.simulation.bifurcation import bifurcation as bifurcation
+    from chatter.simulation.simulate import simulate as simulate
     from chatter.stability_check import check as check
 
 __version__ = "0.1.0"
@@ -47,12 +51,14 @@ _PUBLIC = {
     "Case": "chatter.case",
     "InputError": "chatter.errors",
     "RunError": "chatter.errors",
+    "bifurcation": "chatter.simulation.bifurcation",
     "check": "chatter.stability_check",
     "examples": "chatter.example_cases",
     "load": "chatter.case",
     "lobes": "chatter.lobe_diagram",
     "modes": "chatter.modal_test",
     "schema": "chatter.case",
+    "simulate": "chatter.simulation.simulate",
 }
 
 __all__ = sorted(_PUBLIC)

@@ -58,10 +58,24 @@ def by_zero_order(
     )
 
 
+def by_time(
+    model: MillingModel,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    steps: int | None,  # noqa: ARG001  (every method has the same signature)
+    progress: Progress,
+) -> LimitCurve:
+    """Limits from cuts simulated in the time domain, with all that the simulation holds."""
+    from chatter.simulation.limits import time_limit_curve
+
+    return time_limit_curve(model.case, model.structure.modes, speeds, depths, progress)
+
+
 #: name on the command line and in case files -> method
 METHODS: dict[str, LimitMethod] = {
     "semi-discretization": by_semi_discretization,
     "zero-order": by_zero_order,
+    "time": by_time,
 }
 
 DEFAULT_METHOD = "semi-discretization"

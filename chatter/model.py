@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from chatter.case import Case
 from chatter.errors import InputError
 from chatter.plausibility import check_plausible
+from chatter.simulation.cutter import force_law, helix_angles
 from chatter.stability.arrays import MillingArrays
 from chatter.structure import Structure, structure_of
 from cutting.directional import DirectionalTable, directional_table, mean_over_turn
 from cutting.engagement import engagement
-from cutting.force_law import ExponentialLaw, ForceLaw, LinearLaw
 from cutting.process_damping import ViscousProcessDamping
 
 #: directions of motion weaker than this, relative to the strongest, do not count
@@ -29,6 +29,8 @@ class MillingModel:
 
     Parameters
     ----------
+    case : Case
+        That it was compiled from.
     structure : Structure
     basis : (3, r) array of float
         Orthonormal columns that span the motion of the tool point.
@@ -42,6 +44,7 @@ class MillingModel:
         Assumptions and limits that the user should know of.
     """
 
+    case: Case
     structure: Structure
     basis: NDArray[np.float64]
     table: DirectionalTable
@@ -97,7 +100,9 @@ def milling_model(case: Case) -> MillingModel:
     basis = _motion_basis(structure.directions)
     damping = _process_damping(case)
     arc = engagement(case.cut.mode, _radial_depth(case), case.tool.diameter)
-    table = directional_table(arc, force_law(case), case.cut.feed_per_tooth, basis, damping)
+    table = directional_table(
+        arc, force_law(case, helix_angles(case)[0]), case.cut.feed_per_tooth, basis, damping
+    )
     if not np.any(table.first_integral[0, -1]):
         raise InputError(
             f"{case.name}: structure: the modes move along the tool axis alone; with a 90 degree "
@@ -106,13 +111,21 @@ def milling_model(case: Case) -> MillingModel:
     notes = list(structure.notes)
     if damping is not None:
         notes.append("the zeroth-order solution leaves process damping out")
+    if case.process_damping is not None and case.process_damping.indentation_force is not None:
+        notes.append(
+            "ploughing (process_damping.indentation_force) acts in the time domain alone; the "
+            "other methods leave it out"
+        )
+    if case.contact is not None:
+        notes.append("the contact of tool and work acts in the time domain alone")
     radius = 0.5 * case.tool.diameter
     return MillingModel(
+        case=case,
         structure=structure,
         basis=basis,
         table=table,
         teeth=case.tool.teeth,
-        lag_per_depth=abs(math.tan(_helix_angles(case)[0])) / radius,
+        lag_per_depth=abs(math.tan(helix_angles(case)[0])) / radius,
         radius=radius,
         notes=tuple(notes),
     )
@@ -132,32 +145,33 @@ def _refuse_unsupported(case: Case) -> None:
             f"{case.name}: tool.pitch: stability of unequal pitch is not available yet; "
             "remove the key for equal pitch"
         )
-    if len(set(_helix_angles(case))) > 1:
+    if len(set(helix_angles(case))) > 1:
         problems.append(
             f"{case.name}: tool.helix: stability of flutes with different helix is not "
             "available yet; give one angle"
+        )
+    if case.tool.cutting_edge_angle < 0.5 * math.pi - 1e-9:
+        problems.append(
+            f"{case.name}: tool.cutting_edge_angle: stability of edges that do not stand at 90 deg "
+            "is not available yet; chatter simulate takes them"
+        )
+    if case.tool.serration is not None:
+        problems.append(
+            f"{case.name}: tool.serration: stability of serrated edges is not available yet; "
+            "chatter simulate takes them"
+        )
+    if case.cut.speed_variation is not None:
+        problems.append(
+            f"{case.name}: cut.speed_variation: stability under a varying speed is not available "
+            "yet; chatter simulate takes it"
         )
     if problems:
         raise InputError(problems)
 
 
-def _helix_angles(case: Case) -> tuple[float, ...]:
-    helix = case.tool.helix
-    return tuple(helix) if isinstance(helix, (tuple, list)) else (helix,)
-
-
 def _radial_depth(case: Case) -> float:
     """Width of cut, m; a slot need not give it."""
     return case.tool.diameter if case.cut.radial_depth is None else case.cut.radial_depth
-
-
-def force_law(case: Case) -> ForceLaw:
-    """Return the force law that the material section describes."""
-    material = case.material
-    cutting = material.cutting_coefficients(_helix_angles(case)[0])
-    if material.law == "exponential":
-        return ExponentialLaw(cutting, material.h0, material.exponent, material.edge_coefficients)
-    return LinearLaw(cutting, material.edge_coefficients)
 
 
 def _process_damping(case: Case) -> ViscousProcessDamping | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from chatter.cli import check, examples, lobes, modes, schema
+from chatter.cli import bifurcation, check, examples, lobes, modes, schema, simulate
 
 app = typer.Typer(
     name="chatter",
@@ -14,7 +14,16 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-for command in (check.check, lobes.lobes, modes.modes, examples.examples, schema.schema):
+COMMANDS = (
+    check.check,
+    lobes.lobes,
+    simulate.simulate,
+    bifurcation.bifurcation,
+    modes.modes,
+    examples.examples,
+    schema.schema,
+)
+for command in COMMANDS:
     app.command()(command)
 
 

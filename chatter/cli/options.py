@@ -24,7 +24,7 @@ OutputFolder = Annotated[
 Json = Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")]
 Method = Annotated[
     str | None,
-    typer.Option("--method", help="semi-discretization (default) or zero-order."),
+    typer.Option("--method", help="semi-discretization (default), zero-order or time."),
 ]
 
 

@@ -30,11 +30,18 @@ def progress_bar(description: str) -> Iterator:
         yield lambda done, total: bar.update(task, completed=done, total=total)
 
 
-def announce_compilation() -> None:
-    """Say that the first use compiles, where the cache does not hold the kernels yet."""
-    from chatter.kernels import CACHE_FOLDER
+def announce_compilation(driver: object | None = None) -> None:
+    """Say that the first use compiles, where the cache does not hold the kernels yet.
 
-    if not any(CACHE_FOLDER.rglob("*.nbi")):
+    Parameters
+    ----------
+    driver : compiled function, optional
+        Asked for alone; by default any kernel will do.
+    """
+    from chatter.kernels import CACHE_FOLDER, is_compiled
+
+    known = any(CACHE_FOLDER.rglob("*.nbi")) if driver is None else is_compiled(driver)
+    if not known:
         MESSAGES.print("first use: compiling the numerical kernels, once, under a minute ...")
 
 

@@ -10,6 +10,11 @@ setup        a case compiled to law groups, modes and record
 laws         law groups, dispatched by the type of their table
 engine       the compiled time loop
 simulate     `simulate`: runs a case and returns its result
+growth       multiplier of a cut from the growth of its vibration
+limits       limits of stability from it, over speed
+bifurcation  `bifurcation`: once-per-revolution points over a value of the case
+stock        workpiece of dexels or voxels
+finish       surface that the cut leaves behind
 result       signals, verdict, surface; pictures and files
 ============ ======================================================================
 """

@@ -32,6 +32,7 @@ class Prescribed(NamedTuple):
     speed: NDArray[np.float64]  # rad/s, (n+1,)
     x: NDArray[np.float64]  # m, (n+1,)
     y: NDArray[np.float64]  # m, (n+1,)
+    grip: NDArray[np.float64]  # share of the cutting force that the structure feels, (n+1,)
 
 
 class Record(NamedTuple):
@@ -123,6 +124,8 @@ def run(groups, modes, point, prescribed, record, scratch, first, furthest, bins
         if first + i > 0:
             predict(modes, scratch, point)
         all_act(groups, turn, point)
+        for axis in range(3):
+            point.force[axis] *= prescribed.grip[i]
         if first + i > 0:
             correct(modes, scratch, point)
         else:

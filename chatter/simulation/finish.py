@@ -1,19 +1,200 @@
-"""Surface that a simulated cut leaves behind."""
+"""Numbers of the surface that a simulated cut leaves behind."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from chatter.simulation.reconstruction import FloorProfile, WallProfiles, surface_profiles
+from cutting.texture import HeightParameters, Texture, cut_off_for, location_error, texture
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from chatter.simulation.result import SimulationResult
+
+#: sampling lengths that ISO 4288 wants
+_SAMPLING_LENGTHS = 5.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
+class WallFinish:
+    """A wall and its numbers.
+
+    Parameters
+    ----------
+    profiles : WallProfiles
+    location_errors : (L,) array of float
+        Mean deviation at each height, m; positive where too much was removed.
+    location_error : float
+        Mean deviation of the wall, m.
+    texture : Texture
+    """
+
+    profiles: WallProfiles
+    location_errors: NDArray[np.float64]
+    location_error: float
+    texture: Texture
+
+    @property
+    def largest_location_error(self) -> float:
+        """Location error at the height where it is largest, m."""
+        return float(self.location_errors[np.argmax(np.abs(self.location_errors))])
+
+
+@dataclass(frozen=True, eq=False)
+class FloorFinish:
+    """A floor and its numbers.
+
+    Parameters
+    ----------
+    profile : FloorProfile
+    location_error : float
+        Depth by which too much was removed in the mean, m.
+    texture : Texture
+    """
+
+    profile: FloorProfile
+    location_error: float
+    texture: Texture
+
+
+@dataclass(frozen=True, eq=False)
 class Finish:
-    """Placeholder replaced by the surface module."""
+    """Surface of a cut.
+
+    Parameters
+    ----------
+    walls : tuple of WallFinish
+        One for each side; empty where the run is too short.
+    floor : FloorFinish or None
+    notes : tuple of str
+        What could not be evaluated, and why.
+    """
+
+    walls: tuple[WallFinish, ...] = ()
+    floor: FloorFinish | None = None
+    notes: tuple[str, ...] = ()
+
+    @property
+    def location_error(self) -> float | None:
+        """Surface location error of the wall, m; mean of both walls of a slot."""
+        errors = [wall.location_error for wall in self.walls]
+        return sum(errors) / len(errors) if errors else None
 
     def summary(self) -> dict:
-        """Return the numbers of the surface."""
-        return {}
+        """Return the numbers of the surface for summary.json; None for what is not known."""
+        wall = [one.texture for one in self.walls]
+        floor = [self.floor.texture] if self.floor else []
+        return {
+            "surface_location_error_um": _micrometres(self.location_error),
+            "surface_location": {
+                "walls": {one.profiles.side: _place(one) for one in self.walls},
+                "floor_um": _micrometres(self.floor.location_error) if self.floor else None,
+            },
+            "roughness": {
+                "wall": _heights("R", [one.roughness for one in wall]),
+                "floor": _heights("R", [one.roughness for one in floor]),
+            },
+            "waviness": {
+                "wall": _heights("W", [one.waviness for one in wall]),
+                "floor": _heights("W", [one.waviness for one in floor]),
+            },
+            "surface_evaluation": {
+                "length_mm": wall[0].length * 1e3 if wall else None,
+                "cut_off_mm": wall[0].cut_off * 1e3 if wall else None,
+                "notes": list(self.notes),
+            },
+        }
 
 
-def finish_of(result) -> Finish:
-    """Evaluate the surface of a result."""
-    return Finish()
+def _place(wall: WallFinish) -> dict:
+    return {
+        "mean_um": _micrometres(wall.location_error),
+        "largest_um": _micrometres(wall.largest_location_error),
+        "height_mm": (wall.profiles.height * 1e3).round(6).tolist(),
+        "by_height_um": (wall.location_errors * 1e6).round(6).tolist(),
+    }
+
+
+def _micrometres(value: float | None) -> float | None:
+    return None if value is None or not math.isfinite(value) else value * 1e6
+
+
+def _heights(letter: str, found: Sequence[HeightParameters | None]) -> dict[str, float | None]:
+    """Mean over the surfaces of a kind."""
+    known = [one for one in found if one is not None]
+
+    def mean(name: str) -> float | None:
+        if not known:
+            return None
+        return _micrometres(sum(getattr(one, name) for one in known) / len(known))
+
+    return {
+        f"{letter}a_um": mean("mean"),
+        f"{letter}q_um": mean("rms"),
+        f"{letter}z_um": mean("depth"),
+    }
+
+
+def finish_of(result: SimulationResult) -> Finish:
+    """Evaluate the surface that a cut leaves behind over its last settled turns.
+
+    Parameters
+    ----------
+    result : SimulationResult
+    """
+    walls, floor, notes = surface_profiles(result)
+    feed_per_turn = result.case.cut.feed_per_tooth * result.case.tool.teeth
+    return finish_from_profiles(walls, floor, feed_per_turn, notes)
+
+
+def finish_from_profiles(
+    walls: Sequence[WallProfiles],
+    floor: FloorProfile | None,
+    feed_per_turn: float,
+    notes: Sequence[str] = (),
+) -> Finish:
+    """Evaluate profiles, whether reconstructed from a motion or carved out of a stock.
+
+    Parameters
+    ----------
+    walls : sequence of WallProfiles
+    floor : FloorProfile or None
+    feed_per_turn : float
+        Longest spacing of marks that belong to the roughness, m; it chooses the cut-off.
+    notes : sequence of str
+        What is already known to be missing.
+    """
+    cut_off = cut_off_for(feed_per_turn)
+    found = tuple(_wall_finish(wall, cut_off) for wall in walls)
+    below = None if floor is None else _floor_finish(floor, cut_off)
+    evaluated = [one.texture for one in (*found, below) if one is not None]
+    return Finish(found, below, (*notes, *_length_notes(evaluated, cut_off)))
+
+
+def _wall_finish(wall: WallProfiles, cut_off: float) -> WallFinish:
+    by_height, mean = location_error(wall.deviation, wall.weight)
+    found = texture(wall.deviation, wall.weight, float(wall.x[1] - wall.x[0]), cut_off)
+    return WallFinish(wall, by_height, mean, found)
+
+
+def _floor_finish(floor: FloorProfile, cut_off: float) -> FloorFinish:
+    spacing = float(floor.x[1] - floor.x[0])
+    found = texture(floor.height[None, :], np.ones(1), spacing, cut_off)
+    return FloorFinish(floor, -float(floor.height.mean()), found)
+
+
+def _length_notes(evaluated: Sequence[Texture], cut_off: float) -> tuple[str, ...]:
+    if any(one.waviness is None for one in evaluated):
+        return (
+            f"surface: less than two cut-offs of {cut_off * 1e3:g} mm were evaluated, so that "
+            "roughness holds the waviness as well",
+        )
+    if any(one.length < _SAMPLING_LENGTHS * cut_off for one in evaluated):
+        return (f"surface: fewer than five cut-offs of {cut_off * 1e3:g} mm were evaluated",)
+    return ()

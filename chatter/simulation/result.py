@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _RPM = 30.0 / math.pi
 #: a record of fewer turns is not judged
-_LEAST_TURNS_TO_JUDGE = 5.0
+_LEAST_TURNS_TO_JUDGE = 8.0
 #: means are taken over the last whole turns within this share of the run
 _SETTLED_SHARE = 0.5
 

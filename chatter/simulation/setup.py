@@ -82,8 +82,14 @@ def radial_depth(case: Case) -> float:
     return case.tool.diameter if case.cut.radial_depth is None else case.cut.radial_depth
 
 
-def set_up(case: Case) -> Setup:
+def set_up(case: Case, modes: tuple[Mode, ...] | None = None) -> Setup:
     """Compile a case for the time domain.
+
+    Parameters
+    ----------
+    case : Case
+    modes : tuple of Mode, optional
+        Of the structure, where they are known already; it is then not looked at again.
 
     Raises
     ------
@@ -92,9 +98,10 @@ def set_up(case: Case) -> Setup:
     """
     case.require("tool", "material", "cut")
     check_plausible(case)
-    modes, notes = _modes_of(case)
+    notes: tuple[str, ...] = ()
+    if modes is None:
+        modes, notes = modes_of(case)
     cutter = cutter_of(case)
-    arcs = _arcs(case, cutter)
     resolution = resolution_of(case, cutter, modes, _shortest_arc(case, cutter))
     slices = edge_slices(cutter, case.cut.axial_depth, resolution.counts)
     _refuse_crossing_flutes(case, slices)
@@ -118,7 +125,8 @@ def set_up(case: Case) -> Setup:
     )
 
 
-def _modes_of(case: Case) -> tuple[tuple[Mode, ...], tuple[str, ...]]:
+def modes_of(case: Case) -> tuple[tuple[Mode, ...], tuple[str, ...]]:
+    """Modes of the structure of a case, and what was assumed of it; none for a rigid tool."""
     if case.structure is None:
         return (), ("no [structure]: tool and workpiece are rigid",)
     structure = structure_of(case)
@@ -157,9 +165,10 @@ def _refuse_tool_too_short(case: Case, cutter: Cutter) -> None:
     entry, leave = slice_engagement(case.cut.mode, radial_depth(case), cutter.radius, slices.radius)
     if np.all(entry >= leave):
         raise InputError(
-            f"{case.name}: cut.radial_depth: at an axial depth of {case.cut.axial_depth * 1e3:g} mm "
-            f"the edge is nowhere wider than {slices.radius.max() * 2e3:.4g} mm, so that a radial "
-            f"depth of {radial_depth(case) * 1e3:g} mm is not reached"
+            f"{case.name}: cut.radial_depth: down to an axial depth of "
+            f"{case.cut.axial_depth * 1e3:g} mm the edge is nowhere wider than "
+            f"{slices.radius.max() * 2e3:.4g} mm; a radial depth of "
+            f"{radial_depth(case) * 1e3:g} mm is not reached"
         )
 
 

@@ -109,7 +109,13 @@ def path_of(case: Case) -> ToolPath:
 
 
 def prescribed(
-    spindle: Spindle, path: ToolPath, bins: int, step: float, first: int, count: int
+    spindle: Spindle,
+    path: ToolPath,
+    bins: int,
+    step: float,
+    first: int,
+    count: int,
+    ramp: int = 0,
 ) -> Prescribed:
     """Turn and path at the steps first .. first + count.
 
@@ -122,6 +128,8 @@ def prescribed(
     step : float
         s.
     first, count : int
+    ramp : int
+        Steps over which the structure comes to feel the cutting force; 0 for at once.
     """
     number = np.arange(first, first + count + 1)
     time = number * step
@@ -142,6 +150,7 @@ def prescribed(
         speed=spindle.speed_at(time),
         x=np.ascontiguousarray(x),
         y=np.ascontiguousarray(y),
+        grip=np.clip(number / ramp, 0.0, 1.0) if ramp else np.ones(number.size),
     )
 
 

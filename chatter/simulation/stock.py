@@ -23,9 +23,11 @@ from dynamics.modal import Mode
 
 #: stock left behind the wall and ahead of the last place of the tool, in radii
 _MARGIN = 0.15
-#: dexels within the wave that the highest mode leaves, and the coarsest spacing, m
+#: dexels within the wave that the highest mode leaves and within the thickest chip, and the
+#: coarsest spacing, m
 _DEXELS_A_WAVE = 24
-_COARSEST_DEXEL = 5e-5
+_COARSEST_DEXEL = 2.5e-5
+_DEXELS_A_CHIP = 4
 #: voxels within the thickest chip
 _VOXELS_A_CHIP = 12
 #: the stock may take this much memory, bytes
@@ -60,7 +62,8 @@ def _dexel_spacing(case: Case, modes: tuple[Mode, ...]) -> float:
     highest = max((mode.frequency for mode in modes), default=0.0)
     speed = 0.5 * case.tool.diameter * case.cut.spindle_speed
     wave = speed / highest if highest else math.inf
-    return min(_COARSEST_DEXEL, 0.005 * case.tool.diameter, wave / _DEXELS_A_WAVE)
+    chip = case.cut.feed_per_tooth / _DEXELS_A_CHIP
+    return min(_COARSEST_DEXEL, chip, 0.0025 * case.tool.diameter, wave / _DEXELS_A_WAVE)
 
 
 def _voxel_size(case: Case, modes: tuple[Mode, ...]) -> float:
@@ -106,7 +109,7 @@ def discrete_cut(
     kind = DISCRETE_CHIPS[case.simulation.chip]
     size = case.simulation.resolution or kind.resolution(case, modes)
     corners = _swept(resolution, spindle, path)
-    boxes = _boxes(case, cutter, slices, corners)
+    boxes = _boxes(case, cutter, slices, corners, size)
     _refuse_too_large(case, kind, boxes, size)
     stock = kind.build(boxes, len(slices.height), size, cutter.teeth, _window(case, cutter))
     if case.stock is None:
@@ -137,7 +140,7 @@ def _swept(resolution: Resolution, spindle: Spindle, path: ToolPath) -> NDArray[
 
 
 def _boxes(
-    case: Case, cutter: Cutter, slices: EdgeSlices, places: NDArray[np.float64]
+    case: Case, cutter: Cutter, slices: EdgeSlices, places: NDArray[np.float64], size: float
 ) -> list[list[tuple[Rectangle, bool]]]:
     """Rectangles of every layer: those of the case, else a stock of the radial depth of cut."""
     if case.stock is not None:
@@ -165,6 +168,8 @@ def _boxes(
         low = cutter.radius - width
     elif case.cut.mode == "down":
         high = width - cutter.radius
+        # whole cells up to the border where the teeth come in
+        low = high - math.ceil((high - low) / size) * size
     return [[((x0, x1, low, high), True)] for _ in slices.height]
 
 

@@ -53,7 +53,10 @@ def _in_doubt(growth: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 
 def find_crossings(
-    net: NDArray[np.float64], depths: NDArray[np.float64], growth: Growth
+    net: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    growth: Growth,
+    tolerance: float = _DEPTH_TOLERANCE,
 ) -> list[NDArray[np.float64]]:
     """Depths of all changes of stability at each speed.
 
@@ -65,6 +68,8 @@ def find_crossings(
         m, ascending, > 0. At zero depth the damped structure is stable.
     growth : callable
         For the refinement.
+    tolerance : float
+        Of a limit, relative to its depth.
 
     Returns
     -------
@@ -74,7 +79,7 @@ def find_crossings(
     unstable = np.concatenate([np.zeros((net.shape[0], 1), dtype=bool), net > 0.0], axis=1)
     speed, place = np.nonzero(unstable[:, 1:] != unstable[:, :-1])
     edges = np.concatenate([[0.0], depths])
-    limit = _refine(speed, edges[place], edges[place + 1], growth)
+    limit = _refine(speed, edges[place], edges[place + 1], growth, tolerance)
     return [limit[speed == i] for i in range(net.shape[0])]
 
 
@@ -83,6 +88,7 @@ def _refine(
     low: NDArray[np.float64],
     high: NDArray[np.float64],
     growth: Growth,
+    tolerance: float,
 ) -> NDArray[np.float64]:
     """Root in each bracket by the Illinois method, all brackets at once."""
     low, high = low.copy(), high.copy()
@@ -109,8 +115,6 @@ def _refine(
         at_low[k[stuck & upper]] *= 0.5
         at_high[k[stuck & ~upper]] *= 0.5
         last_side[k] = side
-        done = (np.abs(value) < _GROWTH_TOLERANCE) | (
-            high[k] - low[k] <= _DEPTH_TOLERANCE * high[k]
-        )
+        done = (np.abs(value) < _GROWTH_TOLERANCE) | (high[k] - low[k] <= tolerance * high[k])
         open_brackets = k[~done]
     return root

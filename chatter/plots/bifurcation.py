@@ -1,0 +1,68 @@
+"""Picture of a bifurcation diagram."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from chatter.case.case import Case
+from chatter.case.path import field_at, parse_path
+from chatter.plots.style import BLUE, GREY, RED, finish, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from chatter.simulation.bifurcation import BifurcationDiagram
+
+#: dimension -> unit of the axis and factor from SI
+_SHOWN = {
+    "length": ("mm", 1e3),
+    "angular_speed": ("rpm", 30.0 / math.pi),
+    "angle": ("deg", 180.0 / math.pi),
+    "frequency": ("Hz", 1.0),
+    "line_force": ("N/mm", 1e-3),
+    "pressure": ("MPa", 1e-6),
+}
+_COLOURS = {"stable": BLUE, "chatter": RED}
+#: axes of less motion than this share of the other are left out
+_STILL = 1e-3
+
+
+def plot_bifurcation(diagram: BifurcationDiagram) -> Figure:
+    """Plot once-per-revolution displacement over the value that varies."""
+    unit, factor = _axis_unit(diagram.path)
+    sizes = [
+        max(np.abs(point.once_a_turn[:, axis]).max(initial=0.0) for point in diagram.points)
+        for axis in range(3)
+    ]
+    moving = [axis for axis in range(3) if sizes[axis] > _STILL * max(sizes)] or [0]
+    figure = new_figure(7.5, 2.6 * len(moving) + 0.6)
+    panels = figure.subplots(len(moving), 1, sharex=True, squeeze=False)[:, 0]
+    for panel, axis in zip(panels, moving, strict=True):
+        for point in diagram.points:
+            motion = point.once_a_turn[:, axis] * 1e6
+            panel.plot(
+                np.full(motion.size, point.value * factor),
+                motion,
+                linestyle="none",
+                marker=".",
+                markersize=2.5,
+                color=_COLOURS.get(point.verdict, GREY),
+            )
+        panel.set_ylabel(f"{'xyz'[axis]} once a revolution [µm]")
+        finish(panel)
+    for verdict, colour in _COLOURS.items():
+        panels[0].plot([], [], linestyle="none", marker=".", color=colour, label=verdict)
+    panels[0].legend(frameon=False, fontsize=9, loc="upper left")
+    name = diagram.path.split(".")[-1].replace("_", " ")
+    panels[-1].set_xlabel(f"{name} [{unit}]" if unit else name)
+    if diagram.case.title:
+        panels[0].set_title(diagram.case.title)
+    return figure
+
+
+def _axis_unit(path: str) -> tuple[str, float]:
+    field = field_at(Case, parse_path(path))
+    return _SHOWN.get(field.dimension, ("SI", 1.0)) if field else ("", 1.0)

@@ -1,0 +1,330 @@
+"""Picture of a simulated cut."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from chatter.plots import style
+
+if TYPE_CHECKING:
+    from chatter.simulation.finish import WallFinish
+    from chatter.simulation.result import SimulationResult
+
+Array = NDArray[np.float64]
+
+_TURN = 2.0 * math.pi
+_RPM = 30.0 / math.pi
+_COLOURS = (style.BLUE, style.ORANGE, style.GREEN)
+#: revolutions, or groups of them, that show a whole run as a band
+_LEAST_BANDS, _MOST_BANDS = 16, 400
+_SHOWN_TURNS = 3.0
+#: feed shown of a profile, in revolutions
+_PROFILE_TURNS = 12.0
+_TITLE_WIDTH = 125
+#: a component smaller than this share of the largest is left out
+_NOTHING = 1e-6
+#: the spectrum goes this far above the highest mode, or to this harmonic of the tooth passing
+_ABOVE_MODES = 3.0
+_LEAST_HARMONICS = 6
+
+
+def plot_simulation(result: SimulationResult) -> Figure:
+    """Draw forces, motion, spectrum, once-a-turn points and the surface of a run.
+
+    Parameters
+    ----------
+    result : SimulationResult
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = style.new_figure(11.0, 12.0)
+    grid = figure.add_gridspec(4, 1, height_ratios=[1.0, 1.0, 1.15, 1.15])
+    signals = (
+        ("force [N]", ("Fx", "Fy", "Fz"), result.force),
+        ("displacement [µm]", ("x", "y", "z"), result.displacement * 1e6),
+    )
+    for row, (label, names, values) in enumerate(signals):
+        pair = grid[row].subgridspec(1, 2)
+        draw_run(figure.add_subplot(pair[0]), result, values, names, label)
+        draw_last_turns(figure.add_subplot(pair[1]), result, values, names, label)
+    middle = grid[2].subgridspec(1, 2, width_ratios=[1.7, 1.0])
+    draw_spectrum(figure.add_subplot(middle[0]), result)
+    draw_once_a_turn(figure.add_subplot(middle[1]), result)
+    bottom = grid[3].subgridspec(1, 2)
+    draw_wall(figure.add_subplot(bottom[0]), result)
+    draw_profiles(figure.add_subplot(bottom[1]), result)
+    figure.suptitle(_title(result), fontsize=11.0, x=0.01, ha="left")
+    return figure
+
+
+def _title(result: SimulationResult) -> str:
+    cut = result.case.cut
+    case = (
+        f"{result.case.title + ': ' if result.case.title else ''}"
+        f"{cut.spindle_speed * _RPM:.0f} rpm, axial depth {cut.axial_depth * 1e3:.4g} mm, "
+        f"feed {cut.feed_per_tooth * 1e3:.4g} mm a tooth"
+    )
+    found = result.judgement
+    if found is None:
+        why = "the tool is rigid" if not result.setup.modes else "the run is too short"
+        return f"{case}\nnot judged: {why}"
+    verdict = found.verdict
+    if not found.stable and math.isfinite(found.chatter_frequency):
+        verdict += f" at {found.chatter_frequency:.0f} Hz"
+        verdict += f" ({found.bifurcation})" if found.bifurcation != "none" else ""
+    return f"{case}\n" + textwrap.fill(f"{verdict}: {found.reason}", _TITLE_WIDTH)
+
+
+def _shown(values: Array) -> list[int]:
+    """Components that are not nothing; the first if all are."""
+    size = np.abs(values).max(axis=0)
+    kept = [axis for axis in range(3) if size[axis] > _NOTHING * size.max()]
+    return kept or [0, 1]
+
+
+def draw_run(
+    axes: Axes, result: SimulationResult, values: Array, names: tuple[str, ...], label: str
+) -> None:
+    """Draw the whole run: the band between the least and the largest value of a revolution."""
+    turns = result.spindle_angle / _TURN
+    whole = math.floor(result.turns)
+    banded = whole >= _LEAST_BANDS
+    bounds = np.linspace(0, whole, min(max(whole, 1), _MOST_BANDS) + 1)
+    rows = np.searchsorted(turns, bounds[:-1] - 1e-9)
+    for axis in _shown(values):
+        colour, name = _COLOURS[axis], names[axis]
+        if banded:
+            low = np.minimum.reduceat(values[:, axis], rows)
+            high = np.maximum.reduceat(values[:, axis], rows)
+            low, high = np.append(low, low[-1]), np.append(high, high[-1])
+            band = {"color": colour, "step": "post", "label": name}
+            axes.fill_between(bounds, low, high, alpha=0.5, linewidth=0.8, **band)
+        else:
+            axes.plot(turns, values[:, axis], color=colour, linewidth=0.8, label=name)
+    axes.set_xlim(0.0, max(result.turns, 1e-9))
+    axes.set_xlabel("spindle revolutions")
+    axes.set_ylabel(label)
+    band = "whole run, least and largest of each revolution" if banded else "whole run"
+    axes.set_title(band, loc="left")
+    style.finish(axes)
+    _legend(axes)
+
+
+def draw_last_turns(
+    axes: Axes, result: SimulationResult, values: Array, names: tuple[str, ...], label: str
+) -> None:
+    """Draw the last revolutions."""
+    turns = result.spindle_angle / _TURN
+    first = int(np.searchsorted(turns, turns[-1] - _SHOWN_TURNS))
+    for axis in _shown(values):
+        axes.plot(
+            turns[first:], values[first:, axis], color=_COLOURS[axis], linewidth=1.0,
+            label=names[axis],
+        )  # fmt: skip
+    if turns[-1] > turns[first]:
+        axes.set_xlim(turns[first], turns[-1])
+    axes.set_xlabel("spindle revolutions")
+    axes.set_ylabel(label)
+    axes.set_title("last revolutions", loc="left")
+    style.finish(axes)
+    _legend(axes)
+
+
+def _legend(axes: Axes) -> None:
+    axes.legend(
+        loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, fontsize=8.5, frameon=False,
+        borderaxespad=0.2, handlelength=1.4,
+    )  # fmt: skip
+
+
+def spectrum(time: Array, signal: Array) -> tuple[Array, Array]:
+    """Amplitude of sines in a signal, with a Hann window.
+
+    Parameters
+    ----------
+    time : (n,) array of float
+        Evenly spaced, s.
+    signal : (n,) array of float
+
+    Returns
+    -------
+    frequency : (m,) array of float
+        Hz.
+    amplitude : (m,) array of float
+        In the unit of the signal.
+    """
+    window = np.hanning(len(signal) + 1)[:-1]
+    amplitude = np.abs(np.fft.rfft((signal - signal.mean()) * window)) * 2.0 / window.sum()
+    return np.fft.rfftfreq(len(signal), time[1] - time[0]), amplitude
+
+
+def draw_spectrum(axes: Axes, result: SimulationResult) -> None:
+    """Draw the amplitude spectrum of the displacement, or of the force on a rigid tool."""
+    rigid = not result.setup.modes
+    values = result.force if rigid else result.displacement * 1e6
+    names = ("Fx", "Fy", "Fz") if rigid else ("x", "y", "z")
+    axes.set_title(
+        f"spectrum of the {'force' if rigid else 'displacement'}, last half of the run", loc="left"
+    )
+    axes.set_xlabel("frequency [Hz]")
+    axes.set_ylabel("amplitude [N]" if rigid else "amplitude [µm]")
+    rows = result.settled
+    tooth = result.case.tool.teeth * result.case.cut.spindle_speed / _TURN
+    modes = [mode.frequency for mode in result.setup.modes]
+    top = max(_LEAST_HARMONICS * tooth, _ABOVE_MODES * max(modes, default=0.0))
+    largest = 0.0
+    if rows.stop - rows.start >= 16:
+        for axis in _shown(values):
+            frequency, amplitude = spectrum(result.time[rows], values[rows, axis])
+            shown = frequency <= top
+            axes.plot(
+                frequency[shown], amplitude[shown], color=_COLOURS[axis], linewidth=1.0,
+                label=names[axis], zorder=3,
+            )  # fmt: skip
+            largest = max(largest, float(amplitude[shown].max()))
+    _mark_harmonics(axes, tooth, result.case.tool.teeth, top)
+    _mark_chatter(axes, result)
+    axes.set_xlim(0.0, top)
+    if largest > 0.0:
+        axes.set_yscale("log")
+        axes.set_ylim(largest * 1e-4, largest * 2.0)
+    style.finish(axes)
+    axes.grid(visible=False, axis="x")
+    axes.legend(loc="upper right", fontsize=8.0, framealpha=0.9, ncols=2)
+
+
+def _mark_harmonics(axes: Axes, tooth: float, teeth: int, top: float) -> None:
+    thin = {"linewidth": 0.7, "zorder": 1}
+    turn = tooth / teeth
+    if teeth > 1 and top / turn < 120:
+        for order in range(1, int(top / turn) + 1):
+            axes.axvline(order * turn, color="#E4E4E4", **thin)
+    for order in range(1, int(top / tooth + 1e-9) + 1):
+        label = "tooth passing" if order == 1 else None
+        axes.axvline(order * tooth, color=style.GREY, linestyle=(0, (4, 3)), label=label, **thin)
+
+
+def _mark_chatter(axes: Axes, result: SimulationResult) -> None:
+    found = result.judgement
+    if found is None or not math.isfinite(found.chatter_frequency):
+        return
+    heard = found.chatter_frequency
+    axes.axvline(
+        heard, color=style.RED, linewidth=2.2, alpha=0.45, zorder=2, label=f"chatter {heard:.0f} Hz"
+    )
+
+
+def draw_once_a_turn(axes: Axes, result: SimulationResult) -> None:
+    """Draw the displacement each time the first tooth is at +y."""
+    axes.set_title("once a revolution", loc="left")
+    axes.set_xlabel("x [µm]")
+    axes.set_ylabel("y [µm]")
+    style.finish(axes)
+    points = _once_a_turn(result)
+    if not result.setup.modes or len(points) == 0:
+        text = "rigid: no motion" if not result.setup.modes else "less than a revolution"
+        axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", color=style.GREY)
+        return
+    half = len(points) // 2
+    axes.plot(
+        result.displacement[result.settled, 0] * 1e6, result.displacement[result.settled, 1] * 1e6,
+        color="#C9D6DF", linewidth=0.5, zorder=1,
+    )  # fmt: skip
+    axes.plot(*points[:half].T, ".", color=style.GREY, markersize=3, label="first half", zorder=2)
+    axes.plot(*points[half:].T, "o", color=style.RED, markersize=3, label="last half", zorder=3)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.legend(loc="best", fontsize=7.5, framealpha=0.85)
+
+
+def _once_a_turn(result: SimulationResult) -> Array:
+    """Points (turns, 2), µm."""
+    turns = np.arange(1, math.floor(result.turns + 1e-9) + 1)
+    if len(turns) == 0 or len(result.rows) < 4:
+        return np.zeros((0, 2))
+    motion = CubicSpline(result.spindle_angle, result.displacement[:, :2], axis=0)
+    return motion(turns * _TURN) * 1e6
+
+
+def draw_wall(axes: Axes, result: SimulationResult) -> None:
+    """Draw the deviation of the wall over feed and height."""
+    axes.set_title("wall, deviation (positive: too much removed)", loc="left")
+    axes.set_xlabel("feed [mm]")
+    axes.set_ylabel("height [mm]")
+    walls = result.finish.walls
+    if not walls:
+        _say_why_not(axes, result)
+        return
+    wall = walls[0].profiles
+    x, deviation = wall.x * 1e3, wall.deviation * 1e6
+    low, high = np.percentile(deviation, [0.5, 99.5])
+    if high - low < 1e-6:
+        low, high = low - 0.5e-3, high + 0.5e-3
+    image = axes.pcolormesh(
+        x, wall.height * 1e3, deviation, cmap="cividis", shading="nearest", vmin=low, vmax=high,
+        rasterized=True,
+    )  # fmt: skip
+    bar = axes.figure.colorbar(image, ax=axes, pad=0.02)
+    bar.set_label(f"wall at {wall.side} [µm]", fontsize=9)
+    bar.ax.tick_params(labelsize=8)
+    style.finish(axes)
+    axes.grid(visible=False)
+
+
+def draw_profiles(axes: Axes, result: SimulationResult) -> None:
+    """Draw the profile of every wall at half its height, and of the floor."""
+    axes.set_title("profiles along the feed, about their mean", loc="left")
+    axes.set_xlabel("feed from the start of what is evaluated [mm]")
+    axes.set_ylabel("material left [µm]")
+    finish = result.finish
+    if not finish.walls and finish.floor is None:
+        _say_why_not(axes, result)
+        return
+    for wall, colour in zip(finish.walls, (style.BLUE, style.ORANGE), strict=False):
+        _draw_profile(axes, wall.profiles.x, -_middle_row(wall), colour, _wall_label(wall))
+    if finish.floor is not None:
+        floor = finish.floor
+        label = f"floor: Ra {floor.texture.roughness.mean * 1e6:.3g} µm"
+        _draw_profile(axes, floor.profile.x, floor.profile.height, style.GREEN, label)
+    style.finish(axes)
+    feed_per_turn = result.case.tool.teeth * result.case.cut.feed_per_tooth
+    end = max(float(line.get_xdata()[-1]) for line in axes.lines)
+    axes.set_xlim(0.0, min(end, _PROFILE_TURNS * feed_per_turn * 1e3))
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.22 * (high - low) * (len(axes.lines) + 0.5) / 2.0)
+    axes.legend(loc="upper left", fontsize=8.0, framealpha=0.85)
+
+
+def _draw_profile(axes: Axes, x: Array, profile: Array, colour: str, label: str) -> None:
+    """Draw a profile from the start of the stretch that was evaluated."""
+    axes.plot(
+        (x - x[0]) * 1e3, (profile - profile.mean()) * 1e6, color=colour, linewidth=1.0, label=label
+    )
+
+
+def _middle_row(wall: WallFinish) -> Array:
+    return wall.profiles.deviation[len(wall.profiles.height) // 2]
+
+
+def _wall_label(wall: WallFinish) -> str:
+    rough = wall.texture.roughness
+    return (
+        f"wall {wall.profiles.side}: Ra {rough.mean * 1e6:.3g} µm, Rz {rough.depth * 1e6:.3g} µm, "
+        f"location error {wall.location_error * 1e6:+.3g} µm"
+    )
+
+
+def _say_why_not(axes: Axes, result: SimulationResult) -> None:
+    style.finish(axes)
+    notes = result.finish.notes
+    text = notes[0].replace(": ", ":\n") if notes else "not evaluated"
+    axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", color=style.GREY, fontsize=9)

@@ -1,0 +1,186 @@
+"""Bifurcation diagram: once-per-revolution points of simulated cuts over a value of the case."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.case import Case
+from chatter.errors import InputError
+from chatter.simulation.setup import modes_of, set_up
+from chatter.simulation.simulate import run_setup
+from chatter.stability.sweep import Progress, no_progress, sweep
+from dynamics.modal import Mode
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: turns of every cut, and turns at its end that are kept
+_TURNS = 200.0
+_KEPT_TURNS = 60
+
+
+@dataclass(frozen=True)
+class BifurcationPoint:
+    """One cut of the diagram.
+
+    Parameters
+    ----------
+    value : float
+        Of the path that varies, SI.
+    once_a_turn : (k, 3) array of float
+        Displacement when the first tooth is at +y, m, over the last turns; empty where the tool
+        left the range of the model.
+    verdict : str
+        "stable" or "chatter".
+    bifurcation : str
+    chatter_frequency : float
+        Hz; nan where there is none.
+    """
+
+    value: float
+    once_a_turn: NDArray[np.float64]
+    verdict: str
+    bifurcation: str
+    chatter_frequency: float
+
+
+@dataclass(frozen=True)
+class BifurcationDiagram:
+    """Points of all cuts.
+
+    Parameters
+    ----------
+    case : Case
+    path : str
+        Dotted path of the value that varies.
+    points : tuple of BifurcationPoint
+    """
+
+    case: Case
+    path: str
+    points: tuple[BifurcationPoint, ...]
+
+    def summary(self) -> dict:
+        """Return the content of summary.json."""
+        return {
+            "title": self.case.title,
+            "path": self.path,
+            "points": [
+                {
+                    "value": point.value,
+                    "verdict": point.verdict,
+                    "bifurcation": point.bifurcation,
+                    "chatter_frequency_Hz": _or_none(point.chatter_frequency),
+                    "spread_um": _spread(point) * 1e6,
+                }
+                for point in self.points
+            ],
+        }
+
+    def plot(self) -> Figure:
+        """Return the diagram as a matplotlib figure."""
+        from chatter.plots.bifurcation import plot_bifurcation
+
+        return plot_bifurcation(self)
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write bifurcation.csv, bifurcation.png and summary.json.
+
+        Returns
+        -------
+        list of Path
+            What was written.
+        """
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        names = ("bifurcation.csv", "summary.json", "bifurcation.png")
+        written = [folder / name for name in names]
+        written[0].write_text(self._table(), encoding="utf-8")
+        written[1].write_text(json.dumps(self.summary(), indent=2) + "\n", encoding="utf-8")
+        self.plot().savefig(written[2])
+        return written
+
+    def _table(self) -> str:
+        lines = [f"{self.path} [SI],x [um],y [um],z [um],verdict"]
+        for point in self.points:
+            for x, y, z in point.once_a_turn * 1e6:
+                lines.append(f"{point.value:.9g},{x:.6g},{y:.6g},{z:.6g},{point.verdict}")
+        return "\n".join(lines) + "\n"
+
+
+def bifurcation(
+    case: Case, path: str, values: Sequence[Any], progress: Progress = no_progress
+) -> BifurcationDiagram:
+    """Simulate a case over the values of one of its keys.
+
+    Parameters
+    ----------
+    case : Case
+        Runs are 200 revolutions long where `[simulation]` does not say.
+    path : str
+        Dotted path, such as "cut.axial_depth" or "cut.spindle_speed".
+    values : sequence
+        Quantities as text, or numbers in SI.
+    progress : callable, optional
+        Called with (done, total) cuts.
+
+    Returns
+    -------
+    BifurcationDiagram
+
+    Raises
+    ------
+    InputError
+        If there are no values, or a patched case is wrong.
+    """
+    if len(values) == 0:
+        raise InputError(f"{case.name}: {path}: no values are given for the bifurcation diagram")
+    if not (case.simulation and (case.simulation.revolutions or case.simulation.duration)):
+        case = case.patch({"simulation.revolutions": _TURNS})
+    cases = [case.patch({path: value}) for value in values]
+    modes = None if path.startswith("structure") else modes_of(case)[0]
+    if modes == ():
+        raise InputError(f"{case.name}: [structure] is missing; a rigid tool does not vibrate")
+
+    def at(points: NDArray[np.int64]) -> list[BifurcationPoint]:
+        return [_point(cases[i], path, modes) for i in points]
+
+    chunks = sweep(at, len(cases), progress, 1)
+    return BifurcationDiagram(case, path, tuple(point for chunk in chunks for point in chunk))
+
+
+def _point(case: Case, path: str, modes: tuple[Mode, ...] | None) -> BifurcationPoint:
+    result, _ = run_setup(set_up(case, modes))
+    value = float(case.get(path))
+    if not result.complete:
+        return BifurcationPoint(value, np.zeros((0, 3)), "chatter", "unknown", math.nan)
+    judgement = result.judgement
+    turns = 2.0 * math.pi * np.arange(math.floor(result.turns) + 1)
+    kept = turns[-_KEPT_TURNS:]
+    points = np.stack(
+        [np.interp(kept, result.spindle_angle, column) for column in result.displacement.T], axis=1
+    )
+    if judgement is None:
+        return BifurcationPoint(value, points, "not judged", "unknown", math.nan)
+    return BifurcationPoint(
+        value, points, judgement.verdict, judgement.bifurcation, judgement.chatter_frequency
+    )
+
+
+def _spread(point: BifurcationPoint) -> float:
+    """Largest extent of the once-per-revolution points, m."""
+    if len(point.once_a_turn) == 0:
+        return 0.0
+    return float(np.ptp(point.once_a_turn, axis=0).max())
+
+
+def _or_none(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None

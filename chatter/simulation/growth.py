@@ -1,0 +1,162 @@
+"""Growth of small vibration from period to period, measured in a simulated cut.
+
+The cut takes hold of the structure slowly, so that the tool comes close to its periodic motion
+without being thrown out of the chip; what is left of the start then dies out or grows. Its
+multiplier follows from how the differences between successive periods follow each other: they are
+free of the periodic motion, and two terms of a recursion hold a dominant pair of multipliers.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.case import Case
+from chatter.simulation.engine import COLUMNS, Record, run
+from chatter.simulation.setup import Setup, set_up
+from chatter.simulation.spindle import prescribed
+from cutting.tool_point import tool_point
+from dynamics.modal import Mode
+from dynamics.modal_steps import modal_steps
+
+#: periods in which the cut takes hold, and periods that are watched after that, at the least
+_RAMP_PERIODS = 40
+_WATCHED_PERIODS = 120
+#: time constants of the slowest mode in both together, and the most periods
+_TIME_CONSTANTS = 5.0
+_MOST_PERIODS = 1200
+#: differences above this share of the feed leave the chip, below this one they are rounding
+_LARGEST_DIFFERENCE = 0.1
+_SMALLEST_DIFFERENCE = 1e-7
+#: periods that a fit needs at the least
+_LEAST_FITTED = 6
+
+
+@dataclass(frozen=True)
+class Growth:
+    """Dominant multiplier of a simulated cut.
+
+    Parameters
+    ----------
+    multiplier : complex
+        Over a period; of magnitude inf where the tool leaves the chip at once.
+    period : float
+        s.
+    frequency : float
+        Of the vibration that grows or dies out slowest, Hz; nan where it is not known.
+    """
+
+    multiplier: complex
+    period: float
+    frequency: float
+
+    @property
+    def radius(self) -> float:
+        """Magnitude of the multiplier over a period."""
+        return abs(self.multiplier)
+
+
+def periods_a_turn(setup: Setup) -> int:
+    """Periods in which the cut repeats within a turn: teeth where they are all alike, else one."""
+    slices = setup.slices
+    turned = slices.angle - slices.angle[:, :1]
+    alike = np.allclose(turned, turned[0], atol=1e-9) and np.allclose(
+        slices.normal_offset, slices.normal_offset[0], atol=1e-12
+    )
+    equal = np.allclose(setup.cutter.pitch, 2.0 * math.pi / setup.cutter.teeth, atol=1e-9)
+    return setup.cutter.teeth if alike and equal else 1
+
+
+def growth_of(case: Case, modes: tuple[Mode, ...]) -> Growth:
+    """Simulate a cut that takes hold slowly, and measure how vibration grows.
+
+    Parameters
+    ----------
+    case : Case
+    modes : tuple of Mode
+        Of its structure.
+
+    Raises
+    ------
+    InputError
+        If the case cannot be simulated.
+    """
+    setup = set_up(case, modes)
+    bins = setup.resolution.steps_a_turn
+    a_turn = periods_a_turn(setup)
+    per_period = bins // a_turn
+    period = per_period * setup.step
+    slowest = max(1.0 / (mode.damping * mode.natural_frequency) for mode in setup.modes)
+    wanted = max(_RAMP_PERIODS + _WATCHED_PERIODS, math.ceil(_TIME_CONSTANTS * slowest / period))
+    count = min(wanted, _MOST_PERIODS)
+    ramp = count // 4
+    motion, done = _motion(setup, count * per_period, ramp * per_period)
+    whole = done // per_period
+    if whole < ramp + _LEAST_FITTED:
+        return Growth(complex(math.inf), period, math.nan)
+    watched = motion[ramp * per_period : whole * per_period]
+    watched = watched.reshape(whole - ramp, per_period, 3)
+    return _fitted(watched, period, case.cut.feed_per_tooth)
+
+
+def _motion(setup: Setup, steps: int, ramp: int) -> tuple[NDArray[np.float64], int]:
+    """Displacement (steps + 1, 3) of the tool, m, and the steps that were done."""
+    modes = modal_steps(setup.modes, setup.step)
+    record = Record(1, np.zeros((steps + 1, len(COLUMNS))))
+    bins = setup.resolution.steps_a_turn
+    turns = prescribed(setup.spindle, setup.path, bins, setup.step, -1, steps + 1, ramp)
+    scratch = np.zeros((len(setup.modes), 2))
+    done = run(setup.groups, modes, tool_point(), turns, record, scratch, -1, setup.furthest, bins)
+    return record.rows[:, 3:6], done
+
+
+def _fitted(periods: NDArray[np.float64], period: float, feed: float) -> Growth:
+    """Dominant multiplier from motion (k, n, 3) over k periods of n samples."""
+    difference = np.diff(periods, axis=0)
+    flat = difference.reshape(len(difference), -1)
+    size = np.sqrt(np.mean(flat**2, axis=1) * 3.0)
+    out = np.nonzero(size > _LARGEST_DIFFERENCE * feed)[0]
+    gone = np.nonzero(size < _SMALLEST_DIFFERENCE * feed)[0]
+    end = min(out[0] if out.size else len(size), gone[0] if gone.size else len(size))
+    if end < _LEAST_FITTED:
+        # it is out of the chip, or at rest, from the beginning
+        grown = out.size > 0 and (not gone.size or out[0] <= gone[0])
+        if not grown:
+            return Growth(0j, period, math.nan)
+        if size[-1] > 0.5 * size[:_LEAST_FITTED].max():
+            return Growth(complex(math.inf), period, math.nan)
+        end = len(size)
+    # what other modes have left of the start dies out first
+    begin = min(end // 3, end - _LEAST_FITTED)
+    multiplier = _dominant(flat[begin:end])
+    frequency = _frequency(difference[begin:end], multiplier, period)
+    return Growth(multiplier, period, frequency)
+
+
+def _dominant(differences: NDArray[np.float64]) -> complex:
+    """Larger root of the recursion d2 = a d1 + b d0 that fits the rows best."""
+    weight = 1.0 / np.linalg.norm(differences[1:-1], axis=1)[:, None]
+    first, second, third = (
+        (differences[i : len(differences) - 2 + i] * weight).ravel() for i in range(3)
+    )
+    (a, b), *_ = np.linalg.lstsq(np.column_stack([second, first]), third, rcond=None)
+    roots = np.roots([1.0, -a, -b])
+    return complex(roots[np.argmax(np.abs(roots))])
+
+
+def _frequency(difference: NDArray[np.float64], multiplier: complex, period: float) -> float:
+    """Strongest line among those that the angle of the multiplier allows, Hz."""
+    count, samples, _ = difference.shape
+    growth = np.abs(multiplier) ** np.arange(count)
+    settled = difference / np.maximum(growth, 1e-300)[:, None, None]
+    angle = abs(float(np.angle(multiplier)))
+    time = np.arange(count * samples).reshape(count, samples, 1) / samples
+    # all allowed lines lie whole periods apart: they are the Fourier lines of what is left when
+    # the angle is taken out; the difference over a period weakens them alike
+    shape = np.mean(settled * np.exp(-1j * angle * time), axis=0)
+    size = np.linalg.norm(np.fft.fft(shape, axis=0), axis=1)
+    order = np.fft.fftfreq(samples, 1.0 / samples)
+    return float(abs(angle / (2.0 * math.pi) + order[int(np.argmax(size))])) / period

@@ -1,0 +1,159 @@
+"""Texture of a surface after ISO 4287, 4288 and 16610-21: roughness, waviness and place."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+#: constant of the Gaussian filter: half of a wave of the cut-off length passes
+_ALPHA = math.sqrt(math.log(2.0) / math.pi)
+#: longest spacing of marks and the cut-off that belongs to it, m
+_CUT_OFFS = ((0.04e-3, 0.08e-3), (0.13e-3, 0.25e-3), (0.4e-3, 0.8e-3), (1.3e-3, 2.5e-3))
+_LONGEST_CUT_OFF = 8e-3
+
+
+@dataclass(frozen=True)
+class HeightParameters:
+    """Heights of a profile about its mean line after ISO 4287, m.
+
+    Parameters
+    ----------
+    mean : float
+        Arithmetic mean deviation, Ra or Wa.
+    rms : float
+        Root mean square deviation, Rq or Wq.
+    depth : float
+        Highest peak to deepest valley, mean over the sampling lengths: Rz or Wz.
+    """
+
+    mean: float
+    rms: float
+    depth: float
+
+
+def height_parameters(profile: Array, samples: int) -> HeightParameters:
+    """Heights of a profile about its mean.
+
+    Parameters
+    ----------
+    profile : (n,) array of float
+        m.
+    samples : int
+        Points of a sampling length; the profile counts as one if it is shorter than two.
+    """
+    off = profile - profile.mean()
+    parts = np.array_split(off, max(1, off.size // max(samples, 1)))
+    return HeightParameters(
+        mean=float(np.abs(off).mean()),
+        rms=float(np.sqrt(np.mean(off**2))),
+        depth=float(np.mean([np.ptp(part) for part in parts])),
+    )
+
+
+def mean_line(profile: Array, spacing: float, cut_off: float) -> Array:
+    """Waviness of a profile by the Gaussian filter of ISO 16610-21.
+
+    Parameters
+    ----------
+    profile : (..., n) array of float
+    spacing : float
+        Between points, m.
+    cut_off : float
+        Wavelength of which half the amplitude passes, m.
+
+    Returns
+    -------
+    (..., n) array of float
+        Within half a cut-off of the ends the weights are renormed to the points that there are.
+    """
+    half = min(int(cut_off / spacing), profile.shape[-1] - 1)
+    place = np.arange(-half, half + 1) * spacing / (_ALPHA * cut_off)
+    weight = np.exp(-math.pi * place**2)
+    share = np.convolve(np.ones(profile.shape[-1]), weight)[half : -half or None]
+    rows = profile.reshape(-1, profile.shape[-1])
+    smooth = [np.convolve(row, weight)[half : -half or None] / share for row in rows]
+    return np.array(smooth).reshape(profile.shape)
+
+
+def cut_off_for(mark_spacing: float) -> float:
+    """Cut-off of ISO 4288 for periodic profiles with this spacing of marks, m."""
+    return next((cut for most, cut in _CUT_OFFS if mark_spacing <= most), _LONGEST_CUT_OFF)
+
+
+@dataclass(frozen=True)
+class Texture:
+    """Roughness and waviness of profiles over the feed.
+
+    Parameters
+    ----------
+    roughness : HeightParameters
+    waviness : HeightParameters or None
+        None where the profile is shorter than two cut-offs; roughness is then unfiltered.
+    cut_off : float
+        m.
+    length : float
+        Evaluated, m.
+    """
+
+    roughness: HeightParameters
+    waviness: HeightParameters | None
+    cut_off: float
+    length: float
+
+
+def texture(profiles: Array, weight: Array, spacing: float, cut_off: float) -> Texture:
+    """Split profiles into roughness and waviness.
+
+    Parameters
+    ----------
+    profiles : (L, n) array of float
+        m.
+    weight : (L,) array of float
+        Of each profile in the means that are returned.
+    spacing : float
+        Between points, m.
+    cut_off : float
+        m.
+    """
+    length = profiles.shape[1] * spacing
+    if length < 2.0 * cut_off:
+        rough = [height_parameters(row, row.size) for row in profiles]
+        return Texture(_weighted(rough, weight), None, cut_off, length)
+    samples, end = round(cut_off / spacing), round(0.5 * cut_off / spacing)
+    kept = slice(end, profiles.shape[1] - end)
+    waves = mean_line(profiles, spacing, cut_off)
+    rough = [height_parameters(row[kept], samples) for row in profiles - waves]
+    wavy = [height_parameters(row[kept], row.size) for row in waves]
+    return Texture(
+        _weighted(rough, weight), _weighted(wavy, weight), cut_off, length - 2.0 * end * spacing
+    )
+
+
+def _weighted(found: list[HeightParameters], weight: Array) -> HeightParameters:
+    table = np.array([(one.mean, one.rms, one.depth) for one in found])
+    return HeightParameters(*(float(value) for value in weight @ table / weight.sum()))
+
+
+def location_error(deviation: Array, weight: Array) -> tuple[Array, float]:
+    """Surface location error at each height and over the wall.
+
+    Parameters
+    ----------
+    deviation : (L, n) array of float
+        Of the wall beyond its nominal place, m; positive where too much was removed.
+    weight : (L,) array of float
+
+    Returns
+    -------
+    by_height : (L,) array of float
+        Mean over the feed, m.
+    mean : float
+        m.
+    """
+    by_height = deviation.mean(axis=1)
+    return by_height, float(weight @ by_height / weight.sum())
