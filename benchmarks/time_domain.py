@@ -59,9 +59,13 @@ def timed(call: Callable[[], object], repeats: int = REPEATS) -> Timing:
     return Timing(min(taken), statistics.median(taken))
 
 
-def show(title: str, columns: tuple[str, ...], rows: list[tuple]) -> list[dict]:
-    """Print a table and return its rows by column."""
-    text = [columns, *[tuple(x if isinstance(x, str) else f"{x:.3g}" for x in row) for row in rows]]
+def show(title: str, heads: str, rows: list[tuple]) -> list[dict]:
+    """Print a table, its heads parted by bars, and return its rows by column."""
+    columns = heads.split("|")
+    text = [
+        tuple(columns),
+        *[tuple(x if isinstance(x, str) else f"{x:.3g}" for x in row) for row in rows],
+    ]
     widths = [max(len(row[i]) for row in text) for i in range(len(columns))]
     print(f"\n{title}")
     for row in text:
@@ -220,18 +224,7 @@ def delayed_chip(peak: float) -> list[dict]:
     )
     return show(
         f"1. Delayed chip: `simulate`, ns a tooth-slice-step (aim {AIM:g}); bound by the peak",
-        (
-            "cut",
-            "law",
-            "ns",
-            "median",
-            "of aim",
-            "engaged",
-            "ns engaged",
-            "operations",
-            "bound ns",
-            "of peak",
-        ),
+        "cut|law|ns|median|of aim|engaged|ns engaged|operations|bound ns|of peak",
         rows,
     )
 
@@ -295,15 +288,24 @@ class Watched(np.ndarray):
         super().__setitem__(index, value)
 
 
+def watched(array: np.ndarray) -> Watched:
+    """Watched copy that begins with a cache line."""
+    room = np.zeros(array.nbytes + 64, dtype=np.uint8)
+    start = -room.ctypes.data % 64
+    copy = room[start : start + array.nbytes].view(array.dtype).reshape(array.shape)
+    copy[...] = array
+    return copy.view(Watched)
+
+
 def bytes_a_call(stock: tuple, run: Callable, axis: np.ndarray, edge: np.ndarray) -> float:
     """Bytes of the stock touched by a call, in whole cache lines; those written count twice."""
-    arrays = {k: v.view(Watched) for k, v in stock._asdict().items() if isinstance(v, np.ndarray)}
-    watched, total = stock._replace(**arrays), 0
+    arrays = {k: watched(v) for k, v in stock._asdict().items() if isinstance(v, np.ndarray)}
+    seen, total = stock._replace(**arrays), 0
     thickness = np.zeros((2, 1))
     for i in range(1, len(axis)):
         # one tooth: the other does the same half a turn later
         Watched.read, Watched.written = set(), set()
-        run.py_func(watched, axis[i - 1 : i + 1], edge[i - 1 : i + 1, :1], thickness)
+        run.py_func(seen, axis[i - 1 : i + 1], edge[i - 1 : i + 1, :1], thickness)
         total += 64 * (len(Watched.read | Watched.written) + len(Watched.written))
     return total / (len(axis) - 1)
 
@@ -356,19 +358,8 @@ def workpieces(bandwidth: float) -> list[dict]:
     return show(
         f"2. Workpiece: thickness and carve, slot, {CARVING_TEETH} teeth, {steps} steps a turn; "
         "bound by the memory bandwidth",
-        (
-            "kind",
-            "resolution",
-            "1e6 pairs/s",
-            "median",
-            "ns a pair",
-            "in the cut",
-            "1e6 removals/s",
-            "bytes a pair",
-            "bound ns",
-            "of bandwidth",
-            "stock",
-        ),
+        "kind|resolution|1e6 pairs/s|median|ns a pair|in the cut|1e6 removals/s|"
+        "bytes a pair|bound ns|of bandwidth|stock",
         rows,
     )
 
@@ -549,7 +540,7 @@ def delay_equations() -> list[dict]:
         f"3. Two straight teeth, half immersion, {revolutions:g} revolutions from rest; NRMSE of "
         "the displacement against jitcdde at 1e-9;\n   ratio: fastest of the other program that "
         "is at least as accurate, over this",
-        ("program", "setting", "NRMSE", "us a revolution", "median", "other / this"),
+        "program|setting|NRMSE|us a revolution|median|other / this",
         rows,
     )
 
@@ -571,7 +562,7 @@ def agreement() -> list[dict]:
     return show(
         "4. The same cut at three depths: NRMSE of the engine against jitcdde (1e-7) with three "
         "delay equations",
-        ("depth", "equation", *[f"{steps} steps" for steps in ENGINE_STEPS]),
+        "|".join(["depth", "equation", *[f"{steps} steps" for steps in ENGINE_STEPS]]),
         rows,
     )
 

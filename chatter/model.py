@@ -150,9 +150,9 @@ def _refuse_unsupported(case: Case) -> None:
             f"{case.name}: tool.helix: stability of flutes with different helix is not "
             "available yet; give one angle"
         )
-    if case.tool.cutting_edge_angle < 0.5 * math.pi - 1e-9:
+    if case.tool.cutting_edge_angle - case.tool.taper_angle < 0.5 * math.pi - 1e-9:
         problems.append(
-            f"{case.name}: tool.cutting_edge_angle: stability of edges that do not stand at 90 deg "
+            f"{case.name}: tool: stability of edges that do not stand at 90 deg "
             "is not available yet; chatter simulate takes them"
         )
     if case.tool.serration is not None:

@@ -257,23 +257,3 @@ def _normal_offset(
         )
     return radial * np.sin(immersion) + np.outer(cutter.axial_offsets, np.cos(immersion))
 
-
-def tool_profile(
-    kind: str, diameter: float, corner_radius: float, edge_angle: float
-) -> tuple[float, float]:
-    """Corner radius (m) and edge angle (rad) of a kind of tool.
-
-    Parameters
-    ----------
-    kind : str
-        "end mill", "ball", "bull nose", "taper" or "inserted".
-    diameter, corner_radius : float
-        m.
-    edge_angle : float
-        Of the straight edge, rad; tapers and inserts alone have one of their own.
-    """
-    if kind == "ball":
-        return 0.5 * diameter, 0.5 * math.pi
-    if kind in ("taper", "inserted"):
-        return corner_radius, edge_angle
-    return corner_radius, 0.5 * math.pi

@@ -7,15 +7,18 @@ oscillator together with the force and its rate (first-order hold; Franklin, Pow
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
-from scipy.linalg import expm
 
 from dynamics.modal import Mode
+
+#: of a matrix whose rows sum up to one: the last term is below rounding
+_TAYLOR_TERMS = 20
 
 _INLINED = {"error_model": "numpy", "forceinline": True, "_nrt": False}
 
@@ -51,28 +54,50 @@ def modal_steps(modes: Sequence[Mode], step: float) -> ModalSteps:
         [2.0 * mode.damping * mode.mass * mode.natural_frequency for mode in modes],
         dtype=np.float64,
     )
-    transition, held, ramp = np.zeros((count, 2, 2)), np.zeros((count, 2)), np.zeros((count, 2))
-    for i in range(count):
-        generator = np.zeros((4, 4))
-        generator[0, 1] = step
-        generator[1, :3] = np.array([-stiffness[i], -damping[i], 1.0]) * step / mass[i]
-        generator[2, 3] = 1.0
-        over = expm(generator)
-        transition[i], held[i], ramp[i] = over[:2, :2], over[:2, 2], over[:2, 3]
+    natural = np.array([mode.natural_frequency for mode in modes], dtype=np.float64)
+    over = _transition(natural * step, 0.5 * damping / (mass * natural))
+    # velocities are divided by the natural frequency there, and forces by the stiffness
+    unit = np.stack([np.ones(count), natural], axis=1)
+    per_force = unit / stiffness[:, None]
     directions = [mode.direction for mode in modes]
     return ModalSteps(
         shape=np.array(directions, dtype=np.float64).reshape(count, 3),
         mass=mass,
         stiffness=stiffness,
         damping=damping,
-        transition=transition,
-        held=held,
-        ramp=ramp,
+        transition=over[:, :2, :2] * unit[:, :, None] / unit[:, None, :],
+        held=over[:, :2, 2] * per_force,
+        ramp=over[:, :2, 3] * per_force,
         state=np.zeros((count, 2)),
         force=np.zeros(count),
         energy=np.zeros(2),
         step=step,
     )
+
+
+def _transition(turn: NDArray[np.float64], damping: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Exponential (n, 4, 4) of oscillators that turn by an angle (rad) in a step.
+
+    Rows and columns are displacement, velocity over natural frequency, force and change of the
+    force, both over stiffness. In these units no entry is larger than the turn or one, so that a
+    Taylor series with halving of the step keeps all digits however small the step is.
+    """
+    generator = np.zeros((turn.size, 4, 4))
+    generator[:, 0, 1] = generator[:, 1, 2] = turn
+    generator[:, 1, 0] = -turn
+    generator[:, 1, 1] = -2.0 * damping * turn
+    generator[:, 2, 3] = 1.0
+    largest = np.abs(generator).sum(axis=2).max(initial=1.0)
+    halvings = max(0, math.ceil(math.log2(largest)))
+    generator /= 2.0**halvings
+    term = np.broadcast_to(np.eye(4), generator.shape)
+    total = term.copy()
+    for order in range(1, _TAYLOR_TERMS):
+        term = np.einsum("nij,njk->nik", term, generator) / order
+        total += term
+    for _ in range(halvings):
+        total = np.einsum("nij,njk->nik", total, total)
+    return total
 
 
 @register_jitable(**_INLINED)

@@ -165,13 +165,15 @@ class Tool(Section):
 
     @model_validator(mode="after")
     def _check_kind(self) -> Tool:
-        foreign = {"taper_angle": ("taper",), "cutting_edge_angle": ("inserted",)}
-        foreign["corner_radius"] = ("end mill", "bull nose", "taper", "inserted")
-        problems = [
-            (key, f'does not belong to kind = "{self.kind}"')
-            for key, kinds in foreign.items()
-            if key in self.model_fields_set and self.kind not in kinds and getattr(self, key)
-        ]
+        problems = []
+        if self.cutting_edge_angle < 0.5 * math.pi and self.kind != "inserted":
+            problems.append(("cutting_edge_angle", f'does not belong to kind = "{self.kind}"'))
+        if self.cutting_edge_angle < 0.5 * math.pi and self.taper_angle:
+            problems.append(("taper_angle", "is another name for 90 deg - cutting_edge_angle"))
+        is_ball = abs(self.corner_radius - 0.5 * self.diameter) <= 1e-9 * self.diameter
+        if self.kind == "ball" and self.corner_radius and not is_ball:
+            text = f'is {self.corner_radius * 1e3:g} mm, but kind = "ball" has half the diameter'
+            problems.append(("corner_radius", text))
         if self.kind == "bull nose" and not self.corner_radius:
             problems.append(("corner_radius", 'is missing; kind = "bull nose" needs it'))
         raise_if_any(problems)

@@ -31,10 +31,10 @@ _STILL = 1e-3
 
 
 def plot_bifurcation(diagram: BifurcationDiagram) -> Figure:
-    """Plot once-per-revolution displacement over the value that varies."""
+    """Plot once-per-period displacement over the value that varies."""
     unit, factor = _axis_unit(diagram.path)
     sizes = [
-        max(np.abs(point.once_a_turn[:, axis]).max(initial=0.0) for point in diagram.points)
+        max(np.abs(point.once_a_period[:, axis]).max(initial=0.0) for point in diagram.points)
         for axis in range(3)
     ]
     moving = [axis for axis in range(3) if sizes[axis] > _STILL * max(sizes)] or [0]
@@ -42,7 +42,7 @@ def plot_bifurcation(diagram: BifurcationDiagram) -> Figure:
     panels = figure.subplots(len(moving), 1, sharex=True, squeeze=False)[:, 0]
     for panel, axis in zip(panels, moving, strict=True):
         for point in diagram.points:
-            motion = point.once_a_turn[:, axis] * 1e6
+            motion = point.once_a_period[:, axis] * 1e6
             panel.plot(
                 np.full(motion.size, point.value * factor),
                 motion,
@@ -51,7 +51,7 @@ def plot_bifurcation(diagram: BifurcationDiagram) -> Figure:
                 markersize=2.5,
                 color=_COLOURS.get(point.verdict, GREY),
             )
-        panel.set_ylabel(f"{'xyz'[axis]} once a revolution [µm]")
+        panel.set_ylabel(f"{'xyz'[axis]} once a period [µm]")
         finish(panel)
     for verdict, colour in _COLOURS.items():
         panels[0].plot([], [], linestyle="none", marker=".", color=colour, label=verdict)

@@ -28,7 +28,7 @@ _LEAST_BANDS, _MOST_BANDS = 16, 400
 _SHOWN_TURNS = 3.0
 #: feed shown of a profile, in revolutions
 _PROFILE_TURNS = 12.0
-_TITLE_WIDTH = 125
+_TITLE_WIDTH = 140
 #: a component smaller than this share of the largest is left out
 _NOTHING = 1e-6
 #: the spectrum goes this far above the highest mode, or to this harmonic of the tooth passing
@@ -114,7 +114,9 @@ def draw_run(
     axes.set_xlim(0.0, max(result.turns, 1e-9))
     axes.set_xlabel("spindle revolutions")
     axes.set_ylabel(label)
-    band = "whole run, least and largest of each revolution" if banded else "whole run"
+    if not values.any():
+        _say(axes, "nothing moves")
+    band = "whole run, by revolution" if banded else "whole run"
     axes.set_title(band, loc="left")
     style.finish(axes)
     _legend(axes)
@@ -135,6 +137,8 @@ def draw_last_turns(
         axes.set_xlim(turns[first], turns[-1])
     axes.set_xlabel("spindle revolutions")
     axes.set_ylabel(label)
+    if not values.any():
+        _say(axes, "nothing moves")
     axes.set_title("last revolutions", loc="left")
     style.finish(axes)
     _legend(axes)
@@ -233,7 +237,7 @@ def draw_once_a_turn(axes: Axes, result: SimulationResult) -> None:
     points = _once_a_turn(result)
     if not result.setup.modes or len(points) == 0:
         text = "rigid: no motion" if not result.setup.modes else "less than a revolution"
-        axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", color=style.GREY)
+        _say(axes, text)
         return
     half = len(points) // 2
     axes.plot(
@@ -269,15 +273,21 @@ def draw_wall(axes: Axes, result: SimulationResult) -> None:
     low, high = np.percentile(deviation, [0.5, 99.5])
     if high - low < 1e-6:
         low, high = low - 0.5e-3, high + 0.5e-3
-    image = axes.pcolormesh(
-        x, wall.height * 1e3, deviation, cmap="cividis", shading="nearest", vmin=low, vmax=high,
-        rasterized=True,
-    )  # fmt: skip
+    edges = (_edges(x), np.maximum(_edges(wall.height * 1e3), 0.0))
+    image = axes.pcolormesh(*edges, deviation, cmap="cividis", vmin=low, vmax=high, rasterized=True)
     bar = axes.figure.colorbar(image, ax=axes, pad=0.02)
     bar.set_label(f"wall at {wall.side} [µm]", fontsize=9)
     bar.ax.tick_params(labelsize=8)
     style.finish(axes)
     axes.grid(visible=False)
+
+
+def _edges(middle: Array) -> Array:
+    """Bounds (n+1,) of the cells around points (n,)."""
+    half = 0.5 * np.diff(middle) if len(middle) > 1 else 0.5 * np.abs(middle[:1])
+    return np.concatenate(
+        [[middle[0] - half[0]], middle[1:] - half[: len(middle) - 1], [middle[-1] + half[-1]]]
+    )
 
 
 def draw_profiles(axes: Axes, result: SimulationResult) -> None:
@@ -289,23 +299,26 @@ def draw_profiles(axes: Axes, result: SimulationResult) -> None:
     if not finish.walls and finish.floor is None:
         _say_why_not(axes, result)
         return
+    shown = _PROFILE_TURNS * result.case.tool.teeth * result.case.cut.feed_per_tooth
     for wall, colour in zip(finish.walls, (style.BLUE, style.ORANGE), strict=False):
-        _draw_profile(axes, wall.profiles.x, -_middle_row(wall), colour, _wall_label(wall))
+        _draw_profile(axes, wall.profiles.x, -_middle_row(wall), shown, colour, _wall_label(wall))
     if finish.floor is not None:
         floor = finish.floor
-        label = f"floor: Ra {floor.texture.roughness.mean * 1e6:.3g} µm"
-        _draw_profile(axes, floor.profile.x, floor.profile.height, style.GREEN, label)
+        label = f"floor: Ra {round(floor.texture.roughness.mean * 1e6, 6):.3g} µm"
+        _draw_profile(axes, floor.profile.x, floor.profile.height, shown, style.GREEN, label)
     style.finish(axes)
-    feed_per_turn = result.case.tool.teeth * result.case.cut.feed_per_tooth
-    end = max(float(line.get_xdata()[-1]) for line in axes.lines)
-    axes.set_xlim(0.0, min(end, _PROFILE_TURNS * feed_per_turn * 1e3))
+    axes.margins(x=0.0)
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.22 * (high - low) * (len(axes.lines) + 0.5) / 2.0)
     axes.legend(loc="upper left", fontsize=8.0, framealpha=0.85)
 
 
-def _draw_profile(axes: Axes, x: Array, profile: Array, colour: str, label: str) -> None:
+def _draw_profile(
+    axes: Axes, x: Array, profile: Array, longest: float, colour: str, label: str
+) -> None:
     """Draw a profile from the start of the stretch that was evaluated."""
+    shown = x - x[0] <= longest
+    x, profile = x[shown], profile[shown]
     axes.plot(
         (x - x[0]) * 1e3, (profile - profile.mean()) * 1e6, color=colour, linewidth=1.0, label=label
     )
@@ -326,5 +339,12 @@ def _wall_label(wall: WallFinish) -> str:
 def _say_why_not(axes: Axes, result: SimulationResult) -> None:
     style.finish(axes)
     notes = result.finish.notes
-    text = notes[0].replace(": ", ":\n") if notes else "not evaluated"
-    axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", color=style.GREY, fontsize=9)
+    _say(axes, notes[0].replace(": ", ":\n") if notes else "not evaluated")
+
+
+def _say(axes: Axes, text: str) -> None:
+    box = {"facecolor": "white", "edgecolor": "none"}
+    axes.text(
+        0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", color=style.GREY,
+        fontsize=9, bbox=box,
+    )  # fmt: skip

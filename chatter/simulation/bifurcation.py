@@ -1,4 +1,4 @@
-"""Bifurcation diagram: once-per-revolution points of simulated cuts over a value of the case."""
+"""Bifurcation diagram: once-per-period points of simulated cuts over a value of the case."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from chatter.case import Case
 from chatter.errors import InputError
+from chatter.simulation.growth import periods_a_turn
 from chatter.simulation.setup import modes_of, set_up
 from chatter.simulation.simulate import run_setup
 from chatter.stability.sweep import Progress, no_progress, sweep
@@ -35,9 +36,9 @@ class BifurcationPoint:
     ----------
     value : float
         Of the path that varies, SI.
-    once_a_turn : (k, 3) array of float
-        Displacement when the first tooth is at +y, m, over the last turns; empty where the tool
-        left the range of the model.
+    once_a_period : (k, 3) array of float
+        Displacement when a tooth is at +y, m, over the last turns: every tooth where all are
+        alike, else the first one; empty where the tool left the range of the model.
     verdict : str
         "stable" or "chatter".
     bifurcation : str
@@ -46,7 +47,7 @@ class BifurcationPoint:
     """
 
     value: float
-    once_a_turn: NDArray[np.float64]
+    once_a_period: NDArray[np.float64]
     verdict: str
     bifurcation: str
     chatter_frequency: float
@@ -111,7 +112,7 @@ class BifurcationDiagram:
     def _table(self) -> str:
         lines = [f"{self.path} [SI],x [um],y [um],z [um],verdict"]
         for point in self.points:
-            for x, y, z in point.once_a_turn * 1e6:
+            for x, y, z in point.once_a_period * 1e6:
                 lines.append(f"{point.value:.9g},{x:.6g},{y:.6g},{z:.6g},{point.verdict}")
         return "\n".join(lines) + "\n"
 
@@ -163,8 +164,9 @@ def _point(case: Case, path: str, modes: tuple[Mode, ...] | None) -> Bifurcation
     if not result.complete:
         return BifurcationPoint(value, np.zeros((0, 3)), "chatter", "unknown", math.nan)
     judgement = result.judgement
-    turns = 2.0 * math.pi * np.arange(math.floor(result.turns) + 1)
-    kept = turns[-_KEPT_TURNS:]
+    a_turn = periods_a_turn(result.setup)
+    periods = np.arange(math.floor(result.turns * a_turn) + 1) / a_turn
+    kept = 2.0 * math.pi * periods[-_KEPT_TURNS * a_turn :]
     points = np.stack(
         [np.interp(kept, result.spindle_angle, column) for column in result.displacement.T], axis=1
     )
@@ -177,9 +179,9 @@ def _point(case: Case, path: str, modes: tuple[Mode, ...] | None) -> Bifurcation
 
 def _spread(point: BifurcationPoint) -> float:
     """Largest extent of the once-per-revolution points, m."""
-    if len(point.once_a_turn) == 0:
+    if len(point.once_a_period) == 0:
         return 0.0
-    return float(np.ptp(point.once_a_turn, axis=0).max())
+    return float(np.ptp(point.once_a_period, axis=0).max())
 
 
 def _or_none(value: float) -> float | None:

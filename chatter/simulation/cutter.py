@@ -11,7 +11,7 @@ from cutting.flank import BareFlank
 from cutting.force_law import ExponentialLaw, ForceLaw, LinearLaw
 from cutting.ploughing import Ploughing, PloughingFlank, ploughing_flank
 from cutting.process_damping import ViscousFlank
-from cutting.tool import Cutter, Serration, tool_profile
+from cutting.tool import Cutter, Serration
 
 
 def helix_angles(case: Case) -> tuple[float, ...]:
@@ -30,17 +30,14 @@ def pitch_angles(case: Case) -> tuple[float, ...]:
 def cutter_of(case: Case) -> Cutter:
     """Tool that a case describes."""
     tool = case.tool
-    edge_angle = tool.cutting_edge_angle
-    if tool.kind == "taper":
-        edge_angle = 0.5 * np.pi - tool.taper_angle
-    corner, edge_angle = tool_profile(tool.kind, tool.diameter, tool.corner_radius, edge_angle)
+    corner = 0.5 * tool.diameter if tool.kind == "ball" else tool.corner_radius
     wave = tool.serration
     return Cutter(
         diameter=tool.diameter,
         helix=helix_angles(case),
         pitch=pitch_angles(case),
         corner_radius=corner,
-        edge_angle=edge_angle,
+        edge_angle=tool.cutting_edge_angle - tool.taper_angle,
         runout_offset=tool.runout.offset if tool.runout else 0.0,
         runout_angle=tool.runout.angle if tool.runout else 0.0,
         radial_error=tool.radial_error or (),

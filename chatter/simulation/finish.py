@@ -122,7 +122,8 @@ def _place(wall: WallFinish) -> dict:
 
 
 def _micrometres(value: float | None) -> float | None:
-    return None if value is None or not math.isfinite(value) else value * 1e6
+    """Return a length without the digits that only rounding makes."""
+    return None if value is None or not math.isfinite(value) else round(value * 1e6, 9)
 
 
 def _heights(letter: str, found: Sequence[HeightParameters | None]) -> dict[str, float | None]:

@@ -41,8 +41,7 @@ _POINTS_OF_ARC = 400
 _MOST_LOOKS = 6_000_000
 #: margin at both ends of the motion for edges on their way past the wall, rad
 _MARGIN = 0.65
-#: a floor of less than this is flat within the precision of the simulation, m
-_FLAT = 1e-12
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +145,9 @@ def _surface_slices(cutter: Cutter, depth: float) -> EdgeSlices:
     top = min(depth, corner_height(cutter))
     straight = round(_MOST_HEIGHTS * (depth - top) / depth)
     corner = max(_MOST_HEIGHTS - straight, 2) if top > 0.0 else 0
-    return edge_slices(cutter, depth, (corner, max(straight, 2) if depth > top else 0))
+    # at least two of either, but none of a straight part that only rounding makes
+    straight = max(straight, 2) if depth - top > _ROUNDING * depth else 0
+    return edge_slices(cutter, depth if straight else top, (corner, straight))
 
 
 def _levels(result: SimulationResult, slices: EdgeSlices) -> NDArray:

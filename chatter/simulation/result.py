@@ -99,10 +99,11 @@ class SimulationResult:
         """Chatter or not; None where the run is too short, or nothing can vibrate."""
         if self.turns < _LEAST_TURNS_TO_JUDGE or not self.setup.modes:
             return None
-        cutter = self.setup.cutter
-        helix = self.setup.slices
-        alike = np.allclose(helix.angle - helix.angle[:, :1], (helix.angle - helix.angle[:, :1])[0])
-        offsets = helix.normal_offset[:, -1] if alike else None
+        cutter, slices = self.setup.cutter, self.setup.slices
+        turned = slices.angle - slices.angle[:, :1]
+        widest = int(np.argmax(np.ptp(slices.normal_offset, axis=0)))
+        # flutes of different helix are no more alike than teeth out of true
+        known = np.allclose(turned, turned[0])
         return judge(
             CutRecord(
                 time=self.time,
@@ -111,7 +112,7 @@ class SimulationResult:
                 tooth_angles=np.sort(cutter.tooth_angles),
                 feed_per_tooth=self.case.cut.feed_per_tooth,
                 forces=self.force,
-                runout=offsets,
+                runout=slices.normal_offset[:, widest] if known else None,
             )
         )
 

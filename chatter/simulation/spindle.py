@@ -83,6 +83,9 @@ class ToolPath:
         way = self.feed * np.asarray(time)
         legs = np.diff(self.corners, axis=0)
         length = np.hypot(*legs.T)
+        if len(legs) == 1:
+            heading = legs[0] / length[0]
+            return np.stack([self.corners[0, axis] + way * heading[axis] for axis in range(2)])
         start = np.concatenate([[0.0], np.cumsum(length)[:-1]])
         leg = np.clip(np.searchsorted(start, way, side="right") - 1, 0, len(legs) - 1)
         along = (way - start[leg]) / length[leg]

@@ -259,7 +259,7 @@ CASES = st.fixed_dictionaries(
                 "diameter": st.just("41 mm"),
                 "helix": quantity(["deg"], -80.0, 80.0) | st.floats(-1.5, 1.5),
                 **optional(
-                    kind=st.sampled_from(["end mill", "ball", "inserted"]),
+                    kind=st.sampled_from(["end mill", "taper", "inserted"]),
                     corner_radius=LENGTH,
                     runout=st.fixed_dictionaries({"offset": LENGTH}),
                 ),
