@@ -43,6 +43,7 @@ def edge_table(slices: EdgeSlices, bins: int) -> EdgeTable:
     middle = place * 2.0 * math.pi / bins
     reach = 0.5 * np.abs(slices.lag) * GAUSS_PLACE
     points = np.stack([middle, middle - reach, middle + reach], axis=-1)
+    upright = np.abs(slices.immersion - 0.5 * math.pi) < 1e-12
     return EdgeTable(
         bins=bins,
         whole=whole,
@@ -53,7 +54,8 @@ def edge_table(slices: EdgeSlices, bins: int) -> EdgeTable:
         normal_offset=slices.normal_offset,
         radius=slices.radius,
         sine_immersion=np.sin(slices.immersion),
-        cosine_immersion=np.cos(slices.immersion),
+        # an upright edge has none at all, not the rounding of pi/2
+        cosine_immersion=np.where(upright, 0.0, np.cos(slices.immersion)),
         edge_length=slices.edge_length,
         share=slices.thickness / slices.thickness.sum(),
     )

@@ -9,7 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from chatter.simulation.carved import carved_walls
 from chatter.simulation.reconstruction import FloorProfile, WallProfiles, surface_profiles
+from cutting.dexel_stock import DexelStock
+from cutting.discrete_chip import DiscreteCut
 from cutting.texture import HeightParameters, Texture, cut_off_for, location_error, texture
 
 if TYPE_CHECKING:
@@ -150,6 +153,10 @@ def finish_of(result: SimulationResult) -> Finish:
     result : SimulationResult
     """
     walls, floor, notes = surface_profiles(result)
+    cut = result.setup.groups[0]
+    if walls and isinstance(cut, DiscreteCut) and isinstance(cut.stock, DexelStock):
+        # the workpiece itself shows its walls; voxels are too coarse for that
+        walls = carved_walls(result) or walls
     feed_per_turn = result.case.cut.feed_per_tooth * result.case.tool.teeth
     return finish_from_profiles(walls, floor, feed_per_turn, notes)
 

@@ -13,8 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.judgement import CutRecord, Judgement, judge
+from chatter.simulation.carved import carving_notes
 from chatter.simulation.finish import Finish, finish_of
 from chatter.simulation.setup import Setup
+from cutting.dexel_stock import DexelStock
+from cutting.discrete_chip import DiscreteCut
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -166,7 +169,30 @@ class SimulationResult:
                 "slices": int(sum(self.setup.resolution.counts)),
                 "time_step_us": self.setup.step * 1e6,
             },
-            "notes": list(self.setup.notes),
+            **self._carving(),
+            "notes": list(self.notes),
+        }
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the user should know of the run."""
+        cut = self.setup.groups[0]
+        carving = carving_notes(cut) if isinstance(cut, DiscreteCut) else []
+        return (*self.setup.notes, *carving)
+
+    def _carving(self) -> dict:
+        cut = self.setup.groups[0]
+        if not isinstance(cut, DiscreteCut):
+            return {}
+        spacing = cut.stock.spacing if isinstance(cut.stock, DexelStock) else cut.stock.cell
+        return {
+            "workpiece": {
+                "resolution_um": spacing * 1e6,
+                "layers": len(self.setup.slices.height),
+                "removed_volume_mm3": float(cut.removed[0]) * 1e9,
+                "memory_MB": sum(part.nbytes for part in cut.stock if hasattr(part, "nbytes"))
+                / 1e6,
+            }
         }
 
     def _verdict(self) -> dict:
