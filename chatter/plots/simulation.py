@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from chatter.plots import style
+from chatter.plots.workpiece import draw_workpiece
+from cutting.discrete_chip import DiscreteCut
 
 if TYPE_CHECKING:
     from chatter.simulation.finish import WallFinish
@@ -48,6 +50,7 @@ def plot_simulation(result: SimulationResult) -> Figure:
     matplotlib.figure.Figure
     """
     figure = style.new_figure(11.0, 12.0)
+    figure.suptitle(_title(result), fontsize=11.0, x=0.01, ha="left")
     grid = figure.add_gridspec(4, 1, height_ratios=[1.0, 1.0, 1.15, 1.15])
     signals = (
         ("force [N]", ("Fx", "Fy", "Fz"), result.force),
@@ -61,10 +64,23 @@ def plot_simulation(result: SimulationResult) -> Figure:
     draw_spectrum(figure.add_subplot(middle[0]), result)
     draw_once_a_turn(figure.add_subplot(middle[1]), result)
     bottom = grid[3].subgridspec(1, 2)
+    if _shows_workpiece(result):
+        layers = len(result.setup.slices.height)
+        for place, layer in enumerate(sorted({0, layers - 1})):
+            panel = figure.add_subplot(bottom[place])
+            height = result.setup.slices.height[layer] * 1e3
+            panel.set_title(f"workpiece {height:.2g} mm above the tip", loc="left")
+            draw_workpiece(panel, result, layer)
+        return figure
     draw_wall(figure.add_subplot(bottom[0]), result)
     draw_profiles(figure.add_subplot(bottom[1]), result)
-    figure.suptitle(_title(result), fontsize=11.0, x=0.01, ha="left")
     return figure
+
+
+def _shows_workpiece(result: SimulationResult) -> bool:
+    """A workpiece of the user's own says more than a wall that it may not have."""
+    carved = isinstance(result.setup.groups[0], DiscreteCut)
+    return carved and not result.finish.walls
 
 
 def _title(result: SimulationResult) -> str:

@@ -107,6 +107,8 @@ def set_up(case: Case, modes: tuple[Mode, ...] | None = None) -> Setup:
     _refuse_crossing_flutes(case, slices)
     _refuse_tool_too_short(case, cutter)
     spindle, path = spindle_of(case), path_of(case)
+    if case.stock is not None or (case.simulation and case.simulation.path):
+        notes += ("the engagement changes along the path; the verdict is that of the whole record",)
     chip = case.simulation.chip if case.simulation else "delay"
     groups: tuple = (CHIPS[chip](case, cutter, slices, modes, resolution, spindle, path),)
     if case.contact is not None:
