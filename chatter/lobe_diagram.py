@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +14,7 @@ from chatter.case import Case
 from chatter.methods import LimitMethod, chosen_method, resolution, zero_order_of
 from chatter.model import MillingModel, milling_model
 from chatter.pockets import DEPTH_MARGIN, SPEED_MARGIN, Pocket, find_pockets
+from chatter.result_files import as_json, finite_or_none, write_results
 from chatter.search_range import axial_depths, deepest_depth, spindle_speeds
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.semi_discretization import multipliers
@@ -120,13 +120,13 @@ class LobeDiagram:
             "operating_point": {
                 "spindle_speed_rpm": cut.spindle_speed * _RPM,
                 "axial_depth_mm": cut.axial_depth * 1e3,
-                "critical_depth_mm": _or_none(float(self.operating.critical_depth[0]) * 1e3),
+                "critical_depth_mm": finite_or_none(float(self.operating.critical_depth[0]) * 1e3),
                 "stable": self.operating_is_stable,
             },
             "pockets": [_pocket_summary(pocket) for pocket in self.pockets],
             "margin": {"depth": DEPTH_MARGIN, "spindle_speed": SPEED_MARGIN},
             "zero_order": {
-                "lowest_limit_mm": _or_none(self.zero_order.lowest_depth * 1e3),
+                "lowest_limit_mm": finite_or_none(self.zero_order.lowest_depth * 1e3),
                 "chatter_frequency_Hz": self.zero_order.lowest_frequency,
                 **_comparison(self.limits.critical_depth, self.zero_order.critical_depth),
             },
@@ -154,14 +154,13 @@ class LobeDiagram:
         list of Path
             What was written.
         """
-        folder = Path(folder)
-        folder.mkdir(parents=True, exist_ok=True)
-        written = [folder / "lobes.csv", folder / "summary.json", folder / "lobes.png"]
-        written[0].write_text(self._table(), encoding="utf-8")
-        written[1].write_text(json.dumps(self.summary(), indent=2) + "\n", encoding="utf-8")
-        self.plot().savefig(written[2])
+        written = write_results(
+            folder,
+            {"lobes.csv": self._table(), "summary.json": as_json(self.summary())},
+            {"lobes.png": self.plot()},
+        )
         if self.grid is not None:
-            written.append(folder / "grid.npz")
+            written.append(Path(folder) / "grid.npz")
             self.grid.save(written[-1])
         return written
 
@@ -180,15 +179,11 @@ class LobeDiagram:
         return "\n".join(lines) + "\n"
 
 
-def _or_none(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None
-
-
 def _pocket_summary(pocket: Pocket) -> dict:
     return {
         "spindle_speed_rpm": pocket.spindle_speed * _RPM,
         "axial_depth_mm": pocket.axial_depth * 1e3,
-        "limit_depth_mm": _or_none(pocket.limit_depth * 1e3),
+        "limit_depth_mm": finite_or_none(pocket.limit_depth * 1e3),
         "removal_rate_cm3_per_min": pocket.removal_rate * 1e6 * 60.0,
     }
 

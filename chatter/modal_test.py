@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 from chatter.errors import InputError
 from chatter.measured_frf import with_direction
 from chatter.mirror_point import with_magnitudes
+from chatter.result_files import as_json, write_results
 from dynamics.formats import read_frfs
 from dynamics.frf import Frf, MeasurementError
 from dynamics.hammer import HammerTest, hammer_test
@@ -86,15 +86,11 @@ class ModalTest:
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write modes.toml, summary.json, modes.png and stabilisation.png; return their paths."""
-        folder = Path(folder)
-        folder.mkdir(parents=True, exist_ok=True)
-        names = ("modes.toml", "summary.json", "modes.png", "stabilisation.png")
-        written = [folder / name for name in names]
-        written[0].write_text(self.to_toml(), encoding="utf-8")
-        written[1].write_text(json.dumps(self.summary(), indent=2) + "\n", encoding="utf-8")
-        self.plot().savefig(written[2])
-        self.plot_stabilisation().savefig(written[3])
-        return written
+        return write_results(
+            folder,
+            {"modes.toml": self.to_toml(), "summary.json": as_json(self.summary())},
+            {"modes.png": self.plot(), "stabilisation.png": self.plot_stabilisation()},
+        )
 
 
 def _mode_summary(mode: IdentifiedMode) -> dict:

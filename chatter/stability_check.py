@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +11,7 @@ import numpy as np
 from chatter.case import Case
 from chatter.methods import chosen_method, resolution, zero_order_of
 from chatter.model import MillingModel, milling_model
+from chatter.result_files import as_json, finite_or_none, write_results
 from chatter.search_range import deepest_depth
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.semi_discretization import (
@@ -87,17 +87,17 @@ class StabilityCheck:
         return {
             "spectral_radius": self.spectral_radius,
             "stable": self.stable,
-            "chatter_frequency_Hz": _or_none(self.chatter_frequency),
+            "chatter_frequency_Hz": finite_or_none(self.chatter_frequency),
             "bifurcation": self.bifurcation,
-            "critical_depth_mm": _or_none(self.critical_depth * 1e3),
+            "critical_depth_mm": finite_or_none(self.critical_depth * 1e3),
             "spindle_speed_rpm": cut.spindle_speed * _RPM,
             "axial_depth_mm": cut.axial_depth * 1e3,
             "limit": {
-                "chatter_frequency_Hz": _or_none(float(self.limit.chatter_frequency[0])),
+                "chatter_frequency_Hz": finite_or_none(float(self.limit.chatter_frequency[0])),
                 "bifurcation": self.limit.bifurcation[0],
                 "crossings_mm": [float(depth * 1e3) for depth in self.limit.crossings[0]],
                 "searched_to_mm": self.searched_to * 1e3,
-                "zero_order_depth_mm": _or_none(self.zero_order_depth * 1e3),
+                "zero_order_depth_mm": finite_or_none(self.zero_order_depth * 1e3),
             },
             "method": self.method,
             "steps_per_tooth_period": self.multiplier.steps,
@@ -107,15 +107,7 @@ class StabilityCheck:
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write check.json and return its path in a list."""
-        folder = Path(folder)
-        folder.mkdir(parents=True, exist_ok=True)
-        path = folder / "check.json"
-        path.write_text(json.dumps(self.summary(), indent=2) + "\n", encoding="utf-8")
-        return [path]
-
-
-def _or_none(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None
+        return write_results(folder, {"check.json": as_json(self.summary())}, {})
 
 
 def check(case: Case, method: str | None = None) -> StabilityCheck:

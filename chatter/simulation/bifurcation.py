@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 
 from chatter.case import Case
 from chatter.errors import InputError
+from chatter.result_files import as_json, finite_or_none, write_results
 from chatter.simulation.growth import periods_a_turn
 from chatter.simulation.setup import modes_of, set_up
 from chatter.simulation.simulate import run_setup
@@ -79,7 +79,7 @@ class BifurcationDiagram:
                     "value": point.value,
                     "verdict": point.verdict,
                     "bifurcation": point.bifurcation,
-                    "chatter_frequency_Hz": _or_none(point.chatter_frequency),
+                    "chatter_frequency_Hz": finite_or_none(point.chatter_frequency),
                     "spread_um": _spread(point) * 1e6,
                 }
                 for point in self.points
@@ -100,14 +100,11 @@ class BifurcationDiagram:
         list of Path
             What was written.
         """
-        folder = Path(folder)
-        folder.mkdir(parents=True, exist_ok=True)
-        names = ("bifurcation.csv", "summary.json", "bifurcation.png")
-        written = [folder / name for name in names]
-        written[0].write_text(self._table(), encoding="utf-8")
-        written[1].write_text(json.dumps(self.summary(), indent=2) + "\n", encoding="utf-8")
-        self.plot().savefig(written[2])
-        return written
+        return write_results(
+            folder,
+            {"bifurcation.csv": self._table(), "summary.json": as_json(self.summary())},
+            {"bifurcation.png": self.plot()},
+        )
 
     def _table(self) -> str:
         lines = [f"{self.path} [SI],x [um],y [um],z [um],verdict"]
@@ -182,7 +179,3 @@ def _spread(point: BifurcationPoint) -> float:
     if len(point.once_a_period) == 0:
         return 0.0
     return float(np.ptp(point.once_a_period, axis=0).max())
-
-
-def _or_none(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None

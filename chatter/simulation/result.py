@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.judgement import CutRecord, Judgement, judge
+from chatter.result_files import as_json, finite_or_none, write_results
 from chatter.simulation.carved import carving_notes
 from chatter.simulation.finish import Finish, finish_of
 from chatter.simulation.setup import Setup
@@ -207,10 +208,10 @@ class SimulationResult:
             }
         return {
             "verdict": found.verdict,
-            "chatter_frequency_Hz": _or_none(found.chatter_frequency),
+            "chatter_frequency_Hz": finite_or_none(found.chatter_frequency),
             "bifurcation": found.bifurcation,
             "confidence": found.confidence,
-            "growth_rate_per_s": _or_none(found.growth_rate),
+            "growth_rate_per_s": finite_or_none(found.growth_rate),
             "reason": found.reason,
         }
 
@@ -228,22 +229,19 @@ class SimulationResult:
         list of Path
             What was written.
         """
-        folder = Path(folder)
-        folder.mkdir(parents=True, exist_ok=True)
-        written = [folder / "signals.csv", folder / "summary.json", folder / "simulate.png"]
-        self._write_signals(written[0])
-        written[1].write_text(json.dumps(self.summary(), indent=2) + "\n", encoding="utf-8")
-        self.plot().savefig(written[2])
-        return written
+        return write_results(
+            folder,
+            {"signals.csv": self._signals(), "summary.json": as_json(self.summary())},
+            {"simulate.png": self.plot()},
+        )
 
-    def _write_signals(self, path: Path) -> None:
+    def _signals(self) -> str:
+        """Content of signals.csv."""
         header = "time [s],spindle_angle [rad],Fx [N],Fy [N],Fz [N],x [um],y [um],z [um]"
         table = np.column_stack(
             [self.time, self.spindle_angle, self.force, self.displacement * 1e6]
         )
         columns = ["%.9g", "%.9g", *["%.6g"] * 6]
-        np.savetxt(path, table, fmt=columns, delimiter=",", header=header, comments="")
-
-
-def _or_none(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None
+        text = StringIO()
+        np.savetxt(text, table, fmt=columns, delimiter=",", header=header, comments="")
+        return text.getvalue()
