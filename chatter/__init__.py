@@ -20,6 +20,7 @@ stability_check    `check`: verdict on the operating point
 simulation         `simulate`: the cut in the time domain
 judgement          chatter or not, from the signals of a cut
 modal_test         `modes`: measured FRFs or hammer records to modal parameters
+result_files       files that results write
 example_cases      `examples`: list, copy and run the shipped examples
 plots              pictures
 cli                the command line

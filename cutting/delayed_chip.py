@@ -34,6 +34,8 @@ from cutting.process_damping import ViscousFlank
 
 #: an edge that is this many bins outside the arc has left the cut
 _MARGIN = 2.0
+#: a straight edge is looked at this many bins late, so that it is on one side of a jump
+_NUDGE = 1e-6
 
 
 class DelayedCut(NamedTuple):
@@ -104,19 +106,6 @@ def _chip(cut, tooth, piece, sine, cosine):
 
 
 @register_jitable(**INLINED)
-def _chips(cut, tooth, piece, s1, c1, s2, c2):
-    """Chip thickness at two angles of an edge, m: `_chip` twice, in one look at the passes."""
-    sk, ck = cut.edges.sine_immersion[piece], cut.edges.cosine_immersion[piece]
-    first = second = math.inf
-    for k in range(cut.since.shape[0]):
-        x, y = sk * cut.since[k, 0], sk * cut.since[k, 1]
-        beside = cut.since[k, 2] * ck + cut.inset[tooth, piece, k]
-        first = min(first, x * s1 + y * c1 - beside)
-        second = min(second, x * s2 + y * c2 - beside)
-    return first, second
-
-
-@register_jitable(**INLINED)
 def _add_edge_force(cut, tooth, piece, sine, cosine, chip, length, total):
     """Add the force and torque of a length of edge to a total (x, y, z, torque, length)."""
     ft, fr, fa = edge_force(cut.law, tooth, chip)
@@ -138,43 +127,66 @@ def _at_ends(first, last):
 
 
 @register_jitable(**INLINED)
+def _chip_since(cut, tooth, piece, sine, cosine, k):
+    """Chip thickness against what the k-th pass back left, m."""
+    sk, ck = cut.edges.sine_immersion[piece], cut.edges.cosine_immersion[piece]
+    since = cut.since
+    chip = since[k, 0] * (sk * sine) + since[k, 1] * (sk * cosine) - since[k, 2] * ck
+    return chip - cut.inset[tooth, piece, k]
+
+
+@register_jitable(**INLINED)
 def _whole_slice(cut, tooth, piece, turn):
     """Force of a slice that is wholly inside the arc; second value: none of it in the air."""
     total = (0.0, 0.0, 0.0, 0.0, 0.0)
     half = 0.5 * cut.edges.edge_length[piece]
     s1, c1 = direction(cut.edges, tooth, piece, 1, turn)
     s2, c2 = direction(cut.edges, tooth, piece, 2, turn)
-    chip1, chip2 = _chips(cut, tooth, piece, s1, c1, s2, c2)
-    at_low, at_high = _at_ends(chip1, chip2)
+    chip1 = chip2 = at_low = at_high = math.inf
+    for k in range(cut.since.shape[0]):
+        first = _chip_since(cut, tooth, piece, s1, c1, k)
+        last = _chip_since(cut, tooth, piece, s2, c2, k)
+        low, high = _at_ends(first, last)
+        if low <= 0.0 and high <= 0.0:
+            return total, True
+        chip1, chip2 = min(chip1, first), min(chip2, last)
+        at_low, at_high = min(at_low, low), min(at_high, high)
     if at_low > 0.0 and at_high > 0.0:
         total = _add_edge_force(cut, tooth, piece, s1, c1, chip1, half, total)
         total = _add_edge_force(cut, tooth, piece, s2, c2, chip2, half, total)
         return total, True
-    return total, at_low <= 0.0 and at_high <= 0.0
+    return total, False
 
 
 @register_jitable(**INLINED)
 def _clear_of_air(cut, tooth, piece, low, high):
-    """Part of a span of places in which the chip is positive, as if it varied linearly."""
+    """Part of a span of places in which the chip is positive against every earlier pass.
+
+    Against each of them it varies nearly linearly; the thinnest of all has kinks, often where it
+    vanishes.
+    """
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     angle = 2.0 * math.pi / cut.edges.bins
     first, last = middle - GAUSS_PLACE * half, middle + GAUSS_PLACE * half
-    chips = _chips(
-        cut,
-        tooth,
-        piece,
-        math.sin(first * angle),
-        math.cos(first * angle),
-        math.sin(last * angle),
-        math.cos(last * angle),
-    )
-    at_low, at_high = _at_ends(chips[0], chips[1])
-    if at_low > 0.0 and at_high > 0.0:
-        return low, high
-    if at_low <= 0.0 and at_high <= 0.0:
+    s1, c1 = math.sin(first * angle), math.cos(first * angle)
+    s2, c2 = math.sin(last * angle), math.cos(last * angle)
+    begin, end = low, high
+    for k in range(cut.since.shape[0]):
+        at_low, at_high = _at_ends(
+            _chip_since(cut, tooth, piece, s1, c1, k), _chip_since(cut, tooth, piece, s2, c2, k)
+        )
+        if at_low <= 0.0 and at_high <= 0.0:
+            return low, low
+        if at_low > 0.0 and at_high > 0.0:
+            continue
+        root = low + at_low / (at_low - at_high) * (high - low)
+        if at_high > 0.0:
+            begin = max(begin, root)
+        else:
+            end = min(end, root)
+    if end < begin:
         return low, low
-    root = min(max(low + at_low / (at_low - at_high) * (high - low), low), high)
-    return (root, high) if at_high > 0.0 else (low, root)
+    return begin, end
 
 
 @register_jitable(**INLINED)
@@ -282,7 +294,9 @@ def delayed_forces(group, turn, point):
             if place - blur >= entry and place + blur <= leave:
                 force, settled = _whole_slice(cut, tooth, piece, turn)
             if not settled:
-                low, high = max(place - half, entry), min(place + half, leave)
+                # at a jump the limit from the right: one tooth leaves as another one enters
+                seen = place + _NUDGE if straight else place
+                low, high = max(seen - half, entry), min(seen + half, leave)
                 force = _part_of_slice(cut, tooth, piece, low, high, 2.0 * half)
             force = _add_flank_force(cut, tooth, piece, turn, point, force)
             mean = force

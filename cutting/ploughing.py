@@ -20,8 +20,10 @@ from cutting.edge_force import INLINED
 
 #: material parts at this angle before the lowest point of a rounded edge (Basuray et al. 1977)
 _SEPARATION_ANGLE = math.radians(37.6)
-#: samples of the wave along the contact at rest, and most samples looked back
-_SAMPLES_A_CONTACT = 12
+#: nodes of the flank along the contact at rest, and behind it
+_NODES_OF_CONTACT = 40
+_NODES_BEHIND = 20
+#: samples of the wave, at the most
 _MOST_SAMPLES = 96
 #: the wave is followed until the clearance is this high, m
 _HIGHEST_WAVE = 2e-4
@@ -84,12 +86,13 @@ class Ploughing:
 
 
 class PloughingFlank(NamedTuple):
-    """Flank of each edge slice, and the wave that it has just cut."""
+    """Flank of the edge, and the wave that each slice of it has just cut."""
 
     indentation_force: float  # N/m^3
     friction: float
-    profile: NDArray[np.float64]  # depth below the new surface at each sample, m, (N, L, K+1)
-    spacing: NDArray[np.float64]  # of the samples along the cut, m, (N, L)
+    distance: NDArray[np.float64]  # of the nodes of the flank behind the parting point, m, (J,)
+    depth: NDArray[np.float64]  # of the flank below the new surface there, m, (J,)
+    spacing: NDArray[np.float64]  # of the samples along the cut, m, (L,)
     stride: int  # steps between samples
     wave: NDArray[np.float64]  # surface left at the last samples, outwards, m, (N, L, K)
     newest: NDArray[np.int64]  # column of the last sample, (N, L)
@@ -113,19 +116,22 @@ def ploughing_flank(
     """
     contact = law.contact_length
     length = contact + _HIGHEST_WAVE / math.tan(law.clearance_angle)
+    nodes = np.concatenate(
+        [
+            np.linspace(0.0, contact, _NODES_OF_CONTACT + 1),
+            contact + (length - contact) * np.linspace(0.0, 1.0, _NODES_BEHIND + 1)[1:] ** 2,
+        ]
+    )
     arc = np.maximum(radius, 1e-3 * radius.max()) * step_angle
-    wanted = max(contact / _SAMPLES_A_CONTACT, length / _MOST_SAMPLES)
-    stride = max(1, int(wanted / arc.max()))
-    samples = min(_MOST_SAMPLES, max(2, math.ceil(length / (stride * arc.max()))))
-    spacing = stride * arc
-    distance = spacing[:, None] * np.arange(samples + 1)
-    profile = law.profile(distance.ravel()).reshape(distance.shape)
+    stride = max(1, math.ceil(length / (_MOST_SAMPLES - 2) / arc.max()))
+    samples = min(_MOST_SAMPLES, math.ceil(length / (stride * arc.max())) + 2)
     shape = (teeth, radius.size)
     return PloughingFlank(
         indentation_force=law.indentation_force,
         friction=law.friction,
-        profile=np.ascontiguousarray(np.broadcast_to(profile, (*shape, samples + 1))),
-        spacing=np.ascontiguousarray(np.broadcast_to(spacing, shape)),
+        distance=nodes,
+        depth=law.profile(nodes),
+        spacing=stride * arc,
         stride=stride,
         wave=np.zeros((*shape, samples)),
         newest=np.zeros(shape, dtype=np.int64),
@@ -161,29 +167,32 @@ def ploughing_force(flank, tooth, piece, place, rate, speed):  # noqa: ARG001
     """
     count = flank.filled[tooth, piece]
     samples = flank.wave.shape[2]
-    spacing = flank.spacing[tooth, piece]
+    spacing = flank.spacing[piece]
     # the newest sample was taken `age` steps before the last one, the others a stride earlier each
-    first = spacing * (flank.age[tooth, piece] + 1) / flank.stride
+    further = spacing * (flank.age[tooth, piece] + 1) / flank.stride
+    nearer, near_wave = 0.0, place
+    column, seen = flank.newest[tooth, piece], 1
     area = 0.0
-    left = at_rest = flank.profile[tooth, piece, 0]
-    reached = 0.0
-    for k in range(count):
-        column = flank.newest[tooth, piece] - k
-        if column < 0:
-            column += samples
-        distance = first + k * spacing
-        node = int(distance / spacing)
-        if node >= samples:
+    if count == 0:
+        return 0.0, 0.0
+    far_wave = flank.wave[tooth, piece, column]
+    left = at_rest = flank.depth[0]
+    for node in range(1, flank.distance.shape[0]):
+        distance = flank.distance[node]
+        while distance > further and seen < count:
+            column = column - 1 if column > 0 else samples - 1
+            nearer, near_wave = further, far_wave
+            further, far_wave = further + spacing, flank.wave[tooth, piece, column]
+            seen += 1
+        if distance > further:
             break
-        part = distance / spacing - node
-        depth = (1.0 - part) * flank.profile[tooth, piece, node] + part * (
-            flank.profile[tooth, piece, node + 1]
-        )
-        right = place - flank.wave[tooth, piece, column] + depth
-        width = distance - reached
+        share = (distance - nearer) / (further - nearer)
+        depth = flank.depth[node]
+        right = place - (near_wave + share * (far_wave - near_wave)) + depth
+        width = distance - flank.distance[node - 1]
         # what a still tool displaces belongs to the edge coefficients
         area += _area_above(left, right, width) - _area_above(at_rest, depth, width)
-        left, at_rest, reached = right, depth, distance
+        left, at_rest = right, depth
     radial = flank.indentation_force * area
     return flank.friction * radial, radial
 

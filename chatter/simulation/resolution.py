@@ -10,17 +10,17 @@ from chatter.case import Case
 from cutting.tool import Cutter, slice_counts
 from dynamics.modal import Mode
 
-#: steps within a period of the highest mode: the delayed motion is then kept within 0.1 %
-_STEPS_A_PERIOD = 80
+#: steps within a period of the highest mode: where it leaves the chip, the moment counts
+_STEPS_A_PERIOD = 120
 #: steps of a turn, and of the time that a tooth is in the cut, at the least
-_LEAST_STEPS_A_TURN = 720
+_LEAST_STEPS_A_TURN = 1440
 _STEPS_A_CUT = 60
 #: turns of a run, at the least and at the most, and time constants of the slowest mode in it
 _LEAST_TURNS = 40.0
 _MOST_TURNS = 400.0
 _TIME_CONSTANTS = 12.0
 #: lag within a slice, rad, by the kind of chip: layers of a carved workpiece are cut as a whole
-LARGEST_LAG = {"delay": 0.1, "dexel": 0.01, "voxel": 0.01}
+LARGEST_LAG = {"delay": 0.05, "dexel": 0.01, "voxel": 0.01}
 #: rows of the record, at the most
 _MOST_ROWS = 120_000
 

@@ -154,7 +154,7 @@ def test_teeth_share_one_volume(name, mode):
 
 def test_serrated_edges_cut_fewer_teeth_at_a_height():
     # edge force alone counts the teeth in contact: half of two deeply serrated ones
-    edge = {"Ktc": 1.0, "Krc": 0.0, "Kac": 0.0, "Kte": 1e4}
+    edge = {"Ktc": 1e3, "Krc": 0.0, "Kac": 0.0, "Kte": 1e4}
     tool = {"teeth": 2, "helix": "30 deg"}
     depth = {"axial_depth": "4 mm"}
     plain = run(tool, depth, edge).torque[720:1440].mean()

@@ -81,7 +81,9 @@ def order_in_step(mode, width, coarsest=360, **given):
 )
 def test_second_order_in_the_step(mode, width):
     order, change = order_in_step(mode, width)
-    assert np.all(np.abs(order - 2.0) < 0.3)
+    # displacement strictly; forces take on a little where the chip vanishes at the end of the arc
+    assert np.all(np.abs(order[:, 3:] - 2.0) < 0.1)
+    assert np.all(np.abs(order - 2.0) < 0.5)
     assert change.max() < 5e-4
 
 

@@ -43,7 +43,8 @@ def free_motion(found):
 
     Cut where an edge might have left the work: the chip of a mode along x is (f + change) sin(phi).
     """
-    steps = found.setup.resolution.steps_a_turn // found.case.tool.teeth
+    resolution = found.setup.resolution
+    steps = resolution.steps_a_turn // resolution.stride // found.case.tool.teeth
     turns = (len(found.rows) - 1) // steps
     x = found.displacement[: turns * steps, 0].reshape(turns, steps)[:, :: steps // 20]
     change = np.diff(x, axis=0)
@@ -78,7 +79,7 @@ CASES = {
     "stable, low immersion": (5000.0, 0.6e-3, "up", 0.05, "none"),
     "stable, half immersion": (9000.0, 0.15e-3, "down", 0.5, "none"),
     "stable, slot": (8000.0, 0.2e-3, "slot", 1.0, "none"),
-    "beyond a Hopf limit": (9000.0, 1.03, "slot", 1.0, "hopf"),
+    "beyond a Hopf limit": (8000.0, 1.03, "slot", 1.0, "hopf"),
     "beyond a Hopf limit, down": (11000.0, 1.03, "down", 0.3, "hopf"),
     "beyond a flip limit": (19000.0, 1.01, "up", 0.05, "flip"),
 }
@@ -93,8 +94,7 @@ def test_decay_and_growth_are_those_of_the_multiplier(name):
     wanted = chatter.check(given)
     assert wanted.bifurcation == kind
     got = multiplier_of(free_motion(simulate(given)))
-    assert abs(got) == pytest.approx(wanted.spectral_radius, rel=0.01)
-    assert distance(got, wanted.multiplier.value) < 0.01
+    assert distance(got, wanted.multiplier.value) < 1e-3
     if kind == "flip":
         assert got.real < -1.0
     if kind == "hopf":
@@ -113,16 +113,17 @@ def test_flip_sets_in_at_the_exact_depth(speed, limit_mm):
         long = {"revolutions": 60, "steps": 2400}
         found = simulate(case(speed, factor * limit_mm * 1e-3, simulation=long))
         sizes.append(multiplier_of(free_motion(found)))
+        assert sizes[-1].real < 0.0
     assert abs(sizes[0]) < 1.0 < abs(sizes[1])
-    assert sizes[1].real < 0.0
 
 
 def test_chatter_frequency_of_the_signal_itself():
-    limit = chatter.check(case(9000.0, 1e-4, "slot", 1.0)).critical_depth
-    long = {"revolutions": 120, "steps": 1200}
-    given = case(9000.0, 1.05 * limit, "slot", 1.0, simulation=long)
+    limit = chatter.check(case(8000.0, 1e-4, "slot", 1.0)).critical_depth
+    long = {"revolutions": 90, "steps": 1200}
+    given = case(8000.0, 1.05 * limit, "slot", 1.0, simulation=long)
     wanted = chatter.check(given)
     found = simulate(given)
+    assert found.setup.resolution.stride == 1
     free = (found.displacement[600:, 0] - found.displacement[:-600, 0])[-48000:]
     spectrum = np.abs(np.fft.rfft(free * np.hanning(free.size), 16 * free.size))
     frequency = np.fft.rfftfreq(16 * free.size, found.time[1])

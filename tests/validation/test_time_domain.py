@@ -54,9 +54,7 @@ def test_random_cut_with_its_transient(number):
     moving = np.abs(wanted).max(axis=0) > 1e-9
     assert moving[:3].all()
     errors = {
-        name: nrmse(got[kept, i], wanted[kept, i])
-        for i, name in enumerate(SIGNALS)
-        if moving[i]
+        name: nrmse(got[kept, i], wanted[kept, i]) for i, name in enumerate(SIGNALS) if moving[i]
     }
     assert max(errors.values()) < 0.01, errors
 

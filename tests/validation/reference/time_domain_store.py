@@ -14,8 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parent))
-from time_domain import (
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from reference.time_domain import (
     ReferenceCut,
     ReferenceMode,
     nrmse,

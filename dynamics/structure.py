@@ -1,0 +1,109 @@
+"""Linear structure: mass, damping and stiffness over degrees of freedom, and named points on it.
+
+Everything that describes a machine's mechanics ends here: rigid bodies and connectors, beams,
+imported matrices, reduced models. What acts on it - a cut, a drive, friction - does so along a
+port: a direction at a point, or between two points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse
+from numpy.typing import ArrayLike, NDArray
+
+Matrix = NDArray[np.float64] | scipy.sparse.csr_array
+
+
+class StructureError(ValueError):
+    """A structure that makes no sense; the message names the part."""
+
+
+@dataclass(frozen=True)
+class LinearStructure:
+    """M x'' + C x' + K x = sum of ports.
+
+    Parameters
+    ----------
+    mass, damping, stiffness : (n, n) array or sparse array of float
+        Symmetric; kg, N s/m, N/m, and their rotational kin.
+    points : mapping of str to (6, n) array of float
+        Motion of each named point, three displacements (m) and three rotations (rad), per degree
+        of freedom. Rows that a point does not have (rotations of a solid) are zero.
+    residual : mapping, optional
+        Compliance that a reduction left out, between ports of points: (name, name) -> (6, 6)
+        array, m/N and kin. Missing pairs have none.
+    """
+
+    mass: Matrix
+    damping: Matrix
+    stiffness: Matrix
+    points: Mapping[str, NDArray[np.float64]]
+    residual: Mapping[tuple[str, str], NDArray[np.float64]] = field(default_factory=dict)
+
+    @property
+    def size(self) -> int:
+        """Degrees of freedom."""
+        return self.mass.shape[0]
+
+    def port(self, point: str, direction: ArrayLike, against: str | None = None) -> NDArray:
+        """Row (n,) of the motion of a point along a direction, against another point if named.
+
+        Parameters
+        ----------
+        point, against : str
+        direction : (3,) or (6,) array of float
+            Displacements, or displacements and rotations.
+
+        Raises
+        ------
+        StructureError
+            If there is no such point.
+        """
+        along = np.zeros(6)
+        given = np.asarray(direction, dtype=np.float64)
+        along[: given.size] = given
+        row = along @ self._point(point)
+        return row if against is None else row - along @ self._point(against)
+
+    def _point(self, name: str) -> NDArray[np.float64]:
+        if name not in self.points:
+            known = ", ".join(f'"{point}"' for point in self.points)
+            raise StructureError(f'there is no point "{name}"; there are {known}')
+        return self.points[name]
+
+    def natural_frequencies(self, count: int | None = None) -> NDArray[np.float64]:
+        """Undamped natural frequencies (count,), Hz, ascending; rigid-body motion has 0."""
+        squared = scipy.linalg.eigh(
+            _dense(self.stiffness), _dense(self.mass), eigvals_only=True, check_finite=True
+        )
+        frequency = np.sqrt(np.maximum(squared, 0.0)) / (2.0 * np.pi)
+        return frequency[:count]
+
+    def receptance(self, frequency: ArrayLike, ports: NDArray[np.float64]) -> NDArray:
+        """Receptance (m, p, p) between ports at frequencies in Hz, without residuals.
+
+        Parameters
+        ----------
+        frequency : (m,) array of float
+            Hz.
+        ports : (p, n) array of float
+            Rows as from `port`.
+        """
+        rows = np.atleast_2d(ports)
+        result = np.empty((np.size(frequency), len(rows), len(rows)), dtype=np.complex128)
+        mass, damping, stiffness = (
+            _dense(part) for part in (self.mass, self.damping, self.stiffness)
+        )
+        for place, line in enumerate(np.atleast_1d(np.asarray(frequency, dtype=np.float64))):
+            omega = 2.0 * np.pi * line
+            dynamic = stiffness - omega**2 * mass + 1j * omega * damping
+            result[place] = rows @ np.linalg.solve(dynamic, rows.T)
+        return result
+
+
+def _dense(matrix: Matrix) -> NDArray[np.float64]:
+    return matrix.toarray() if scipy.sparse.issparse(matrix) else np.asarray(matrix)
