@@ -142,15 +142,19 @@ def _whole_slice(cut, tooth, piece, turn):
     half = 0.5 * cut.edges.edge_length[piece]
     s1, c1 = direction(cut.edges, tooth, piece, 1, turn)
     s2, c2 = direction(cut.edges, tooth, piece, 2, turn)
-    chip1 = chip2 = at_low = at_high = math.inf
+    sk, ck = cut.edges.sine_immersion[piece], cut.edges.cosine_immersion[piece]
+    chip1 = chip2 = at_low = at_high = best = math.inf
+    # a loop without branches: most of all the time goes here
     for k in range(cut.since.shape[0]):
-        first = _chip_since(cut, tooth, piece, s1, c1, k)
-        last = _chip_since(cut, tooth, piece, s2, c2, k)
+        x, y = sk * cut.since[k, 0], sk * cut.since[k, 1]
+        beside = cut.since[k, 2] * ck + cut.inset[tooth, piece, k]
+        first, last = x * s1 + y * c1 - beside, x * s2 + y * c2 - beside
         low, high = _at_ends(first, last)
-        if low <= 0.0 and high <= 0.0:
-            return total, True
         chip1, chip2 = min(chip1, first), min(chip2, last)
         at_low, at_high = min(at_low, low), min(at_high, high)
+        best = min(best, max(low, high))
+    if best <= 0.0:
+        return total, True
     if at_low > 0.0 and at_high > 0.0:
         total = _add_edge_force(cut, tooth, piece, s1, c1, chip1, half, total)
         total = _add_edge_force(cut, tooth, piece, s2, c2, chip2, half, total)
