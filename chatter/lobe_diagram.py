@@ -11,13 +11,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.case import Case
-from chatter.methods import LimitMethod, chosen_method, resolution, zero_order_of
+from chatter.methods import (
+    GRIDS,
+    LimitMethod,
+    chosen_method,
+    radius_by_semi_discretization,
+    resolution,
+    zero_order_of,
+)
 from chatter.model import MillingModel, milling_model
 from chatter.pockets import DEPTH_MARGIN, SPEED_MARGIN, Pocket, find_pockets
 from chatter.result_files import as_json, finite_or_none, write_results
 from chatter.search_range import axial_depths, deepest_depth, spindle_speeds
 from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.semi_discretization import multipliers
 from chatter.stability.sweep import Progress, no_progress
 from chatter.stability.zero_order import ZeroOrderLimit
 
@@ -245,7 +251,7 @@ def lobes(
         pockets=find_pockets(speeds, limits.critical_depth, deepest, removal_area(case)),
         operating=operating_limit(case, model, limits_of, deepest),
         natural_frequencies=tuple(mode.frequency for mode in model.structure.modes),
-        grid=stability_grid(case, model, speeds, depths) if grid else None,
+        grid=stability_grid(case, model, speeds, depths, name, progress) if grid else None,
         notes=model.notes,
     )
 
@@ -266,9 +272,15 @@ def removal_area(case: Case) -> float:
 
 
 def stability_grid(
-    case: Case, model: MillingModel, speeds: NDArray[np.float64], depths: NDArray[np.float64]
+    case: Case,
+    model: MillingModel,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    method: str,
+    progress: Progress = no_progress,
 ) -> StabilityGrid:
-    """Spectral radius by semi-discretization on every pair of speed and depth."""
+    """Spectral radius on every pair of speed and depth."""
     speed, depth = (part.ravel() for part in np.meshgrid(speeds, depths))
-    radius = np.abs(multipliers(model.arrays, speed, depth, resolution(case)))
+    radius_at = GRIDS.get(method, radius_by_semi_discretization)
+    radius = radius_at(model, speed, depth, resolution(case), progress)
     return StabilityGrid(speeds, depths, radius.reshape(len(depths), len(speeds)))

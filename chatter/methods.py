@@ -14,7 +14,7 @@ from chatter.case import Case
 from chatter.errors import InputError
 from chatter.model import MillingModel
 from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.semi_discretization import limit_curve
+from chatter.stability.semi_discretization import limit_curve, multipliers
 from chatter.stability.sweep import Progress
 from chatter.stability.zero_order import ZeroOrderLimit, zero_order_limit
 
@@ -77,6 +77,36 @@ METHODS: dict[str, LimitMethod] = {
     "zero-order": by_zero_order,
     "time": by_time,
 }
+
+
+def radius_by_semi_discretization(
+    model: MillingModel,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    steps: int | None,
+    progress: Progress,  # noqa: ARG001
+) -> NDArray[np.float64]:
+    """Spectral radius (n,) at n points by first-order semi-discretization."""
+    return np.abs(multipliers(model.arrays, speeds, depths, steps))
+
+
+def radius_by_time(
+    model: MillingModel,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    steps: int | None,  # noqa: ARG001
+    progress: Progress,
+) -> NDArray[np.float64]:
+    """Spectral radius (n,) at n points from the growth in simulated cuts."""
+    from chatter.simulation.limits import growths
+
+    found = growths(model.case, model.structure.modes, speeds, depths, progress)
+    return np.array([growth.radius for growth in found])
+
+
+#: methods that give the spectral radius on a grid; the others leave it to semi-discretization
+GRIDS = {"time": radius_by_time}
+
 
 DEFAULT_METHOD = "semi-discretization"
 

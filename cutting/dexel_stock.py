@@ -126,7 +126,7 @@ def dexel_stock(
                 low, high = spans[1 - family]
                 covered = (place >= low) & (place < high)
                 ends = (np.where(covered, spans[family][i], np.nan) for i in range(2))
-                change = _unite if adds else _subtract
+                change = unite_spans if adds else subtract_spans
                 change(stock, layer, family, *ends)
     return stock
 
@@ -164,10 +164,19 @@ def _store(
         interval[..., i] = np.where(held, np.take_along_axis(ends, longest, axis=1), 0.0)
 
 
-def _subtract(
+def subtract_spans(
     stock: DexelStock, layer: int, family: int, low: NDArray[np.float64], high: NDArray[np.float64]
 ) -> None:
-    """Remove low..high from each line (NaN: nothing)."""
+    """Remove low..high from each line of a family.
+
+    Parameters
+    ----------
+    stock : DexelStock
+        Changed.
+    layer, family : int
+    low, high : (lines,) array of float
+        m, along the lines; NaN for nothing.
+    """
     start, end = _intervals(stock, layer, family)
     low = np.where(np.isnan(low), np.inf, low)[:, None]
     high = np.where(np.isnan(high), np.inf, high)[:, None]
@@ -176,10 +185,19 @@ def _subtract(
     _store(stock, layer, family, starts, ends)
 
 
-def _unite(
+def unite_spans(
     stock: DexelStock, layer: int, family: int, low: NDArray[np.float64], high: NDArray[np.float64]
 ) -> None:
-    """Add low..high to each line (NaN: nothing), merged with the intervals it meets."""
+    """Add low..high to each line of a family, merged with the intervals it meets.
+
+    Parameters
+    ----------
+    stock : DexelStock
+        Changed.
+    layer, family : int
+    low, high : (lines,) array of float
+        m, along the lines; NaN for nothing.
+    """
     start, end = _intervals(stock, layer, family)
     met = (start <= high[:, None]) & (end >= low[:, None])
     low = np.minimum(low, np.where(met, start, np.inf).min(axis=1))
@@ -207,7 +225,7 @@ def dexel_remove_path(
     for family, (a, b) in enumerate((((x0, y0), (x1, y1)), ((y0, x0), (y1, x1)))):
         place = line_coordinates(stock, family)
         low, high = _capsule_chord(place, a, b, radius)
-        _subtract(stock, layer, family, low, high)
+        subtract_spans(stock, layer, family, low, high)
 
 
 def _capsule_chord(

@@ -97,7 +97,7 @@ def voxel_stock(
     x, y = _column_centres(stock), _row_centres(stock)
     for layer, shapes in enumerate(boxes):
         for (left, right, bottom, top), adds in shapes:
-            columns_in = _packed((x >= left) & (x < right))
+            columns_in = packed((x >= left) & (x < right))
             rows_in = (y >= bottom) & (y < top)
             if adds:
                 stock.words[layer, rows_in] |= columns_in
@@ -114,8 +114,8 @@ def _row_centres(stock: VoxelStock) -> NDArray[np.float64]:
     return stock.y_min + stock.cell * (np.arange(stock.rows) + 0.5)
 
 
-def _packed(cells: NDArray[np.bool_]) -> NDArray[np.uint64]:
-    """Pack truth values along the last axis into words."""
+def packed(cells: NDArray[np.bool_]) -> NDArray[np.uint64]:
+    """Pack truth values along the last axis into words of 64, the last one filled up with False."""
     octets = np.packbits(cells, axis=-1, bitorder="little")
     lacking = -octets.shape[-1] % 8
     octets = np.pad(octets, [(0, 0)] * (octets.ndim - 1) + [(0, lacking)])
@@ -149,7 +149,7 @@ def voxel_remove_path(
     u, v = x[None, :] - x0, y[reached, None] - y0
     fraction = np.clip((u * along + v * across) / square, 0.0, 1.0) if square > 0.0 else 0.0
     cleared = (u - fraction * along) ** 2 + (v - fraction * across) ** 2 < radius**2
-    stock.words[layer, reached] &= ~_packed(cleared)
+    stock.words[layer, reached] &= ~packed(cleared)
 
 
 def voxel_remaining_area(stock: VoxelStock, layer: int) -> float:

@@ -86,6 +86,7 @@ def draw_limit(axes: Axes, diagram: LobeDiagram) -> None:
 _METHOD_LABEL = {
     "semi-discretization": "limit, semi-discretization",
     "zero-order": "limit, zeroth-order",
+    "time": "limit, time domain",
 }
 
 

@@ -3,7 +3,7 @@
 The cut takes hold of the structure slowly, so that the tool comes close to its periodic motion
 without being thrown out of the chip; what is left of the start then dies out or grows. Its
 multiplier follows from how the differences between successive periods follow each other: they are
-free of the periodic motion, and two terms of a recursion hold a dominant pair of multipliers.
+free of the periodic motion.
 """
 
 from __future__ import annotations
@@ -32,7 +32,13 @@ _MOST_PERIODS = 1200
 _LARGEST_DIFFERENCE = 0.1
 _SMALLEST_DIFFERENCE = 1e-7
 #: periods that a fit needs at the least
-_LEAST_FITTED = 6
+_LEAST_FITTED = 10
+#: samples of a difference, shapes that differences are made of, the weakest of them that counts,
+#: and the share in the last difference that a multiplier must have
+_FEATURES = 96
+_MOST_SHAPES = 8
+_WEAKEST_SHAPE = 1e-3
+_LEAST_SHARE = 0.02
 
 
 @dataclass(frozen=True)
@@ -84,7 +90,7 @@ def growth_of(case: Case, modes: tuple[Mode, ...]) -> Growth:
     InputError
         If the case cannot be simulated.
     """
-    setup = set_up(case, modes)
+    setup = set_up(_delayed(case), modes)
     bins = setup.resolution.steps_a_turn
     a_turn = periods_a_turn(setup)
     per_period = bins // a_turn
@@ -100,6 +106,14 @@ def growth_of(case: Case, modes: tuple[Mode, ...]) -> Growth:
     watched = motion[ramp * per_period : whole * per_period]
     watched = watched.reshape(whole - ramp, per_period, 3)
     return _fitted(watched, period, case.cut.feed_per_tooth)
+
+
+def _delayed(case: Case) -> Case:
+    """Case with the delayed chip and the steady engagement that stability is about."""
+    settings = case.simulation
+    if settings is not None:
+        settings = settings.model_copy(update={"chip": "delay", "path": None})
+    return case.model_copy(update={"simulation": settings, "stock": None})
 
 
 def _motion(setup: Setup, steps: int, ramp: int) -> tuple[NDArray[np.float64], int]:
@@ -137,14 +151,23 @@ def _fitted(periods: NDArray[np.float64], period: float, feed: float) -> Growth:
 
 
 def _dominant(differences: NDArray[np.float64]) -> complex:
-    """Larger root of the recursion d2 = a d1 + b d0 that fits the rows best."""
-    weight = 1.0 / np.linalg.norm(differences[1:-1], axis=1)[:, None]
-    first, second, third = (
-        (differences[i : len(differences) - 2 + i] * weight).ravel() for i in range(3)
-    )
-    (a, b), *_ = np.linalg.lstsq(np.column_stack([second, first]), third, rcond=None)
-    roots = np.roots([1.0, -a, -b])
-    return complex(roots[np.argmax(np.abs(roots))])
+    """Largest multiplier that takes the rows (k, n) of differences from each to the next.
+
+    Dynamic mode decomposition (Schmid 2010, J. Fluid Mech. 656): the map from row to row is
+    fitted within the few shapes that the rows are made of; several multipliers of nearly the same
+    size, as of like modes in x and y, are so told apart.
+    """
+    samples = differences[:, :: max(1, differences.shape[1] // _FEATURES)]
+    weight = 1.0 / np.linalg.norm(samples[:-1], axis=1)[:, None]
+    before, after = samples[:-1] * weight, samples[1:] * weight
+    left, size, right = np.linalg.svd(before, full_matrices=False)
+    rank = min(_MOST_SHAPES, int(np.sum(size > _WEAKEST_SHAPE * size[0])))
+    left, size, right = left[:, :rank], size[:rank], right[:rank]
+    step = (left.T @ after @ right.T) / size[:, None]
+    values, shapes = np.linalg.eig(step.T)
+    share = np.abs(np.linalg.solve(shapes, (after[-1] @ right.T).astype(complex)))
+    present = share > _LEAST_SHARE * share.max()
+    return complex(values[present][np.argmax(np.abs(values[present]))])
 
 
 def _frequency(difference: NDArray[np.float64], multiplier: complex, period: float) -> float:

@@ -19,7 +19,7 @@ from chatter.simulation.spindle import (
     path_of_last_turn,
     spindle_of,
 )
-from chatter.simulation.stock import discrete_cut
+from chatter.simulation.stock import TURNS_BEFORE, discrete_cut
 from chatter.structure import structure_of
 from cutting.contact import ToolContact
 from cutting.delayed_chip import DelayedCut
@@ -69,7 +69,7 @@ class Setup:
     def turns_before(self) -> int:
         """Turns before the start in which the tool, at rest, carves what it finds at the start."""
         carved = isinstance(self.groups[0], DiscreteCut) and self.case.stock is None
-        return 2 if carved else 0
+        return TURNS_BEFORE if carved else 0
 
     @property
     def step(self) -> float:
@@ -105,9 +105,14 @@ def set_up(case: Case, modes: tuple[Mode, ...] | None = None) -> Setup:
     resolution = resolution_of(case, cutter, modes, _shortest_arc(case, cutter))
     slices = edge_slices(cutter, case.cut.axial_depth, resolution.counts)
     _refuse_crossing_flutes(case, slices)
-    _refuse_tool_too_short(case, cutter)
+    _refuse_out_of_reach(case, slices)
     spindle, path = spindle_of(case), path_of(case)
-    if case.stock is not None or (case.simulation and case.simulation.path):
+    bent = case.simulation is not None and case.simulation.path is not None
+    if bent and case.stock is None and case.simulation.chip != "delay":
+        raise InputError(
+            f"{case.name}: simulation.path: a path of its own needs a [stock] to lead through"
+        )
+    if case.stock is not None:
         notes += ("the engagement changes along the path; the verdict is that of the whole record",)
     chip = case.simulation.chip if case.simulation else "delay"
     groups: tuple = (CHIPS[chip](case, cutter, slices, modes, resolution, spindle, path),)
@@ -151,20 +156,22 @@ def _shortest_arc(case: Case, cutter: Cutter) -> float:
 
 
 def _refuse_crossing_flutes(case: Case, slices: EdgeSlices) -> None:
-    """Flutes of different helix must keep their order along the edge."""
-    order = np.argsort(np.mod(slices.angle - slices.angle[:1], 2.0 * math.pi), axis=0)
-    if np.any(order != order[:, :1]):
-        height = slices.height[np.argmax(np.any(order != order[:, :1], axis=0))]
+    """Flutes of different helix must keep their distance along the edge."""
+    first_again = slices.angle[:1] + 2.0 * math.pi
+    gap = np.diff(np.concatenate([slices.angle, first_again]), axis=0)
+    touching = np.any(gap <= 0.0, axis=0)
+    if touching.any():
+        height = slices.height[int(np.argmax(touching))]
         raise InputError(
             f"{case.name}: tool.helix: flutes of these angles run into each other "
             f"{height * 1e3:.3g} mm above the tip"
         )
 
 
-def _refuse_tool_too_short(case: Case, cutter: Cutter) -> None:
+def _refuse_out_of_reach(case: Case, slices: EdgeSlices) -> None:
     """Refuse a radial depth that no slice of the edge reaches."""
-    slices = edge_slices(cutter, case.cut.axial_depth, (4, 4) if cutter.corner_radius else (0, 4))
-    entry, leave = slice_engagement(case.cut.mode, radial_depth(case), cutter.radius, slices.radius)
+    radius = 0.5 * case.tool.diameter
+    entry, leave = slice_engagement(case.cut.mode, radial_depth(case), radius, slices.radius)
     if np.all(entry >= leave):
         raise InputError(
             f"{case.name}: cut.radial_depth: down to an axial depth of "

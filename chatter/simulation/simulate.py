@@ -8,21 +8,32 @@ import numpy as np
 
 from chatter.case import Case
 from chatter.errors import InputError, RunError
+from chatter.simulation.carved import CarvedSetup, FollowingStock, set_up_on
 from chatter.simulation.engine import COLUMNS, Record, run
 from chatter.simulation.result import SimulationResult
 from chatter.simulation.setup import Setup, set_up
 from chatter.simulation.spindle import prescribed
+from chatter.simulation.stock import (
+    STEPS_A_CHUNK,
+    follows,
+    reach_of,
+    steps_a_chunk,
+)
 from chatter.stability.sweep import Progress, no_progress
+from cutting.dexel_stock import DexelStock
+from cutting.discrete_chip import DiscreteCut
 from cutting.tool_point import tool_point
-from dynamics.modal_steps import modal_steps, stored_energy
+from dynamics.modal_steps import ModalSteps, modal_steps, stored_energy
 
-#: steps between two looks at the keyboard and the progress bar
-_STEPS_A_CHUNK = 20_000
 #: a run may be this long, in steps
 _MOST_STEPS = 2_000_000_000
 
 
-def simulate(case: Case, progress: Progress = no_progress) -> SimulationResult:
+def simulate(
+    case: Case,
+    progress: Progress = no_progress,
+    workpiece: SimulationResult | None = None,
+) -> SimulationResult:
     """Simulate the cut of a case from rest in full immersion.
 
     Parameters
@@ -32,6 +43,9 @@ def simulate(case: Case, progress: Progress = no_progress) -> SimulationResult:
         cut by a rigid tool.
     progress : callable, optional
         Called with (done, total) steps.
+    workpiece : SimulationResult, optional
+        Run that has carved the workpiece before, as its `[stock]` was; the case cuts what that
+        run has left, with the same resolution, and needs no `[stock]`. That run stays as it is.
 
     Returns
     -------
@@ -40,11 +54,12 @@ def simulate(case: Case, progress: Progress = no_progress) -> SimulationResult:
     Raises
     ------
     InputError
-        If the case lacks something or asks for what cannot be simulated.
+        If the case lacks something or asks for what cannot be simulated, or cannot cut the
+        workpiece given.
     RunError
         If the tool moves so far that the model no longer holds.
     """
-    setup = set_up(case)
+    setup = set_up(case) if workpiece is None else set_up_on(case, workpiece)
     result, done = run_setup(setup, progress)
     if done < setup.resolution.steps:
         raise RunError(
@@ -55,47 +70,100 @@ def simulate(case: Case, progress: Progress = no_progress) -> SimulationResult:
     return result
 
 
-def _run_before(setup: Setup, record: Record) -> None:
-    """Carve the workpiece with the tool at rest for the turns before the start."""
-    bins = setup.resolution.steps_a_turn
-    count = setup.turns_before * bins
-    rigid = modal_steps((), setup.step)
-    turns = prescribed(setup.spindle, setup.path, bins, setup.step, -1 - count, count)
-    # a stride beyond the end of the chunk records nothing
-    unrecorded = Record(count + 2, record.rows)
-    run(setup.groups, rigid, tool_point(), turns, unrecorded, np.zeros((0, 2)), 0, math.inf, bins)
-    setup.groups[0].removed[0] = 0.0
+def _following_stock(setup: Setup) -> FollowingStock | None:
+    """Stock that follows the tool; None where it is held as a whole, or there is none."""
+    cut = setup.groups[0]
+    if not (isinstance(cut, DiscreteCut) and follows(setup.case, setup.path)):
+        return None
+    size = cut.stock.spacing if isinstance(cut.stock, DexelStock) else cut.stock.cell
+    return FollowingStock(setup.case, cut, reach_of(setup.case, setup.cutter, setup.slices, size))
+
+
+class ChunkedRun:
+    """Steps of a run in chunks, between which the stock follows the tool.
+
+    Parameters
+    ----------
+    setup : Setup
+        For one run: its groups change.
+    """
+
+    def __init__(self, setup: Setup) -> None:
+        self.setup = setup
+        self.stock = _following_stock(setup)
+        self.chunk = STEPS_A_CHUNK
+        if self.stock is not None:
+            self.chunk = steps_a_chunk(setup.case, setup.slices, setup.resolution)
+
+    def steps(
+        self,
+        modes: ModalSteps,
+        furthest: float,
+        record: Record,
+        first: int,
+        last: int,
+        progress: Progress = no_progress,
+        ramp: int = 0,
+    ) -> int:
+        """Do the steps first + 1 to last from rest and return the last one done.
+
+        Parameters
+        ----------
+        modes : ModalSteps
+        furthest : float
+            Displacement at which the run is left, m.
+        record : Record
+        first, last : int
+        progress : callable
+            Called with (done, total) steps.
+        ramp : int
+            Steps over which the structure comes to feel the cutting force.
+        """
+        setup, bins = self.setup, self.setup.resolution.steps_a_turn
+        point, scratch = tool_point(), np.zeros((len(modes.mass), 2))
+        done, groups = first, setup.groups
+        while done < last:
+            count = min(self.chunk, last - done)
+            turns = prescribed(setup.spindle, setup.path, bins, setup.step, done, count, ramp)
+            if self.stock is not None:
+                groups = (self.stock.follow(float(turns.x[0])), *setup.groups[1:])
+            ran = run(groups, modes, point, turns, record, scratch, done, furthest, bins)
+            done += ran
+            progress(done, last)
+            if ran < count:
+                break
+        return done
+
+    def carve_before(self, record: Record) -> None:
+        """Carve the workpiece with the tool at rest for the turns before the start."""
+        count = self.setup.turns_before * self.setup.resolution.steps_a_turn
+        # a stride beyond the end of the run before records nothing
+        unrecorded = Record(count + 2, record.rows)
+        rigid = modal_steps((), self.setup.step)
+        self.steps(rigid, math.inf, unrecorded, -1 - count, -1)
+        self.setup.groups[0].removed[0] = 0.0
 
 
 def run_setup(setup: Setup, progress: Progress = no_progress) -> tuple[SimulationResult, int]:
     """Run what was set up, once, and return the result and the number of steps done."""
     resolution = setup.resolution
-    steps, bins = resolution.steps, resolution.steps_a_turn
+    steps = resolution.steps
     if steps > _MOST_STEPS:
         raise InputError(
             f"{setup.case.name}: simulation: the run has {steps:.3g} steps; at most "
             f"{_MOST_STEPS:.0e} are allowed: shorten it, or give fewer simulation.steps"
         )
     modes = modal_steps(setup.modes, setup.step)
-    point = tool_point()
     record = Record(resolution.stride, np.zeros((steps // resolution.stride + 1, len(COLUMNS))))
-    scratch = np.zeros((len(setup.modes), 2))
+    cut = ChunkedRun(setup)
     if setup.turns_before:
-        _run_before(setup, record)
+        cut.carve_before(record)
     furthest = setup.furthest if setup.modes else math.inf
-    done = -1
-    while done < steps:
-        count = min(_STEPS_A_CHUNK, steps - done)
-        turns = prescribed(setup.spindle, setup.path, bins, setup.step, done, count)
-        ran = run(setup.groups, modes, point, turns, record, scratch, done, furthest, bins)
-        done += ran
-        progress(done, steps)
-        if ran < count:
-            break
+    done = cut.steps(modes, furthest, record, -1, steps, progress)
     rows = done // resolution.stride + 1
     work, dissipated = modes.energy
     result = SimulationResult(
-        setup=setup,
+        setup=setup if cut.stock is None else CarvedSetup.after(setup, cut.stock),
         rows=record.rows[:rows],
         energy={
             "work": float(work),
