@@ -264,10 +264,12 @@ def _all_in_air(cut, tooth, turn):
     """Tell whether no part of an edge is in the arc of the cut."""
     whole, part = place_of(cut.edges, tooth, 0, turn.whole, turn.part)
     place = signed_place(cut.edges, whole, part)
-    if place + cut.reach[tooth, 1] < cut.arc[0] or place + cut.reach[tooth, 0] > cut.arc[1]:
-        place += cut.edges.bins
-        return place + cut.reach[tooth, 0] > cut.arc[1]
-    return False
+    low, high = place + cut.reach[tooth, 0], place + cut.reach[tooth, 1]
+    for turns in range(-1, 2):
+        shift = turns * cut.edges.bins
+        if high + shift >= cut.arc[0] and low + shift <= cut.arc[1]:
+            return False
+    return True
 
 
 @register_jitable(**INLINED)

@@ -111,4 +111,7 @@ def _reach(slices: EdgeSlices, bins: int) -> NDArray[np.float64]:
     # half a bin more for the turn of a step, which blurs a straight edge
     low = (offset - half).min(axis=1) * bins / _TURN - 1.0
     high = (offset + half).max(axis=1) * bins / _TURN + 1.0
-    return np.stack([low, high], axis=1)
+    reach = np.stack([low, high], axis=1)
+    # an edge that winds around the tool is never known to be in the air as a whole
+    reach[high - low > 0.5 * bins] = [-np.inf, np.inf]
+    return reach

@@ -256,4 +256,3 @@ def _normal_offset(
             ]
         )
     return radial * np.sin(immersion) + np.outer(cutter.axial_offsets, np.cos(immersion))
-

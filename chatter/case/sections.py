@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Annotated, Any, Literal
 
@@ -172,6 +173,15 @@ class Simulation(Section):
         both = self.duration is not None and self.revolutions is not None
         raise_if_any([("", "give duration or revolutions, not both")] if both else [])
         return self
+
+    @field_validator("path")
+    @classmethod
+    def _check_path(cls, given: tuple[PlanePoint, ...] | None) -> tuple[PlanePoint, ...] | None:
+        if given is not None and len(given) < 2:
+            raise ValueError("has fewer than two corners")
+        if given is not None and any(a == b for a, b in itertools.pairwise(given)):
+            raise ValueError("has two corners in a row at the same place")
+        return given
 
 
 Count = whole_number(2, MOST_POINTS_A_SIDE, "counts")

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from chatter.cli.errors import reports_errors
+from chatter.cli.errors import EXIT_RUN_FAILED, reports_errors
 from chatter.cli.options import (
     Assignments,
     CaseFile,
@@ -53,6 +53,8 @@ def simulate(
         _print_summary(summary)
     print_notes(summary["notes"])
     print_written(written)
+    if result.interrupted:
+        raise typer.Exit(EXIT_RUN_FAILED)
 
 
 def _print_summary(summary: dict) -> None:

@@ -20,6 +20,9 @@ from chatter.judgement.sections import Periods, cut_into_periods, once_a_tooth, 
 _NEGLIGIBLE = 5e-3
 #: deviation per relative variation of the speed that may be its doing
 _BY_SPEED = 60.0
+#: deviations below this share are rounding; a small one counts when it has grown so many e-folds
+_ROUNDING = 1e-7
+_GROWN = 2.0
 #: logarithm of the decay a turn below which a motion counts as sustained
 _SUSTAINED = -0.004
 #: standard errors by which a decay has to be certain
@@ -190,6 +193,12 @@ def _trend_of(deviations: Deviations, periods: Periods) -> _Trend:
 def _decide(trend: _Trend, periods: Periods) -> tuple[str, float, str]:
     a_turn, error = trend.slope * periods.per_turn, trend.error * periods.per_turn
     of_what = _unit(periods.per_turn)
+    if trend.level < trend.floor and _grows(trend, len(periods.values)):
+        return (
+            "chatter", 0.7,
+            f"the deviation from {of_what} to {of_what} is but {trend.level:.2%} of the rms of the "
+            f"motion, but it grows by {math.expm1(a_turn):.1%} a turn",
+        )  # fmt: skip
     if trend.level < trend.floor:
         sure = 1.0 - 0.4 * trend.level / trend.floor
         return (
@@ -209,6 +218,12 @@ def _decide(trend: _Trend, periods: Periods) -> tuple[str, float, str]:
         f"the deviation from {of_what} to {of_what} stays at {trend.level:.1%} of the rms of the "
         f"motion, with a change of {math.expm1(a_turn):+.1%} a turn",
     )  # fmt: skip
+
+
+def _grows(trend: _Trend, count: int) -> bool:
+    """Whether a small deviation grows steadily over the record, far above rounding."""
+    steady = trend.slope > _CERTAIN * trend.error and trend.whole > _SHARE_OF_RATE * trend.slope
+    return trend.level > _ROUNDING and steady and trend.whole * count > _GROWN
 
 
 def _decays(trend: _Trend, per_turn: int) -> bool:

@@ -229,7 +229,8 @@ def _mark_harmonics(axes: Axes, tooth: float, teeth: int, top: float) -> None:
     if teeth > 1 and top / turn < 120:
         for order in range(1, int(top / turn) + 1):
             axes.axvline(order * turn, color="#E4E4E4", **thin)
-    for order in range(1, int(top / tooth + 1e-9) + 1):
+    marked = int(top / tooth + 1e-9)
+    for order in range(1, marked + 1 if marked <= 60 else 1):
         label = "tooth passing" if order == 1 else None
         axes.axvline(order * tooth, color=style.GREY, linestyle=(0, (4, 3)), label=label, **thin)
 

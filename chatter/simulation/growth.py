@@ -90,7 +90,7 @@ def growth_of(case: Case, modes: tuple[Mode, ...]) -> Growth:
     InputError
         If the case cannot be simulated.
     """
-    setup = set_up(_delayed(case), modes)
+    setup = set_up(delayed(case), modes)
     bins = setup.resolution.steps_a_turn
     a_turn = periods_a_turn(setup)
     per_period = bins // a_turn
@@ -108,8 +108,8 @@ def growth_of(case: Case, modes: tuple[Mode, ...]) -> Growth:
     return _fitted(watched, period, case.cut.feed_per_tooth)
 
 
-def _delayed(case: Case) -> Case:
-    """Case with the delayed chip and the steady engagement that stability is about."""
+def delayed(case: Case) -> Case:
+    """Return the case with the delayed chip and the steady engagement of [cut]."""
     settings = case.simulation
     if settings is not None:
         settings = settings.model_copy(update={"chip": "delay", "path": None})

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from chatter.case import Case
+from chatter.errors import InputError
 from cutting.tool import Cutter, slice_counts
 from dynamics.modal import Mode
 
@@ -15,6 +16,10 @@ _STEPS_A_PERIOD = 120
 #: steps of a turn, and of the time that a tooth is in the cut, at the least
 _LEAST_STEPS_A_TURN = 1440
 _STEPS_A_CUT = 60
+#: steps between teeth, at the least, and steps of a turn, at the most
+_STEPS_A_PITCH = 16
+_MOST_STEPS_A_TURN = 4_000_000
+_MOST_SLICES = 5000
 #: turns of a run, at the least and at the most, and time constants of the slowest mode in it
 _LEAST_TURNS = 40.0
 _MOST_TURNS = 400.0
@@ -68,25 +73,44 @@ def resolution_of(
     section = case.simulation
     steps = section.steps if section and section.steps else None
     if steps is None:
-        steps = steps_a_turn(case, modes, shortest_arc)
+        steps = steps_a_turn(case, modes, shortest_arc, cutter.pitch)
+    if steps > _MOST_STEPS_A_TURN:
+        raise InputError(
+            f"{case.name}: simulation.steps: {steps:.3g} steps a revolution would be needed for "
+            "the highest mode, the contact or the closest teeth; at most "
+            f"{_MOST_STEPS_A_TURN:.0e} are allowed: give simulation.steps, or leave out what is "
+            "so fast"
+        )
     steps = _divisible(steps, math.lcm(4, case.tool.teeth))
     chip = section.chip if section else "delay"
     corner, straight = slice_counts(cutter, case.cut.axial_depth, LARGEST_LAG[chip])
     if section and section.slices and straight:
         straight = section.slices
+    if corner + straight > _MOST_SLICES:
+        raise InputError(
+            f"{case.name}: tool: {corner + straight:.3g} slices would be needed for the lag of the "
+            f"helix or the waves of the edge; at most {_MOST_SLICES} are allowed"
+        )
     turns = turns_of(case, modes)
     total = max(1, round(turns * steps))
     return Resolution(steps, (corner, straight), turns, _stride(steps, total))
 
 
-def steps_a_turn(case: Case, modes: Sequence[Mode], shortest_arc: float) -> int:
+def steps_a_turn(
+    case: Case, modes: Sequence[Mode], shortest_arc: float, pitch: Sequence[float]
+) -> int:
     """Steps a revolution that resolve the highest mode and the time of a tooth in the cut."""
-    highest = max((mode.frequency for mode in modes), default=0.0)
+    stiff = case.contact.stiffness if case.contact else 0.0
+    highest = max(
+        (math.sqrt((mode.stiffness + stiff) / mode.mass) / (2.0 * math.pi) for mode in modes),
+        default=0.0,
+    )
     a_turn = 2.0 * math.pi / case.cut.spindle_speed
     return max(
         _LEAST_STEPS_A_TURN,
         math.ceil(_STEPS_A_PERIOD * highest * a_turn),
         math.ceil(_STEPS_A_CUT * 2.0 * math.pi / shortest_arc),
+        math.ceil(_STEPS_A_PITCH * 2.0 * math.pi / min(pitch)),
     )
 
 

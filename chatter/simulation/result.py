@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from io import StringIO
 from pathlib import Path
@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.errors import InputError
 from chatter.judgement import CutRecord, Judgement, judge
 from chatter.result_files import as_json, finite_or_none, write_results
 from chatter.simulation.carved import carving_notes
+from chatter.simulation.divergence import divergence
 from chatter.simulation.finish import Finish, finish_of
 from chatter.simulation.setup import Setup
 from cutting.dexel_stock import DexelStock
@@ -24,8 +26,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _RPM = 30.0 / math.pi
-#: a record of fewer turns is not judged
+#: a record of fewer turns, or of fewer cycles of the lowest mode, is not judged
 _LEAST_TURNS_TO_JUDGE = 8.0
+_LEAST_CYCLES_TO_JUDGE = 12.0
 #: means are taken over the last whole turns within this share of the run
 _SETTLED_SHARE = 0.5
 
@@ -46,12 +49,15 @@ class SimulationResult:
         J.
     complete : bool
         False where the run was left early.
+    interrupted : bool
+        True where that was the user's wish.
     """
 
     setup: Setup
     rows: NDArray[np.float64]
     energy: dict[str, float]
     complete: bool = True
+    interrupted: bool = False
 
     @property
     def case(self):
@@ -100,24 +106,61 @@ class SimulationResult:
 
     @cached_property
     def judgement(self) -> Judgement | None:
-        """Chatter or not; None where the run is too short, or nothing can vibrate."""
-        if self.turns < _LEAST_TURNS_TO_JUDGE or not self.setup.modes:
+        """Chatter or not; None where that cannot be told, see `why_not_judged`."""
+        if self.why_not_judged:
             return None
+        found = judge(self._cut_record())
+        if self.setup.spindle.amplitude == 0.0:
+            return found
+        return self._judged_by_divergence(found)
+
+    @cached_property
+    def why_not_judged(self) -> str:
+        """Why there is no verdict; empty where there is one."""
+        if not self.setup.modes:
+            return "the tool is rigid"
+        if self.turns < _LEAST_TURNS_TO_JUDGE:
+            return f"fewer than {_LEAST_TURNS_TO_JUDGE:g} revolutions were simulated"
+        slowest = min(mode.frequency for mode in self.setup.modes)
+        if self.time[-1] * slowest < _LEAST_CYCLES_TO_JUDGE:
+            return (
+                f"the run holds fewer than {_LEAST_CYCLES_TO_JUDGE:g} cycles of the lowest mode, "
+                f"{slowest:.4g} Hz"
+            )
+        try:
+            self._cut_record()
+        except InputError as error:
+            return str(error)
+        return ""
+
+    def _cut_record(self) -> CutRecord:
         cutter, slices = self.setup.cutter, self.setup.slices
         turned = slices.angle - slices.angle[:, :1]
         widest = int(np.argmax(np.ptp(slices.normal_offset, axis=0)))
         # flutes of different helix are no more alike than teeth out of true
         known = np.allclose(turned, turned[0])
-        return judge(
-            CutRecord(
-                time=self.time,
-                spindle_angle=self.spindle_angle,
-                displacements=self.displacement,
-                tooth_angles=np.sort(cutter.tooth_angles),
-                feed_per_tooth=self.case.cut.feed_per_tooth,
-                forces=self.force,
-                runout=slices.normal_offset[:, widest] if known else None,
-            )
+        return CutRecord(
+            time=self.time,
+            spindle_angle=self.spindle_angle,
+            displacements=self.displacement,
+            tooth_angles=np.sort(cutter.tooth_angles),
+            feed_per_tooth=self.case.cut.feed_per_tooth,
+            forces=self.force,
+            runout=slices.normal_offset[:, widest] if known else None,
+        )
+
+    def _judged_by_divergence(self, found: Judgement) -> Judgement:
+        """Verdict under a varying speed, where no turn is like the next."""
+        apart = divergence(self.case, self.setup.modes)
+        a_turn = math.expm1(min(apart.rate, 50.0))
+        return replace(
+            found,
+            verdict="stable" if apart.stable else "chatter",
+            confidence=min(1.0, 0.5 + 10.0 * abs(a_turn)),
+            reason=f"a small push at the start changes by {a_turn:+.1%} a turn",
+            bifurcation="none" if apart.stable else "unknown",
+            chatter_frequency=math.nan if apart.stable else apart.frequency,
+            growth_rate=apart.rate * self.setup.spindle.speed / (2.0 * math.pi),
         )
 
     @cached_property
@@ -179,7 +222,8 @@ class SimulationResult:
         """What the user should know of the run."""
         cut = self.setup.groups[0]
         carving = carving_notes(cut) if isinstance(cut, DiscreteCut) else []
-        return (*self.setup.notes, *carving)
+        stopped = f"interrupted after {self.turns:.4g} of {self.setup.resolution.turns:g} turns"
+        return (*self.setup.notes, *carving, *([stopped] if self.interrupted else []))
 
     def _carving(self) -> dict:
         cut = self.setup.groups[0]
@@ -202,9 +246,7 @@ class SimulationResult:
             return {
                 "verdict": "not judged",
                 "chatter_frequency_Hz": None,
-                "reason": "the tool is rigid"
-                if not self.setup.modes
-                else f"fewer than {_LEAST_TURNS_TO_JUDGE:g} revolutions were simulated",
+                "reason": self.why_not_judged,
             }
         return {
             "verdict": found.verdict,

@@ -98,6 +98,7 @@ def set_up(case: Case, modes: tuple[Mode, ...] | None = None) -> Setup:
     """
     case.require("tool", "material", "cut")
     check_plausible(case)
+    _refuse_teeth_off_the_tool(case)
     notes: tuple[str, ...] = ()
     if modes is None:
         modes, notes = modes_of(case)
@@ -112,6 +113,8 @@ def set_up(case: Case, modes: tuple[Mode, ...] | None = None) -> Setup:
         raise InputError(
             f"{case.name}: simulation.path: a path of its own needs a [stock] to lead through"
         )
+    if case.tool.axial_error and np.all(slices.immersion > 0.5 * math.pi - 1e-9):
+        notes += ("tool.axial_error changes no force: the edge is upright at every height",)
     if case.stock is not None:
         notes += ("the engagement changes along the path; the verdict is that of the whole record",)
     chip = case.simulation.chip if case.simulation else "delay"
@@ -153,6 +156,22 @@ def _shortest_arc(case: Case, cutter: Cutter) -> float:
     entry, leave = _arcs(case, cutter)
     lag = min(abs(math.tan(helix)) for helix in cutter.helix) * case.cut.axial_depth / cutter.radius
     return max(leave - entry + lag, 1e-3)
+
+
+def _refuse_teeth_off_the_tool(case: Case) -> None:
+    """Refuse runout and setting errors that would move a tooth by a good part of the radius."""
+    tool = case.tool
+    most = _FURTHEST * 0.5 * tool.diameter
+    given = {"runout.offset": (tool.runout.offset,) if tool.runout else ()}
+    given |= {"radial_error": tool.radial_error or (), "axial_error": tool.axial_error or ()}
+    problems = [
+        f"{case.name}: tool.{key}: {max(map(abs, values)) * 1e3:g} mm is more than a tenth of the "
+        f"diameter, {tool.diameter * 1e3:g} mm"
+        for key, values in given.items()
+        if values and max(map(abs, values)) > most
+    ]
+    if problems:
+        raise InputError(problems)
 
 
 def _refuse_crossing_flutes(case: Case, slices: EdgeSlices) -> None:

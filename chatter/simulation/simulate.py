@@ -58,10 +58,14 @@ def simulate(
         workpiece given.
     RunError
         If the tool moves so far that the model no longer holds.
+
+    Notes
+    -----
+    An interruption (Ctrl-C) ends the run, not the program: the result holds what was simulated.
     """
     setup = set_up(case) if workpiece is None else set_up_on(case, workpiece)
     result, done = run_setup(setup, progress)
-    if done < setup.resolution.steps:
+    if done < setup.resolution.steps and not result.interrupted:
         raise RunError(
             f"{case.name}: after {done * setup.step:.4g} s the tool is displaced by more than "
             f"{setup.furthest * 1e3:.3g} mm, a share of its radius at which the model of the cut "
@@ -90,6 +94,7 @@ class ChunkedRun:
 
     def __init__(self, setup: Setup) -> None:
         self.setup = setup
+        self.interrupted = False
         self.stock = _following_stock(setup)
         self.chunk = STEPS_A_CHUNK
         if self.stock is not None:
@@ -127,9 +132,13 @@ class ChunkedRun:
             turns = prescribed(setup.spindle, setup.path, bins, setup.step, done, count, ramp)
             if self.stock is not None:
                 groups = (self.stock.follow(float(turns.x[0])), *setup.groups[1:])
-            ran = run(groups, modes, point, turns, record, scratch, done, furthest, bins)
-            done += ran
-            progress(done, last)
+            try:
+                ran = run(groups, modes, point, turns, record, scratch, done, furthest, bins)
+                done += ran
+                progress(done, last)
+            except KeyboardInterrupt:
+                self.interrupted = True
+                break
             if ran < count:
                 break
         return done
@@ -171,5 +180,6 @@ def run_setup(setup: Setup, progress: Progress = no_progress) -> tuple[Simulatio
             "stored": stored_energy(modes),
         },
         complete=done == steps,
+        interrupted=cut.interrupted,
     )
     return result, done

@@ -41,6 +41,8 @@ _COARSEST_DEXEL = 2.5e-5
 _DEXELS_A_CHIP = 4
 #: voxels within the thickest chip
 _VOXELS_A_CHIP = 12
+#: coarsest resolution that is taken, as a share of the diameter
+_COARSEST_SHARE = 0.02
 #: the stock may take this much memory, bytes
 _MOST_MEMORY = 4e9
 #: steps between two moves of a stock that follows the tool, and the way of the tool between them
@@ -101,7 +103,9 @@ def _dexel_memory(box: Rectangle, layers: int, spacing: float) -> float:
 
 
 def _voxel_memory(box: Rectangle, layers: int, size: float) -> float:
-    return layers * (box[1] - box[0]) * (box[3] - box[2]) / size**2 / 8.0
+    cells = (box[1] - box[0]) * (box[3] - box[2]) / size**2
+    # packed, and a few layers at a time as bytes while the stock is shaped
+    return layers * cells / 8.0 + 4.0 * cells
 
 
 #: name in a case file -> workpiece
@@ -147,6 +151,7 @@ def discrete_cut(
     size = case.simulation.resolution or kind.resolution(case, modes)
     ends = _ends(case, cutter, slices, resolution, spindle, path, size)
     boxes = _boxes(case, cutter, slices, ends, size)
+    _refuse_too_coarse(case, size)
     _refuse_too_large(case, kind, boxes, size)
     stock = kind.build(boxes, len(slices.height), size, cutter.teeth, _window(case, cutter))
     if case.stock is None:
@@ -257,6 +262,15 @@ def _boxes(
     else:
         high = low + height
     return [[((*ends, low, high), True)] for _ in slices.height]
+
+
+def _refuse_too_coarse(case: Case, size: float) -> None:
+    coarsest = _COARSEST_SHARE * case.tool.diameter
+    if size > coarsest:
+        raise InputError(
+            f"{case.name}: simulation.resolution: {size * 1e3:g} mm is too coarse for a tool of "
+            f"{case.tool.diameter * 1e3:g} mm; at most {coarsest * 1e3:.3g} mm are allowed"
+        )
 
 
 def _refuse_too_large(
