@@ -49,7 +49,7 @@ TEN_SPEEDS = {
     "one mode, up-milling": (X, "up", 0.05, (14500, 20500), "8 mm"),
     "one mode, half-immersion down-milling": (X, "down", 0.5, (14500, 20500), "4 mm"),
     "two modes, up-milling": (X_AND_Y, "up", 0.05, (14500, 20500), "6 mm"),
-    "two modes, tenth immersion": (X_AND_Y, "up", 0.1, (14500, 20500), "5 mm"),
+    "two modes, tenth immersion": (X_AND_Y, "up", 0.1, (14500, 19500), "5 mm"),
 }
 
 

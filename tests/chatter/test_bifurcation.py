@@ -1,0 +1,224 @@
+"""Bifurcation diagrams: branches of the points once a period, files and wrong ranges."""
+
+import csv
+import json
+import math
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import chatter
+from chatter import Case, InputError
+from chatter.cli import app
+
+RPM = math.pi / 30.0
+
+
+def tool_of_922_hertz(rpm, depth, mode="up", radial_depth="0.8 mm"):
+    """Tool of Insperger and Stepan (2004), one mode along the feed."""
+    return Case.from_dict(
+        {
+            "title": "922 Hz",
+            "tool": {"teeth": 2, "diameter": "16 mm"},
+            "material": {"Ktc": "600 MPa", "Krc": "200 MPa"},
+            "cut": {
+                "mode": mode,
+                "spindle_speed": f"{rpm} rpm",
+                "feed_per_tooth": "0.1 mm",
+                "axial_depth": depth,
+                "radial_depth": radial_depth,
+            },
+            "structure": {
+                "mode": [
+                    {
+                        "frequency": "922 Hz",
+                        "damping": 0.011,
+                        "mass": "0.03993 kg",
+                        "direction": [1, 0, 0],
+                    }
+                ]
+            },
+            "simulation": {"revolutions": 160},
+        }
+    )
+
+
+def branches(values, tolerance):
+    """Number of groups of points that lie further apart than the tolerance."""
+    return 1 + int(np.sum(np.diff(np.sort(values)) > tolerance))
+
+
+def test_flip_opens_two_branches():
+    # BENCHMARKS.md 2.3: period doubling at 3.774048 mm
+    depths = np.array([3.5e-3, 3.65e-3, 3.9e-3, 4.1e-3])
+    diagram = chatter.bifurcation(tool_of_922_hertz(20000, "3 mm"), "cut.axial_depth", depths)
+    assert [point.value for point in diagram.points] == pytest.approx(depths)
+    assert [point.verdict for point in diagram.points] == ["stable"] * 2 + ["chatter"] * 2
+    for point in diagram.points[:2]:
+        assert np.ptp(point.once_a_period[:, 0]) < 1e-3 * 1e-4
+        assert math.isnan(point.chatter_frequency)
+        assert point.bifurcation == "none"
+    for point in diagram.points[2:]:
+        x = point.once_a_period[:, 0]
+        apart = np.ptp(x)
+        assert apart > 1e-6
+        assert branches(x, 0.02 * apart) == 2
+        # it comes back with every second tooth
+        assert np.abs(x[2:] - x[:-2]).max() < 0.01 * apart
+        assert np.abs(np.diff(x)).min() > 0.9 * apart
+        assert point.bifurcation == "flip"
+        assert point.chatter_frequency == pytest.approx(1000.0, rel=1e-3)
+    # two branches part like the square root of the way beyond the limit, so the second is wider
+    widths = [np.ptp(point.once_a_period[:, 0]) for point in diagram.points[2:]]
+    assert widths[0] < widths[1]
+
+
+def test_hopf_opens_a_band():
+    # BENCHMARKS.md 2.3: Hopf at 1.657701 mm
+    depths = [1.2e-3, 1.9e-3]
+    diagram = chatter.bifurcation(tool_of_922_hertz(10000, "1 mm"), "cut.axial_depth", depths)
+    stable, chattering = diagram.points
+    assert stable.verdict == "stable"
+    assert np.ptp(stable.once_a_period[:, 0]) < 1e-7
+    assert (chattering.verdict, chattering.bifurcation) == ("chatter", "hopf")
+    x = chattering.once_a_period[:, 0]
+    # the points fill the band: no gap as wide as a fifth of it, and none comes back
+    assert np.diff(np.sort(x)).max() < 0.2 * np.ptp(x)
+    assert branches(x, 1e-3 * np.ptp(x)) > 20
+    assert chattering.chatter_frequency == pytest.approx(931.3, rel=0.01)
+
+
+def test_speed_may_vary_as_text():
+    # BENCHMARKS.md 2.3: limits of 2.2 mm or more at 10000 rpm, of 0.72 mm at 20000 rpm
+    case = tool_of_922_hertz(10000, "1 mm", "down", "8 mm")
+    diagram = chatter.bifurcation(case, "cut.spindle_speed", ["10000 rpm", "20000 rpm"])
+    assert [point.value for point in diagram.points] == pytest.approx([10000 * RPM, 20000 * RPM])
+    assert [point.verdict for point in diagram.points] == ["stable", "chatter"]
+
+
+def test_tool_that_leaves_the_model_is_chatter_without_points():
+    case = tool_of_922_hertz(10000, "1 mm", "down", "8 mm")
+    diagram = chatter.bifurcation(case, "cut.axial_depth", [1e-3, 30e-3])
+    assert diagram.points[1].verdict == "chatter"
+    assert diagram.points[1].once_a_period.shape == (0, 3)
+    assert diagram.summary()["points"][1]["chatter_frequency_Hz"] is None
+
+
+def test_order_of_the_cuts_changes_nothing():
+    case = tool_of_922_hertz(20000, "3 mm").patch({"simulation.revolutions": 20})
+    there = chatter.bifurcation(case, "cut.axial_depth", [1e-3, 4e-3])
+    back = chatter.bifurcation(case, "cut.axial_depth", [4e-3, 1e-3])
+    for one, other in zip(there.points, reversed(back.points), strict=True):
+        assert np.array_equal(one.once_a_period, other.once_a_period)
+
+
+@pytest.mark.parametrize(
+    ("path", "values", "words"),
+    [
+        ("cut.axial_depth", [], "no values"),
+        ("cut.axial_dept", [1e-3], "axial_depth"),
+        ("cut.axial_depth", ["2 kg"], "2 kg"),
+        ("cut.axial_depth", [-1e-3], "axial_depth"),
+        ("cut.axial_depth", [math.nan], "finite"),
+    ],
+)
+def test_wrong_values(path, values, words):
+    with pytest.raises(InputError, match=words):
+        chatter.bifurcation(tool_of_922_hertz(20000, "3 mm"), path, values)
+
+
+def test_rigid_tool_is_refused():
+    document = tool_of_922_hertz(20000, "3 mm").model_dump(by_alias=True, exclude_none=True)
+    del document["structure"]
+    with pytest.raises(InputError, match="structure"):
+        chatter.bifurcation(Case.from_dict(document), "cut.axial_depth", [1e-3])
+
+
+@pytest.fixture
+def case_file(tmp_path):
+    path = tmp_path / "case.toml"
+    tool_of_922_hertz(20000, "3 mm").save(path)
+    return path
+
+
+def run(case_file, vary, *options):
+    out = case_file.parent / "out"
+    words = ["bifurcation", case_file, "--vary", vary, "--out", out, *options]
+    return CliRunner().invoke(app, [str(word) for word in words])
+
+
+def strict(text):
+    def no_constant(name):
+        raise AssertionError(f"{name} in the output")
+
+    return json.loads(text, parse_constant=no_constant)
+
+
+def test_files_of_the_command(case_file, tmp_path):
+    result = run(case_file, "cut.axial_depth=3.4 mm..4.2 mm", "--count", "3", "--json")
+    assert result.exit_code == 0, result.output
+    out = tmp_path / "out"
+    assert {path.name for path in out.iterdir()} == {
+        "bifurcation.csv",
+        "bifurcation.png",
+        "summary.json",
+    }
+    assert (out / "bifurcation.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+    summary = strict(result.stdout)
+    assert summary == strict((out / "summary.json").read_text())
+    points = summary["points"]
+    assert summary["path"] == "cut.axial_depth"
+    assert [point["value"] for point in points] == pytest.approx([3.4e-3, 3.8e-3, 4.2e-3])
+    assert [point["verdict"] for point in points][::2] == ["stable", "chatter"]
+    assert points[0]["chatter_frequency_Hz"] is None
+    assert points[2]["chatter_frequency_Hz"] == pytest.approx(1000.0, rel=1e-3)
+    with (out / "bifurcation.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0]) == ["cut.axial_depth [SI]", "x [um]", "y [um]", "z [um]", "verdict"]
+    last = [row for row in rows if float(row["cut.axial_depth [SI]"]) > 4.1e-3]
+    x = np.array([float(row["x [um]"]) for row in last])
+    assert np.ptp(x) == pytest.approx(points[2]["spread_um"], rel=1e-4)
+    assert branches(x, 0.02 * np.ptp(x)) == 2
+    assert {row["verdict"] for row in last} == {"chatter"}
+
+
+def test_onset_is_told(case_file):
+    result = run(case_file, 'cut.axial_depth="3.4 mm..4.2 mm"', "--count", "2")
+    assert result.exit_code == 0, result.output
+    assert "0.0034: stable" in result.stdout
+    assert "from 0.0042: chatter at 1000.0 Hz (flip)" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("vary", "words"),
+    [
+        ("cut.axial_depth", ["--vary", "FROM..TO"]),
+        ("cut.axial_depth=1 mm", ["--vary", "FROM..TO"]),
+        ("=1 mm..2 mm", ["--vary", "FROM..TO"]),
+        ("cut.axial_dept=1 mm..2 mm", ["--vary", "cut.axial_dept"]),
+        ("nothing=1..2", ["--vary", "nothing"]),
+        ("cut.axial_depth=1 kg..2 kg", ["--vary", "cut.axial_depth", "kg"]),
+        ("cut.axial_depth=1 mm..", ["--vary", "cut.axial_depth"]),
+        ("cut.axial_depth=1 mm..nan mm", ["--vary", "cut.axial_depth"]),
+        ("cut.axial_depth=-1 mm..2 mm", ["cut.axial_depth"]),
+        ("cut.mode=up..down", ["--vary", "cut.mode"]),
+        ("title=1..2", ["--vary", "title"]),
+        ("structure.mode[7].damping=0.01..0.02", ["structure.mode"]),
+    ],
+)
+def test_wrong_range(case_file, tmp_path, vary, words):
+    result = run(case_file, vary, "--count", "2")
+    assert result.exit_code == 2, result.output
+    assert "fault in chatter" not in result.output
+    assert len(result.stderr.strip().splitlines()) == 1, result.stderr
+    for word in words:
+        assert word in result.stderr
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("count", [1, 0, -4, 10**9])
+def test_wrong_count(case_file, count):
+    result = run(case_file, "cut.axial_depth=1 mm..2 mm", "--count", count)
+    assert result.exit_code == 2
+    assert "--count" in result.stderr
