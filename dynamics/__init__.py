@@ -9,5 +9,13 @@ hammer         hammer time records: reading, examination, H1/H2 with coherence
 modal          real modes at the tool point and their receptance
 modal_steps    exact discrete step of a modal model, energy
 identification modal parameters from measured FRFs
+structure      mass, damping and stiffness with named points: where all mechanics ends
+bodies         rigid bodies, connectors and points into a structure
+beam           shafts of Timoshenko elements (`beam_element`), discs, bearings
+imported       M, C, K from files (`matrix_file`), points tied to surfaces (`constraint`)
+free_motion    parts that nothing holds
+friction       LuGre, tanh hysteresis, Coulomb-Stribeck; implicit steps
+control        sampled cascade: position, velocity, current; filters, dead times
+trajectory     jerk-limited moves, paths with fillets, set points, contour error
 ============== =====================================================================
 """

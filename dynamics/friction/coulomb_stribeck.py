@@ -1,0 +1,158 @@
+"""Dry friction with true rest: any force up to the static one at rest, a curve in motion.
+
+F = (FC + (FS - FC) exp(-(|v|/vS)^beta)) sgn(v) + c v, |F| <= FS at v = 0 (Armstrong-Helouvry,
+Dupont and Canudas de Wit 1994, Automatica 30:1083, section 2.1).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numba.extending import register_jitable
+from numpy.typing import ArrayLike, NDArray
+
+from dynamics.friction.implicit import INLINED, held_force
+
+
+@dataclass(frozen=True)
+class CoulombStribeck:
+    """Parameters of one dry friction; along a rotation read N m, rad for N, m.
+
+    Parameters
+    ----------
+    coulomb, static : float
+        FC and FS, N; not below 0.
+    stribeck_velocity : float
+        vS, m/s; above 0.
+    viscous : float
+        c, N s/m; not below 0.
+    stribeck_shape : float
+        beta; above 0.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is out of its range; the message names it.
+    """
+
+    coulomb: float
+    static: float
+    stribeck_velocity: float
+    viscous: float = 0.0
+    stribeck_shape: float = 2.0
+
+    def __post_init__(self) -> None:
+        for name in ("coulomb", "static", "viscous"):
+            if not 0.0 <= getattr(self, name) < math.inf:
+                raise ValueError(
+                    f"dry friction: {name} must be 0 or above, not {getattr(self, name)}"
+                )
+        for name in ("stribeck_velocity", "stribeck_shape"):
+            if not 0.0 < getattr(self, name) < math.inf:
+                raise ValueError(f"dry friction: {name} must be above 0, not {getattr(self, name)}")
+
+    def steady_state_force(self, velocity: ArrayLike) -> NDArray[np.float64]:
+        """Force at constant velocities in m/s, N; 0 at 0, where any up to the static is held."""
+        velocity = np.asarray(velocity, dtype=np.float64)
+        ratio = np.abs(velocity) / self.stribeck_velocity
+        dry = (self.static - self.coulomb) * np.exp(-(ratio**self.stribeck_shape))
+        return np.sign(velocity) * (self.coulomb + dry) + self.viscous * velocity
+
+    def stiffness_in_motion(self, frequency: ArrayLike, velocity: float) -> NDArray[np.complex128]:
+        """Dynamic stiffness j w dF/dv, N/m, about a velocity in m/s (not 0); Hz.
+
+        Notes
+        -----
+        About rest it is infinite: the port is held.
+        """
+        speed = abs(velocity)
+        if not speed > 0.0:
+            raise ValueError("dry friction: velocity must not be 0, at rest the port is held")
+        ratio = speed / self.stribeck_velocity
+        falling = (self.static - self.coulomb) * math.exp(-(ratio**self.stribeck_shape))
+        falling *= self.stribeck_shape * ratio ** (self.stribeck_shape - 1.0)
+        slope = self.viscous - falling / self.stribeck_velocity
+        return 2j * np.pi * np.asarray(frequency, dtype=np.float64) * slope
+
+    def describing_function(self, amplitude: float, frequency: float) -> tuple[float, float]:
+        """Equivalent stiffness, N/m, and damping, N s/m, of x = A sin(w t); m, Hz.
+
+        Notes
+        -----
+        The stiffness is 0. Without a Stribeck curve the damping is 4 FC / (pi A w) + c (Den
+        Hartog 1931); with it the mean over the cycle is taken.
+        """
+        peak = 2.0 * np.pi * frequency * amplitude
+        angle = (np.arange(4000) + 0.5) * (0.5 * np.pi / 4000)
+        force = self.steady_state_force(peak * np.sin(angle))
+        return 0.0, float(2.0 * np.mean(force * np.sin(angle)) / peak)
+
+
+class CoulombStribeckTable(NamedTuple):
+    """Dry frictions as the kernels see them; columns (n,)."""
+
+    coulomb: NDArray[np.float64]  # FC, N
+    static: NDArray[np.float64]  # FS, N
+    stribeck_velocity: NDArray[np.float64]  # vS, m/s
+    viscous: NDArray[np.float64]  # c, N s/m
+    stribeck_shape: NDArray[np.float64]  # beta
+    port: NDArray[np.int64]
+    rate: NDArray[np.float64]  # mean velocity of the last step, m/s: state
+
+
+def coulomb_stribeck_table(
+    laws: Sequence[CoulombStribeck], ports: Sequence[int]
+) -> CoulombStribeckTable:
+    """Return frictions at rest on ports."""
+    columns = []
+    for name in CoulombStribeckTable._fields[:5]:
+        column = np.array([getattr(law, name) for law in laws], dtype=np.float64)
+        column.flags.writeable = False
+        columns.append(column)
+    port = np.array(ports, dtype=np.int64)
+    port.flags.writeable = False
+    return CoulombStribeckTable(*columns, port, np.zeros(len(laws)))
+
+
+@register_jitable(**INLINED)
+def _resist(law, i, sign, way, h):  # noqa: ARG001
+    speed = way / h
+    ratio = speed / law.stribeck_velocity[i]
+    power = ratio * ratio if law.stribeck_shape[i] == 2.0 else ratio ** law.stribeck_shape[i]
+    dry = law.coulomb[i] + (law.static[i] - law.coulomb[i]) * math.exp(-power)
+    return dry + law.viscous[i] * speed
+
+
+@register_jitable(**INLINED)
+def _rest(law, i):  # noqa: ARG001
+    return 0.0
+
+
+@register_jitable(**INLINED)
+def _stored(law, i, motion, h):  # noqa: ARG001
+    return 0.0
+
+
+@register_jitable(**INLINED)
+def coulomb_stribeck_force(law, i, motion, h):
+    """Force, N, of a motion (m) at constant velocity in a time h (s); 0 without motion."""
+    if motion == 0.0:
+        return 0.0
+    sign = 1.0 if motion > 0.0 else -1.0
+    return sign * _resist(law, i, sign, abs(motion), h)
+
+
+@register_jitable(**INLINED)
+def coulomb_stribeck_step(law, i, dx_free, gx, v_free, g, h):
+    """Held force, N, and motion of the law, m; see `implicit.held_force`."""
+    return held_force(_rest, _resist, _stored, law, i, math.inf, dx_free, gx, v_free, g, h)
+
+
+@register_jitable(**INLINED)
+def coulomb_stribeck_advance(law, i, motion, h):
+    """Note a motion, m, in a time h, s."""
+    law.rate[i] = motion / h

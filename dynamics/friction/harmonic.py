@@ -1,0 +1,61 @@
+"""Equivalent stiffness and damping of a law with memory under harmonic motion."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+_STEPS = 2000
+_CYCLES = 3
+
+
+def describing_function(
+    force: Callable[..., float],
+    advance: Callable[..., None],
+    law: Any,
+    amplitude: float,
+    frequency: float,
+) -> tuple[float, float]:
+    """First harmonic of the steady cycle x = A sin(w t).
+
+    Parameters
+    ----------
+    force, advance : callable
+        Leaves of the law: (law, row, motion, time).
+    law : NamedTuple
+        Table with one row, at rest; left in motion.
+    amplitude : float
+        A, m.
+    frequency : float
+        Hz.
+
+    Returns
+    -------
+    stiffness : float
+        N/m; from the part of the force in phase with the displacement.
+    damping : float
+        N s/m; from the work of a cycle over pi A^2 w.
+
+    Notes
+    -----
+    Krylov and Bogoliubov's harmonic balance (Nayfeh and Mook 1979, section 3.3).
+    """
+    if not (amplitude > 0.0 and frequency > 0.0):
+        raise ValueError(
+            f"amplitude and frequency must be above 0, not {amplitude} and {frequency}"
+        )
+    turn = 2.0 * math.pi / _STEPS
+    time = 1.0 / (frequency * _STEPS)
+    place, work, elastic = 0.0, 0.0, 0.0
+    for step in range(1, _CYCLES * _STEPS + 1):
+        after = amplitude * math.sin(turn * (step % _STEPS))
+        if step > (_CYCLES - 1) * _STEPS:
+            held = force(law, 0, after - place, time)
+            work += held * (after - place)
+            elastic += held * amplitude * math.sin(turn * (step - 0.5))
+        advance(law, 0, after - place, time)
+        place = after
+    omega = 2.0 * math.pi * frequency
+    stiffness = 2.0 * elastic / (_STEPS * amplitude**2)
+    return float(stiffness), float(work / (math.pi * amplitude**2 * omega))

@@ -1,0 +1,155 @@
+"""Friction force held over a step, solved together with the response of the structure.
+
+Over a step the structure, stepped exactly under a held force F, moves its port by
+dx = dx_free - gx F and ends at v1 = v_free - g F. The work taken out of it is then F dx, whatever
+happens within the step. A law that answers a motion d by a force F(d) with F d >= change of its
+stored energy can therefore not create energy if it is solved at d = dx (mean form). If the law is
+stiffer than the step resolves, that form stops the port with v1 = -v0, and the velocity rings
+from step to step; the law is then solved at d = (1-s) dx + s h v1, which brings it to rest, with
+s from 0 (resolved) to 1 (rigid), or less if that would create energy.
+"""
+
+from __future__ import annotations
+
+import math
+
+from numba.extending import register_jitable
+
+INLINED = {"error_model": "numpy", "forceinline": True, "_nrt": False}
+
+#: halvings that end any search; few are needed
+_ITERATIONS = 100
+_ROUNDING = 1e-15
+#: tried from the stiffness down; the first fails where a mode turns far within the step
+_SHARES = 4
+
+
+@register_jitable(**INLINED)
+def held_force(rest, resist, stored, law, i, stiffness, dx_free, gx, v_free, g, h):
+    """Force held over the step and motion of the law.
+
+    Parameters
+    ----------
+    rest, resist, stored : functions
+        Of the law: `rest(law, i)` force at no motion; `resist(law, i, sign, way, h)` mean force
+        against a motion by way > 0 (or = 0, the limit) along sign; `stored(law, i, motion, h)`
+        change of the stored energy, J.
+    law : NamedTuple
+        Table of the law.
+    i : int
+        Row.
+    stiffness : float
+        Largest slope of the force over motion, N/m; infinite for dry friction.
+    dx_free, gx : float
+        Displacement increment without friction, m, and its decrease per force, m/N, >= 0.
+    v_free, g : float
+        End velocity without friction, m/s, and its decrease per force, m/(N s). The latter is
+        below 0 if a mode turns by more than half a cycle in a step; the mean form is then kept.
+    h : float
+        Step, s.
+
+    Returns
+    -------
+    force : float
+        N, against positive motion.
+    motion : float
+        By which the law is to be advanced, m.
+    """
+    force, motion = _solve(rest, resist, law, i, dx_free, gx, h)
+    end = v_free - g * force
+    if gx == 0.0 or g <= 0.0 or end * motion > 0.0 or end == 0.0:
+        return force, motion
+    share = 1.0 if math.isinf(stiffness) else gx * stiffness / (1.0 + gx * stiffness)
+    for _ in range(_SHARES):
+        free = (1.0 - share) * dx_free + share * h * v_free
+        compliance = (1.0 - share) * gx + share * h * g
+        stopping, short = _solve(rest, resist, law, i, free, compliance, h)
+        work = stopping * (dx_free - gx * stopping)
+        noise = _ROUNDING * abs(stopping) * (abs(dx_free) + gx * abs(stopping))
+        if work >= stored(law, i, short, h) - noise:
+            return stopping, short
+        share *= 0.5
+    return force, motion
+
+
+@register_jitable(**INLINED)
+def _solve(rest, resist, law, i, free, compliance, h):
+    """Force and motion d with d = free - compliance F(d)."""
+    at_rest = rest(law, i)
+    drive = free - compliance * at_rest
+    sign = 1.0 if drive >= 0.0 else -1.0
+    # the force is never less than the elastic pull at the start, or none
+    high = sign * free - compliance * min(sign * at_rest, 0.0)
+    if compliance == 0.0 and high > 0.0:
+        return sign * resist(law, i, sign, high, h), free
+    if high <= 0.0:
+        return at_rest, 0.0
+    guess = min(max(sign * law.rate[i] * h, 0.0), high)
+    way = _way(resist, law, i, sign, h, sign * free, compliance, high, guess)
+    if way == 0.0:
+        return free / compliance, 0.0
+    return sign * resist(law, i, sign, way, h), sign * way
+
+
+@register_jitable(**INLINED)
+def _way(resist, law, i, sign, h, free, compliance, high, guess):
+    """Root of way - free + compliance resist(way) in [0, high], that next to the guess.
+
+    A falling force over speed has several roots if the step is coarse; the one that continues
+    the motion is taken. 0 is a root also if rest can be held.
+    """
+    low, f_low, top, f_top = 0.0, -1.0, high, 1.0
+    if guess > 0.0:
+        f = guess - free + compliance * resist(law, i, sign, guess, h)
+        if f == 0.0:
+            return guess
+        near = min(max(guess - 1.5 * f, 0.0), high)
+        fn = near - free + compliance * resist(law, i, sign, near, h)
+        if f < 0.0 < fn:
+            return _root(resist, law, i, sign, h, free, compliance, guess, f, near, fn)
+        if fn < 0.0 < f:
+            return _root(resist, law, i, sign, h, free, compliance, near, fn, guess, f)
+        if f < 0.0:
+            low, f_low = guess, f
+        else:
+            top, f_top = guess, f
+    if low == 0.0:
+        f_low = compliance * resist(law, i, sign, 0.0, h) - free
+        if f_low >= 0.0:
+            return 0.0
+    if top == high:
+        f_top = high - free + compliance * resist(law, i, sign, high, h)
+        if f_top <= 0.0:
+            return high
+    return _root(resist, law, i, sign, h, free, compliance, low, f_low, top, f_top)
+
+
+@register_jitable(**INLINED)
+def _root(resist, law, i, sign, h, free, compliance, a, fa, b, fb):
+    """Root between fa < 0 < fb (Chandrupatla 1997, Adv. Eng. Software 28:145, eqs. 1-4)."""
+    c, fc = a, fa
+    noise = 0.4 * _ROUNDING * abs(free)
+    part = min(max(fa / (fa - fb), 1e-3), 0.999)
+    for _ in range(_ITERATIONS):
+        x = a + part * (b - a)
+        f = x - free + compliance * resist(law, i, sign, x, h)
+        if (f > 0.0) == (fa > 0.0):
+            c, fc = a, fa
+        else:
+            c, fc, b, fb = b, fb, a, fa
+        a, fa = x, f
+        best = a if abs(fa) < abs(fb) else b
+        width = abs(b - a)
+        least = _ROUNDING * abs(best)
+        if abs(f) <= noise or width <= 2.0 * least:
+            break
+        part = 0.5
+        xi = (a - b) / (c - b)
+        phi = (fa - fb) / (fc - fb)
+        if phi * phi < xi and (1.0 - phi) * (1.0 - phi) < 1.0 - xi:
+            part = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (
+                fc - fb
+            )
+        edge = least / width
+        part = min(max(part, edge), 1.0 - edge)
+    return a if abs(fa) < abs(fb) else b

@@ -1,0 +1,235 @@
+"""LuGre friction: one bristle that bends and slips, with a Stribeck curve.
+
+F = s0 z + s1 z' + s2 v,  z' = v - |v| z / g(v) (Canudas de Wit, Olsson, Astrom and Lischinsky
+1995, IEEE Trans. Autom. Control 40:419, eqs. 2-4), with the Stribeck curve of feed axes
+g(v) = (FC + (FS - FC) exp(-(|v|/vS)^beta) + Flog ln(|v|/vlog + 1)) / s0.
+
+In a step the speed is constant; the bristle then relaxes exponentially and the mean force is
+closed. With bristle damping s1 > 0 the law as published can push along the motion, and so create
+energy, when a far bent bristle meets a sudden high speed (Barahanov and Ortega 2000, IEEE Trans.
+Autom. Control 45:1208); there the force is held at zero instead.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numba.extending import register_jitable
+from numpy.typing import ArrayLike, NDArray
+
+from dynamics.friction.harmonic import describing_function
+from dynamics.friction.implicit import INLINED, held_force
+
+
+@dataclass(frozen=True)
+class LuGre:
+    """Parameters of one LuGre friction; along a rotation read N m, rad for N, m.
+
+    Parameters
+    ----------
+    stiffness : float
+        s0 of the bristle, N/m.
+    bristle_damping : float
+        s1, N s/m.
+    viscous : float
+        s2, N s/m.
+    coulomb, static : float
+        FC and FS, N.
+    stribeck_velocity : float
+        vS, m/s.
+    stribeck_shape : float
+        beta.
+    logarithmic : float
+        Flog, N.
+    logarithmic_velocity : float
+        vlog, m/s.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is out of its range; the message names it.
+    """
+
+    stiffness: float
+    bristle_damping: float
+    viscous: float
+    coulomb: float
+    static: float
+    stribeck_velocity: float
+    stribeck_shape: float = 2.0
+    logarithmic: float = 0.0
+    logarithmic_velocity: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name in (
+            "stiffness",
+            "coulomb",
+            "static",
+            "stribeck_velocity",
+            "stribeck_shape",
+            "logarithmic_velocity",
+        ):
+            if not 0.0 < getattr(self, name) < math.inf:
+                raise ValueError(
+                    f"LuGre friction: {name} must be above 0, not {getattr(self, name)}"
+                )
+        for name in ("bristle_damping", "viscous", "logarithmic"):
+            if not 0.0 <= getattr(self, name) < math.inf:
+                raise ValueError(
+                    f"LuGre friction: {name} must be 0 or above, not {getattr(self, name)}"
+                )
+
+    def sliding_force(self, velocity: ArrayLike) -> NDArray[np.float64]:
+        """s0 g(v), N, at velocities in m/s: steady force without its viscous part."""
+        speed = np.abs(np.asarray(velocity, dtype=np.float64))
+        stribeck = np.exp(-((speed / self.stribeck_velocity) ** self.stribeck_shape))
+        slow = np.log1p(speed / self.logarithmic_velocity)
+        return self.coulomb + (self.static - self.coulomb) * stribeck + self.logarithmic * slow
+
+    def steady_state_force(self, velocity: ArrayLike) -> NDArray[np.float64]:
+        """Force at constant velocities in m/s, N; 0 at 0."""
+        velocity = np.asarray(velocity, dtype=np.float64)
+        return np.sign(velocity) * self.sliding_force(velocity) + self.viscous * velocity
+
+    def stiffness_at_rest(self, frequency: ArrayLike) -> NDArray[np.complex128]:
+        """Dynamic stiffness s0 + j w (s1 + s2), N/m, of small motion about rest; Hz."""
+        omega = 2.0 * np.pi * np.asarray(frequency, dtype=np.float64)
+        return self.stiffness + 1j * omega * (self.bristle_damping + self.viscous)
+
+    def stiffness_in_motion(self, frequency: ArrayLike, velocity: float) -> NDArray[np.complex128]:
+        """Dynamic stiffness of small motion about a steady velocity (m/s, not 0), N/m.
+
+        Notes
+        -----
+        From the law linearised about z = g sgn(v): dz' = (g' |v| / g) dv - |v| / g dz, with g'
+        the slope of g over speed. Tends to j w dF/dv at low frequency.
+        """
+        speed = abs(velocity)
+        if not speed > 0.0:
+            raise ValueError("LuGre friction: velocity must not be 0; see stiffness_at_rest")
+        rate = 2j * np.pi * np.asarray(frequency, dtype=np.float64)
+        ratio = speed / self.stribeck_velocity
+        falling = (self.static - self.coulomb) * math.exp(-(ratio**self.stribeck_shape))
+        falling *= self.stribeck_shape * ratio ** (self.stribeck_shape - 1.0)
+        slope = self.logarithmic / (speed + self.logarithmic_velocity)
+        slope -= falling / self.stribeck_velocity
+        sliding = float(self.sliding_force(speed))
+        relaxation = speed * self.stiffness / sliding
+        bristle = slope * speed / sliding / (rate + relaxation)  # dz/dv
+        bent = (self.stiffness + self.bristle_damping * rate) * bristle
+        return rate * (bent + self.viscous)
+
+    def describing_function(self, amplitude: float, frequency: float) -> tuple[float, float]:
+        """Equivalent stiffness, N/m, and damping, N s/m, of x = A sin(w t); m, Hz."""
+        law = lugre_table([self], [0])
+        return describing_function(lugre_force, lugre_advance, law, amplitude, frequency)
+
+
+class LuGreTable(NamedTuple):
+    """LuGre frictions as the kernels see them; columns (n,)."""
+
+    stiffness: NDArray[np.float64]  # s0, N/m
+    bristle_damping: NDArray[np.float64]  # s1, N s/m
+    viscous: NDArray[np.float64]  # s2, N s/m
+    coulomb: NDArray[np.float64]  # FC, N
+    static: NDArray[np.float64]  # FS, N
+    stribeck_velocity: NDArray[np.float64]  # vS, m/s
+    stribeck_shape: NDArray[np.float64]  # beta
+    logarithmic: NDArray[np.float64]  # Flog, N
+    logarithmic_velocity: NDArray[np.float64]  # vlog, m/s
+    port: NDArray[np.int64]
+    deflection: NDArray[np.float64]  # z, m: state
+    rate: NDArray[np.float64]  # mean velocity of the last step, m/s: state
+
+
+def lugre_table(laws: Sequence[LuGre], ports: Sequence[int]) -> LuGreTable:
+    """Return frictions at rest on ports, with unbent bristles."""
+    columns = []
+    for name in LuGreTable._fields[:9]:
+        column = np.array([getattr(law, name) for law in laws], dtype=np.float64)
+        column.flags.writeable = False
+        columns.append(column)
+    port = np.array(ports, dtype=np.int64)
+    port.flags.writeable = False
+    return LuGreTable(*columns, port, np.zeros(len(laws)), np.zeros(len(laws)))
+
+
+@register_jitable(**INLINED)
+def lugre_bent(law, i, speed):
+    """g, m: deflection in steady sliding at a speed >= 0, m/s."""
+    force = law.coulomb[i]
+    ratio = speed / law.stribeck_velocity[i]
+    power = ratio * ratio if law.stribeck_shape[i] == 2.0 else ratio ** law.stribeck_shape[i]
+    force += (law.static[i] - law.coulomb[i]) * math.exp(-power)
+    if law.logarithmic[i] > 0.0:
+        force += law.logarithmic[i] * math.log1p(speed / law.logarithmic_velocity[i])
+    return force / law.stiffness[i]
+
+
+@register_jitable(**INLINED)
+def _bend(law, i, sign, way, h):
+    """Mean and final deflection along sign over a motion at constant speed, and g, m."""
+    start = sign * law.deflection[i]
+    slip = lugre_bent(law, i, way / h)
+    lengths = way / slip
+    kept = -math.expm1(-lengths)
+    # (1 - exp(-x)) / x loses digits only below rounding
+    mean = kept / lengths if lengths > 1e-12 else 1.0 - 0.5 * lengths
+    away = start - slip
+    return slip + away * mean, start - away * kept, slip
+
+
+@register_jitable(**INLINED)
+def _resist(law, i, sign, way, h):
+    mean, end, slip = _bend(law, i, sign, way, h)
+    start = sign * law.deflection[i]
+    change = (end - start) / h
+    force = law.stiffness[i] * mean + law.bristle_damping[i] * change
+    force += law.viscous[i] * way / h
+    return max(force, 0.0) if start > slip else force
+
+
+@register_jitable(**INLINED)
+def _rest(law, i):
+    return law.stiffness[i] * law.deflection[i]
+
+
+@register_jitable(**INLINED)
+def _stored(law, i, motion, h):
+    sign = 1.0 if motion >= 0.0 else -1.0
+    _, end, _ = _bend(law, i, sign, abs(motion), h)
+    start = sign * law.deflection[i]
+    return 0.5 * law.stiffness[i] * (end - start) * (end + start)
+
+
+@register_jitable(**INLINED)
+def lugre_force(law, i, motion, h):
+    """Mean force, N, over a motion (m) at constant velocity in a time h (s)."""
+    sign = 1.0 if motion >= 0.0 else -1.0
+    return sign * _resist(law, i, sign, abs(motion), h)
+
+
+@register_jitable(**INLINED)
+def lugre_step(law, i, dx_free, gx, v_free, g, h):
+    """Held force, N, and motion of the law, m; see `implicit.held_force`."""
+    stiffness = law.stiffness[i] + (law.bristle_damping[i] + law.viscous[i]) / h
+    return held_force(_rest, _resist, _stored, law, i, stiffness, dx_free, gx, v_free, g, h)
+
+
+@register_jitable(**INLINED)
+def lugre_advance(law, i, motion, h):
+    """Bend the bristle by a motion, m, in a time h, s."""
+    sign = 1.0 if motion >= 0.0 else -1.0
+    _, end, _ = _bend(law, i, sign, abs(motion), h)
+    law.deflection[i] = sign * end
+    law.rate[i] = motion / h
+
+
+@register_jitable(**INLINED)
+def lugre_energy(law, i):
+    """Energy stored in the bristle, J."""
+    return 0.5 * law.stiffness[i] * law.deflection[i] * law.deflection[i]
