@@ -41,6 +41,9 @@ class CutRecord:
         N. Judged only where there are no displacements.
     runout : (N,) array of float or None
         m, radial offset of each tooth; None if it is not known. Zeros declare the tool true.
+    negligible : float
+        Deviation from period to period, as a share of the rms of the motion, that is none: what
+        the record itself does not repeat any better.
 
     Raises
     ------
@@ -55,6 +58,7 @@ class CutRecord:
     feed_per_tooth: float
     forces: NDArray[np.float64] | None = None
     runout: NDArray[np.float64] | None = None
+    negligible: float = 0.005
 
     def __post_init__(self) -> None:
         for name in ("time", "spindle_angle", "tooth_angles", "runout"):

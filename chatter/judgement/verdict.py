@@ -16,8 +16,6 @@ from chatter.judgement.orbits import kind_of_orbit
 from chatter.judgement.record import CutRecord
 from chatter.judgement.sections import Periods, cut_into_periods, once_a_tooth, once_a_turn
 
-#: deviation from period to period, as a share of the rms of the signal, that counts as none
-_NEGLIGIBLE = 5e-3
 #: deviation per relative variation of the speed that may be its doing
 _BY_SPEED = 60.0
 #: deviations below this share are rounding; a small one counts when it has grown so many e-folds
@@ -116,7 +114,7 @@ def judge(record: CutRecord) -> Judgement:
     per_turn = record.teeth if record.is_symmetric else 1
     periods = cut_into_periods(record, per_turn)
     deviations = deviations_of(periods.values)
-    trend = _trend_of(deviations, periods)
+    trend = _trend_of(deviations, periods, record.negligible)
     verdict, confidence, reason = _decide(trend, periods)
     kind = "none", 1, math.nan, math.nan, per_turn
     if verdict == "stable" and _may_hide_doubling(record):
@@ -169,7 +167,7 @@ def _may_hide_doubling(record: CutRecord) -> bool:
     return record.runout is None and record.has_equal_pitch and record.teeth % 2 == 0
 
 
-def _trend_of(deviations: Deviations, periods: Periods) -> _Trend:
+def _trend_of(deviations: Deviations, periods: Periods, negligible: float) -> _Trend:
     """Level and slope of the deviations in the later half of the record."""
     sizes = deviations.sizes
     later = periods.values[len(periods.values) // 2 :]
@@ -178,7 +176,7 @@ def _trend_of(deviations: Deviations, periods: Periods) -> _Trend:
     spread = math.hypot(spread, _PART_OF_MEAN * float(np.linalg.norm(mean))) or 1.0
     by_speed = _BY_SPEED * periods.speed_variation
     by_sampling = math.sqrt(max(periods.roughness**2 - (1.2 * deviations.noise) ** 2, 0.0)) / spread
-    floor = math.hypot(_NEGLIGIBLE, by_speed, by_sampling, deviations.noise_size / spread)
+    floor = math.hypot(negligible, by_speed, by_sampling, deviations.noise_size / spread)
     quarter = max(len(sizes) // 4, 2)
     level = float(np.sqrt(np.mean(sizes[-quarter:] ** 2))) / spread
     if deviations.rank == 0:

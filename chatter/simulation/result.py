@@ -29,6 +29,8 @@ _RPM = 30.0 / math.pi
 #: a record of fewer turns, or of fewer cycles of the lowest mode, is not judged
 _LEAST_TURNS_TO_JUDGE = 8.0
 _LEAST_CYCLES_TO_JUDGE = 12.0
+#: deviations from period to period that are none: a carved wall repeats less well
+_DELAYED, _CARVED = 0.005, 0.03
 #: means are taken over the last whole turns within this share of the run
 _SETTLED_SHARE = 0.5
 
@@ -147,6 +149,7 @@ class SimulationResult:
             feed_per_tooth=self.case.cut.feed_per_tooth,
             forces=self.force,
             runout=slices.normal_offset[:, widest] if known else None,
+            negligible=_CARVED if isinstance(self.setup.groups[0], DiscreteCut) else _DELAYED,
         )
 
     def _judged_by_divergence(self, found: Judgement) -> Judgement:
