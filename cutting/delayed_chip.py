@@ -34,6 +34,8 @@ from cutting.process_damping import ViscousFlank
 
 #: an edge that is this many bins outside the arc has left the cut
 _MARGIN = 2.0
+#: half a span, as a share of the distance between its Gauss points
+_HALF_SPAN = 0.5 / GAUSS_PLACE
 #: a straight edge is looked at this many bins late, so that it is on one side of a jump
 _NUDGE = 1e-6
 
@@ -122,7 +124,7 @@ def _add_edge_force(cut, tooth, piece, sine, cosine, chip, length, total):
 @register_jitable(**INLINED)
 def _at_ends(first, last):
     """Chip at the ends of a span whose Gauss points are known, as if it varied linearly."""
-    middle, rise = 0.5 * (first + last), 0.5 * (last - first) / GAUSS_PLACE
+    middle, rise = 0.5 * (first + last), _HALF_SPAN * (last - first)
     return middle - rise, middle + rise
 
 
@@ -237,7 +239,7 @@ def _outward(cut, tooth, piece, sine, cosine, point):
 
 
 @register_jitable(**INLINED)
-def _add_flank_force(cut, tooth, piece, turn, point, total):
+def _on_flank(flank, cut, tooth, piece, turn, point, total):
     """Add the force on the flank of the length of edge that is in the cut."""
     length = total[4]
     if length <= 0.0:
@@ -248,7 +250,7 @@ def _add_flank_force(cut, tooth, piece, turn, point, total):
     rate = sk * (v[0] * sine + v[1] * cosine) - ck * v[2]
     own = _outward(cut, tooth, piece, sine, cosine, point)
     speed = turn.speed * cut.edges.radius[cut.edges.radius.shape[0] - 1]
-    ft, fr = flank_force(cut.flank, tooth, piece, own, rate, speed)
+    ft, fr = flank_force(flank, tooth, piece, own, rate, speed)
     fx, fy, fz = force_on_tool(cut.edges, piece, sine, cosine, ft, fr, 0.0)
     return (
         total[0] + length * fx,
@@ -257,6 +259,25 @@ def _add_flank_force(cut, tooth, piece, turn, point, total):
         total[3] + length * ft * cut.edges.radius[piece],
         total[4],
     )
+
+
+@register_jitable(**INLINED)
+def _off_flank(flank, cut, tooth, piece, turn, point, total):  # noqa: ARG001
+    """Add nothing: the flank touches nothing."""
+    return total
+
+
+_ADDING = {BareFlank: _off_flank, ViscousFlank: _on_flank, PloughingFlank: _on_flank}
+
+
+def add_flank_force(flank, cut, tooth, piece, turn, point, total):
+    """Add the force on the flank, where there is one."""
+    return _ADDING[type(flank)](flank, cut, tooth, piece, turn, point, total)
+
+
+@overload(add_flank_force, jit_options=INLINED)
+def _add_flank_force(flank, cut, tooth, piece, turn, point, total):  # noqa: ARG001
+    return _ADDING.get(flank.instance_class) if isinstance(flank, types.BaseNamedTuple) else None
 
 
 @register_jitable(**INLINED)
@@ -304,16 +325,16 @@ def delayed_forces(group, turn, point):
                 seen = place + _NUDGE if straight else place
                 low, high = max(seen - half, entry), min(seen + half, leave)
                 force = _part_of_slice(cut, tooth, piece, low, high, 2.0 * half)
-            force = _add_flank_force(cut, tooth, piece, turn, point, force)
+            force = add_flank_force(cut.flank, cut, tooth, piece, turn, point, force)
             mean = force
             if straight and not settled:
                 mean = _straight_mean(cut, tooth, piece, place, turn)
-                mean = _add_flank_force(cut, tooth, piece, turn, point, mean)
+                mean = add_flank_force(cut.flank, cut, tooth, piece, turn, point, mean)
             sx += force[0]
             sy += force[1]
             sz += force[2]
             torque += force[3]
-            contact += force[4] / edges.edge_length[piece] * edges.share[piece]
+            contact += force[4] * edges.share_per_length[piece]
             mx += mean[0]
             my += mean[1]
             mz += mean[2]

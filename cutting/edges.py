@@ -31,6 +31,7 @@ class EdgeTable(NamedTuple):
     cosine_immersion: NDArray[np.float64]  # (L,)
     edge_length: NDArray[np.float64]  # m, (L,)
     share: NDArray[np.float64]  # of the axial depth, (L,)
+    share_per_length: NDArray[np.float64]  # of edge, 1/m, (L,)
 
 
 def edge_table(slices: EdgeSlices, bins: int) -> EdgeTable:
@@ -58,6 +59,7 @@ def edge_table(slices: EdgeSlices, bins: int) -> EdgeTable:
         cosine_immersion=np.where(upright, 0.0, np.cos(slices.immersion)),
         edge_length=slices.edge_length,
         share=slices.thickness / slices.thickness.sum(),
+        share_per_length=slices.thickness / slices.thickness.sum() / slices.edge_length,
     )
 
 

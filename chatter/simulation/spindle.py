@@ -37,6 +37,8 @@ class Spindle:
 
     def speed_at(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
         """Speed, rad/s."""
+        if self.amplitude == 0.0:
+            return np.full(np.shape(time), self.speed)
         cycle = np.mod(self.frequency * np.asarray(time), 1.0)
         if self.shape == "triangle":
             wave = 1.0 - np.abs(np.mod(4.0 * cycle + 1.0, 4.0) - 2.0)
