@@ -132,19 +132,21 @@ def _fitted(periods: NDArray[np.float64], period: float, feed: float) -> Growth:
     difference = np.diff(periods, axis=0)
     flat = difference.reshape(len(difference), -1)
     size = np.sqrt(np.mean(flat**2, axis=1) * 3.0)
-    out = np.nonzero(size > _LARGEST_DIFFERENCE * feed)[0]
-    gone = np.nonzero(size < _SMALLEST_DIFFERENCE * feed)[0]
-    end = min(out[0] if out.size else len(size), gone[0] if gone.size else len(size))
-    if end < _LEAST_FITTED:
-        # it is out of the chip, or at rest, from the beginning
-        grown = out.size > 0 and (not gone.size or out[0] <= gone[0])
-        if not grown:
-            return Growth(0j, period, math.nan)
-        if size[-1] > 0.5 * size[:_LEAST_FITTED].max():
+    large = np.flatnonzero(size > _LARGEST_DIFFERENCE * feed)
+    gone = np.flatnonzero(size < _SMALLEST_DIFFERENCE * feed)
+    first = 0
+    end = min(large[0] if large.size else len(size), gone[0] if gone.size else len(size))
+    if end < _LEAST_FITTED and large.size and (not gone.size or large[0] < gone[0]):
+        # out of the chip from the beginning: it stays there, or comes back to be looked at
+        first = int(large[-1]) + 1
+        later = gone[gone > first]
+        end = int(later[0]) if later.size else len(size)
+        if end - first < _LEAST_FITTED:
             return Growth(complex(math.inf), period, math.nan)
-        end = len(size)
+    if end - first < _LEAST_FITTED:
+        return Growth(0j, period, math.nan)
     # what other modes have left of the start dies out first
-    begin = min(end // 3, end - _LEAST_FITTED)
+    begin = first + min((end - first) // 3, end - first - _LEAST_FITTED)
     multiplier = _dominant(flat[begin:end])
     frequency = _frequency(difference[begin:end], multiplier, period)
     return Growth(multiplier, period, frequency)
