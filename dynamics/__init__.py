@@ -13,6 +13,10 @@ structure      mass, damping and stiffness with named points: where all mechanic
 bodies         rigid bodies, connectors and points into a structure
 beam           shafts of Timoshenko elements (`beam_element`), discs, bearings
 imported       M, C, K from files (`matrix_file`), points tied to surfaces (`constraint`)
+reduction      modal truncation with residual compliance, state space
+craig_bampton  super-elements, joined at points
+receptance     coupling and decoupling of tool, holder and spindle receptances
+mode_tracking  modes followed and interpolated between axis positions
 free_motion    parts that nothing holds
 friction       LuGre, tanh hysteresis, Coulomb-Stribeck; implicit steps
 control        sampled cascade: position, velocity, current; filters, dead times

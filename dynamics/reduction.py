@@ -9,7 +9,6 @@ out is kept between the points asked for; of a free structure it is the inertia-
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +17,7 @@ import scipy.sparse
 import scipy.sparse.linalg
 from numpy.typing import ArrayLike, NDArray
 
+from dynamics.receptance import PointPort, residual_compliance
 from dynamics.structure import LinearStructure, StructureError
 
 # Square of a frequency below which strain energy is rounding, over what its sum is made of.
@@ -29,34 +29,6 @@ class Modes(NamedTuple):
 
     frequency: NDArray[np.float64]  # Hz, (m,), ascending
     shapes: NDArray[np.float64]  # mass-normalised, 1/sqrt(kg) and kin, (n, m)
-
-
-@dataclass(frozen=True, eq=False)
-class PointPort:
-    """Direction at a point, or between two points, along which a force acts or motion is read.
-
-    Parameters
-    ----------
-    point : str
-    direction : (3,) or (6,) array of float
-        Displacements, or displacements and rotations.
-    against : str, optional
-        Point that takes the reaction and whose motion is subtracted.
-    """
-
-    point: str
-    direction: ArrayLike
-    against: str | None = None
-
-    def row(self, structure: LinearStructure) -> NDArray[np.float64]:
-        """(n,): motion along the port per freedom of a structure."""
-        return structure.port(self.point, self.direction, self.against)
-
-    def ends(self) -> list[tuple[str, NDArray[np.float64]]]:
-        """Points and directions (6,) that add up to the port."""
-        given = np.asarray(self.direction, dtype=np.float64)
-        along = np.concatenate([given, np.zeros(6 - given.size)])
-        return [(self.point, along)] + ([(self.against, -along)] if self.against else [])
 
 
 class StateSpace(NamedTuple):
@@ -92,12 +64,18 @@ def undamped_modes(
     if not highest > 0.0 or (count is not None and count < 1):
         raise StructureError(f"modes: highest is {highest} Hz and count {count}; above 0 both")
     sparse = scipy.sparse.issparse(structure.stiffness) or scipy.sparse.issparse(structure.mass)
-    shapes = (_sparse_shapes if sparse else _dense_shapes)(structure, highest, count)
+    if sparse:
+        shapes = _sparse_shapes(structure, highest, count)
+    else:
+        shapes = _dense_shapes(structure.mass, structure.stiffness)
     inertia = np.einsum("nm,nm->m", shapes, structure.mass @ shapes)
     shapes = shapes / np.sqrt(inertia)
     energy = np.einsum("nm,nm->m", shapes, structure.stiffness @ shapes)
     terms = np.einsum("nm,nm->m", abs(shapes), abs(structure.stiffness) @ abs(shapes))
-    energy[abs(energy) <= ROUNDING * terms] = 0.0
+    # a motion that gives a little energy back shows how far rounding reaches
+    back = np.divide(energy, terms, out=np.zeros_like(energy), where=terms > 0.0)
+    reach = max(ROUNDING, -10.0 * float(np.min(back, initial=0.0)))
+    energy[abs(energy) <= min(reach, 1e3 * ROUNDING) * terms] = 0.0
     if np.any(energy < 0.0):
         raise StructureError("modes: the stiffness is not positive: a motion gives energy back")
     order = np.argsort(energy, kind="stable")
@@ -109,10 +87,7 @@ def undamped_modes(
     return Modes(frequency[:kept], shapes[:, order[:kept]])
 
 
-def _dense_shapes(
-    structure: LinearStructure, highest: float, count: int | None
-) -> NDArray[np.float64]:
-    mass, stiffness = structure.mass, structure.stiffness
+def _dense_shapes(mass: NDArray[np.float64], stiffness: NDArray[np.float64]) -> NDArray[np.float64]:
     try:
         return scipy.linalg.eigh(stiffness, mass)[1]
     except scipy.linalg.LinAlgError:
@@ -142,8 +117,7 @@ def _sparse_shapes(
     # rigid-body modes are looked for beyond the number, to tell that one is left out
     wanted = min(below if count is None else min(below, count + 7), size)
     if wanted > size // 2:
-        dense = LinearStructure(mass.toarray(), np.zeros(()), stiffness.toarray(), {})
-        return _dense_shapes(dense, highest, count)
+        return _dense_shapes(mass.toarray(), stiffness.toarray())
     if wanted == 0:
         return np.zeros((size, 0))
     scale = stiffness.diagonal().max() / mass.diagonal().max()
@@ -151,8 +125,9 @@ def _sparse_shapes(
     squared, shapes = scipy.sparse.linalg.eigsh(
         stiffness, wanted, mass, sigma=shift, v0=np.linspace(1.0, 2.0, size)
     )
-    gap = squared[-1] + 1e-6 * (squared[-1] - shift)
-    if _modes_below(mass, stiffness, gap) > wanted and count is None:
+    # just below the last one, so that a pair of equal frequencies is not cut in two
+    gap = limit if count is None else (1.0 - 1e-6) * squared.max()
+    if _modes_below(mass, stiffness, gap) > np.sum(squared < gap):
         raise StructureError(f"modes: only some of those up to {highest:g} Hz were found")
     return shapes
 
@@ -167,6 +142,8 @@ def _modes_below(
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},
     )
+    if not np.array_equal(factors.perm_r, factors.perm_c):
+        raise StructureError("modes: pivots off the diagonal; take another highest frequency")
     return int(np.sum(factors.U.diagonal() < 0.0))
 
 
@@ -265,34 +242,19 @@ def _elastic_answer(
     inertia = structure.mass @ rigid
     balanced = loads - inertia @ (rigid.T @ loads)
     stiffness = scipy.sparse.csc_array(structure.stiffness)
-    # a border of the size of the stiffness keeps the pivots of one magnitude
-    scale = np.max(stiffness.diagonal()) / max(float(np.max(np.abs(inertia), initial=0.0)), 1e-300)
-    border = scipy.sparse.csc_array(inertia * scale) if rigid.shape[1] else None
-    blocks = [[stiffness]] if border is None else [[stiffness, border], [border.T, None]]
-    system = scipy.sparse.csc_array(scipy.sparse.block_array(blocks, format="csc"))
+    if rigid.shape[1]:
+        # a border of the size of the stiffness keeps the pivots of one magnitude
+        border = scipy.sparse.csc_array(inertia * stiffness.diagonal().max() / abs(inertia).max())
+        stiffness = scipy.sparse.block_array([[stiffness, border], [border.T, None]], format="csc")
     right = np.vstack([balanced, np.zeros((rigid.shape[1], loads.shape[1]))])
     try:
-        answer = scipy.sparse.linalg.splu(system).solve(right)
+        answer = scipy.sparse.linalg.splu(stiffness).solve(right)
     except RuntimeError as error:
         raise StructureError(
             "residual compliance: the stiffness is singular beyond the rigid-body modes kept; "
             "keep all rigid-body modes"
         ) from error
     return answer[: structure.size]
-
-
-def residual_compliance(
-    structure: LinearStructure, outputs: Sequence[PointPort], inputs: Sequence[PointPort]
-) -> NDArray[np.float64]:
-    """Compliance (outputs, inputs) that a reduction left out between ports, m/N and kin."""
-    found = np.zeros((len(outputs), len(inputs)))
-    for i, output in enumerate(outputs):
-        for j, port in enumerate(inputs):
-            for one, seen in output.ends():
-                for other, along in port.ends():
-                    if (one, other) in structure.residual:
-                        found[i, j] += seen @ structure.residual[one, other] @ along
-    return found
 
 
 def state_space(
