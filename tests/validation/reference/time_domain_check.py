@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+import tomlkit
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from reference.time_domain import (
@@ -25,11 +26,6 @@ from reference.time_domain import (
     suggested_steps,
 )
 
-try:
-    import tomllib
-except ImportError:  # Python 3.10
-    import tomli as tomllib  # type: ignore[no-redef]
-
 UNIT = {"mm": 1e-3, "deg": np.pi / 180.0, "rpm": 2.0 * np.pi / 60.0}
 SETS = ("set-101", "set-102", "set-103", "set-104", "set-105", "set-107")
 
@@ -42,7 +38,7 @@ def quantity(text: str) -> float:
 
 def load(folder: Path) -> tuple[list[ReferenceCut], list[np.ndarray], dict]:
     """Cuts with the true parameters, the measured tables and the truth of a set."""
-    read = {name: tomllib.loads((folder / f"{name}.toml").read_text())
+    read = {name: tomlkit.parse((folder / f"{name}.toml").read_text()).unwrap()
             for name in ("case", "measurement", "truth")}  # fmt: skip
     truth, tool = read["truth"], read["case"]["tool"]
     plant, effects = truth["plant"], truth.get("true", {})
