@@ -283,11 +283,15 @@ def _static_shapes(stiffness: Matrix, coupling: Matrix) -> NDArray[np.float64]:
     if not stiffness.shape[0]:
         return np.zeros(coupling.shape)
     if scipy.sparse.issparse(stiffness):
-        factors = scipy.sparse.linalg.splu(
-            scipy.sparse.csc_array(stiffness),
-            diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )
+        try:
+            factors = scipy.sparse.linalg.splu(
+                scipy.sparse.csc_array(stiffness),
+                diag_pivot_thresh=0.0,
+                options={"SymmetricMode": True},
+            )
+        except RuntimeError as error:
+            # exactly singular
+            raise StructureError(MOVES_FREELY) from error
         pivots = factors.U.diagonal() / stiffness.diagonal()[np.argsort(factors.perm_c)]
         shapes = -factors.solve(coupling.toarray())
     else:
