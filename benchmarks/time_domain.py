@@ -28,7 +28,7 @@ import numpy as np
 from numba import njit
 
 from chatter.case import Case
-from chatter.simulation.setup import Setup, radial_depth, set_up
+from chatter.simulation.setup import Setup, set_up
 from chatter.simulation.simulate import simulate
 from cutting.dexel import dexel_carve, dexel_chip_thickness
 from cutting.dexel_stock import dexel_remove_path, dexel_stock
@@ -155,7 +155,7 @@ def engaged_share(setup: Setup) -> float:
     """Share of the tooth-slice-steps whose slice has its middle in the arc of the cut."""
     angle = setup.slices.angle
     entry, leave = slice_engagement(
-        setup.case.cut.mode, radial_depth(setup.case), setup.cutter.radius, setup.slices.radius
+        setup.case.cut.mode, setup.case.width_of_cut, setup.cutter.radius, setup.slices.radius
     )
     bins = setup.resolution.steps_a_turn
     turn = np.arange(bins)[:, None, None] * 2 * math.pi / bins

@@ -267,8 +267,7 @@ def operating_limit(
 
 def removal_area(case: Case) -> float:
     """Removal rate over axial depth and spindle speed, m^2."""
-    width = case.cut.radial_depth or case.tool.diameter
-    return width * case.cut.feed_per_tooth * case.tool.teeth / (2.0 * math.pi)
+    return case.width_of_cut * case.cut.feed_per_tooth * case.tool.teeth / (2.0 * math.pi)
 
 
 def stability_grid(

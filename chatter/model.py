@@ -99,7 +99,7 @@ def milling_model(case: Case) -> MillingModel:
     structure = structure_of(case)
     basis = _motion_basis(structure.directions)
     damping = _process_damping(case)
-    arc = engagement(case.cut.mode, _radial_depth(case), case.tool.diameter)
+    arc = engagement(case.cut.mode, case.width_of_cut, case.tool.diameter)
     table = directional_table(
         arc, force_law(case, helix_angles(case)[0]), case.cut.feed_per_tooth, basis, damping
     )
@@ -167,11 +167,6 @@ def _refuse_unsupported(case: Case) -> None:
         )
     if problems:
         raise InputError(problems)
-
-
-def _radial_depth(case: Case) -> float:
-    """Width of cut, m; a slot need not give it."""
-    return case.tool.diameter if case.cut.radial_depth is None else case.cut.radial_depth
 
 
 def _process_damping(case: Case) -> ViscousProcessDamping | None:

@@ -2,7 +2,7 @@
 
 A force law is one frozen class with two methods, ``force(h)`` and ``slope(h)``, both of shape
 ``(3, ...)`` in the order tangential, radial, axial. The slope is what stability needs. A new law
-is one class here and one entry in `FORCE_LAWS`.
+is one class here, and its table and leaf in `edge_force`.
 """
 
 from __future__ import annotations
@@ -139,11 +139,3 @@ def oblique_cutting_coefficients(
         scale * math.sin(lean) / math.cos(i),
         scale * (math.cos(lean) * math.tan(i) - skew),
     )
-
-
-#: law name in a case file -> class
-FORCE_LAWS: dict[str, type] = {
-    "linear": LinearLaw,
-    "exponential": ExponentialLaw,
-    "oblique": LinearLaw,
-}

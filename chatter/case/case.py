@@ -82,6 +82,12 @@ class Case(Section):
         return self._name
 
     @property
+    def width_of_cut(self) -> float:
+        """Radial depth of cut, m: the diameter where a slot does not give it."""
+        given = self.cut.radial_depth
+        return self.tool.diameter if given is None else given
+
+    @property
     def folder(self) -> Path:
         """Folder that relative file names start from."""
         return self._folder

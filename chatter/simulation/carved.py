@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from chatter.case import Case
 from chatter.errors import InputError
-from chatter.simulation.reconstruction import WallProfiles
+from chatter.simulation.reconstruction import WALLS, WallProfiles
 from chatter.simulation.setup import Setup, set_up
 from chatter.simulation.stock import DISCRETE_CHIPS
 from cutting.dexel import dexel_flush
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from chatter.simulation.result import SimulationResult
 
 #: walls that a cut leaves standing
-_SIDES = {"up": ("+y",), "down": ("-y",), "slot": ("+y", "-y")}
 _SIGN = {"+y": 1, "-y": -1}
 _MOST_POINTS = 4000
 _LEAST_POINTS = 16
@@ -64,7 +63,7 @@ class FollowingStock:
         self.cut = cut
         self.left_behind: list[WallPiece] = []
         self._kind = DISCRETE_CHIPS[case.simulation.chip]
-        self._sides = _SIDES[case.cut.mode]
+        self._sides = WALLS[case.cut.mode]
         self._reach = reach
 
     def follow(self, x: float) -> DiscreteCut:
@@ -138,7 +137,7 @@ def carved_walls(result: SimulationResult) -> list[WallProfiles]:
     if count < _LEAST_POINTS:
         return []
     x = np.linspace(low, high, count)
-    walls = (_wall(result, cut, side, x) for side in _SIDES[result.case.cut.mode])
+    walls = (_wall(result, cut, side, x) for side in WALLS[result.case.cut.mode])
     return [wall for wall in walls if wall is not None]
 
 

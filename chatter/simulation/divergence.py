@@ -13,13 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.case import Case
-from chatter.simulation.engine import COLUMNS, Record, run
-from chatter.simulation.growth import delayed
-from chatter.simulation.setup import Setup, set_up
-from chatter.simulation.spindle import prescribed
-from cutting.tool_point import tool_point
+from chatter.simulation.growth import delayed, motion_of
+from chatter.simulation.setup import set_up
 from dynamics.modal import Mode
-from dynamics.modal_steps import modal_steps
 
 #: the push moves the tool by this share of the feed
 _PUSH = 1e-5
@@ -66,9 +62,12 @@ def divergence(case: Case, modes: tuple[Mode, ...]) -> Divergence:
     setups = [set_up(delayed(case), modes) for _ in range(2)]
     limit = min(setups[0].resolution.turns, _MOST_TURNS)
     setups = [replace(setup, resolution=replace(setup.resolution, turns=limit)) for setup in setups]
-    feed = case.cut.feed_per_tooth
-    first, second = (_motion(setup, push) for setup, push in zip(setups, (0.0, feed), strict=True))
-    count = min(len(first), len(second))
+    pushes = (0.0, _PUSH * case.cut.feed_per_tooth)
+    (first, done), (second, also_done) = (
+        motion_of(setup, setup.resolution.steps, push=push)
+        for setup, push in zip(setups, pushes, strict=True)
+    )
+    count = max(min(done, also_done), 0)
     difference = second[:count] - first[:count]
     bins = setups[0].resolution.steps_a_turn
     turns = count // bins
@@ -84,18 +83,6 @@ def divergence(case: Case, modes: tuple[Mode, ...]) -> Divergence:
     rate = float(np.polyfit(np.arange(begin, end), np.log(size[begin:end]), 1)[0])
     window = difference[begin * bins : end * bins]
     return Divergence(rate, _strongest(window, setups[0].step))
-
-
-def _motion(setup: Setup, feed: float) -> NDArray[np.float64]:
-    """Displacement (n, 3) of the tool over a run, pushed by a small share of the feed."""
-    steps, bins = setup.resolution.steps, setup.resolution.steps_a_turn
-    modes = modal_steps(setup.modes, setup.step)
-    modes.state[:, 0] = _PUSH * feed
-    record = Record(1, np.zeros((steps + 1, len(COLUMNS))))
-    turns = prescribed(setup.spindle, setup.path, bins, setup.step, -1, steps + 1)
-    scratch = np.zeros((len(setup.modes), 2))
-    done = run(setup.groups, modes, tool_point(), turns, record, scratch, -1, setup.furthest, bins)
-    return record.rows[: max(done, 0), 3:6]
 
 
 def _strongest(signal: NDArray[np.float64], step: float) -> float:

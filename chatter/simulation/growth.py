@@ -99,7 +99,7 @@ def growth_of(case: Case, modes: tuple[Mode, ...]) -> Growth:
     wanted = max(_RAMP_PERIODS + _WATCHED_PERIODS, math.ceil(_TIME_CONSTANTS * slowest / period))
     count = min(wanted, _MOST_PERIODS)
     ramp = count // 4
-    motion, done = _motion(setup, count * per_period, ramp * per_period)
+    motion, done = motion_of(setup, count * per_period, ramp * per_period)
     whole = done // per_period
     if whole < ramp + _LEAST_FITTED:
         return Growth(complex(math.inf), period, math.nan)
@@ -116,9 +116,22 @@ def delayed(case: Case) -> Case:
     return case.model_copy(update={"simulation": settings, "stock": None})
 
 
-def _motion(setup: Setup, steps: int, ramp: int) -> tuple[NDArray[np.float64], int]:
-    """Displacement (steps + 1, 3) of the tool, m, and the steps that were done."""
+def motion_of(
+    setup: Setup, steps: int, ramp: int = 0, push: float = 0.0
+) -> tuple[NDArray[np.float64], int]:
+    """Displacement (steps + 1, 3) of the tool, m, and the steps that were done.
+
+    Parameters
+    ----------
+    setup : Setup
+        With a delayed chip, for one run.
+    steps, ramp : int
+        Steps of the run, and of them those in which the cut takes hold.
+    push : float
+        Displacement of every mode at the start, m.
+    """
     modes = modal_steps(setup.modes, setup.step)
+    modes.state[:, 0] = push
     record = Record(1, np.zeros((steps + 1, len(COLUMNS))))
     bins = setup.resolution.steps_a_turn
     turns = prescribed(setup.spindle, setup.path, bins, setup.step, -1, steps + 1, ramp)

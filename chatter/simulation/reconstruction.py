@@ -27,7 +27,8 @@ Array = NDArray[np.float64]
 _TURN = 2.0 * math.pi
 #: direction in which an edge points at the wall, by the side of the wall
 _WALL_ANGLE = {"+y": 0.0, "-y": math.pi}
-_WALLS = {"up": ("+y",), "down": ("-y",), "slot": ("+y", "-y")}
+#: sides of the walls that stay, by the mode of the cut
+WALLS = {"up": ("+y",), "down": ("-y",), "slot": ("+y", "-y")}
 #: turns, points along the feed, points a tooth and heights that are evaluated
 _MOST_TURNS = 60.0
 _MOST_POINTS = 4000
@@ -108,7 +109,7 @@ def surface_profiles(
     record = _record(result)
     if record is None:
         return [], None, ["surface: the run is too short for it to be evaluated"]
-    found = [_wall(result, record, side) for side in _WALLS[case.cut.mode]]
+    found = [_wall(result, record, side) for side in WALLS[case.cut.mode]]
     walls = [wall for wall in found if wall is not None]
     notes = [] if walls else ["wall: the run is too short for it to be evaluated"]
     floor, reason = _floor(result, record)
@@ -153,16 +154,10 @@ def _surface_slices(cutter: Cutter, depth: float) -> EdgeSlices:
 def _levels(result: SimulationResult, slices: EdgeSlices) -> NDArray:
     """Slices that make the wall: the straight edge, or the corner where nothing else cuts."""
     cut, radius = result.case.cut, result.setup.cutter.radius
-    entry, leave = slice_engagement(cut.mode, _width(result), radius, slices.radius)
+    entry, leave = slice_engagement(cut.mode, result.case.width_of_cut, radius, slices.radius)
     cutting = entry < leave
     straight = cutting & (slices.immersion >= result.setup.cutter.edge_angle - 1e-9)
     return np.flatnonzero(straight if straight.any() else cutting)
-
-
-def _width(result: SimulationResult) -> float:
-    """Width of the cut, m; a slot need not give it."""
-    case = result.case
-    return case.tool.diameter if case.cut.radial_depth is None else case.cut.radial_depth
 
 
 def _wall(result: SimulationResult, record: _Record, side: str) -> WallProfiles | None:
@@ -223,7 +218,7 @@ def _floor(result: SimulationResult, record: _Record) -> tuple[FloorProfile | No
     """Floor along a line in the middle of the cut, or why there is none."""
     cutter, slices, case = result.setup.cutter, result.setup.slices, result.case
     tip_radius = cutter.radius - cutter.corner_radius
-    crossing = _crossing(tip_radius, cutter.radius, _width(result))
+    crossing = _crossing(tip_radius, cutter.radius, result.case.width_of_cut)
     if crossing is None:
         return None, "floor: the tip of the tool is not within the width of the cut"
     direction = crossing if case.cut.mode != "down" else math.pi - crossing

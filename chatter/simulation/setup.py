@@ -77,11 +77,6 @@ class Setup:
         return 2.0 * math.pi / (self.spindle.speed * self.resolution.steps_a_turn)
 
 
-def radial_depth(case: Case) -> float:
-    """Width of cut, m; a slot need not give it."""
-    return case.tool.diameter if case.cut.radial_depth is None else case.cut.radial_depth
-
-
 def set_up(case: Case, modes: tuple[Mode, ...] | None = None) -> Setup:
     """Compile a case for the time domain.
 
@@ -146,7 +141,7 @@ def modes_of(case: Case) -> tuple[tuple[Mode, ...], tuple[str, ...]]:
 def _arcs(case: Case, cutter: Cutter) -> tuple[float, float]:
     """Entry and exit angle at the full radius, rad."""
     entry, leave = slice_engagement(
-        case.cut.mode, radial_depth(case), cutter.radius, np.array([cutter.radius])
+        case.cut.mode, case.width_of_cut, cutter.radius, np.array([cutter.radius])
     )
     return float(entry[0]), float(leave[0])
 
@@ -190,13 +185,13 @@ def _refuse_crossing_flutes(case: Case, slices: EdgeSlices) -> None:
 def _refuse_out_of_reach(case: Case, slices: EdgeSlices) -> None:
     """Refuse a radial depth that no slice of the edge reaches."""
     radius = 0.5 * case.tool.diameter
-    entry, leave = slice_engagement(case.cut.mode, radial_depth(case), radius, slices.radius)
+    entry, leave = slice_engagement(case.cut.mode, case.width_of_cut, radius, slices.radius)
     if np.all(entry >= leave):
         raise InputError(
             f"{case.name}: cut.radial_depth: down to an axial depth of "
             f"{case.cut.axial_depth * 1e3:g} mm the edge is nowhere wider than "
             f"{slices.radius.max() * 2e3:.4g} mm; a radial depth of "
-            f"{radial_depth(case) * 1e3:g} mm is not reached"
+            f"{case.width_of_cut * 1e3:g} mm is not reached"
         )
 
 
@@ -217,7 +212,7 @@ def _delayed(
     bins = resolution.steps_a_turn
     return delayed_cut(
         slices,
-        slice_engagement(case.cut.mode, radial_depth(case), cutter.radius, slices.radius),
+        slice_engagement(case.cut.mode, case.width_of_cut, cutter.radius, slices.radius),
         edge_law(case),
         flank_table(case, slices.radius, 2.0 * math.pi / bins),
         bins,
