@@ -1,6 +1,6 @@
 """Shafts, spindles and tools as lines of beam elements, with discs and bearings.
 
-A line is a part that `dynamics.bodies.assemble` joins with bodies and other lines.
+A line is a part that `dynamics.assembly.assemble` joins with bodies and other lines.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Rigid bodies held by springs and dampers at places, alone or together with beams.
+"""Rigid bodies, the connectors that hold them, and named points on them.
 
 A column, a table or a headstock is a rigid body; guides, joints, feet and bushings are
 connectors with six stiffnesses at a place. Displacements and rotations are small.
@@ -6,22 +6,21 @@ connectors with six stiffnesses at a place. Displacements and rotations are smal
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import ArrayLike, NDArray
 
-from dynamics.free_motion import DIRECTIONS, refuse_free_motion
-from dynamics.structure import LinearStructure, StructureError
+from dynamics.free_motion import DIRECTIONS
+from dynamics.structure import StructureError
 
 GROUND = "ground"
 
 
 class Part(Protocol):
-    """What `assemble` joins: a rigid body, a line of beam elements."""
+    """What `dynamics.assembly` joins: a rigid body, a line of beam elements."""
 
     @property
     def name(self) -> str:
@@ -41,7 +40,10 @@ class Part(Protocol):
 
     @property
     def rigid_motions(self) -> NDArray[np.float64]:
-        """(n, 6): motions without strain: along and about x, y, z of a place of the part's own."""
+        """(n, 6): motions without strain: along and about x, y, z of a place of the part's own.
+
+        (n, 1) for what only turns.
+        """
 
     def motion_at(self, place: ArrayLike) -> NDArray[np.float64]:
         """(6, n): displacements and rotations of the material at a place, per freedom."""
@@ -219,71 +221,6 @@ def rigid_motion(offset: ArrayLike) -> NDArray[np.float64]:
     return motion
 
 
-def assemble(
-    bodies: Sequence[Body],
-    connectors: Sequence[Connector],
-    points: Sequence[Point],
-    beams: Sequence[MeshedPart] = (),
-    allowed_rigid_motions: int = 0,
-) -> LinearStructure:
-    """Join bodies and beams by connectors into one structure.
-
-    Parameters
-    ----------
-    bodies : sequence of Body
-        Six freedoms each, in order: x, y, z of the centre of gravity and rotations.
-    connectors : sequence of Connector
-    points : sequence of Point
-    beams : sequence of MeshedPart
-        Lines of beam elements (`dynamics.beam.BeamLine`); their freedoms follow the bodies'.
-        Their bearings join the connectors.
-    allowed_rigid_motions : int
-        How many independent motions may be left that no connector resists (6 for a free machine,
-        1 for an axis without its drive).
-
-    Returns
-    -------
-    LinearStructure
-        Dense matrices.
-
-    Raises
-    ------
-    StructureError
-        If names are unknown or twice given, nothing is there to move, or parts move freely.
-    """
-    joints = [*connectors, *(bearing for beam in beams for bearing in beam.connectors)]
-    places = [(part, joint.at) for joint in joints for part in (joint.first, joint.second)]
-    places += [(point.body, point.at) for point in points]
-    meshed = [
-        beam.with_nodes_at([at for name, at in places if name == beam.name]) for beam in beams
-    ]
-    parts = _named("body or beam", [*bodies, *meshed])
-    _named("connector", joints)
-    _named("point", points)
-    if not parts:
-        raise StructureError("a structure needs at least one body or beam")
-    columns = _columns({name: part.mass_matrix.shape[0] for name, part in parts.items()})
-    stretches = [one.stretch(_relative_motion(one, parts, columns)) for one in joints]
-    held = [
-        stretch[joint.stiffness > 0.0] for joint, stretch in zip(joints, stretches, strict=True)
-    ]
-    rigid = scipy.linalg.block_diag(*(part.rigid_motions for part in parts.values()))
-    refuse_free_motion(
-        np.vstack([*held, np.zeros((1, len(rigid)))]) @ rigid, list(parts), allowed_rigid_motions
-    )
-    mass, damping, stiffness = (
-        scipy.linalg.block_diag(*(getattr(part, f"{what}_matrix") for part in parts.values()))
-        for what in ("mass", "damping", "stiffness")
-    )
-    for joint, stretch in zip(joints, stretches, strict=True):
-        stiffness += stretch.T @ (joint.stiffness[:, None] * stretch)
-        damping += stretch.T @ (joint.damping[:, None] * stretch)
-    rows = {
-        one.name: _motion(f'point "{one.name}"', one.body, one.at, parts, columns) for one in points
-    }
-    return LinearStructure(mass, damping, stiffness, rows)
-
-
 def finite(where: str, what: str, values: ArrayLike, shape: tuple[int, ...]) -> NDArray:
     """Values as an array of finite numbers of a shape.
 
@@ -300,42 +237,3 @@ def finite(where: str, what: str, values: ArrayLike, shape: tuple[int, ...]) -> 
         size = " x ".join(str(length) for length in shape)
         raise StructureError(f"{where}: {what} must be {size} finite numbers, not {values!r}")
     return array
-
-
-def _named(kind: str, items: Iterable) -> dict:
-    named: dict = {}
-    for item in items:
-        if item.name in named:
-            raise StructureError(f'{kind} "{item.name}" is there twice; names must differ')
-        named[item.name] = item
-    return named
-
-
-def _columns(sizes: Mapping[str, int]) -> dict[str, slice]:
-    ends = np.cumsum(list(sizes.values()))
-    return {
-        name: slice(int(end) - size, int(end))
-        for (name, size), end in zip(sizes.items(), ends, strict=True)
-    }
-
-
-def _motion(
-    who: str, name: str, at: NDArray, parts: Mapping[str, Part], columns: Mapping[str, slice]
-) -> NDArray[np.float64]:
-    if name not in parts:
-        known = ", ".join(f'"{part}"' for part in parts)
-        raise StructureError(f'{who}: there is no body or beam "{name}"; there are {known}')
-    motion = np.zeros((6, max(column.stop for column in columns.values())))
-    motion[:, columns[name]] = parts[name].motion_at(at)
-    return motion
-
-
-def _relative_motion(
-    joint: Connector, parts: Mapping[str, Part], columns: Mapping[str, slice]
-) -> NDArray[np.float64]:
-    who = f'connector "{joint.name}"'
-    sides = [
-        0.0 if name == GROUND else _motion(who, name, joint.at, parts, columns)
-        for name in (joint.first, joint.second)
-    ]
-    return sides[0] - sides[1]

@@ -17,7 +17,7 @@ RANK_TOLERANCE = 1e-9
 NAMED = 0.05
 
 
-def free_motions(held: NDArray[np.float64]) -> NDArray[np.float64]:
+def free_motions(held: NDArray[np.float64], turning: NDArray[np.bool_]) -> NDArray[np.float64]:
     """Motions of parts that strain no spring.
 
     Whatever strains no part is a rigid motion of every part, so the rank of the springs on those
@@ -25,16 +25,16 @@ def free_motions(held: NDArray[np.float64]) -> NDArray[np.float64]:
 
     Parameters
     ----------
-    held : (springs, 6 parts) array of float
-        Stretch of each spring per rigid motion of each part: three displacements (m) and three
-        rotations (rad).
+    held : (springs, n) array of float
+        Stretch of each spring per rigid motion of each part: displacements (m), rotations (rad).
+    turning : (n,) array of bool
+        Which of them are rotations.
 
     Returns
     -------
-    (6 parts, free) array of float
+    (n, free) array of float
         Rotations times the longest lever. Each motion has a 1 where the others have 0.
     """
-    turning = np.tile(np.arange(6) >= 3, held.shape[1] // 6)
     lever = np.max(np.abs(held[:, turning]), initial=0.0)
     rows = held / np.where(turning, lever if lever > 0.0 else 1.0, 1.0)
     norms = np.linalg.norm(rows, axis=1)
@@ -48,15 +48,20 @@ def free_motions(held: NDArray[np.float64]) -> NDArray[np.float64]:
     return free @ np.linalg.inv(free[pivots])
 
 
-def refuse_free_motion(held: NDArray[np.float64], names: Sequence[str], allowed: int) -> None:
+def refuse_free_motion(
+    held: NDArray[np.float64],
+    turning: NDArray[np.bool_],
+    labels: Sequence[str],
+    allowed: int,
+) -> None:
     """Refuse more free motions than allowed.
 
     Parameters
     ----------
-    held : (springs, 6 parts) array of float
+    held, turning
         As for `free_motions`.
-    names : sequence of str
-        Of the parts.
+    labels : sequence of str
+        Names of the rigid motions, (n,).
     allowed : int
 
     Raises
@@ -64,10 +69,9 @@ def refuse_free_motion(held: NDArray[np.float64], names: Sequence[str], allowed:
     StructureError
         Naming parts and directions.
     """
-    free = free_motions(held)
+    free = free_motions(held, turning)
     if free.shape[1] <= allowed:
         return
-    labels = [f'"{name}" {direction}' for name in names for direction in DIRECTIONS]
     motions = [
         " with ".join(labels[row] for row in np.flatnonzero(np.abs(motion) > NAMED))
         for motion in free.T

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 import scipy.linalg
 
+from dynamics.assembly import assemble
 from dynamics.beam import BeamLine, Bearing, Disc, Material, Segment, cowper, hutchinson
 from dynamics.beam_element import element_mass, element_stiffness
-from dynamics.bodies import Body, Connector, Point, assemble
+from dynamics.bodies import Body, Connector, Point
 from dynamics.structure import StructureError
 
 TIMOSHENKO_TOOL = Material(young=200e9, density=7800.0, poisson=0.29)

@@ -5,8 +5,9 @@ import pytest
 import scipy.linalg
 from scipy.spatial.transform import Rotation
 
+from dynamics.assembly import assemble
 from dynamics.beam import BeamLine, Material, Segment
-from dynamics.bodies import Body, Connector, Point, assemble
+from dynamics.bodies import Body, Connector, Point
 from dynamics.structure import StructureError
 
 STEEL = Material(young=210e9, density=7850.0, poisson=0.3)

@@ -5,9 +5,10 @@ import pytest
 import scipy.linalg
 import scipy.sparse
 
+from dynamics.assembly import assemble
 from dynamics.beam import BeamLine, Bearing, Material, Segment, hutchinson
 from dynamics.beam_element import element_mass, element_stiffness
-from dynamics.bodies import Connector, Point, assemble
+from dynamics.bodies import Connector, Point
 from dynamics.craig_bampton import ElasticJoint, RigidJoint, joined, super_element
 from dynamics.reduction import truncated, undamped_modes
 from dynamics.structure import LinearStructure, StructureError

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from dynamics.assembly import assemble
 from dynamics.beam import BeamLine, Bearing, Material, Segment
-from dynamics.bodies import Body, Connector, Point, assemble
+from dynamics.bodies import Body, Connector, Point
 from dynamics.mode_tracking import (
     ModalModel,
     ModalModelAlongAxis,

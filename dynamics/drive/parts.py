@@ -1,0 +1,86 @@
+"""What a drive is made of, as the structure sees it: rotors, springs, and where motors act."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from dynamics.bodies import Connector, finite
+from dynamics.coupling import Coupling, Term
+from dynamics.rotor import Rotor
+from dynamics.structure import StructureError
+
+
+@dataclass(frozen=True, eq=False)
+class DrivenAxis:
+    """Place and direction of a feed drive.
+
+    Parameters
+    ----------
+    name : str
+    direction : (3,) array of float
+        Of positive motion of `moving` against `carrying`; made a unit vector.
+    moving, carrying : str
+        Parts that are driven, and that carry the motor; carrying may be "ground".
+    at : (3,) array of float
+        Where the drive pushes the moving part, m.
+    position : float
+        Of the axis, m, from where the drive's own lengths count.
+
+    Raises
+    ------
+    StructureError
+        If the direction has no length, or a number is not finite.
+    """
+
+    name: str
+    direction: ArrayLike
+    moving: str
+    carrying: str
+    at: ArrayLike
+    position: float = 0.0
+
+    def __post_init__(self) -> None:
+        where = f'axis "{self.name}"'
+        direction = finite(where, "direction", self.direction, (3,))
+        if not np.any(direction):
+            raise StructureError(f"{where}: direction has no length")
+        object.__setattr__(self, "direction", direction / np.linalg.norm(direction))
+        object.__setattr__(self, "at", finite(where, "at", self.at, (3,)))
+        if not np.isfinite(self.position):
+            raise StructureError(f"{where}: position is {self.position}; a finite length, in m")
+
+    def travel(self, at: ArrayLike | None = None) -> tuple[Term, Term]:
+        """Displacement of the moving against the carrying part along the axis, at a place."""
+        place = self.at if at is None else at
+        return (
+            Term(self.moving, self.direction, place),
+            Term(self.carrying, -self.direction, place),
+        )
+
+    def turning(self, part: str, factor: float = 1.0) -> Term:
+        """Rotation of a part about the axis."""
+        return Term(part, factor * np.concatenate([np.zeros(3), self.direction]), self.at)
+
+
+class Motor(NamedTuple):
+    """Motor of a drive: its torque acts along `angle`, which its encoder measures too.
+
+    A linear motor has force and displacement instead, and transmission 1.
+    """
+
+    name: str
+    angle: tuple[Term, ...]  # of the rotor against its housing, rad
+    transmission: float  # travel of the axis per angle, m/rad
+
+
+class DriveParts(NamedTuple):
+    """A drive in parts; `motors` are in the order of their controllers."""
+
+    rotors: tuple[Rotor, ...]
+    connectors: tuple[Connector, ...]
+    couplings: tuple[Coupling, ...]
+    motors: tuple[Motor, ...]
