@@ -24,6 +24,7 @@ from dynamics.control.drive_table import (
     SET_TORQUE,
     SET_VELOCITY,
     TORQUE_FED,
+    TORQUE_INJECTED,
     TORQUE_SET,
     TORQUE_SUM,
     VELOCITY_OUTPUT,
@@ -122,7 +123,7 @@ def velocity_sample(table, k, sample, x_motor, v_motor):
 @register_jitable(**INLINED)
 def current_sample(table, k, sample):
     """Input of the current plant: filtered torque set point, or voltage of the PI controller."""
-    torque = table.state[k, TORQUE_SET]
+    torque = table.state[k, TORQUE_SET] + table.state[k, TORQUE_INJECTED]
     for place in range(table.filters.shape[1]):
         torque, first, second = second_order_sample(
             table.filters[k, place, 0],

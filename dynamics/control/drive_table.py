@@ -16,7 +16,9 @@ from dynamics.control.sampling import ControlError
 VELOCITY_SET, TORQUE_SET, CURRENT_INPUT, TORQUE_FED = 0, 1, 2, 3
 TORQUE_SUM, VOLTAGE_SUM, REFERENCE_FIRST, REFERENCE_SECOND = 4, 5, 6, 7
 LAST_ANGLE, PLANT_FIRST, PLANT_SECOND = 8, 9, 10
-STATES = 11
+#: of a test: added to the torque set point before the filters, written from outside
+TORQUE_INJECTED = 11
+STATES = 12
 
 #: channels of `ControlTable.history`, each delayed by `ControlTable.delays`
 SET_POSITION, SET_VELOCITY, MEASURED_POSITION, POSITION_OUTPUT, SET_TORQUE = 0, 1, 2, 3, 4

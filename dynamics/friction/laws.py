@@ -1,0 +1,101 @@
+"""Friction laws by name and by table: where a new one joins.
+
+A law joins by its module and one entry in each of the tables here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numba import types
+from numba.extending import overload
+from numpy.typing import NDArray
+
+from dynamics.friction.coulomb_stribeck import (
+    CoulombStribeck,
+    CoulombStribeckTable,
+    coulomb_stribeck_advance,
+    coulomb_stribeck_step,
+    coulomb_stribeck_table,
+)
+from dynamics.friction.implicit import INLINED
+from dynamics.friction.lugre import LuGre, LuGreTable, lugre_advance, lugre_step, lugre_table
+from dynamics.friction.tanh_hysteresis import (
+    TanhHysteresis,
+    TanhTable,
+    tanh_advance,
+    tanh_step,
+    tanh_table,
+)
+
+FrictionLaw = LuGre | TanhHysteresis | CoulombStribeck
+
+#: name in machine files -> specification
+LAWS = {
+    "LuGre": LuGre,
+    "tanh hysteresis": TanhHysteresis,
+    "Coulomb-Stribeck": CoulombStribeck,
+}
+#: specification -> its table
+TABLES = {
+    LuGre: lugre_table,
+    TanhHysteresis: tanh_table,
+    CoulombStribeck: coulomb_stribeck_table,
+}
+#: table -> kernel that solves for the force held over a step
+SOLVING = {
+    LuGreTable: lugre_step,
+    TanhTable: tanh_step,
+    CoulombStribeckTable: coulomb_stribeck_step,
+}
+#: table -> kernel that moves the state on
+ADVANCING = {
+    LuGreTable: lugre_advance,
+    TanhTable: tanh_advance,
+    CoulombStribeckTable: coulomb_stribeck_advance,
+}
+
+
+class Frictions(NamedTuple):
+    """Frictions of one law, with what the time loop remembers of each."""
+
+    law: NamedTuple  # table of the law; its column `port` says where each acts
+    force: NDArray[np.float64]  # held over the last step, N, (n,)
+    beyond: NDArray[np.float64]  # by which the law moves further than its port, m, (n,)
+
+
+def friction_groups(laws: Sequence[FrictionLaw], ports: Sequence[int]) -> tuple[Frictions, ...]:
+    """Tables of frictions at rest, one a law that occurs, in the order of `TABLES`."""
+    groups = []
+    for kind, table in TABLES.items():
+        chosen = [place for place, law in enumerate(laws) if isinstance(law, kind)]
+        if chosen:
+            columns = table([laws[i] for i in chosen], [ports[i] for i in chosen])
+            groups.append(Frictions(columns, np.zeros(len(chosen)), np.zeros(len(chosen))))
+    return tuple(groups)
+
+
+def _kernel(kernels, law):
+    return kernels.get(law.instance_class) if isinstance(law, types.BaseNamedTuple) else None
+
+
+def friction_step(law, i, dx_free, gx, v_free, g, h):
+    """Held force, N, and motion of a law, m; see `implicit.held_force`."""
+    return SOLVING[type(law)](law, i, dx_free, gx, v_free, g, h)
+
+
+@overload(friction_step, jit_options=INLINED)
+def _friction_step(law, i, dx_free, gx, v_free, g, h):  # noqa: ARG001
+    return _kernel(SOLVING, law)
+
+
+def friction_advance(law, i, motion, h):
+    """Move the state of a law by a motion, m, in a time h, s."""
+    ADVANCING[type(law)](law, i, motion, h)
+
+
+@overload(friction_advance, jit_options=INLINED)
+def _friction_advance(law, i, motion, h):  # noqa: ARG001
+    return _kernel(ADVANCING, law)

@@ -1,0 +1,295 @@
+"""A machine as it stands: structure, drives with their controllers, frictions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from dynamics.assembly import Assembly, assembly
+from dynamics.bodies import Connector, MeshedPart, Part, Point
+from dynamics.control import DriveController
+from dynamics.coupling import Coupling, Term
+from dynamics.drive.parts import DrivenAxis, DriveParts, Motor
+from dynamics.friction.laws import FrictionLaw
+from dynamics.reduction import undamped_modes
+from dynamics.structure import LinearStructure, StructureError
+
+#: what holds an axis: its controller, its brake, or nothing
+Condition = Literal["control", "brake", "free"]
+CONDITIONS: tuple[Condition, ...] = ("control", "brake", "free")
+
+
+class FeedDrive(Protocol):
+    """Drive of an axis: what it adds to the structure."""
+
+    def parts(self, axis: DrivenAxis) -> DriveParts:
+        """Rotors, springs and motors of the drive on an axis."""
+
+
+@dataclass(frozen=True, eq=False)
+class MachineAxis:
+    """Axis with its drive and control.
+
+    Parameters
+    ----------
+    geometry : DrivenAxis
+    drive : FeedDrive
+    controllers : sequence of DriveController
+        None (no control), one for all motors (they share its torque, and it measures the mean of
+        their encoders), or one a motor.
+    scale_at : (3,) array of float, optional
+        Place of the direct measuring system, m; where the drive pushes by default.
+    brake : (float, float)
+        Stiffness, N m/rad, and damping, N m s/rad, of the brake of each motor (N/m and N s/m of
+        a linear one).
+    """
+
+    geometry: DrivenAxis
+    drive: FeedDrive
+    controllers: Sequence[DriveController] = ()
+    scale_at: ArrayLike | None = None
+    brake: tuple[float, float] = (1e5, 0.0)
+
+    @property
+    def name(self) -> str:
+        """Name of the axis."""
+        return self.geometry.name
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionAt:
+    """Friction along a motion.
+
+    Parameters
+    ----------
+    name : str
+    law : LuGre, TanhHysteresis or CoulombStribeck
+    terms : sequence of Term
+        Motion that it resists, as the sum of these; none if `mode` is given.
+    mode : int, optional
+        Number, from 0, of the undamped mode whose coordinate (mass-normalised) it resists.
+    """
+
+    name: str
+    law: FrictionLaw
+    terms: Sequence[Term] = ()
+    mode: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class MachineParts:
+    """Everything a machine is made of, at one position of its axes.
+
+    Parameters
+    ----------
+    bodies, beams, connectors, couplings, points
+        As for `dynamics.assembly.assembly`.
+    axes : sequence of MachineAxis
+    frictions : sequence of FrictionAt
+    damping_ratio : float
+        Of every elastic mode, on top of the dampers; 1.
+    allowed_rigid_motions : int
+        Free motions that are meant, besides those of free or controlled axes.
+    """
+
+    bodies: Sequence[Part]
+    connectors: Sequence[Connector]
+    points: Sequence[Point]
+    beams: Sequence[MeshedPart] = ()
+    couplings: Sequence[Coupling] = ()
+    axes: Sequence[MachineAxis] = ()
+    frictions: Sequence[FrictionAt] = ()
+    damping_ratio: float = 0.0
+    allowed_rigid_motions: int = 0
+
+
+class Drive(NamedTuple):
+    """Drive under control: torque acts along `row`, where the encoder measures too."""
+
+    name: str
+    axis: str
+    row: NDArray[np.float64]  # (n,)
+    scale: NDArray[np.float64]  # (n,)
+    controller: DriveController
+
+
+class Friction(NamedTuple):
+    """Friction along a row of the structure."""
+
+    name: str
+    law: FrictionLaw
+    row: NDArray[np.float64]  # (n,)
+
+
+class ConstantForce(NamedTuple):
+    """Force that never changes along a row of the structure."""
+
+    name: str
+    row: NDArray[np.float64]  # (n,)
+    value: float  # N (N m)
+
+
+@dataclass(frozen=True, eq=False)
+class Machine:
+    """Machine in one condition, ready to be run or linearised.
+
+    Parameters
+    ----------
+    structure : LinearStructure
+    drives : tuple of Drive
+        Those under control.
+    frictions : tuple of Friction
+    preloads : tuple of ConstantForce
+    axes : tuple of str
+        Names of all axes, in the order of set points.
+    assembly : Assembly
+        Parts, for further rows.
+    """
+
+    structure: LinearStructure
+    drives: tuple[Drive, ...]
+    frictions: tuple[Friction, ...]
+    preloads: tuple[ConstantForce, ...]
+    axes: tuple[str, ...]
+    assembly: Assembly
+
+    def without_friction(self) -> Machine:
+        """Same machine without its frictions."""
+        return replace(self, frictions=())
+
+    def axis_row(self, name: str) -> NDArray[np.float64]:
+        """Row of the first controlled drive of an axis times its transmission: travel, m."""
+        for drive in self.drives:
+            if drive.axis == name:
+                return drive.row * drive.controller.measuring.transmission
+        known = ", ".join(f'"{drive.axis}"' for drive in self.drives)
+        raise StructureError(f'axis "{name}" is not under control; there are {known or "none"}')
+
+
+def machine(parts: MachineParts, conditions: Mapping[str, Condition] | None = None) -> Machine:
+    """Assemble a machine.
+
+    Parameters
+    ----------
+    parts : MachineParts
+    conditions : mapping of str to {"control", "brake", "free"}, optional
+        Of axes by name; "control" by default where there is a controller, else "free".
+
+    Returns
+    -------
+    Machine
+
+    Raises
+    ------
+    StructureError
+        If an axis is unknown, asked to be controlled without controller, or the structure makes
+        no sense.
+    """
+    held = _conditions(parts.axes, conditions or {})
+    driven = {axis.name: axis.drive.parts(axis.geometry) for axis in parts.axes}
+    brakes = [
+        Coupling(f"{axis.name}: brake of {motor.name}", motor.angle, *axis.brake)
+        for axis in parts.axes
+        if held[axis.name] == "brake"
+        for motor in driven[axis.name].motors
+    ]
+    moving = sum(condition != "brake" for condition in held.values())
+    whole = assembly(
+        parts.bodies,
+        [*parts.connectors, *(one for drive in driven.values() for one in drive.connectors)],
+        parts.points,
+        parts.beams,
+        parts.allowed_rigid_motions + moving,
+        [rotor for drive in driven.values() for rotor in drive.rotors],
+        [*parts.couplings, *(one for drive in driven.values() for one in drive.couplings), *brakes],
+    )
+    structure = with_modal_damping(whole.structure, parts.damping_ratio)
+    return Machine(
+        structure,
+        tuple(
+            drive
+            for axis in parts.axes
+            if held[axis.name] == "control"
+            for drive in _controlled(axis, driven[axis.name].motors, whole)
+        ),
+        tuple(
+            Friction(one.name, one.law, _friction_row(one, whole, structure))
+            for one in parts.frictions
+        ),
+        tuple(
+            ConstantForce(f"preload of {motor.name}", whole.row(motor.name, motor.angle), preload)
+            for drive in driven.values()
+            for motor in drive.motors
+            if (preload := getattr(motor, "preload", 0.0)) != 0.0
+        ),
+        tuple(axis.name for axis in parts.axes),
+        whole,
+    )
+
+
+def with_modal_damping(structure: LinearStructure, ratio: float) -> LinearStructure:
+    """Structure with a damping ratio of all elastic modes on top of its dampers.
+
+    Raises
+    ------
+    StructureError
+        If the ratio is negative or not finite.
+    """
+    if not (np.isfinite(ratio) and ratio >= 0.0):
+        raise StructureError(f"damping ratio is {ratio}; it must be 0 or more")
+    if ratio == 0.0:
+        return structure
+    modes = undamped_modes(structure)
+    moved = structure.mass @ modes.shapes
+    added = (moved * (4.0 * np.pi * ratio * modes.frequency)) @ moved.T
+    return replace(structure, damping=structure.damping + added)
+
+
+def _conditions(
+    axes: Sequence[MachineAxis], asked: Mapping[str, Condition]
+) -> dict[str, Condition]:
+    known = {axis.name: axis for axis in axes}
+    for name, condition in asked.items():
+        if name not in known:
+            there = ", ".join(f'"{one}"' for one in known)
+            raise StructureError(f'there is no axis "{name}"; there are {there or "none"}')
+        if condition not in CONDITIONS:
+            raise StructureError(f'axis "{name}": {condition!r} is none of {", ".join(CONDITIONS)}')
+        if condition == "control" and not known[name].controllers:
+            raise StructureError(f'axis "{name}" has no controller')
+    return {
+        axis.name: asked.get(axis.name, "control" if axis.controllers else "free") for axis in axes
+    }
+
+
+def _controlled(axis: MachineAxis, motors: Sequence[Motor], whole: Assembly) -> list[Drive]:
+    who = f'axis "{axis.name}"'
+    scale = whole.row(who, axis.geometry.travel(axis.scale_at))
+    rows = [whole.row(who, motor.angle) for motor in motors]
+    if len(axis.controllers) == 1:
+        return [Drive(axis.name, axis.name, sum(rows) / len(rows), scale, axis.controllers[0])]
+    if len(axis.controllers) != len(motors):
+        raise StructureError(
+            f"{who}: {len(axis.controllers)} controllers for {len(motors)} motors; one for all, "
+            "or one each"
+        )
+    return [
+        Drive(motor.name, axis.name, row, scale, controller)
+        for motor, row, controller in zip(motors, rows, axis.controllers, strict=True)
+    ]
+
+
+def _friction_row(one: FrictionAt, whole: Assembly, structure: LinearStructure) -> NDArray:
+    who = f'friction "{one.name}"'
+    if one.mode is None:
+        if not one.terms:
+            raise StructureError(f"{who} resists nothing: it has neither terms nor a mode")
+        return whole.row(who, one.terms)
+    shapes = undamped_modes(structure).shapes
+    if not 0 <= one.mode < shapes.shape[1]:
+        raise StructureError(f"{who}: mode {one.mode} of {shapes.shape[1]}, counted from 0")
+    return structure.mass @ shapes[:, one.mode]

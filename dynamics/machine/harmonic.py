@@ -1,0 +1,136 @@
+"""Harmonic response of a linearised machine, its control loops closed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from dynamics.control import controller_response
+from dynamics.control.sampling import zero_order_hold_response
+from dynamics.friction.laws import FrictionLaw
+from dynamics.machine.description import Friction, Machine
+from dynamics.reduction import undamped_modes
+
+#: dynamic stiffness, N/m, of a friction at frequencies, Hz
+Linearised = Callable[[FrictionLaw, NDArray[np.float64]], NDArray[np.complex128]]
+
+
+def at_rest(law: FrictionLaw, frequency: NDArray[np.float64]) -> NDArray[np.complex128]:
+    """Friction under vanishing motion: its presliding stiffness."""
+    return np.asarray(law.stiffness_at_rest(frequency), dtype=np.complex128)
+
+
+def at_velocity(velocity: float) -> Linearised:
+    """Friction about a steady velocity, m/s (rad/s)."""
+
+    def in_motion(law: FrictionLaw, frequency: NDArray) -> NDArray[np.complex128]:
+        return np.asarray(law.stiffness_in_motion(frequency, velocity), dtype=np.complex128)
+
+    return in_motion
+
+
+def at_amplitude(amplitude: float) -> Linearised:
+    """Friction under harmonic motion of an amplitude, m (rad), about rest."""
+
+    def describing(law: FrictionLaw, frequency: NDArray) -> NDArray[np.complex128]:
+        pairs = [law.describing_function(amplitude, float(line)) for line in frequency]
+        return np.array(
+            [k + 2j * np.pi * f * c for (k, c), f in zip(pairs, frequency, strict=True)]
+        )
+
+    return describing
+
+
+def receptance(
+    machine: Machine,
+    frequency: ArrayLike,
+    ports: NDArray[np.float64],
+    step: float,
+    frictions: Mapping[str, Linearised] | None = None,
+) -> NDArray[np.complex128]:
+    """Receptance between ports with drives under control and frictions linearised.
+
+    Parameters
+    ----------
+    machine : Machine
+    frequency : (m,) array of float
+        Hz, above 0.
+    ports : (p, n) array of float
+        Rows of the structure.
+    step : float
+        Step of the simulation that the controllers are sampled on, s.
+    frictions : mapping of str to callable, optional
+        How each friction is linearised, by its name; those not named are left out.
+
+    Returns
+    -------
+    (m, p, p) array of complex
+        m/N and kin: motion of the first port per force on the second.
+
+    Notes
+    -----
+    The loops are exact for the component at the frequency itself: z-domain controllers, dead
+    times, and the hold of the torque over the step (`controller_response`); images of the
+    sampling are left out, as a real analyser does.
+    """
+    lines = np.atleast_1d(np.asarray(frequency, dtype=np.float64))
+    asked = np.atleast_2d(np.asarray(ports, dtype=np.float64))
+    chosen = [one for one in machine.frictions if frictions and one.name in frictions]
+    drives = machine.drives
+    rows = np.vstack(
+        [
+            asked,
+            *(drive.row for drive in drives),
+            *(drive.scale for drive in drives),
+            *(one.row for one in chosen),
+        ]
+    )
+    free = structure_receptance(machine, lines, rows)
+    count = len(asked)
+    feedback = _feedback(machine, lines, step, chosen, frictions or {})
+    inner = slice(count, None)
+    # u = R f + R_i F u_i: the loops see only their own ports
+    loop = np.eye(feedback.shape[1]) - free[:, inner, inner] @ feedback
+    closed = np.linalg.solve(loop, free[:, inner, :count])
+    return free[:, :count, :count] + free[:, :count, inner] @ feedback @ closed
+
+
+def structure_receptance(
+    machine: Machine, frequency: NDArray[np.float64], rows: NDArray[np.float64]
+) -> NDArray[np.complex128]:
+    """Receptance (m, p, p) of the structure alone, through its undamped modes.
+
+    Damping may couple the modes; it is then solved in full.
+    """
+    modes = undamped_modes(machine.structure)
+    omega = 2.0 * np.pi * modes.frequency
+    seen = rows @ modes.shapes
+    damping = modes.shapes.T @ (machine.structure.damping @ modes.shapes)
+    result = np.empty((len(frequency), len(rows), len(rows)), dtype=np.complex128)
+    for place, line in enumerate(2.0 * np.pi * frequency):
+        dynamic = np.diag(omega**2 - line**2) + 1j * line * damping
+        result[place] = seen @ np.linalg.solve(dynamic, seen.T)
+    return result
+
+
+def _feedback(
+    machine: Machine,
+    lines: NDArray[np.float64],
+    step: float,
+    chosen: list[Friction],
+    frictions: Mapping[str, Linearised],
+) -> NDArray[np.complex128]:
+    """Force on each inner port per motion of each, (m, q, q): drives, scales, frictions."""
+    k = len(machine.drives)
+    size = 2 * k + len(chosen)
+    feedback = np.zeros((lines.size, size, size), dtype=np.complex128)
+    hold = zero_order_hold_response(lines, step)
+    for place, drive in enumerate(machine.drives):
+        answer = controller_response(drive.controller, step, lines)
+        feedback[:, place, place] = hold * answer.per_motor_angle(lines)
+        feedback[:, place, k + place] = hold * answer.x_scale
+    for place, one in enumerate(chosen, start=2 * k):
+        feedback[:, place, place] = -frictions[one.name](one.law, lines)
+    return feedback

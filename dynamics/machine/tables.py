@@ -1,0 +1,120 @@
+"""A machine compiled for the time loop: ports in order, structure, law groups."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.control import control_table
+from dynamics.friction.laws import friction_groups
+from dynamics.machine.description import Machine
+from dynamics.machine.groups import ConstantForces, ControlledDrives
+from dynamics.machine.loop import Loads
+from dynamics.machine.steps import StructureSteps, structure_steps
+from dynamics.structure import StructureError
+from dynamics.trajectory.set_points import SetPoints
+
+
+class MachineTables(NamedTuple):
+    """What the time loop of a machine needs."""
+
+    steps: StructureSteps
+    groups: tuple
+    loads: Loads  # of no rows yet
+    port: dict[str, int]  # of drives, frictions, loads and outputs by name
+
+
+def resting_set_points(axes: int) -> SetPoints:
+    """Set points of axes that stay where they are."""
+    return SetPoints(*(np.zeros((1, max(axes, 1))) for _ in range(3)), 1)
+
+
+def machine_tables(
+    machine: Machine,
+    step: float,
+    points: SetPoints | None = None,
+    loads: Mapping[str, NDArray[np.float64]] | None = None,
+    outputs: Mapping[str, NDArray[np.float64]] | None = None,
+) -> MachineTables:
+    """Compile a machine at rest.
+
+    Parameters
+    ----------
+    machine : Machine
+    step : float
+        s.
+    points : SetPoints, optional
+        One column an axis, in the order of `machine.axes`; rest by default.
+    loads, outputs : mapping of str to (n,) array of float
+        Rows of the structure where forces will act, and that will be read.
+
+    Raises
+    ------
+    StructureError
+        If a name is used twice or the set points have another number of axes.
+    ControlError
+        If a sample time is not a multiple of the step.
+    """
+    points = resting_set_points(len(machine.axes)) if points is None else points
+    if points.position.shape[1] != max(len(machine.axes), 1):
+        raise StructureError(
+            f"set points of {points.position.shape[1]} axes; the machine has {len(machine.axes)}"
+        )
+    rows: dict[str, NDArray[np.float64]] = {}
+    for name, row in _rows(machine, loads or {}, outputs or {}):
+        if name in rows:
+            raise StructureError(f'"{name}" names two places of the machine')
+        rows[name] = row
+    port = {name: place for place, name in enumerate(rows)}
+    matrix = np.array(list(rows.values())).reshape(-1, machine.structure.size)
+    steps = structure_steps(machine.structure, matrix, step)
+    groups: tuple = friction_groups(
+        [one.law for one in machine.frictions], [port[_friction(one)] for one in machine.frictions]
+    )
+    if machine.preloads:
+        places = np.array([port[one.name] for one in machine.preloads], dtype=np.int64)
+        groups = (
+            ConstantForces(places, np.array([one.value for one in machine.preloads])),
+            *groups,
+        )
+    if machine.drives:
+        groups = (_controlled(machine, step, points, port), *groups)
+    chosen = np.array([port[name] for name in loads or {}], dtype=np.int64)
+    return MachineTables(steps, groups, Loads(chosen, np.zeros((1, len(chosen)))), port)
+
+
+def _rows(machine: Machine, loads: Mapping, outputs: Mapping):
+    for drive in machine.drives:
+        yield f"drive {drive.name}", drive.row
+    for one in machine.frictions:
+        yield _friction(one), one.row
+    for one in machine.preloads:
+        yield one.name, one.row
+    yield from loads.items()
+    for drive in machine.drives:
+        yield f"scale {drive.name}", drive.scale
+    for name, row in outputs.items():
+        if name not in loads:
+            yield name, row
+
+
+def _friction(one) -> str:
+    return f"friction {one.name}"
+
+
+def _controlled(
+    machine: Machine, step: float, points: SetPoints, port: Mapping[str, int]
+) -> ControlledDrives:
+    count = len(machine.drives)
+    return ControlledDrives(
+        control_table([drive.controller for drive in machine.drives], step),
+        np.array([port[f"drive {drive.name}"] for drive in machine.drives], dtype=np.int64),
+        np.array([port[f"scale {drive.name}"] for drive in machine.drives], dtype=np.int64),
+        np.array([machine.axes.index(drive.axis) for drive in machine.drives], dtype=np.int64),
+        points,
+        np.zeros((1, count)),
+        np.zeros(count),
+    )
