@@ -22,6 +22,8 @@ _ITERATIONS = 100
 _ROUNDING = 1e-15
 #: tried from the stiffness down; the first fails where a mode turns far within the step
 _SHARES = 4
+#: tries by contraction, and the factor by which each must close in
+_CONTRACTIONS, _CLOSING = 5, 0.1
 
 
 @register_jitable(**INLINED)
@@ -98,6 +100,9 @@ def _way(resist, law, i, sign, h, free, compliance, high, guess):
     A falling force over speed has several roots if the step is coarse; the one that continues
     the motion is taken. 0 is a root also if rest can be held.
     """
+    way = _contracted(resist, law, i, sign, h, free, compliance, high, guess)
+    if way > 0.0:
+        return way
     low, f_low, top, f_top = 0.0, -1.0, high, 1.0
     if guess > 0.0:
         f = guess - free + compliance * resist(law, i, sign, guess, h)
@@ -122,6 +127,25 @@ def _way(resist, law, i, sign, h, free, compliance, high, guess):
         if f_top <= 0.0:
             return high
     return _root(resist, law, i, sign, h, free, compliance, low, f_low, top, f_top)
+
+
+@register_jitable(**INLINED)
+def _contracted(resist, law, i, sign, h, free, compliance, high, guess):
+    """Root by putting the way in again and again, or 0 where that does not close in at once.
+
+    A law much softer than the step's compliance closes in by orders of magnitude each time.
+    """
+    way, last = guess, high
+    for _ in range(_CONTRACTIONS):
+        following = free - compliance * resist(law, i, sign, way, h)
+        change = abs(following - way)
+        if not 0.0 < following <= high or change > _CLOSING * last:
+            break
+        # the next change would be smaller by as much as this one is than the last
+        if change * change <= 2.0 * _ROUNDING * following * last:
+            return following
+        way, last = following, change
+    return 0.0
 
 
 @register_jitable(**INLINED)

@@ -22,6 +22,8 @@ _DEPTH = 64
 _SATURATED = 20.0
 #: below it, three-point Gauss quadrature of tanh is exact to rounding
 _SHORT = 0.02
+#: below it, so is the middle with its second derivative
+_TINY = 3e-4
 _GAUSS = 0.5 * math.sqrt(0.6)
 
 
@@ -52,6 +54,9 @@ def _tanh_over(start, width):
     """Integral of tanh over a width from start >= 0."""
     if start > _SATURATED:
         return width
+    if width < _TINY:
+        middle = math.tanh(start + 0.5 * width)
+        return width * middle * (1.0 - width * width * (1.0 - middle * middle) / 12.0)
     if width < _SHORT:
         middle, off = start + 0.5 * width, _GAUSS * width
         ends = math.tanh(middle - off) + math.tanh(middle + off)
@@ -61,40 +66,60 @@ def _tanh_over(start, width):
 
 
 @register_jitable(**INLINED)
-def branch_mean(law, i, sign, way):
-    """Mean of r along a way >= 0 (m) in a direction, and where it ends.
+def _rise_over(start, width, height):
+    """Integral of height tanh(u), the rise of a branch, over a width from start >= 0."""
+    return height * _tanh_over(start, width)
+
+
+@register_jitable(**INLINED)
+def _lost_over(start, width, height):  # noqa: ARG001
+    """Integral of tanh(u) - u / cosh(u)^2 over a width from start >= 0.
+
+    It is what sliders behind springs dissipate, on every branch (Iwan 1966).
+    """
+    end = start + width
+    lost = 2.0 * _tanh_over(start, width)
+    return lost - (end * math.tanh(end) - start * math.tanh(start))
+
+
+@register_jitable(**INLINED)
+def _nothing(start, width, height):  # noqa: ARG001
+    return 0.0
+
+
+@register_jitable(**INLINED)
+def _along(over, share, law, i, sign, way):
+    """Integral along a way >= 0 (m) in a direction, and where it ends.
+
+    Parameters
+    ----------
+    over : function
+        Integral over a piece of a branch, of start and width in u and the branch's height.
+    share : float
+        Of r where the branch begins that is added.
 
     Returns
     -------
-    mean : float
-        Of r, counted along the direction.
-    lost : float
-        Dissipated energy per sliding force, m: of sliders behind springs it is the integral of
-        tanh(u) - u / cosh(u)^2 on every branch (Iwan 1966).
+    total : float
+        m.
     branch, travel : int, float
         At the end.
     """
     a = law.inclination[i]
     n, u = law.count[i], law.travel[i]
-    start = sign * way_value(law, i)
-    if way <= 0.0:
-        return start, 0.0, n, u
     origin = sign * law.value[i, n - 1] if n > 0 else 0.0
     close = law.length[i, n - 1] if n > 0 else math.inf
     if sign != law.side[i] and (n > 0 or u > 0.0):
-        origin, close, u, n = start, u, 0.0, n + 1
-    total, lost, rest = 0.0, 0.0, way
+        origin, close, u, n = sign * way_value(law, i), u, 0.0, n + 1
+    total, rest = 0.0, way
     while True:
         scale = a if n > 0 else 2.0 * a
         closes = rest * scale > close - u
         # its own number: the end forgets the digits of a short way
         width = close - u if closes else rest * scale
         run = width / scale if closes else rest
-        end = close if closes else u + width
-        grown = _tanh_over(u, width) / scale
-        total += origin * run + 2.0 * grown if n > 0 else grown
-        lost += 2.0 * grown - (end * math.tanh(end) - u * math.tanh(u)) / scale
-        u = end
+        total += share * origin * run + over(u, width, 2.0 if n > 0 else 1.0) / scale
+        u = close if closes else u + width
         if not closes:
             break
         rest -= run
@@ -105,7 +130,23 @@ def branch_mean(law, i, sign, way):
             u = law.length[i, n]
             origin = sign * law.value[i, n - 1] if n > 0 else 0.0
             close = law.length[i, n - 1] if n > 0 else math.inf
-    return total / way, lost, n, u
+    return total, n, u
+
+
+@register_jitable(**INLINED)
+def branch_mean(law, i, sign, way):
+    """Mean of r along a way >= 0 (m) in a direction, counted along it."""
+    if way <= 0.0:
+        return sign * way_value(law, i)
+    total, _, _ = _along(_rise_over, 1.0, law, i, sign, way)
+    return total / way
+
+
+@register_jitable(**INLINED)
+def branch_lost(law, i, sign, way):
+    """Dissipated energy per sliding force, m, along a way > 0 (m) in a direction."""
+    lost, _, _ = _along(_lost_over, 0.0, law, i, sign, way)
+    return lost
 
 
 @register_jitable(**INLINED)
@@ -123,7 +164,7 @@ def take_way(law, i, motion):
         law.count[i] = n + 1
         law.travel[i] = 0.0
     law.side[i] = sign
-    _, _, n, u = branch_mean(law, i, sign, abs(motion))
+    _, n, u = _along(_nothing, 0.0, law, i, sign, abs(motion))
     law.count[i] = n
     law.travel[i] = u
 

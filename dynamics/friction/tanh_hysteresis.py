@@ -32,7 +32,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from dynamics.friction.harmonic import describing_function
 from dynamics.friction.implicit import INLINED, held_force
-from dynamics.friction.reversals import branch_mean, reversal_columns, take_way, way_value
+from dynamics.friction.reversals import (
+    branch_lost,
+    branch_mean,
+    reversal_columns,
+    take_way,
+    way_value,
+)
 
 
 @dataclass(frozen=True)
@@ -137,7 +143,7 @@ def tanh_table(laws: Sequence[TanhHysteresis], ports: Sequence[int]) -> TanhTabl
 
 @register_jitable(**INLINED)
 def _resist(law, i, sign, way, h):
-    mean, _, _, _ = branch_mean(law, i, sign, way)
+    mean = branch_mean(law, i, sign, way)
     speed = way / h
     slow = law.slow_viscous[i] * math.exp(-law.slow_decay[i] * speed)
     return law.coulomb[i] * mean + (law.viscous[i] + slow) * speed * max(mean, 0.0)
@@ -151,8 +157,11 @@ def _rest(law, i):
 @register_jitable(**INLINED)
 def _stored(law, i, motion, h):  # noqa: ARG001
     sign = 1.0 if motion >= 0.0 else -1.0
-    mean, lost, _, _ = branch_mean(law, i, sign, abs(motion))
-    return law.coulomb[i] * (mean * abs(motion) - lost)
+    way = abs(motion)
+    if way == 0.0:
+        return 0.0
+    lost = branch_lost(law, i, sign, way)
+    return law.coulomb[i] * (branch_mean(law, i, sign, way) * way - lost)
 
 
 @register_jitable(**INLINED)

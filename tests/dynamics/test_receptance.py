@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 import scipy.optimize
 
+from dynamics.assembly import assemble
 from dynamics.beam import BeamLine, Material, Segment
-from dynamics.bodies import Connector, Point, assemble
+from dynamics.bodies import Connector, Point
 from dynamics.frf import MeasurementError
 from dynamics.receptance import (
     Component,

@@ -5,8 +5,9 @@ import pytest
 import scipy.linalg
 import scipy.sparse
 
+from dynamics.assembly import assemble
 from dynamics.beam import BeamLine, Bearing, Material, Segment
-from dynamics.bodies import Point, assemble
+from dynamics.bodies import Point
 from dynamics.receptance import PointPort, receptance_with_residual, residual_compliance
 from dynamics.reduction import damping_ratios, state_space, truncated, undamped_modes
 from dynamics.structure import LinearStructure, StructureError
