@@ -69,12 +69,14 @@ class DrivenAxis:
 class Motor(NamedTuple):
     """Motor of a drive: its torque acts along `angle`, which its encoder measures too.
 
-    A linear motor has force and displacement instead, and transmission 1.
+    The angle is counted so that the axis travels forward with it. A linear motor has force and
+    displacement instead, and transmission 1; a rotary axis has travel in rad.
     """
 
     name: str
     angle: tuple[Term, ...]  # of the rotor against its housing, rad
     transmission: float  # travel of the axis per angle, m/rad
+    preload: float = 0.0  # torque that it gives besides its controller's, N m
 
 
 class DriveParts(NamedTuple):

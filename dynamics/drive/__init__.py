@@ -1,0 +1,49 @@
+"""Feed drives: what turns a motor's torque into force on an axis, and what gives way in between.
+
+=============== ====================================================================
+module          responsibility
+=============== ====================================================================
+parts           where an axis is driven, and a drive as rotors, springs and motors
+gear_train      rotors in a row tied by springs, all scaled to travel of the axis
+belt            toothed belt with its pulleys
+screw_shaft     axial and torsional stiffness of a screw where the nut is
+ball_screw      ball screw as a rotor, with bearings, shaft and nut in a row
+screw_on_beam   ball screw as a beam, with the stiffness between screw and nut
+rack_and_pinion rack and pinion with gearboxes, several motors, preload
+linear_motor    linear motors, single or sharing a force
+rotary          spindles and rotary tables
+checks          refusals of numbers out of range
+=============== ====================================================================
+
+Each drive is a specification whose `parts(axis)` are joined with the machine by
+`dynamics.assembly.assembly`; the motors' angles become rows that torques act along. Each axis
+keeps one free motion, which its controller or brake holds. `dynamics.control` has the controllers
+and how torque follows current.
+"""
+
+from dynamics.drive.ball_screw import BallScrew
+from dynamics.drive.belt import Belt
+from dynamics.drive.linear_motor import LinearMotor
+from dynamics.drive.parts import DrivenAxis, DriveParts, Motor
+from dynamics.drive.rack_and_pinion import RackAndPinion, RackMotor
+from dynamics.drive.rotary import DirectRotary, SpindleRotor
+from dynamics.drive.screw_on_beam import ScrewOnBeam
+from dynamics.drive.screw_shaft import ScrewShaft
+
+Drive = BallScrew | ScrewOnBeam | RackAndPinion | LinearMotor | DirectRotary | SpindleRotor
+
+__all__ = [
+    "BallScrew",
+    "Belt",
+    "DirectRotary",
+    "Drive",
+    "DriveParts",
+    "DrivenAxis",
+    "LinearMotor",
+    "Motor",
+    "RackAndPinion",
+    "RackMotor",
+    "ScrewOnBeam",
+    "ScrewShaft",
+    "SpindleRotor",
+]

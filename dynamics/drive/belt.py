@@ -1,0 +1,101 @@
+"""Toothed belt between a motor and what it drives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.beam_element import positive
+from dynamics.drive.checks import require_not_negative, require_stiffness
+from dynamics.drive.gear_train import Spring, Stage
+
+
+@dataclass(frozen=True)
+class Belt:
+    """Belt and its two pulleys, on parallel axes in one housing.
+
+    Parameters
+    ----------
+    driver_radius, driven_radius : float
+        Pitch radii of the pulleys at the motor and behind it, m.
+    stiffness : float
+        Of both strands together, N/m along the belt: 2 E A/L of tensioned strands of length L.
+    damping : float
+        N s/m along the belt.
+    driver_inertia, driven_inertia : float
+        Moments of inertia of the pulleys, kg m^2; 0 where a pulley sits rigidly on a beam or body
+        that has it.
+
+    Raises
+    ------
+    StructureError
+        If a radius or the stiffness is not above 0, or a value negative.
+    """
+
+    driver_radius: float
+    driven_radius: float
+    stiffness: float
+    damping: float = 0.0
+    driver_inertia: float = 0.0
+    driven_inertia: float = 0.0
+
+    def __post_init__(self) -> None:
+        positive("belt", "driver_radius", self.driver_radius)
+        positive("belt", "driven_radius", self.driven_radius)
+        require_stiffness("belt", stiffness=self.stiffness)
+        require_not_negative(
+            "belt",
+            damping=self.damping,
+            driver_inertia=self.driver_inertia,
+            driven_inertia=self.driven_inertia,
+        )
+
+    @classmethod
+    def from_teeth(
+        cls, driver_teeth: int, driven_teeth: int, pitch: float, stiffness: float, **further: float
+    ) -> Belt:
+        """Belt on pulleys of so many teeth, with the pitch of the teeth in m."""
+        around = pitch / (2.0 * np.pi)
+        return cls(driver_teeth * around, driven_teeth * around, stiffness, **further)
+
+    @property
+    def ratio(self) -> float:
+        """Angle of the driven over angle of the driving pulley."""
+        return self.driver_radius / self.driven_radius
+
+    def spring(self, name: str, travel: float) -> Spring:
+        """The belt's strands, seen from an axis of so much travel per angle of the driven pulley.
+
+        Parameters
+        ----------
+        name : str
+        travel : float
+            m/rad.
+        """
+        stretch = self.driven_radius / travel
+        return Spring(name, self.stiffness * stretch**2, self.damping * stretch**2)
+
+
+def belt_stages(
+    prefix: str, motor_inertia: float, belt: Belt, travel: float, behind: Spring
+) -> list[Stage]:
+    """Motor and driven pulley, with what lies behind the pulley.
+
+    Parameters
+    ----------
+    prefix : str
+        Of the names.
+    motor_inertia : float
+        kg m^2.
+    belt : Belt
+    travel : float
+        Of the axis per angle of the driven pulley, m/rad.
+    behind : Spring
+    """
+    strands = belt.spring(f"{prefix}belt", travel)
+    inertia = motor_inertia + belt.driver_inertia
+    return [
+        Stage(f"{prefix}motor", inertia, travel * belt.ratio, strands),
+        Stage(f"{prefix}pulley", belt.driven_inertia, travel, behind),
+    ]
