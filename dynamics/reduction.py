@@ -24,6 +24,10 @@ from dynamics.structure import LinearStructure, StructureError
 ROUNDING = 1e3 * np.finfo(np.float64).eps
 
 
+#: part of a static shape's inertia below which the modes hold it already
+_NOTHING_NEW = 1e-8
+
+
 class Modes(NamedTuple):
     """Undamped modes; rigid-body modes have frequency 0 and come first."""
 
@@ -199,6 +203,52 @@ def truncated(
     return LinearStructure(
         np.eye(omega.size), 0.5 * (over + over.T), np.diag(omega**2), points, residual
     )
+
+
+def with_static_shapes(
+    structure: LinearStructure, modes: Modes, rows: NDArray[np.float64]
+) -> tuple[LinearStructure, NDArray[np.float64]]:
+    """Structure in coordinates of modes and of the static shapes that complete them.
+
+    Modal truncation vectors (Dickens, Nakagawa and Wittbrodt 1997, Computers & Structures 62):
+    the static answer to loads along the rows is that of the full structure, in time as in
+    frequency, and the frequencies of the modes stay as they are.
+
+    Parameters
+    ----------
+    structure : LinearStructure
+    modes : Modes
+        From `undamped_modes`; all rigid-body modes must be among them.
+    rows : (p, n) array of float
+        Loads whose static answer is kept, as ports of the structure.
+
+    Returns
+    -------
+    LinearStructure
+        Dense, without residuals.
+    basis : (n, m + static) array of float
+        Motion of the structure per coordinate; rows of ports times it are the new ports.
+    """
+    rigid = modes.shapes[:, modes.frequency == 0.0]
+    static = _elastic_answer(structure, rigid, np.asarray(rows, dtype=np.float64).T)
+    whole = np.sqrt(np.einsum("np,np->p", static, structure.mass @ static))
+    static = static[:, whole > 0.0] / whole[whole > 0.0]
+    for _ in range(2):  # once more for the digits that cancelled
+        static = static - modes.shapes @ (modes.shapes.T @ (structure.mass @ static))
+    squared, turned = np.linalg.eigh(static.T @ (structure.mass @ static))
+    new = squared > _NOTHING_NEW
+    basis = np.hstack([modes.shapes, static @ (turned[:, new] / np.sqrt(squared[new]))])
+    mass, damping, stiffness = (
+        basis.T @ (part @ basis)
+        for part in (structure.mass, structure.damping, structure.stiffness)
+    )
+    points = {name: motion @ basis for name, motion in structure.points.items()}
+    size = modes.frequency.size
+    # what the modes make diagonal is so to the last digit
+    mass[:size, :size] = np.eye(size)
+    stiffness[:size, :size] = np.diag((2.0 * np.pi * modes.frequency) ** 2)
+    symmetric = (0.5 * (part + part.T) for part in (mass, damping, stiffness))
+    return LinearStructure(*symmetric, points), basis
 
 
 def _ratios(damping: ArrayLike, count: int) -> NDArray[np.float64]:

@@ -15,7 +15,7 @@ from dynamics.control import DriveController
 from dynamics.coupling import Coupling, Term
 from dynamics.drive.parts import DrivenAxis, DriveParts, Motor
 from dynamics.friction.laws import FrictionLaw
-from dynamics.reduction import undamped_modes
+from dynamics.reduction import undamped_modes, with_static_shapes
 from dynamics.structure import LinearStructure, StructureError
 
 #: what holds an axis: its controller, its brake, or nothing
@@ -94,6 +94,11 @@ class MachineParts:
         Of every elastic mode, on top of the dampers; 1.
     allowed_rigid_motions : int
         Free motions that are meant, besides those of free or controlled axes.
+    highest_frequency : float, optional
+        Hz: modes above it are left out, and their static answer kept at drives, frictions and
+        `kept_points`.
+    kept_points : sequence of str
+        Points whose static answer is kept; all by default.
     """
 
     bodies: Sequence[Part]
@@ -105,6 +110,8 @@ class MachineParts:
     frictions: Sequence[FrictionAt] = ()
     damping_ratio: float = 0.0
     allowed_rigid_motions: int = 0
+    highest_frequency: float | None = None
+    kept_points: Sequence[str] | None = None
 
 
 class Drive(NamedTuple):
@@ -148,6 +155,8 @@ class Machine:
         Names of all axes, in the order of set points.
     assembly : Assembly
         Parts, for further rows.
+    basis : (full, n) array of float, optional
+        Motion of the assembly's freedoms per coordinate, where it was reduced.
     """
 
     structure: LinearStructure
@@ -156,6 +165,12 @@ class Machine:
     preloads: tuple[ConstantForce, ...]
     axes: tuple[str, ...]
     assembly: Assembly
+    basis: NDArray[np.float64] | None = None
+
+    def row(self, who: str, terms: Sequence[Term]) -> NDArray[np.float64]:
+        """Row (n,) of the sum of motions of parts, as a port of the structure."""
+        row = self.assembly.row(who, terms)
+        return row if self.basis is None else row @ self.basis
 
     def without_friction(self) -> Machine:
         """Same machine without its frictions."""
@@ -208,7 +223,7 @@ def machine(parts: MachineParts, conditions: Mapping[str, Condition] | None = No
         [*parts.couplings, *(one for drive in driven.values() for one in drive.couplings), *brakes],
     )
     structure = with_modal_damping(whole.structure, parts.damping_ratio)
-    return Machine(
+    full = Machine(
         structure,
         tuple(
             drive
@@ -228,6 +243,39 @@ def machine(parts: MachineParts, conditions: Mapping[str, Condition] | None = No
         ),
         tuple(axis.name for axis in parts.axes),
         whole,
+    )
+    if parts.highest_frequency is None:
+        return full
+    return reduced(full, parts.highest_frequency, parts.kept_points)
+
+
+def reduced(full: Machine, highest: float, kept_points: Sequence[str] | None = None) -> Machine:
+    """Machine of the modes up to a frequency, with the static answer of the others.
+
+    Parameters
+    ----------
+    full : Machine
+    highest : float
+        Hz.
+    kept_points : sequence of str, optional
+        Points whose static answer to forces is kept, besides that of drives and frictions; all
+        by default.
+    """
+    structure = full.structure
+    names = structure.points if kept_points is None else kept_points
+    forces = [structure.port(name, way) for name in names for way in np.eye(3)]
+    places = [*full.drives, *full.frictions, *full.preloads]
+    loads = np.array([*(one.row for one in places), *forces]).reshape(-1, structure.size)
+    compact, basis = with_static_shapes(structure, undamped_modes(structure, highest), loads)
+    return replace(
+        full,
+        structure=compact,
+        drives=tuple(
+            one._replace(row=one.row @ basis, scale=one.scale @ basis) for one in full.drives
+        ),
+        frictions=tuple(one._replace(row=one.row @ basis) for one in full.frictions),
+        preloads=tuple(one._replace(row=one.row @ basis) for one in full.preloads),
+        basis=basis,
     )
 
 
