@@ -60,3 +60,10 @@ def run(groups, steps, loads, record, first, furthest):
             if not abs(steps.u[p]) <= furthest:
                 return i + 1
     return count
+
+
+@njit(**DRIVER, _nrt=False)
+def advance(groups, steps, loads, first, count):
+    """Run a machine over steps from a number on, without record; row 0 of loads and injection."""
+    for i in range(count):
+        machine_step(groups, steps, loads, first + i, 0)

@@ -63,7 +63,8 @@ def passages(angle: ArrayLike, at: float) -> NDArray[np.int64]:
         found = np.concatenate([[0], found])
     if found.size == 0:
         raise ExcitationError(
-            f"spindle angle: from {running[0]:g} to {running[-1]:g} rad it never comes to {at:g} rad"
+            f"spindle angle: it runs from {running[0]:g} to {running[-1]:g} rad and never comes to "
+            f"{at:g} rad"
         )
     return found.astype(np.int64)
 
@@ -105,4 +106,9 @@ def angle_triggered_pulses(
     samples = np.size(angle)
     starts = passages(angle, at)[::revolutions]
     starts = starts[starts + len(pulse) <= samples]
+    if starts.size == 0:
+        raise ExcitationError(
+            f"angle-triggered pulses: the spindle comes to {at:g} rad too late for a pulse of "
+            f"{len(pulse)} samples to end within {samples}"
+        )
     return pulses_at(starts, [pulse] * starts.size, samples, step)

@@ -3,7 +3,7 @@
 The ratio of the transforms of samples is not the FRF G of the structure. An input rebuilt from its
 samples holds, beside each line, its images at every multiple of the sampling frequency, each
 weighted by the hold H; sampling the response folds them back onto the line (K. J. Astrom and
-B. Wittenmark, 1997, Computer-Controlled Systems, 3rd ed., section 7.7):
+B. Wittenmark, 1997, Computer-Controlled Systems, 3rd ed., chapter 7):
 
     G_sampled(s) = sum over m of H(s_m) G(s_m),  s_m = s + 2 pi i m / T
 

@@ -41,7 +41,7 @@ def schroeder_phases(lines: NDArray[np.int64]) -> NDArray[np.float64]:
 
     Meant for lines at even distances. Source: M. R. Schroeder, 1970, "Synthesis of low-peak-factor
     signals and binary sequences with low autocorrelation", IEEE Transactions on Information
-    Theory 16, equation 11 with a flat spectrum.
+    Theory 16, for a flat spectrum.
     """
     number = np.arange(1, lines.size + 1)
     return -np.pi * number * (number - 1.0) / lines.size

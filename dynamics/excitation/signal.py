@@ -168,7 +168,7 @@ def whole_steps(what: str, key: str, time: float, step: float) -> int:
 
 
 def require_band(what: str, lowest: float, highest: float, step: float) -> None:
-    """Raise ExcitationError unless 0 < lowest < highest < half the sampling frequency, all in Hz."""
+    """Raise ExcitationError unless a band, Hz, lies above 0 and below half the sampling rate."""
     require_positive(what, "lowest frequency", lowest)
     require_positive(what, "step", step)
     if not lowest < highest < 0.5 / step:
