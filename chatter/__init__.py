@@ -19,6 +19,9 @@ lobe_diagram       `lobes`: limits over speed, pockets, files
 stability_check    `check`: verdict on the operating point
 simulation         `simulate`: the cut in the time domain
 judgement          chatter or not, from the signals of a cut
+machine_file       the machine file: bodies, drives, friction, control -> a machine
+virtual_machine    `frf`, `move`: virtual tests of a machine
+findings           table of published against obtained
 modal_test         `modes`: measured FRFs or hammer records to modal parameters
 result_files       files that results write
 example_cases      `examples`: list, copy and run the shipped examples
@@ -40,10 +43,13 @@ if TYPE_CHECKING:
     from chatter.errors import RunError as RunError
     from chatter.example_cases import examples as examples
     from chatter.lobe_diagram import lobes as lobes
+    from chatter.machine_file import load_machine as load_machine
     from chatter.modal_test import modes as modes
     from chatter.simulation.bifurcation import bifurcation as bifurcation
     from chatter.simulation.simulate import simulate as simulate
     from chatter.stability_check import check as check
+    from chatter.virtual_machine.from_file import frf as frf
+    from chatter.virtual_machine.from_file import move as move
 
 __version__ = "0.1.0"
 
@@ -55,9 +61,12 @@ _PUBLIC = {
     "bifurcation": "chatter.simulation.bifurcation",
     "check": "chatter.stability_check",
     "examples": "chatter.example_cases",
+    "frf": "chatter.virtual_machine.from_file",
     "load": "chatter.case",
+    "load_machine": "chatter.machine_file",
     "lobes": "chatter.lobe_diagram",
     "modes": "chatter.modal_test",
+    "move": "chatter.virtual_machine.from_file",
     "schema": "chatter.case",
     "simulate": "chatter.simulation.simulate",
 }

@@ -42,8 +42,24 @@ class Dimension:
     example: str
 
 
-#: every dimension that keys of a case have
+#: every dimension that keys of a case or machine have; the later ones are named first
 DIMENSIONS: dict[str, Dimension] = {
+    "moment_of_inertia": Dimension("a moment of inertia", "kg*m^2", "0.01 kg*m^2"),
+    "density": Dimension("a density", "kg/m^3", "7850 kg/m^3"),
+    "gain": Dimension("a gain", "1/s", "50 1/s"),
+    "rotational_stiffness": Dimension("a rotational stiffness", "N*m/rad", "1e6 N*m/rad"),
+    "rotational_damping": Dimension("a rotational damping", "N*m*s/rad", "15 N*m*s/rad"),
+    "inverse_length": Dimension("an inverse of a length", "1/m", "11500 1/m"),
+    "inverse_angle": Dimension("an inverse of an angle", "1/rad", "40 1/rad"),
+    "inverse_velocity": Dimension("an inverse of a velocity", "s/m", "20 s/m"),
+    "inverse_angular_speed": Dimension("an inverse of an angular speed", "s/rad", "0.5 s/rad"),
+    "resistance": Dimension("a resistance", "ohm", "0.5 ohm"),
+    "inductance": Dimension("an inductance", "H", "5 mH"),
+    "voltage": Dimension("a voltage", "V", "400 V"),
+    "torque_constant": Dimension("a torque constant", "N*m/A", "1.5 N*m/A"),
+    "force_constant": Dimension("a force constant", "N/A", "80 N/A"),
+    "back_emf": Dimension("a voltage per angular speed", "V*s/rad", "0.9 V*s/rad"),
+    "linear_back_emf": Dimension("a voltage per velocity", "V*s/m", "60 V*s/m"),
     "length": Dimension("a length", "m", "2 mm"),
     "angle": Dimension("an angle", "rad", "30 deg"),
     "angular_speed": Dimension("a spindle speed", "rad/s", "12000 rpm"),
@@ -56,6 +72,8 @@ DIMENSIONS: dict[str, Dimension] = {
     "force": Dimension("a force", "N", "80 N"),
     "torque": Dimension("a torque", "N*m", "2 N*m"),
     "time": Dimension("a time", "s", "0.5 s"),
+    "acceleration": Dimension("an acceleration", "m/s^2", "5 m/s^2"),
+    "jerk": Dimension("a jerk", "m/s^3", "500 m/s^3"),
     "velocity": Dimension("a velocity", "m/s", "420 mm/min"),
     "pressure_gradient": Dimension("a force per volume", "N/m^3", "4e13 N/m^3"),
     "drag": Dimension("a quadratic drag coefficient", "N*s^2/m^2", "300 N*s^2/m^2"),
@@ -67,15 +85,13 @@ _FOREIGN = {
     "m^2": "an area",
     "m^3": "a volume",
     "m/s^2": "an acceleration",
-    "kg/m^3": "a density",
-    "kg*m^2": "a moment of inertia",
     "m/N": "a compliance",
     "W": "a power",
     "K": "a temperature",
-    "V": "a voltage",
     "A": "a current",
 }
 _CYCLIC = ("angular_speed", "frequency")
+_NEEDS_ANGLE = ("angle", "inverse_angle")
 #: pint's names of units of angle, apart from prefixes
 _ANGLE_UNITS = ("radian", "degree", "turn", "revolution", "grade", "arcminute", "arcsecond")
 _NUMBER_UNITS = {"%": 0.01, "percent": 0.01, "ppm": 1e-6, "dimensionless": 1.0}
@@ -148,9 +164,11 @@ def unit_factor(unit: str, dimension: str) -> float:
             return _NUMBER_UNITS[unit]
         raise QuantityError(f"has the unit {shown(unit)}; {_wanted(dimension)}")
     expected = registry().Unit(DIMENSIONS[dimension].unit)
-    no_angle = dimension == "angle" and not _is_angle(parsed)
+    no_angle = dimension in _NEEDS_ANGLE and not _is_angle(parsed)
     if one.dimensionality != expected.dimensionality or no_angle:
         raise QuantityError(f"is {_name_of(one, parsed)}; {_wanted(dimension)}")
+    if _is_angle(parsed) and not _may_have_angle(dimension):
+        raise QuantityError(f"is per angle or turn; {_wanted(dimension)}")
     if dimension in _CYCLIC:
         turns_per_second = _turns_per_second(one, parsed)
         return turns_per_second * (2.0 * math.pi if dimension == "angular_speed" else 1.0)
@@ -177,6 +195,10 @@ def _parsed_unit(unit: str, dimension: str) -> tuple[Any, Any]:
 
 def _is_angle(unit: Any) -> bool:
     return any(part in name for name in unit._units for part in _ANGLE_UNITS)
+
+
+def _may_have_angle(dimension: str) -> bool:
+    return dimension in (*_CYCLIC, "angle", "gain") or "rad" in DIMENSIONS[dimension].unit
 
 
 def _turns_per_second(one: Any, unit: Any) -> float:

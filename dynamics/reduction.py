@@ -238,14 +238,14 @@ def with_static_shapes(
     squared, turned = np.linalg.eigh(static.T @ (structure.mass @ static))
     new = squared > _NOTHING_NEW
     basis = np.hstack([modes.shapes, static @ (turned[:, new] / np.sqrt(squared[new]))])
-    mass, damping, stiffness = (
-        basis.T @ (part @ basis)
-        for part in (structure.mass, structure.damping, structure.stiffness)
+    damping, stiffness = (
+        basis.T @ (part @ basis) for part in (structure.damping, structure.stiffness)
     )
     points = {name: motion @ basis for name, motion in structure.points.items()}
     size = modes.frequency.size
     # what the modes make diagonal is so to the last digit
-    mass[:size, :size] = np.eye(size)
+    mass = np.eye(basis.shape[1])
+    stiffness[:size, :] = stiffness[:, :size] = 0.0
     stiffness[:size, :size] = np.diag((2.0 * np.pi * modes.frequency) ** 2)
     symmetric = (0.5 * (part + part.T) for part in (mass, damping, stiffness))
     return LinearStructure(*symmetric, points), basis

@@ -3,7 +3,8 @@
 =========== ========================================================================
 module      responsibility
 =========== ========================================================================
-case        Case: reading, patching, writing back
+case        Case: what a case file says
+description reading, patching, writing back; shared with the machine file
 tool        [tool]
 material    [material]
 cut         [cut]

@@ -1,4 +1,4 @@
-"""The TOML document behind a case: reading text, values for it, file names in it."""
+"""The TOML document behind a case or machine: reading text, values for it, file names in it."""
 
 from __future__ import annotations
 
@@ -25,11 +25,18 @@ _PLAIN_WORDS = {
 }
 
 
-def read_text(path: Path) -> str:
-    """Read a case file as text; raise InputError saying why that cannot be done."""
+def read_text(path: Path, noun: str = "case") -> str:
+    """Read a file as text; raise InputError saying why that cannot be done.
+
+    Parameters
+    ----------
+    path : Path
+    noun : str
+        What the file describes, for messages.
+    """
     try:
         if path.is_dir():
-            raise InputError(f"{path}: is a folder; a case file is wanted")
+            raise InputError(f"{path}: is a folder; a {noun} file is wanted")
         with path.open("rb") as file:
             # a size is no use: pipes and devices have none
             raw = file.read(_LARGEST_FILE + 1)
@@ -40,17 +47,19 @@ def read_text(path: Path) -> str:
     except ValueError:
         raise InputError(f"{shown(str(path))}: is no name of a file") from None
     if b"\0" in raw:
-        raise InputError(f"{path}: is a binary file; a case file is TOML text")
+        raise InputError(f"{path}: is a binary file; a {noun} file is TOML text")
     if len(raw) > _LARGEST_FILE:
-        raise InputError(f"{path}: has more than {_LARGEST_FILE} bytes; no case file is that large")
+        raise InputError(
+            f"{path}: has more than {_LARGEST_FILE} bytes; no {noun} file is that large"
+        )
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError(
-            f"{path}: is not UTF-8 text (byte {error.start}); a case file is TOML text in UTF-8"
+            f"{path}: is not UTF-8 text (byte {error.start}); a {noun} file is TOML text in UTF-8"
         ) from None
     if not text.strip():
-        raise InputError(f"{path}: is empty; a case file is TOML text")
+        raise InputError(f"{path}: is empty; a {noun} file is TOML text")
     return text
 
 
@@ -77,7 +86,7 @@ def _reason(error: Exception) -> str:
     return text
 
 
-def plain(value: Any, steps: tuple[Step, ...] = ()) -> Any:
+def plain(value: Any, steps: tuple[Step, ...] = (), noun: str = "case") -> Any:
     """Return a value of Python as one of TOML; None stands for a key that is not there.
 
     Parameters
@@ -85,6 +94,8 @@ def plain(value: Any, steps: tuple[Step, ...] = ()) -> Any:
     value : object
     steps : tuple
         Its place, for messages.
+    noun : str
+        What the document describes, for messages.
 
     Raises
     ------
@@ -97,13 +108,13 @@ def plain(value: Any, steps: tuple[Step, ...] = ()) -> Any:
     if isinstance(value, Path):
         return value.as_posix()
     if isinstance(value, Mapping):
-        given = {str(key): plain(entry, (*steps, str(key))) for key, entry in value.items()}
+        given = {str(key): plain(each, (*steps, str(key)), noun) for key, each in value.items()}
         return {key: entry for key, entry in given.items() if entry is not None}
     if isinstance(value, (list, tuple)):
-        return [plain(entry, (*steps, place)) for place, entry in enumerate(value)]
+        return [plain(entry, (*steps, place), noun) for place, entry in enumerate(value)]
     known = value is None or isinstance(value, (bool, int, float, str, date, time))
     if not known or (isinstance(value, int) and abs(value) > _LARGEST_INTEGER):
-        raise InputError(f"{join_path(steps)}: {shown(value)} is no value of a case file")
+        raise InputError(f"{join_path(steps)}: {shown(value)} is no value of a {noun} file")
     return value
 
 
@@ -118,16 +129,21 @@ def value_at(document: Any, steps: tuple[Step, ...]) -> Any:
     return item
 
 
+def moved_reference(name: str, old: Path, new: Path) -> str:
+    """Return a file name relative to one folder so that it holds in another."""
+    if Path(name).is_absolute():
+        return name
+    return Path(os.path.relpath(old.resolve() / name, new.resolve())).as_posix()
+
+
 def move_references(document: Any, old: Path, new: Path) -> None:
-    """Rewrite file names relative to one folder so that they hold in another."""
+    """Rewrite file names of a case relative to one folder so that they hold in another."""
     structure = document.get("structure")
     if not isinstance(structure, dict):
         return
 
     def moved(name: str) -> str:
-        if Path(name).is_absolute():
-            return name
-        return Path(os.path.relpath(old.resolve() / name, new.resolve())).as_posix()
+        return moved_reference(name, old, new)
 
     frf = structure.get("frf")
     if isinstance(frf, str):

@@ -2,23 +2,32 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import tomlkit
 
 from chatter.case.path import Step, join_path
 from chatter.errors import InputError
 
-#: giving one of these keys takes the other away
-_ALTERNATIVES = {
-    "mass": "stiffness",
-    "stiffness": "mass",
-    "duration": "revolutions",
-    "revolutions": "duration",
-}
+
+class Layout(NamedTuple):
+    """How a kind of file is written.
+
+    Parameters
+    ----------
+    headed : frozenset of tuple of str
+        Paths of tables, below the first level, that have a header of their own; ``"*"`` stands
+        for any name. Other tables are written in one line.
+    alternatives : mapping of str to str
+        Giving one of these keys takes the other away.
+    """
+
+    headed: frozenset[tuple[str, ...]]
+    alternatives: Mapping[str, str]
 
 
-def set_value(document: Any, steps: tuple[Step, ...], value: Any) -> None:
+def set_value(document: Any, steps: tuple[Step, ...], value: Any, layout: Layout) -> None:
     """Set, or with None remove, the value at a path; ``"*"`` stands for every place of a list.
 
     Tables on the way that are not there are made, and a table set one place past the end of a
@@ -32,16 +41,20 @@ def set_value(document: Any, steps: tuple[Step, ...], value: Any) -> None:
     containers = [document]
     for place in range(len(steps) - 1):
         containers = [
-            inner for item in containers for inner in _enter(item, steps, place, value is None)
+            inner
+            for item in containers
+            for inner in _enter(item, steps, place, value is None, layout)
         ]
     for item in containers:
         if isinstance(steps[-1], str) and steps[-1] != "*":
-            _assign_key(item, steps, value)
+            _assign_key(item, steps, value, layout)
         else:
             _assign_places(item, steps, value)
 
 
-def _enter(item: Any, steps: tuple[Step, ...], place: int, removing: bool) -> list[Any]:
+def _enter(
+    item: Any, steps: tuple[Step, ...], place: int, removing: bool, layout: Layout
+) -> list[Any]:
     """Return what the step at a place leads to, made if it is not there and not to be removed."""
     step = steps[place]
     if isinstance(step, int) or step == "*":
@@ -51,19 +64,24 @@ def _enter(item: Any, steps: tuple[Step, ...], place: int, removing: bool) -> li
     if step not in item:
         if removing:
             return []
-        item[step] = _empty(steps, place)
+        item[step] = _empty(steps, place, layout)
     return [item[step]]
 
 
-def _empty(steps: tuple[Step, ...], place: int) -> Any:
+def _empty(steps: tuple[Step, ...], place: int, layout: Layout) -> Any:
     if isinstance(steps[place + 1], int) or steps[place + 1] == "*":
         return tomlkit.aot()
-    return tomlkit.table() if _is_section(steps[: place + 1]) else tomlkit.inline_table()
+    headed = _is_headed(steps[: place + 1], layout)
+    return tomlkit.table() if headed else tomlkit.inline_table()
 
 
-def _is_section(steps: tuple[Step, ...]) -> bool:
+def _is_headed(steps: tuple[Step, ...], layout: Layout) -> bool:
     """Whether a table at a path has a header of its own; other tables are written in one line."""
-    return len(steps) == 1 or (len(steps) == 2 and steps[0] == "friction")
+    return len(steps) == 1 or any(
+        len(steps) == len(path)
+        and all(key in ("*", step) for key, step in zip(path, steps, strict=True))
+        for path in layout.headed
+    )
 
 
 def _places(item: Any, steps: tuple[Step, ...], place: int) -> range:
@@ -82,16 +100,17 @@ def _places(item: Any, steps: tuple[Step, ...], place: int) -> range:
     return range(step, step + 1)
 
 
-def _assign_key(item: Any, steps: tuple[Step, ...], value: Any) -> None:
+def _assign_key(item: Any, steps: tuple[Step, ...], value: Any, layout: Layout) -> None:
     if not isinstance(item, dict):
         raise InputError(f"{join_path(steps)}: {join_path(steps[:-1])} is no table")
     key = steps[-1]
     if value is None:
         item.pop(key, None)
         return
-    if key in _ALTERNATIVES:
-        item.pop(_ALTERNATIVES[key], None)
-    item[key] = _inline(value) if isinstance(value, dict) and not _is_section(steps) else value
+    if key in layout.alternatives:
+        item.pop(layout.alternatives[key], None)
+    in_one_line = isinstance(value, dict) and not _is_headed(steps, layout)
+    item[key] = _inline(value) if in_one_line else value
 
 
 def _assign_places(item: Any, steps: tuple[Step, ...], value: Any) -> None:

@@ -19,8 +19,14 @@ Step = str | int
 _STEP = re.compile(r"\.?([A-Za-z_][\w-]*)|\[(\d+|\*)\]|\.(\d+|\*)(?=[.\[]|$)")
 
 
-def parse_path(text: str) -> tuple[Step, ...]:
+def parse_path(text: str, into: str = "a case, such as cut.axial_depth") -> tuple[Step, ...]:
     """Split a dotted path into its steps.
+
+    Parameters
+    ----------
+    text : str
+    into : str
+        What it leads into, for messages.
 
     Raises
     ------
@@ -28,7 +34,7 @@ def parse_path(text: str) -> tuple[Step, ...]:
         If it is no path.
     """
     if not isinstance(text, str):
-        raise InputError(f"{shown(text)} is no path into a case, such as cut.axial_depth")
+        raise InputError(f"{shown(text)} is no path into {into}")
     steps: list[Step] = []
     position = 0
     while position < len(text):
@@ -40,7 +46,7 @@ def parse_path(text: str) -> tuple[Step, ...]:
         steps.append(key if key else "*" if place == "*" else int(place))
         position = match.end()
     if not steps or position < len(text) or not isinstance(steps[0], str):
-        raise InputError(f"{shown(text)} is no path into a case, such as cut.axial_depth")
+        raise InputError(f"{shown(text)} is no path into {into}")
     return tuple(steps)
 
 

@@ -45,6 +45,10 @@ class QuantityField:
                 )
         return value
 
+    def alike(self, text: str) -> QuantityField:  # noqa: ARG002
+        """Field for another value of the same dimension as a text."""
+        return self
+
     @property
     def noun(self) -> str:
         """What is wanted, with its article."""
@@ -105,6 +109,99 @@ def quantity(dimension: str, **bounds: float) -> Any:
     """
     field = QuantityField(dimension, **bounds)
     return Annotated[float, BeforeValidator(field.read), WithJsonSchema(field.json_schema()), field]
+
+
+@dataclass(frozen=True)
+class EitherQuantityField(QuantityField):
+    """Field of one of several dimensions, as along a travel or about an axis.
+
+    Which one it must be follows from another key; `dimension` is the first of them.
+    """
+
+    others: tuple[str, ...] = ()
+
+    def alike(self, text: str) -> QuantityField:
+        """Field for another value of the same dimension as a text."""
+        for dimension in (self.dimension, *self.others):
+            try:
+                units.parse(text, dimension)
+            except units.QuantityError:
+                continue
+            return self.of(dimension)
+        return self.of(self.dimension)
+
+    def of(self, dimension: str) -> QuantityField:
+        """Field of one of the dimensions."""
+        return QuantityField(dimension, self.above, self.at_least, self.below, self.at_most)
+
+    def read(self, given: Any) -> float:
+        """Read a quantity of any of the dimensions; raise ValueError with a sentence."""
+        return (self.alike(given) if isinstance(given, str) else self.of(self.dimension)).read(
+            given
+        )
+
+    @property
+    def noun(self) -> str:
+        """What is wanted, with its article."""
+        names = [units.DIMENSIONS[one].name for one in (self.dimension, *self.others)]
+        return " or ".join(dict.fromkeys(names))
+
+    def json_schema(self) -> dict:
+        """Return the JSON schema of the field."""
+        entries = [units.DIMENSIONS[one] for one in (self.dimension, *self.others)]
+        examples = [entry.example for entry in entries if entry.unit]
+        return {
+            "description": f"{self.noun}; a bare number is in SI",
+            "anyOf": [
+                {"type": "string", "pattern": _TEXT_PATTERN, "examples": examples},
+                {"type": "number", **self._bounds()},
+            ],
+        }
+
+
+def either_quantity(*dimensions: str, **bounds: float) -> Any:
+    """Return the field type of a quantity of one of several dimensions.
+
+    Parameters
+    ----------
+    *dimensions : str
+        Keys of `chatter.units.DIMENSIONS`.
+    **bounds : float
+        As for `quantity`.
+    """
+    field = EitherQuantityField(dimensions[0], **bounds, others=dimensions[1:])
+    return Annotated[float, BeforeValidator(field.read), WithJsonSchema(field.json_schema()), field]
+
+
+def quantities(count: int, dimension: str, **bounds: float) -> Any:
+    """Return the field type of a list of quantities of one dimension.
+
+    Parameters
+    ----------
+    count : int
+        How many there must be.
+    dimension : str
+    **bounds : float
+        As for `quantity`.
+    """
+    field = QuantityField(dimension, **bounds)
+    example = f"[{', '.join([field.example] * count)}]"
+
+    def read(given: Any) -> tuple[float, ...]:
+        if not isinstance(given, (list, tuple)) or len(given) != count:
+            raise ValueError(
+                f"{shown(given)} is given; {count} quantities are wanted, such as {example}"
+            )
+        return tuple(field.read(part) for part in given)
+
+    schema = {
+        "type": "array",
+        "items": {"anyOf": field.json_schema()["anyOf"]},
+        "minItems": count,
+        "maxItems": count,
+        "description": f"{count} quantities, each {field.noun}",
+    }
+    return Annotated[tuple[(float,) * count], BeforeValidator(read), WithJsonSchema(schema), field]
 
 
 #: no cutter is larger, so that a number meant in mm is not taken for one in m

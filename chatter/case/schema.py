@@ -5,16 +5,26 @@ from __future__ import annotations
 from typing import Any
 
 from chatter.case.case import Case
+from chatter.case.description import Description
 
 
 def schema() -> dict[str, Any]:
     """Return the JSON schema (draft 2020-12) of the case file."""
-    content = _tidy(Case.model_json_schema(by_alias=True))
+    return schema_of(
+        Case,
+        "chatter case file",
+        "Tool, material, cut and structure: what milling stability depends on.",
+    )
+
+
+def schema_of(model: type[Description], title: str, description: str) -> dict[str, Any]:
+    """Return the JSON schema (draft 2020-12) of a kind of file."""
+    content = _tidy(model.model_json_schema(by_alias=True))
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         **content,
-        "title": "chatter case file",
-        "description": "Tool, material, cut and structure: what milling stability depends on.",
+        "title": title,
+        "description": description,
     }
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import typer
 
-from chatter.cli import bifurcation, check, examples, lobes, modes, schema, simulate
+from chatter.cli import bifurcation, check, examples, frf, lobes, modes, move, schema, simulate
 
 app = typer.Typer(
     name="chatter",
-    help="Chatter and stability of milling: from a tap test to a stability diagram.",
+    help="Chatter and stability of milling, and the machines that it happens on.",
     no_args_is_help=True,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
@@ -20,6 +20,8 @@ COMMANDS = (
     simulate.simulate,
     bifurcation.bifurcation,
     modes.modes,
+    frf.frf,
+    move.move,
     examples.examples,
     schema.schema,
 )

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from chatter.case import Case, load, parse_assignments
 
+if TYPE_CHECKING:
+    from chatter.machine_file import MachineFile
+
 CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).")]
+MachinePath = Annotated[Path, typer.Argument(metavar="MACHINE", help="Machine file (TOML).")]
 Assignments = Annotated[
     list[str] | None,
     typer.Option(
@@ -32,6 +36,14 @@ def patched_case(path: Path, assignments: list[str] | None) -> Case:
     """Load a case file and apply the assignments of the command line."""
     case = load(path)
     return case.patch(parse_assignments(assignments)) if assignments else case
+
+
+def patched_machine(path: Path, assignments: list[str] | None) -> MachineFile:
+    """Load a machine file and apply the assignments of the command line."""
+    from chatter.machine_file import load_machine
+
+    machine = load_machine(path)
+    return machine.patch(parse_assignments(assignments)) if assignments else machine
 
 
 def output_folder(given: Path | None, name: str) -> Path:

@@ -152,7 +152,7 @@ class MoveResult:
         return "\n".join([",".join(names), *lines]) + "\n"
 
 
-def move(
+def move_axes(
     name: str,
     machine: Machine,
     step: float,

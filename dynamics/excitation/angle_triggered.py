@@ -1,7 +1,9 @@
 """Pulses of torque released at an angle of the spindle.
 
 Excites a drive while the machine cuts, each time the tool tip points in the same direction.
-Source: the impulse torque command of the coupled-milling paper, section on in-process FRFs.
+Source: the impulse torque command of "Time Domain Coupled Simulation of Machine Tool Dynamics and
+Cutting Forces considering the Influences of Nonlinear Friction Characteristics and Process
+Damping", Figures 5 to 7.
 """
 
 from __future__ import annotations

@@ -79,7 +79,7 @@ def without_images(frf: Frf, hold: Hold, step: float, inverse_mass: float) -> Fr
     At the images the structure is taken to answer by its inertia, receptance inverse_mass / s^2,
     which holds where its modes lie well below half the sampling frequency. Of receptances the
     images are a small part: at a tenth of the sampling frequency 0.02 % of the inertia line with
-    forces joined by lines and 0.06 % with forces held, at a quarter 1.3 % and 3 %. Of accelerances
+    forces joined by lines and 0.07 % with forces held, at a quarter 1.5 % and 3 %. Of accelerances
     they are far larger, 3.4 % at a tenth: record displacements of a simulation, and let
     `Frf.as_quantity` differentiate.
 

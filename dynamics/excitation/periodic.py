@@ -24,7 +24,8 @@ class PeriodicRecord:
     Parameters
     ----------
     force, response : (n,) array of float
-        Input and response sampled together. N (N m) and m, m/s or m/s^2 (rad, ...).
+        Input and response sampled together, a force that is held at the beginning of the step
+        over which it acts. N (N m) and m, m/s or m/s^2 (rad, ...).
     step : float
         s.
     period : int

@@ -87,7 +87,9 @@ def frf_of_transients(
     Parameters
     ----------
     records : sequence of HammerRecord
-        Cut to the shortest; the level of the response before the force sets in is taken off.
+        Force and response sampled together, a force that is held at the beginning of the step
+        over which it acts. Cut to the shortest; the level of the response
+        before the force sets in is taken off.
     hold : Hold
         What lay between the samples of the force.
     band : (float, float)

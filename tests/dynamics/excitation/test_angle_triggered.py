@@ -54,7 +54,7 @@ def test_pulses_every_some_revolutions():
         (lambda: passages(np.array([0.1, np.nan]), 1.0), "finite"),
         (lambda: angle_at_constant_speed(0.0, 10, 1e-3), "speed is 0"),
         (lambda: angle_triggered_pulses(np.arange(9.0), 1.0, np.ones(2), 1e-3, 0), "revolutions"),
-        (lambda: angle_triggered_pulses(np.arange(20.0), 1.0, np.ones(7), 1e-3), "does not end"),
+        (lambda: angle_triggered_pulses(np.arange(20.0), 1.0, np.ones(8), 1e-3), "does not end"),
         (lambda: angle_triggered_pulses(np.arange(9.0), 1.0, np.ones(9), 1e-3), "too late"),
     ],
 )

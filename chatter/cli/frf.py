@@ -1,0 +1,122 @@
+"""`chatter frf MACHINE`: frequency responses of a machine, linearised and by tests in time."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from chatter.cli.errors import reports_errors
+from chatter.cli.options import (
+    Assignments,
+    Json,
+    MachinePath,
+    OutputFolder,
+    output_folder,
+    patched_machine,
+)
+from chatter.cli.report import (
+    announce_compilation,
+    print_json,
+    print_table,
+    print_written,
+    progress_bar,
+)
+
+Pairs = list[str] | None
+
+
+@reports_errors
+def frf(
+    machine: MachinePath,
+    assignments: Assignments = None,
+    only: Annotated[
+        Pairs, typer.Option("--only", help="Name of a [frf.NAME] to run; repeatable.")
+    ] = None,
+    excite: Annotated[
+        str | None,
+        typer.Option(
+            "--excite",
+            help='A test of your own: "table:y", "tool/table:y" or "motor:Y" (torque).',
+        ),
+    ] = None,
+    read: Annotated[str | None, typer.Option("--read", help="What is read in it.")] = None,
+    by: Annotated[
+        str | None,
+        typer.Option(
+            "--by",
+            help="hammer, chirp, multisine, torque impulse, torque multisine or linearised.",
+        ),
+    ] = None,
+    level: Annotated[
+        str | None, typer.Option("--level", help='Peak of the excitation, "100 N".')
+    ] = None,
+    band: Annotated[
+        str | None, typer.Option("--band", help='Lowest and highest frequency, "5 Hz, 500 Hz".')
+    ] = None,
+    moving: Annotated[
+        Pairs, typer.Option("--moving", help='Axis in motion, "Y=420 mm/min"; repeatable.')
+    ] = None,
+    position: Annotated[
+        Pairs, typer.Option("--position", help='Place of an axis, "Y=100 mm"; repeatable.')
+    ] = None,
+    brake: Annotated[Pairs, typer.Option("--brake", help="Axis held by its brake.")] = None,
+    free: Annotated[Pairs, typer.Option("--free", help="Axis held by nothing.")] = None,
+    no_friction: Annotated[
+        bool, typer.Option("--no-friction", help="Leave all frictions out.")
+    ] = False,
+    in_cut: Annotated[bool, typer.Option("--in-cut", help="With the couplings of [contact].")] = (
+        False
+    ),
+    out: OutputFolder = None,
+    json: Json = False,
+) -> None:
+    """Frequency responses of a machine: at rest, moving, brake on, control on, in the cut."""
+    from chatter.cli.machine_tests import frf_sections
+    from chatter.virtual_machine.engine import run
+    from chatter.virtual_machine.from_file import frfs
+
+    file = patched_machine(machine, assignments)
+    changes = {
+        "excite": excite,
+        "read": read,
+        "by": by,
+        "level": level,
+        "band": None if band is None else [part.strip() for part in band.split(",")],
+        "moving": moving,
+        "position": position,
+        "brake": brake,
+        "free": free,
+        "friction": False if no_friction else None,
+        "in_cut": True if in_cut else None,
+    }
+    sections = frf_sections(file, only, {key: v for key, v in changes.items() if v is not None})
+    announce_compilation(run)
+    with progress_bar("time steps") as progress:
+        result = frfs(file, sections, progress)
+    written = result.save(output_folder(out, machine.stem))
+    summary = result.summary()
+    if json:
+        print_json(summary)
+    else:
+        _print_peaks(summary)
+    print_written(written)
+
+
+def _print_peaks(summary: dict) -> None:
+    for curve in summary["curves"]:
+        rows = []
+        for how, key in (("linearised", "peaks"), ("test", "tested_peaks")):
+            for peak in curve[key] or []:
+                damping = peak["damping"]
+                rows.append(
+                    [
+                        how,
+                        f"{peak['frequency_Hz']:.2f}",
+                        f"{peak['magnitude']:.4g}",
+                        "" if damping is None else f"{100.0 * damping:.2f}",
+                    ]
+                )
+        state = f" ({curve['state']})" if curve["state"] else ""
+        title = f"{curve['name']}{state}: peaks of the {curve['quantity']}"
+        print_table(title, ["", "frequency [Hz]", "magnitude [SI]", "damping [%]"], rows)

@@ -1,0 +1,80 @@
+"""`chatter move MACHINE`: tracking and contour error of a trajectory."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from chatter.cli.errors import EXIT_RUN_FAILED, reports_errors
+from chatter.cli.options import (
+    Assignments,
+    Json,
+    MachinePath,
+    OutputFolder,
+    output_folder,
+    patched_machine,
+)
+from chatter.cli.report import (
+    announce_compilation,
+    print_json,
+    print_table,
+    print_written,
+    progress_bar,
+)
+
+
+@reports_errors
+def move(
+    machine: MachinePath,
+    assignments: Assignments = None,
+    only: Annotated[
+        list[str] | None,
+        typer.Option("--only", help="Name of a [move.NAME] to run; repeatable."),
+    ] = None,
+    out: OutputFolder = None,
+    json: Json = False,
+) -> None:
+    """Move the axes of a machine: tracking error, contour error, torque."""
+    from chatter.cli.machine_tests import move_sections
+    from chatter.virtual_machine.engine import run
+    from chatter.virtual_machine.from_file import file_move
+
+    file = patched_machine(machine, assignments)
+    sections = move_sections(file, only)
+    announce_compilation(run)
+    folder = output_folder(out, machine.stem)
+    summaries, written, interrupted = {}, [], False
+    for name, section in sections.items():
+        with progress_bar(f"move {name}") as progress:
+            result = file_move(file, name, section, progress)
+        written += result.save(folder / name if len(sections) > 1 else folder)
+        summaries[name] = result.summary()
+        interrupted = interrupted or result.interrupted
+        if interrupted:
+            break
+    if json:
+        print_json(summaries)
+    else:
+        _print_errors(summaries)
+    print_written(written)
+    if interrupted:
+        raise typer.Exit(EXIT_RUN_FAILED)
+
+
+def _print_errors(summaries: dict) -> None:
+    for name, summary in summaries.items():
+        rows = [
+            [
+                axis,
+                f"{told['motor_error_um']:.4g}",
+                f"{told['tracking_error_um']:.4g}",
+                f"{told['tool_error_um']:.4g}" if "tool_error_um" in told else "",
+                f"{told['effort']:.4g}",
+            ]
+            for axis, told in summary["axes"].items()
+        ]
+        titles = ["axis", "motor [um]", "scale [um]", "tool [um]", "effort [N m or N]"]
+        print_table(f"{name}: largest set less actual", titles, rows)
+        if summary["contour_error_um"] is not None:
+            typer.echo(f"largest contour error {summary['contour_error_um']:.4g} um")
