@@ -139,6 +139,10 @@ def _also_file_names(schema: dict) -> None:
     schema["anyOf"] = [name, {"type": "array", "items": {"anyOf": [name, table]}}, table]
 
 
+#: keys that say how a machine cuts
+OF_MACHINE = ("feed", "tool_axis", "spindle", "condition", "position", "friction", "settling")
+
+
 class StructureSection(Section):
     """Where the dynamics at the tool point come from: exactly one of three."""
 
@@ -149,11 +153,38 @@ class StructureSection(Section):
         json_schema_extra=_also_file_names,
     )
     machine: FileName | None = Field(None, description="file of a virtual machine")
+    feed: UnitVector | None = Field(
+        None,
+        description="direction of the machine in which the tool is fed against the workpiece; x "
+        "by default",
+    )
+    tool_axis: UnitVector | None = Field(
+        None, description="direction of the machine from the tip into the spindle; z by default"
+    )
+    spindle: str | None = Field(
+        None, description="axis of the machine that turns the tool; its only spindle by default"
+    )
+    condition: dict[str, Literal["control", "brake", "free"]] | None = Field(
+        None, description="what holds an axis of the machine"
+    )
+    position: dict[str, quantity("length")] | None = Field(
+        None, description="of axes of the machine"
+    )
+    friction: bool | None = Field(None, description="false: the machine without any")
+    settling: quantity("time", at_least=0.0) | None = Field(
+        None, description="time that the machine runs in the air before the cut; 1 s by default"
+    )
 
     @model_validator(mode="after")
     def _check_source(self) -> StructureSection:
         named = [key for key in ("mode", "frf", "machine") if getattr(self, key)]
         problems = []
+        if self.machine is None:
+            problems += [
+                (key, "belongs to a machine; structure.machine is not given")
+                for key in OF_MACHINE
+                if getattr(self, key) is not None
+            ]
         if len(named) > 1:
             listed = " and ".join(named)
             problems.append(("", f"{listed} are both given; the structure comes from one of them"))

@@ -1,6 +1,10 @@
-"""`chatter schema`: the JSON schema of a case file."""
+"""`chatter schema`: the JSON schema of a case file or machine file."""
 
 from __future__ import annotations
+
+from typing import Annotated
+
+import typer
 
 from chatter.cli.errors import reports_errors
 from chatter.cli.options import OutputFolder
@@ -8,16 +12,23 @@ from chatter.cli.report import print_json, print_written
 
 
 @reports_errors
-def schema(out: OutputFolder = None) -> None:
-    """Print the JSON schema of the case file, for editors that complete and check."""
+def schema(
+    machine: Annotated[
+        bool, typer.Option("--machine", help="Of the machine file instead of the case file.")
+    ] = False,
+    out: OutputFolder = None,
+) -> None:
+    """Print the JSON schema of the case or machine file, for editors that complete and check."""
     import json
 
-    from chatter.case import schema as case_schema
-
+    if machine:
+        from chatter.machine_file import machine_schema as content
+    else:
+        from chatter.case import schema as content
     if out is None:
-        print_json(case_schema())
+        print_json(content())
         return
     out.mkdir(parents=True, exist_ok=True)
-    path = out / "case.schema.json"
-    path.write_text(json.dumps(case_schema(), indent=2) + "\n", encoding="utf-8")
+    path = out / ("machine.schema.json" if machine else "case.schema.json")
+    path.write_text(json.dumps(content(), indent=2) + "\n", encoding="utf-8")
     print_written([path])

@@ -106,6 +106,7 @@ class Composition:
             ],
             damping_ratio=file.damping_ratio,
             allowed_rigid_motions=file.allowed_rigid_motions,
+            highest_frequency=file.highest_frequency,
         )
 
     def _told(self, key: str, make: Callable[[], object]) -> object:

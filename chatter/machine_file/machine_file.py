@@ -59,7 +59,9 @@ class MachineFile(Description):
         0.0, description="of every elastic mode, on top of the dampers"
     )
     highest_frequency: quantity("frequency", above=0.0) | None = Field(
-        None, description="of the modes that a reduction keeps"
+        None,
+        description="modes above it are left out; their static answer is kept at drives, "
+        "frictions and points",
     )
     allowed_rigid_motions: whole_number(0, 1000, "numbers of motions") = Field(
         0, description="free motions that are meant, besides those of the axes"

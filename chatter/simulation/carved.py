@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -89,24 +89,13 @@ class FollowingStock:
         self.left_behind.append(WallPiece(place, walls))
 
 
-@dataclass(frozen=True)
-class CarvedSetup(Setup):
-    """Setup whose stock has followed the tool, after the run.
-
-    Parameters
-    ----------
-    left_behind : tuple of WallPiece
-        Walls of what is no longer held of the stock, along x.
-    """
-
-    left_behind: tuple[WallPiece, ...] = ()
-
-    @classmethod
-    def after(cls, setup: Setup, stock: FollowingStock) -> CarvedSetup:
-        """Return the setup with the stock as it is now."""
-        given = {field.name: getattr(setup, field.name) for field in fields(Setup)}
-        given["groups"] = (stock.cut, *setup.groups[1:])
-        return cls(**given, left_behind=tuple(stock.left_behind))
+def after_run(setup: Setup, stock: FollowingStock) -> Setup:
+    """Setup of a run whose stock has followed the tool, with the stock as it is now."""
+    return replace(
+        setup,
+        groups=(stock.cut, *setup.groups[1:]),
+        left_behind=tuple(stock.left_behind),
+    )
 
 
 def carved_walls(result: SimulationResult) -> list[WallProfiles]:
@@ -160,7 +149,7 @@ def _profile(
     """Wall at a level, m, with what has fallen off behind."""
     of_stock = DISCRETE_CHIPS[result.case.simulation.chip].wall_profile
     setup = result.setup
-    pieces = setup.left_behind if isinstance(setup, CarvedSetup) else ()
+    pieces = setup.left_behind
     if not pieces:
         return of_stock(cut.stock, level, x, _SIGN[side])
     held = line_coordinates(cut.stock, 1)

@@ -52,6 +52,8 @@ class Setup:
     furthest : float
         Displacement at which the run stops, m.
     notes : tuple of str
+    left_behind : tuple of WallPiece
+        Walls of what is no longer held of the stock, along x, after a run.
     """
 
     case: Case
@@ -64,6 +66,7 @@ class Setup:
     groups: tuple
     furthest: float
     notes: tuple[str, ...]
+    left_behind: tuple = ()
 
     @property
     def turns_before(self) -> int:
@@ -91,14 +94,30 @@ def set_up(case: Case, modes: tuple[Mode, ...] | None = None) -> Setup:
     InputError
         If a section is missing, or the case holds what cannot be simulated.
     """
-    case.require("tool", "material", "cut")
-    check_plausible(case)
-    _refuse_teeth_off_the_tool(case)
+    check_case(case)
     notes: tuple[str, ...] = ()
     if modes is None:
         modes, notes = modes_of(case)
     cutter = cutter_of(case)
-    resolution = resolution_of(case, cutter, modes, _shortest_arc(case, cutter))
+    resolution = resolution_of(case, cutter, modes, shortest_arc(case, cutter))
+    return compiled(case, cutter, modes, resolution, notes)
+
+
+def check_case(case: Case) -> None:
+    """Refuse a case that lacks what a simulation needs, or whose numbers cannot be meant."""
+    case.require("tool", "material", "cut")
+    check_plausible(case)
+    _refuse_teeth_off_the_tool(case)
+
+
+def compiled(
+    case: Case,
+    cutter: Cutter,
+    modes: tuple[Mode, ...],
+    resolution: Resolution,
+    notes: tuple[str, ...],
+) -> Setup:
+    """Compile a case whose resolution is settled."""
     slices = edge_slices(cutter, case.cut.axial_depth, resolution.counts)
     _refuse_crossing_flutes(case, slices)
     _refuse_out_of_reach(case, slices)
@@ -146,7 +165,7 @@ def _arcs(case: Case, cutter: Cutter) -> tuple[float, float]:
     return float(entry[0]), float(leave[0])
 
 
-def _shortest_arc(case: Case, cutter: Cutter) -> float:
+def shortest_arc(case: Case, cutter: Cutter) -> float:
     """Angle within which an edge crosses the cut, with the lag of its helix, rad."""
     entry, leave = _arcs(case, cutter)
     lag = min(abs(math.tan(helix)) for helix in cutter.helix) * case.cut.axial_depth / cutter.radius

@@ -8,7 +8,7 @@ import numpy as np
 
 from chatter.case import Case
 from chatter.errors import InputError, RunError
-from chatter.simulation.carved import CarvedSetup, FollowingStock, set_up_on
+from chatter.simulation.carved import FollowingStock, after_run, set_up_on
 from chatter.simulation.engine import COLUMNS, Record, run
 from chatter.simulation.result import SimulationResult
 from chatter.simulation.setup import Setup, set_up
@@ -63,6 +63,10 @@ def simulate(
     -----
     An interruption (Ctrl-C) ends the run, not the program: the result holds what was simulated.
     """
+    if workpiece is None and case.structure is not None and case.structure.machine is not None:
+        from chatter.coupled.simulate import simulate_on_machine
+
+        return simulate_on_machine(case, progress)
     setup = set_up(case) if workpiece is None else set_up_on(case, workpiece)
     result, done = run_setup(setup, progress)
     if done < setup.resolution.steps and not result.interrupted:
@@ -172,7 +176,7 @@ def run_setup(setup: Setup, progress: Progress = no_progress) -> tuple[Simulatio
     rows = done // resolution.stride + 1
     work, dissipated = modes.energy
     result = SimulationResult(
-        setup=setup if cut.stock is None else CarvedSetup.after(setup, cut.stock),
+        setup=setup if cut.stock is None else after_run(setup, cut.stock),
         rows=record.rows[:rows],
         energy={
             "work": float(work),

@@ -24,6 +24,9 @@ from numpy.typing import ArrayLike, NDArray
 from dynamics.friction.harmonic import describing_function
 from dynamics.friction.implicit import INLINED, held_force
 
+#: exponent of the Stribeck curve beyond which it is below rounding
+_FAR_SLIDING = 60.0
+
 
 @dataclass(frozen=True)
 class LuGre:
@@ -164,7 +167,8 @@ def lugre_bent(law, i, speed):
     force = law.coulomb[i]
     ratio = speed / law.stribeck_velocity[i]
     power = ratio * ratio if law.stribeck_shape[i] == 2.0 else ratio ** law.stribeck_shape[i]
-    force += (law.static[i] - law.coulomb[i]) * math.exp(-power)
+    if power < _FAR_SLIDING:
+        force += (law.static[i] - law.coulomb[i]) * math.exp(-power)
     if law.logarithmic[i] > 0.0:
         force += law.logarithmic[i] * math.log1p(speed / law.logarithmic_velocity[i])
     return force / law.stiffness[i]

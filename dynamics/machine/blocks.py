@@ -18,7 +18,7 @@ from dynamics.structure import LinearStructure
 #: part of the fastest rate below which a motion counts as not vibrating
 _STILL = 1e-6
 #: condition of the change of coordinates up to which it is used
-_WORST_CONDITION = 1e8
+_WORST_CONDITION = 1e5
 
 
 class Blocks(NamedTuple):
@@ -32,6 +32,7 @@ class Blocks(NamedTuple):
     entry: NDArray[np.float64]  # of forces on ports, (s, ports)
     displacement: NDArray[np.float64]  # (ports, s)
     velocity: NDArray[np.float64]  # (ports, s)
+    start: NDArray[np.float64]  # of a velocity of the structure's freedoms, (s, n)
 
 
 def blocks(structure: LinearStructure, ports: NDArray[np.float64]) -> Blocks:
@@ -74,6 +75,7 @@ def blocks(structure: LinearStructure, ports: NDArray[np.float64]) -> Blocks:
         inverse @ np.vstack([nothing.T, seen.T]),
         np.hstack([seen / unit, nothing]) @ basis,
         np.hstack([nothing, seen]) @ basis,
+        inverse[:, count:] @ (modes.shapes.T @ structure.mass),
     )
 
 

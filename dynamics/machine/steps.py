@@ -44,9 +44,12 @@ class StructureSteps(NamedTuple):
 
 
 def structure_steps(
-    structure: LinearStructure, ports: NDArray[np.float64], step: float
+    structure: LinearStructure,
+    ports: NDArray[np.float64],
+    step: float,
+    velocity: NDArray[np.float64] | None = None,
 ) -> StructureSteps:
-    """Return a structure at rest with its exact transition over a step of time, s.
+    """Return a structure unstrained, with its exact transition over a step of time, s.
 
     Parameters
     ----------
@@ -55,6 +58,8 @@ def structure_steps(
         Rows, as from `LinearStructure.port`.
     step : float
         s.
+    velocity : (n,) array of float, optional
+        Of the freedoms at the start, m/s (rad/s); at rest by default.
     """
     split = blocks(structure, np.asarray(ports, dtype=np.float64).reshape(-1, structure.size))
     count = split.entry.shape[1]
@@ -78,14 +83,16 @@ def structure_steps(
     }
     for column in columns.values():
         column.flags.writeable = False
-    size = len(split.rate)
-    return StructureSteps(
+    state = np.zeros(len(split.rate)) if velocity is None else split.start @ velocity
+    steps = StructureSteps(
         step=step,
         **columns,
-        state=np.zeros(size),
-        after=np.zeros(size),
+        state=state,
+        after=np.zeros(len(state)),
         **{name: np.zeros(count) for name in StructureSteps._fields[-6:]},
     )
+    steps.v[:] = split.velocity @ state
+    return steps
 
 
 def _over_step(

@@ -38,8 +38,9 @@ def machine_tables(
     points: SetPoints | None = None,
     loads: Mapping[str, NDArray[np.float64]] | None = None,
     outputs: Mapping[str, NDArray[np.float64]] | None = None,
+    velocity: NDArray[np.float64] | None = None,
 ) -> MachineTables:
-    """Compile a machine at rest.
+    """Compile a machine, unstrained.
 
     Parameters
     ----------
@@ -50,6 +51,8 @@ def machine_tables(
         One column an axis, in the order of `machine.axes`; rest by default.
     loads, outputs : mapping of str to (n,) array of float
         Rows of the structure where forces will act, and that will be read.
+    velocity : (n,) array of float, optional
+        Of the structure's freedoms at the start; at rest by default.
 
     Raises
     ------
@@ -70,7 +73,7 @@ def machine_tables(
         rows[name] = row
     port = {name: place for place, name in enumerate(rows)}
     matrix = np.array(list(rows.values())).reshape(-1, machine.structure.size)
-    steps = structure_steps(machine.structure, matrix, step)
+    steps = structure_steps(machine.structure, matrix, step, velocity)
     groups: tuple = friction_groups(
         [one.law for one in machine.frictions], [port[_friction(one)] for one in machine.frictions]
     )
