@@ -1,4 +1,4 @@
-"""The structure of a case: modes as given, or the measured FRFs that it names."""
+"""The structure of a case: modes as given, measured FRFs, or a machine linearised."""
 
 from __future__ import annotations
 
@@ -120,7 +120,8 @@ def structure_of(case: Case) -> Structure:
     Raises
     ------
     InputError
-        If the FRF files cannot be read or do not say what is needed.
+        If the FRF files cannot be read or do not say what is needed, or the machine cannot make
+        the cut.
     """
     section = case.structure
     if section.mode:
@@ -132,7 +133,6 @@ def structure_of(case: Case) -> Structure:
         )
     if section.frf:
         return MeasuredStructure(*measured_sides(case))
-    raise InputError(
-        f"{case.name}: structure.machine: stability from a virtual machine is not available yet; "
-        "give structure.mode or structure.frf"
-    )
+    from chatter.coupled.linearised import machine_structure
+
+    return machine_structure(case)
