@@ -197,7 +197,9 @@ def _boundary_rows(
         if not 0 <= freedom < structure.size:
             raise StructureError(f"super-element: no freedom {freedom}; 0 to {structure.size - 1}")
     motions = [structure.points[name] for name in boundary]
-    rows = np.vstack([*motions, np.eye(structure.size)[list(freedoms)]])
+    single = np.zeros((len(freedoms), structure.size))
+    single[np.arange(len(freedoms)), list(freedoms)] = 1.0
+    rows = np.vstack([*motions, single])
     rows = rows[np.any(rows != 0.0, axis=1)]
     if not len(rows):
         raise StructureError("super-element: the boundary is empty")
