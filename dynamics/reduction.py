@@ -26,6 +26,8 @@ ROUNDING = 1e3 * np.finfo(np.float64).eps
 
 #: part of a static shape's inertia below which the modes hold it already
 _NOTHING_NEW = 1e-8
+#: share of the highest frequency below which a motion is that of a rigid body, but for rounding
+_STILL = 1e-10
 
 
 class Modes(NamedTuple):
@@ -80,6 +82,7 @@ def undamped_modes(
     back = np.divide(energy, terms, out=np.zeros_like(energy), where=terms > 0.0)
     reach = max(ROUNDING, -10.0 * float(np.min(back, initial=0.0)))
     energy[abs(energy) <= min(reach, 1e3 * ROUNDING) * terms] = 0.0
+    energy[abs(energy) <= _STILL**2 * np.max(energy, initial=0.0)] = 0.0
     if np.any(energy < 0.0):
         raise StructureError("modes: the stiffness is not positive: a motion gives energy back")
     order = np.argsort(energy, kind="stable")

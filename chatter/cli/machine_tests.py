@@ -7,6 +7,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from chatter.case.wording import sentences
 from chatter.errors import InputError
 from chatter.machine_file import MachineFile
 from chatter.machine_file.frf_section import FrfSection
@@ -85,11 +86,4 @@ def _section(kind: type[FrfSection], keys: Mapping[str, Any]) -> FrfSection:
     try:
         return kind.model_validate(keys)
     except ValidationError as error:
-        raise InputError([f"test of the command line: {text}" for text in _told(error)]) from None
-
-
-def _told(error: ValidationError) -> list[str]:
-    return [
-        f"{'.'.join(str(part) for part in one['loc'])}: {one['msg'].removeprefix('Value error, ')}"
-        for one in error.errors()
-    ]
+        raise InputError(sentences(error, kind, "test of the command line")) from None

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 from chatter.result_files import as_json, finite_or_none, write_results
 from chatter.virtual_machine.rigid_motion import rigid_motion
+from dynamics.friction.coulomb_stribeck import CoulombStribeck
+from dynamics.friction.laws import FrictionLaw
 from dynamics.frf import Frf
 from dynamics.machine.description import Machine
 from dynamics.machine.harmonic import Linearised, at_amplitude, at_rest, at_velocity, receptance
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
 
 #: velocity of a friction, m/s or rad/s, below which it rests
 _RESTING = 1e-12
+#: stiffness of a dry friction at rest, N/m (N m/rad): it holds, and nothing in a machine is stiffer
+_HELD = 1e14
 #: a peak is told if it stands out by this factor from the valleys beside it
 _STANDS_OUT = 1.15
 
@@ -61,13 +65,20 @@ def linearised_frictions(
 ) -> dict[str, Linearised]:
     """How each friction is linearised in a state of motion, by its name."""
     moving = rigid_motion(machine, velocity) if velocity else np.zeros(machine.structure.size)
-    resting = at_rest if amplitude is None else at_amplitude(amplitude)
+    resting = _at_rest if amplitude is None else at_amplitude(amplitude)
     return {
         one.name: at_velocity(float(one.row @ moving))
         if abs(one.row @ moving) > _RESTING
         else resting
         for one in machine.frictions
     }
+
+
+def _at_rest(law: FrictionLaw, frequency: NDArray[np.float64]) -> NDArray[np.complex128]:
+    """Friction under vanishing motion; a dry one holds."""
+    if isinstance(law, CoulombStribeck):
+        return np.full(frequency.shape, _HELD, dtype=np.complex128)
+    return at_rest(law, frequency)
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -130,7 +131,19 @@ def one_frf(
 ) -> FrfCurve:
     """One FRF of a machine, linearised and by its test in time; receptance."""
     where = f"{file.name}: frf.{name}"
+    with _told_with(where, file.name):
+        return _one_frf(file, where, name, section, progress)
+
+
+def _one_frf(
+    file: MachineFile, where: str, name: str, section: FrfSection, progress: Progress
+) -> FrfCurve:
     machine = in_state(file, section)
+    if section.by != "linearised" and section.band[1] >= 0.5 / file.step:
+        raise InputError(
+            f"{where}.band: {section.band[1]:g} Hz cannot be tested with a step of "
+            f"{file.step:g} s; below {0.5 / file.step:g} Hz is wanted, or a shorter step"
+        )
     velocity = {axis: speed for axis, speed in section.moving.items() if abs(speed) > _RESTING}
     _refuse_unmovable(where, machine, velocity)
     refuse_unstable_control(machine, file.step)
@@ -210,7 +223,19 @@ def file_move(
             [machine.structure.port(file.tool_point, way, file.workpiece) for way in np.eye(3)]
         )
     title = file.title or file.name
-    return move_axes(f"{title}: {name}", machine, file.step, plan, tool, progress)
+    with _told_with(where, file.name):
+        return move_axes(f"{title}: {name}", machine, file.step, plan, tool, progress)
+
+
+@contextmanager
+def _told_with(where: str, file: str) -> Iterator[None]:
+    """Name file and section in what is refused, where it does not yet."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(
+            [text if text.startswith(file) else f"{where}: {text}" for text in error.messages]
+        ) from error
 
 
 def _named(file: MachineFile, kind: str, name: str) -> FrfSection | MoveSection:

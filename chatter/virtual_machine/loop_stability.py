@@ -86,8 +86,9 @@ def least_stable_motion(machine: Machine, step: float) -> LoopMotion | None:
     drives = tables.groups[0]
     period = _common_period(drives)
     transition = _map_over(tables, drives, period)
-    # what nothing ever changes stays at zero
+    # what nothing ever changes stays at zero, and what nothing reads is no motion
     still = np.all(transition == np.eye(len(transition)), axis=1)
+    still |= _unread(transition, len(tables.steps.state))
     multipliers, vectors = np.linalg.eig(transition[~still][:, ~still])
     decisive = int(np.argmax(np.abs(multipliers)))
     motion = np.zeros(len(transition), dtype=np.complex128)
@@ -175,6 +176,19 @@ def _map_over(tables: MachineTables, drives: ControlledDrives, period: int) -> N
     return transition
 
 
+def _unread(transition: NDArray[np.float64], structure: int) -> NDArray[np.bool_]:
+    """Memory of the controllers that moves nothing but itself and what is unread too."""
+    others = transition != 0.0
+    np.fill_diagonal(others, val=False)
+    unread = np.zeros(len(transition), dtype=bool)
+    while True:
+        more = ~np.any(others[~unread], axis=0)
+        more[:structure] = False
+        if np.array_equal(more, unread):
+            return unread
+        unread = more
+
+
 def _feeding_drive(
     tables: MachineTables, drives: ControlledDrives, vector: NDArray[np.complex128]
 ) -> int:
@@ -194,14 +208,21 @@ def _frequency(
 ) -> float:
     """Strongest frequency of a motion at the motor it is fed by, Hz."""
     start = 0
-    for state in _states(tables, drives):
+    states = _states(tables, drives)
+    for state in states:
         state[:] = motion[start : start + state.size].reshape(state.shape)
         start += state.size
+    tables.steps.u[:] = tables.steps.state @ tables.steps.displacement
+    tables.steps.v[:] = tables.steps.state @ tables.steps.velocity
+    # what is linear may be scaled at each step, so that no growth leaves the numbers
+    kept = math.exp(-growth * tables.steps.step)
     loads = Loads(tables.loads.port, np.zeros((2, 0)))
     speed = np.empty(_HEARD)
     for i in range(_HEARD):
         advance(tables.groups, tables.steps, loads, i, 1)
-        speed[i] = tables.steps.v[port] * math.exp(-growth * i * tables.steps.step)
+        for state in (*states, tables.steps.u, tables.steps.v):
+            state *= kept
+        speed[i] = tables.steps.v[port]
     window = np.hanning(_HEARD)
     lines = np.abs(np.fft.rfft(window * speed))
     return float(np.argmax(lines) / (_HEARD * tables.steps.step))

@@ -1,7 +1,8 @@
 """FRFs of a machine by tests in time, as on the real one: blows, chirps, multisines, torques.
 
 The response counts against that of the same run without excitation, so that a steady motion,
-preloads and settling loops take no part; on a real machine a record is detrended for that.
+preloads and settling loops take no part; on a real machine a record is detrended for that. It is
+read as a velocity: with friction a blow leaves a lasting displacement, which never dies away.
 """
 
 from __future__ import annotations
@@ -169,7 +170,7 @@ def frf_by_test(
         If the machine runs away.
     """
     try:
-        return KINDS[test.kind](machine, step, test, progress)
+        return KINDS[test.kind](machine, step, test, progress).as_quantity("receptance")
     except (ExcitationError, MeasurementError) as error:
         raise InputError(f'test "{test.name}": {error}') from error
 
@@ -208,7 +209,7 @@ def _share_of(progress: Progress, place: int, test: FrfTest) -> Progress:
 def _of_blows(
     train: PulseTrain, force: NDArray, response: NDArray, hold: Hold, test: FrfTest
 ) -> Frf:
-    records = cut_at_pulses(train, force, response, "receptance")
+    records = cut_at_pulses(train, force, response, "mobility")
     return frf_of_transients(records, hold, test.band, left_at_end=_LEFT_AT_END)
 
 
@@ -222,23 +223,23 @@ def _periodic(
     force, response = _tested(machine, step, test, values, progress)
     reference = values if test.kind in BY_TORQUE else None
     return PeriodicRecord(
-        force, response, step, signal.period, signal.lines, leading, "receptance", reference
+        force, response, step, signal.period, signal.lines, leading, "mobility", reference
     )
 
 
 def _tested(
     machine: Machine, step: float, test: FrfTest, values: NDArray, progress: Progress
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Force and response at the samples of an excitation, behind the settling time."""
+    """Force and velocity at the samples of an excitation, behind the settling time."""
     before = round(test.settling / step)
     signal = np.concatenate([np.zeros(before), values])
     excited = _run(machine, step, test, signal, progress)
     drives = _excited_drives(machine, test)
-    response = np.concatenate([[0.0], excited.displacement["read"]])
+    response = np.concatenate([[0.0], excited.velocity["read"]])
     force = sum((excited.force[f"drive {name}"] for name in drives), np.zeros(1))
     if test.velocity or machine.preloads:
         still = _run(machine, step, test, np.zeros_like(signal), no_progress)
-        response = response - np.concatenate([[0.0], still.displacement["read"]])
+        response = response - np.concatenate([[0.0], still.velocity["read"]])
         force = force - sum((still.force[f"drive {name}"] for name in drives), np.zeros(1))
     if excited.interrupted:
         raise KeyboardInterrupt

@@ -64,6 +64,7 @@ class Frictions(NamedTuple):
     law: NamedTuple  # table of the law; its column `port` says where each acts
     force: NDArray[np.float64]  # held over the last step, N, (n,)
     beyond: NDArray[np.float64]  # by which the law moves further than its port, m, (n,)
+    sweeps: NDArray[np.int64]  # over all of them in this step, (1,)
 
 
 def friction_groups(laws: Sequence[FrictionLaw], ports: Sequence[int]) -> tuple[Frictions, ...]:
@@ -73,7 +74,8 @@ def friction_groups(laws: Sequence[FrictionLaw], ports: Sequence[int]) -> tuple[
         chosen = [place for place, law in enumerate(laws) if isinstance(law, kind)]
         if chosen:
             columns = table([laws[i] for i in chosen], [ports[i] for i in chosen])
-            groups.append(Frictions(columns, np.zeros(len(chosen)), np.zeros(len(chosen))))
+            force, beyond = np.zeros(len(chosen)), np.zeros(len(chosen))
+            groups.append(Frictions(columns, force, beyond, np.zeros(1, dtype=np.int64)))
     return tuple(groups)
 
 

@@ -18,7 +18,7 @@ from dynamics.structure import LinearStructure
 #: part of the fastest rate below which a motion counts as not vibrating
 _STILL = 1e-6
 #: condition of the change of coordinates up to which it is used
-_WORST_CONDITION = 1e5
+_WORST_CONDITION = 1e3
 
 
 class Blocks(NamedTuple):

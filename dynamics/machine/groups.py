@@ -22,7 +22,9 @@ from dynamics.machine.steps import INLINED, add_held
 from dynamics.trajectory.set_points import SetPoints, set_point_at
 
 #: change of a friction force that its neighbours need not hear of: its motion over theirs, and m
-_UNHEARD, _UNSEEN = 1e-4, 1e-15
+_UNHEARD, _UNSEEN = 1e-6, 1e-15
+#: sweeps after which frictions that keep one another from rest are solved in the mean form
+_SWEEPS_TO_REST = 12
 
 
 class ControlledDrives(NamedTuple):
@@ -76,20 +78,27 @@ def constant_drive(group, s, number, row):  # noqa: ARG001
 @register_jitable(**INLINED)
 def frictions_drive(group, s, number, row):  # noqa: ARG001
     """Put on the forces of the last step, near to those that will be found."""
+    group.sweeps[0] = 0
     for i in range(group.force.shape[0]):
         s.force[group.law.port[i]] -= group.force[i]
 
 
 @register_jitable(**INLINED)
 def frictions_resist(group, s):
-    """Solve each friction with the others as they are; tell whether any need hear of it."""
+    """Solve each friction with the others as they are; tell whether any need hear of it.
+
+    In the mean form it is a descent along one force after the other in a convex energy, which
+    ends at the joint solution; frictions that are brought to rest may push one another in turns.
+    """
     heard = False
+    resting = 1.0 if group.sweeps[0] < _SWEEPS_TO_REST else 0.0
+    group.sweeps[0] += 1
     for i in range(group.force.shape[0]):
         p = group.law.port[i]
         gx, g = s.moved_by_held[p, p], s.sped_by_held[p, p]
         dx_free = s.u[p] - s.u_before[p] + gx * group.force[i]
         v_free = s.v[p] + g * group.force[i]
-        force, motion = friction_step(group.law, i, dx_free, gx, v_free, g, s.step)
+        force, motion = friction_step(group.law, i, dx_free, gx, v_free, resting * g, s.step)
         change = force - group.force[i]
         if change != 0.0:
             add_held(s, p, -change)

@@ -12,7 +12,7 @@ from dynamics.machine.groups import all_drive, all_resist, all_settle
 from dynamics.machine.steps import INLINED, begin_step, end_step, move
 
 #: sweeps over frictions that push one another; one or two are the rule
-_MOST_SWEEPS = 25
+_MOST_SWEEPS = 40
 
 
 class Loads(NamedTuple):
