@@ -187,8 +187,9 @@ def move_axes(
     points = _set_points(machine, plan, step)
     rows = {} if tool is None else {f"tool {way}": tool[i] for i, way in enumerate("xyz")}
     duration = len(points.position) * points.steps * step + plan.afterwards
-    inputs = RunInputs(duration, points, outputs=rows, stride=points.steps)
-    run = run_machine(machine, step, inputs, progress)
+    finer = _records_a_cycle(machine, points.steps)
+    inputs = RunInputs(duration, points, outputs=rows, stride=points.steps // finer)
+    run = _by_cycle(run_machine(machine, step, inputs, progress), finer)
     columns = [machine.axes.index(axis) for axis in plan.axes]
     # a row is read at the end of its cycle, when the next set point holds
     place = np.minimum(np.arange(1, len(run.time) + 1), len(points.position) - 1)
@@ -216,6 +217,36 @@ def move_axes(
         _efforts(machine, run, plan.axes),
         contour,
         {one.name: -run.force[f"friction {one.name}"] for one in machine.frictions},
+        run.interrupted,
+    )
+
+
+def _records_a_cycle(machine: Machine, steps: int) -> int:
+    """Records in a cycle of the set points: one a sample of the fastest velocity loop."""
+    fastest = min((drive.controller.velocity.timing.sample_time for drive in machine.drives))
+    slowest = max((drive.controller.position.timing.sample_time for drive in machine.drives))
+    wanted = max(1, round(slowest / fastest))
+    return max(count for count in range(1, wanted + 1) if steps % count == 0)
+
+
+def _by_cycle(run: MachineRun, finer: int) -> MachineRun:
+    """Motion at the end of every cycle, and the mean of the forces over it.
+
+    The torque is a staircase of the loops inside; a sample of it would alias them.
+    """
+    rows = len(run.time) // finer
+
+    def last(values: NDArray) -> NDArray[np.float64]:
+        return values[finer - 1 :: finer][:rows]
+
+    def mean(values: NDArray) -> NDArray[np.float64]:
+        return values[: rows * finer].reshape(rows, finer).mean(axis=1)
+
+    return MachineRun(
+        last(run.time),
+        {name: last(values) for name, values in run.displacement.items()},
+        {name: last(values) for name, values in run.velocity.items()},
+        {name: mean(values) for name, values in run.force.items()},
         run.interrupted,
     )
 

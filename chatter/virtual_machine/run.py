@@ -141,7 +141,12 @@ def run_machine(
 
 def _check_lengths(machine: Machine, inputs: RunInputs, total: int) -> None:
     for name, (row, force) in inputs.loads.items():
-        if row.shape != (machine.structure.size,) or len(force) != total + 1:
+        if row.shape != (machine.structure.size,):
+            raise InputError(
+                f'load "{name}": a row of {row.size} freedoms; the machine has '
+                f"{machine.structure.size}"
+            )
+        if len(force) != total + 1:
             raise InputError(
                 f'load "{name}": {len(force)} forces for {total} steps; one more than steps'
             )
