@@ -18,6 +18,8 @@ methods            the methods behind one call
 lobe_diagram       `lobes`: limits over speed, pockets, files
 stability_check    `check`: verdict on the operating point
 simulation         `simulate`: the cut in the time domain
+what_if            `whatif`: what would change if values were others
+monte_carlo        `uncertainty`: tolerances of the input to limits
 judgement          chatter or not, from the signals of a cut
 machine_file       the machine file: bodies, drives, friction, control -> a machine
 virtual_machine    `frf`, `move`: virtual tests of a machine
@@ -45,11 +47,13 @@ if TYPE_CHECKING:
     from chatter.lobe_diagram import lobes as lobes
     from chatter.machine_file import load_machine as load_machine
     from chatter.modal_test import modes as modes
+    from chatter.monte_carlo.study import uncertainty as uncertainty
     from chatter.simulation.bifurcation import bifurcation as bifurcation
     from chatter.simulation.simulate import simulate as simulate
     from chatter.stability_check import check as check
     from chatter.virtual_machine.from_file import frf as frf
     from chatter.virtual_machine.from_file import move as move
+    from chatter.what_if.study import whatif as whatif
 
 __version__ = "0.1.0"
 
@@ -69,6 +73,8 @@ _PUBLIC = {
     "move": "chatter.virtual_machine.from_file",
     "schema": "chatter.case",
     "simulate": "chatter.simulation.simulate",
+    "uncertainty": "chatter.monte_carlo.study",
+    "whatif": "chatter.what_if.study",
 }
 
 __all__ = sorted(_PUBLIC)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
-from pydantic import Field, model_validator
+from pydantic import Field, PrivateAttr, model_validator
 
 from chatter.case.base import raise_if_any
 from chatter.case.checks import engagement_problems, engagement_problems_of_draft
@@ -19,6 +19,9 @@ from chatter.case.sections import Axis, Contact, Friction, Lobes, ProcessDamping
 from chatter.case.structure import StructureSection
 from chatter.case.tool import Tool
 from chatter.errors import InputError
+
+if TYPE_CHECKING:
+    from chatter.machine_file import MachineFile
 
 
 class Case(Description):
@@ -53,6 +56,9 @@ class Case(Description):
     stock: Stock | None = None
     lobes: Lobes | None = None
 
+    #: takes the place of the file that structure.machine names; no file holds it
+    _machine: Any = PrivateAttr(default=None)
+
     @model_validator(mode="after")
     def _check_engagement(self) -> Case:
         if self.tool is not None and self.cut is not None:
@@ -71,6 +77,8 @@ class Case(Description):
             entry["file"] = str(Path(entry["file"]).resolve())
         if self.structure.machine is not None:
             content["structure"]["machine"] = str(self.structure.machine.resolve())
+        if self._machine is not None:
+            content["structure"]["machine"] = self._machine._content()
 
     @classmethod
     def _move_references(cls, document: Any, old: Path, new: Path) -> None:
@@ -81,6 +89,34 @@ class Case(Description):
         """Radial depth of cut, m: the diameter where a slot does not give it."""
         given = self.cut.radial_depth
         return self.tool.diameter if given is None else given
+
+    def machine_file(self) -> MachineFile:
+        """Machine of [structure]: the one that was put in its place, else that of the file."""
+        from chatter.machine_file import load_machine
+
+        return load_machine(self.structure.machine) if self._machine is None else self._machine
+
+    def with_machine(self, machine: MachineFile) -> Case:
+        """Return the case on another machine than that of the file that it names.
+
+        Raises
+        ------
+        InputError
+            If the case is on no machine.
+        """
+        if self.structure is None or self.structure.machine is None:
+            raise InputError(f"{self.name}: structure.machine is missing; it is on no machine")
+        moved = self.model_copy()
+        moved._machine = machine
+        return moved
+
+    def patch(self, values: Mapping[str, Any]) -> Case:
+        """Return the case with some values changed, on the same machine; see `Description`."""
+        patched = super().patch(values)
+        named = None if patched.structure is None else patched.structure.machine
+        if self._machine is not None and named == self.structure.machine:
+            patched._machine = self._machine
+        return patched
 
     def require(self, *sections: str) -> None:
         """Raise InputError naming every one of the sections that the case lacks."""

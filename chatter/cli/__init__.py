@@ -4,7 +4,19 @@ from __future__ import annotations
 
 import typer
 
-from chatter.cli import bifurcation, check, examples, frf, lobes, modes, move, schema, simulate
+from chatter.cli import (
+    bifurcation,
+    check,
+    examples,
+    frf,
+    lobes,
+    modes,
+    move,
+    schema,
+    simulate,
+    uncertainty,
+    whatif,
+)
 
 app = typer.Typer(
     name="chatter",
@@ -19,6 +31,8 @@ COMMANDS = (
     lobes.lobes,
     simulate.simulate,
     bifurcation.bifurcation,
+    whatif.whatif,
+    uncertainty.uncertainty,
     modes.modes,
     frf.frf,
     move.move,

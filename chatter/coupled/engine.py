@@ -23,7 +23,7 @@ from cutting.tool_point import Turn
 from dynamics.machine.groups import all_drive, all_resist, all_settle
 from dynamics.machine.steps import add_change, begin_step, end_step, move
 
-_MOST_SWEEPS = 25
+_MOST_SWEEPS = 40
 
 
 class ToolSide(NamedTuple):
@@ -132,34 +132,40 @@ def coupled_step(cut, machine, s, tool, point, number, step_number, row):
     number : int
         Of the step since the machine started.
     step_number : int
-        Since the cut began.
+        Since the cut began; -1 for the step before, at the end of which the cut takes hold of the
+        machine.
     row : int
         In the chunk.
     """
-    begin_step(s)
-    all_drive(machine, s, number, row)
-    for axis in range(3):
-        s.force[tool.port[axis]] += tool.force[axis]
-    if tool.spindle.shape[0] > 0:
-        s.force[tool.spindle[0]] -= tool.torque[0]
-    move(s)
+    moves = step_number >= 0
+    if moves:
+        begin_step(s)
+        all_drive(machine, s, number, row)
+        for axis in range(3):
+            s.force[tool.port[axis]] += tool.force[axis]
+        if tool.spindle.shape[0] > 0:
+            s.force[tool.spindle[0]] -= tool.torque[0]
+        move(s)
     _take_motion(tool, s, point, step_number)
     _clear(point)
     all_act(cut, _turn(tool, s, step_number), point)
+    if moves:
+        for axis in range(3):
+            add_change(s, tool.port[axis], point.force[axis] - tool.force[axis])
+        if tool.spindle.shape[0] > 0:
+            add_change(s, tool.spindle[0], tool.torque[0] - point.torque[0])
+        for _ in range(_MOST_SWEEPS):
+            if not all_resist(machine, s):
+                break
+        all_settle(machine, s)
     for axis in range(3):
-        add_change(s, tool.port[axis], point.force[axis] - tool.force[axis])
         tool.force[axis] = point.force[axis]
-    if tool.spindle.shape[0] > 0:
-        add_change(s, tool.spindle[0], tool.torque[0] - point.torque[0])
     tool.torque[0] = point.torque[0]
-    for _ in range(_MOST_SWEEPS):
-        if not all_resist(machine, s):
-            break
-    all_settle(machine, s)
     _take_motion(tool, s, point, step_number)
     turn = _turn(tool, s, step_number)
     all_settle_cut(cut, turn, point)
-    end_step(s)
+    if moves:
+        end_step(s)
     return turn
 
 
@@ -194,7 +200,7 @@ def run_coupled(cut, machine, s, tool, point, record, first, done, count, furthe
     first : int
         Steps of the machine before the cut began.
     done : int
-        Steps since.
+        Steps since; -1 at first.
     count : int
         Steps to do.
     furthest : float
@@ -212,9 +218,9 @@ def run_coupled(cut, machine, s, tool, point, record, first, done, count, furthe
         for axis in range(3):
             reach = max(reach, abs(point.displacement[axis]))
         # not above: also true of what is not a number
-        if not reach <= furthest or not turn.advance > 0.0:
+        if not reach <= furthest or (step_number >= 0 and not turn.advance > 0.0):
             return i
-        if (step_number + 1) % record.stride == 0:
+        if step_number >= 0 and (step_number + 1) % record.stride == 0:
             row = (step_number + 1) // record.stride - 1
             _keep(record, row, s, tool, point, turn, step_number)
     return count

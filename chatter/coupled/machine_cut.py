@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from chatter.case import Case
 from chatter.errors import InputError
-from chatter.machine_file import MachineFile, load_machine
+from chatter.machine_file import MachineFile
 from chatter.virtual_machine.rigid_motion import rigid_motion
 from dynamics.coupling import Term
 from dynamics.machine.description import Machine
@@ -101,7 +101,7 @@ def machine_cut(case: Case, friction: bool | None = None) -> MachineCut:
         If the machine cannot make the cut: no tool point, a spindle across the tool.
     """
     section = case.structure
-    file = load_machine(section.machine)
+    file = case.machine_file()
     if file.tool_point is None:
         raise InputError(f"{file.name}: tool_point is missing; {case.name} cuts there")
     machine = file.machine(section.condition, section.position)

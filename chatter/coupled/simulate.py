@@ -124,12 +124,12 @@ def simulate_on_machine(
     cut = ChunkedRun(setup)
     if setup.turns_before:
         cut.carve_before(Record(1, np.zeros((1, len(COLUMNS)))))
-    total, done, interrupted = setup.steps, 0, False
+    total, done, interrupted = setup.steps, -1, False
     groups = setup.groups
     while done < total:
         count = min(cut.chunk, _STEPS_A_CHUNK, total - done)
         if cut.stock is not None:
-            groups = (cut.stock.follow(setup.path.feed * done * setup.step), *groups[1:])
+            groups = (cut.stock.follow(setup.path.feed * max(done, 0) * setup.step), *groups[1:])
         try:
             ran = run_coupled(
                 groups, machine, s, tool, point, record, setup.settling, done, count, setup.furthest
@@ -147,7 +147,7 @@ def simulate_on_machine(
             f"{setup.furthest * 1e3:.3g} mm, a share of its radius at which the model of the cut "
             "no longer holds; the cut is far from stable, or the machine too soft"
         )
-    rows = done // record.stride
+    rows = max(done, 0) // record.stride
     return MachineResult(
         setup=setup if cut.stock is None else after_run(setup, cut.stock),
         rows=record.cut[:rows, :7],

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from chatter.result_files import as_json, finite_or_none, write_results
 from chatter.virtual_machine.rigid_motion import rigid_motion
+from dynamics.frf import Frf
 from dynamics.friction.coulomb_stribeck import CoulombStribeck
 from dynamics.friction.laws import FrictionLaw
-from dynamics.frf import Frf
 from dynamics.machine.description import Machine
 from dynamics.machine.harmonic import Linearised, at_amplitude, at_rest, at_velocity, receptance
 

@@ -223,8 +223,8 @@ def move_axes(
 
 def _records_a_cycle(machine: Machine, steps: int) -> int:
     """Records in a cycle of the set points: one a sample of the fastest velocity loop."""
-    fastest = min((drive.controller.velocity.timing.sample_time for drive in machine.drives))
-    slowest = max((drive.controller.position.timing.sample_time for drive in machine.drives))
+    fastest = min(drive.controller.velocity.timing.sample_time for drive in machine.drives)
+    slowest = max(drive.controller.position.timing.sample_time for drive in machine.drives)
     wanted = max(1, round(slowest / fastest))
     return max(count for count in range(1, wanted + 1) if steps % count == 0)
 
