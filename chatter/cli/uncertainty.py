@@ -1,0 +1,83 @@
+"""`chatter uncertainty CASE`: what the tolerances of the input make of the limits."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from chatter.cli.errors import reports_errors
+from chatter.cli.options import (
+    Assignments,
+    CaseFile,
+    Json,
+    Method,
+    OutputFolder,
+    output_folder,
+    patched_case,
+)
+from chatter.cli.report import (
+    MESSAGES,
+    announce_compilation,
+    print_json,
+    print_written,
+    progress_bar,
+)
+
+
+@reports_errors
+def uncertainty(
+    case: CaseFile,
+    samples: Annotated[int, typer.Option("--samples", help="Number of samples.")] = 200,
+    seed: Annotated[int, typer.Option("--seed", help="Of the random numbers.")] = 1,
+    speeds: Annotated[int, typer.Option("--speeds", help="Speeds of the band.")] = 31,
+    assignments: Assignments = None,
+    method: Method = None,
+    out: OutputFolder = None,
+    json: Json = False,
+) -> None:
+    """Propagate values such as "1650 +- 80 MPa" to a band of lobes and a probability."""
+    description = patched_case(case, assignments)
+    from chatter.monte_carlo.study import uncertainty as run_uncertainty
+
+    announce_compilation()
+    folder = output_folder(out, case.stem)
+    with progress_bar("samples") as progress:
+        found = run_uncertainty(
+            description,
+            samples,
+            seed,
+            speeds=speeds,
+            method=method,
+            folder=folder,
+            progress=progress,
+            resumed=_say_resumed,
+        )
+    written = found.save(folder)
+    if json:
+        print_json(found.summary())
+    else:
+        _tell(found.summary())
+    print_written(written)
+
+
+def _say_resumed(before: int, total: int) -> None:
+    MESSAGES.print(f"{before} of {total} samples were finished before", markup=False)
+
+
+def _tell(summary: dict) -> None:
+    point, limit = summary["operating_point"], summary["limit_at_operating_speed_mm"]
+    low, high = point["confidence_interval_95"]
+    typer.echo(
+        f"{point['axial_depth_mm']:.4g} mm at {point['spindle_speed_rpm']:.0f} rpm is stable with "
+        f"a probability of {point['probability_of_stability']:.1%} (95 % confidence: {low:.1%} to "
+        f"{high:.1%}, {summary['samples']} samples)"
+    )
+    ends = [
+        "none found" if limit[key] is None else f"{limit[key]:.4g} mm"
+        for key in ("5_percent", "50_percent", "95_percent")
+    ]
+    typer.echo(f"limit depth there: median {ends[1]}, 5 % below {ends[0]}, 5 % above {ends[2]}")
+    for one in sorted(summary["parameters"], key=lambda p: -(p["share_of_variance"] or 0.0)):
+        if one["share_of_variance"] is not None:
+            typer.echo(f"{one['path']}: {one['share_of_variance']:.0%} of its variance")

@@ -1,0 +1,150 @@
+"""`chatter whatif CASE --vary PATH=v1,v2`: what would change if a value were another."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from chatter.case import parse_assignments
+from chatter.cli.errors import reports_errors
+from chatter.cli.options import Assignments, Json, Method, OutputFolder, output_folder
+from chatter.cli.report import (
+    MESSAGES,
+    announce_compilation,
+    print_json,
+    print_written,
+    progress_bar,
+)
+from chatter.errors import InputError
+
+if TYPE_CHECKING:
+    from chatter.what_if.ready import ReadyStudy
+    from chatter.what_if.study import WhatIf
+
+
+@reports_errors
+def whatif(
+    file: Annotated[
+        Path | None,
+        typer.Argument(metavar="CASE|MACHINE", help="Case or machine file; a study has its own."),
+    ] = None,
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--vary",
+            metavar="PATH=VALUES",
+            help='"1 mm, 2 mm", "1 mm..4 mm" or "+-10%"; once for an overlay, twice for a heat '
+            "map, more with --tornado. Paths into the machine of a case begin with machine.",
+        ),
+    ] = None,
+    count: Annotated[int | None, typer.Option("--count", help="Values of a range [5].")] = None,
+    result: Annotated[
+        str | None,
+        typer.Option("--result", help="lobes, critical depth, forces, surface or frf."),
+    ] = None,
+    tornado: Annotated[
+        bool, typer.Option("--tornado", help="Each path low and high, one at a time.")
+    ] = False,
+    quantity: Annotated[
+        str | None, typer.Option("--quantity", help="Number to show, by its column in whatif.csv.")
+    ] = None,
+    study: Annotated[
+        str | None, typer.Option("--study", metavar="NAME", help="A ready study.")
+    ] = None,
+    studies: Annotated[bool, typer.Option("--studies", help="List the ready studies.")] = False,
+    only: Annotated[
+        list[str] | None, typer.Option("--only", help="Name of a [frf.NAME]; repeatable.")
+    ] = None,
+    assignments: Assignments = None,
+    method: Method = None,
+    out: OutputFolder = None,
+    json: Json = False,
+) -> None:
+    """Ask what would change: lobes, limits, forces, surface or FRFs over values of any path."""
+    if studies:
+        _list_studies()
+        return
+    chosen = _chosen(study, vary)
+    if file is None:
+        if chosen is None:
+            raise InputError("a case or machine file is wanted, or --study NAME; --studies lists")
+        file = chosen.file()
+    from chatter.what_if.subject import load_subject, patched
+
+    subject = patched(load_subject(file), parse_assignments(assignments or []))
+    name = file.parent.name if chosen is not None else file.stem
+    folder = output_folder(out, f"{name}-{study}" if study else name)
+    if chosen is not None:
+        subject = _fitted(chosen, lambda: patched(subject, chosen.settings))
+    from chatter.what_if import whatif as run_whatif
+
+    announce_compilation()
+    with progress_bar("points") as progress:
+        found = _fitted(
+            chosen,
+            lambda: run_whatif(
+                subject,
+                vary or (chosen.vary if chosen else []),
+                result or (chosen.result if chosen else None),
+                tornado=tornado or (chosen is not None and chosen.tornado),
+                count=count,
+                quantity=quantity or (chosen.quantity if chosen else None),
+                method=method,
+                only=only or (chosen.only if chosen else ()),
+                folder=folder,
+                progress=progress,
+                resumed=_say_resumed,
+            ),
+        )
+    _tell(found, folder, json)
+
+
+def _tell(found: WhatIf, folder: Path, json: bool) -> None:
+    written = found.save(folder)
+    if json:
+        print_json(found.summary())
+    else:
+        for sentence in found.sentences:
+            typer.echo(sentence)
+    print_written(written)
+
+
+def _chosen(study: str | None, vary: list[str] | None) -> ReadyStudy | None:
+    if study is None:
+        return None
+    if vary:
+        raise InputError("--study and --vary are both given; a study has its own paths and values")
+    from chatter.what_if.ready import ready_study
+
+    return ready_study(study)
+
+
+def _fitted(chosen: ReadyStudy | None, make):
+    """Result of a function; errors of a study on another file say what it was made for."""
+    try:
+        return make()
+    except InputError as error:
+        if chosen is None:
+            raise
+        hint = f"--study {chosen.name} is made for the example {chosen.example}"
+        raise InputError([*error.messages, hint]) from None
+
+
+def _say_resumed(before: int, total: int) -> None:
+    MESSAGES.print(f"{before} of {total} points were finished before", markup=False)
+
+
+def _list_studies() -> None:
+    from chatter.what_if.ready import STUDIES
+
+    for one in STUDIES.values():
+        typer.echo(f"{one.name}: {one.question}")
+        typer.echo(f"    chatter whatif --study {one.name}      (example {one.example})")
+        for each in one.vary:
+            typer.echo(f"    --vary '{each}'")
+        for path, value in one.settings.items():
+            typer.echo(f"    with {path} = {value}")
+        flag = " --tornado" if one.tornado else ""
+        typer.echo(f"    --result {one.result}{flag}")

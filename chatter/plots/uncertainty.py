@@ -1,0 +1,115 @@
+"""Picture of uncertain limits: band of lobes, distribution, convergence."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from chatter.plots import style
+
+if TYPE_CHECKING:
+    from chatter.monte_carlo.study import Uncertainty
+
+_RPM = 30.0 / math.pi
+_BINS = 24
+#: samples drawn as thin lines
+_SHOWN_SAMPLES = 25
+
+
+def plot_uncertainty(found: Uncertainty) -> Figure:
+    """Draw the band of lobes, the limit at the speed of the cut and the convergence.
+
+    Parameters
+    ----------
+    found : Uncertainty
+    """
+    figure = style.new_figure(9.0, 7.2)
+    figure.suptitle(found.case.title or found.case.name, fontsize=11.0, x=0.01, ha="left")
+    grid = figure.add_gridspec(2, 2, height_ratios=[1.6, 1.0])
+    draw_band(figure.add_subplot(grid[0, :]), found)
+    draw_distribution(figure.add_subplot(grid[1, 0]), found)
+    draw_convergence(figure.add_subplot(grid[1, 1]), found)
+    return figure
+
+
+def draw_band(axes: Axes, found: Uncertainty) -> None:
+    """Draw quantiles of the limit over speed, and the cut with its probability."""
+    speed, cut = found.speeds * _RPM, found.case.cut
+    top = max(found.searched_to, 1.05 * cut.axial_depth) * 1e3
+    low, middle, high = found.quantiles() * 1e3
+    axes.fill_between(
+        speed, np.minimum(low, top), np.minimum(high, top), color=style.BLUE, alpha=0.22,
+        linewidth=0.0, label="5 to 95 % of the limits",
+    )  # fmt: skip
+    for row in found.limits[:_SHOWN_SAMPLES] * 1e3:
+        axes.plot(speed, _finite(row), color=style.BLUE, linewidth=0.35, alpha=0.35)
+    axes.plot(speed, _finite(middle), color=style.BLUE, linewidth=1.8, label="median limit")
+    ends = found.interval
+    axes.plot(
+        cut.spindle_speed * _RPM,
+        cut.axial_depth * 1e3,
+        "o",
+        color=style.RED if found.probability < 0.5 else style.GREEN,
+        markeredgecolor="black",
+        markersize=9,
+        label=f"cut: stable with {found.probability:.1%} ({ends[0]:.1%} to {ends[1]:.1%})",
+        zorder=5,
+    )
+    axes.set_xlim(speed[0], speed[-1])
+    axes.set_ylim(0.0, _shown_to(found, high, top))
+    axes.set_xlabel("spindle speed [rpm]")
+    axes.set_ylabel("axial depth [mm]")
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, fontsize=8.5, frameon=False)
+    style.finish(axes)
+
+
+def _shown_to(found: Uncertainty, high: np.ndarray, top: float) -> float:
+    if not np.isfinite(high).all():
+        return top
+    return min(top, 1.1 * max(float(high.max()), found.case.cut.axial_depth * 1e3))
+
+
+def _finite(values: np.ndarray) -> np.ndarray:
+    return np.where(np.isfinite(values), values, np.nan)
+
+
+def draw_distribution(axes: Axes, found: Uncertainty) -> None:
+    """Draw the distribution of the limit at the speed of the cut."""
+    limit = found.operating[np.isfinite(found.operating)] * 1e3
+    if limit.size:
+        spread = np.ptp(limit) > 0.0
+        axes.hist(limit, bins=_BINS if spread else 1, color=style.BLUE, alpha=0.6)
+        for value, line in zip(found.operating_quantiles() * 1e3, (":", "-", ":"), strict=True):
+            if np.isfinite(value):
+                axes.axvline(value, color=style.BLUE, linestyle=line, linewidth=1.4)
+    depth = found.case.cut.axial_depth * 1e3
+    axes.axvline(depth, color="black", linewidth=1.4, linestyle=(0, (4, 2)))
+    axes.annotate(
+        "depth of the cut", (depth, 0.99), xycoords=("data", "axes fraction"), rotation=90,
+        ha="right", va="top", fontsize=7.5,
+    )  # fmt: skip
+    missing = len(found.operating) - limit.size
+    beyond = f" ({missing} samples above {found.searched_to * 1e3:.3g} mm)" if missing else ""
+    axes.set_xlabel(f"limit at {found.case.cut.spindle_speed * _RPM:.0f} rpm [mm]{beyond}")
+    axes.set_ylabel("samples")
+    style.finish(axes)
+
+
+def draw_convergence(axes: Axes, found: Uncertainty) -> None:
+    """Draw the probability of a stable cut over the number of samples."""
+    count, share, ends = found.convergence()
+    axes.fill_between(
+        count, ends[:, 0], ends[:, 1], color=style.ORANGE, alpha=0.3, linewidth=0.0,
+        label="95 % confidence",
+    )  # fmt: skip
+    axes.plot(count, share, color=style.RED, linewidth=1.4, label="probability of stability")
+    axes.set_xlim(1, count[-1])
+    axes.set_ylim(-0.02, 1.02)
+    axes.set_xlabel("samples")
+    axes.set_ylabel("probability")
+    axes.legend(fontsize=8.0, frameon=False, loc="best")
+    style.finish(axes)

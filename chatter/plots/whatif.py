@@ -1,0 +1,245 @@
+"""Pictures of what-if studies: overlay, heat map, tornado."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from chatter.plots import style
+from chatter.what_if import telling
+
+if TYPE_CHECKING:
+    from chatter.what_if.study import WhatIf
+
+_LONGEST_LABEL = 60
+_MOST_TICKS = 10
+_MOST_WRITTEN = 150
+
+
+def plot_whatif(study: WhatIf) -> Figure:
+    """Draw a study as its layout asks for.
+
+    Parameters
+    ----------
+    study : WhatIf
+    """
+    return {"overlay": _overlay, "heat map": _heat_map, "tornado": _tornado}[study.layout](study)
+
+
+def _title(study: WhatIf) -> str:
+    return study.subject.title or study.subject.name
+
+
+def _quantity_label(study: WhatIf) -> str:
+    quantity = study.measure.quantities[study.quantity]
+    found = [telling.unit_of(quantity, one, study.quantity) for one in study.outcomes]
+    unit = next((f" [{one}]" for one in found if one), "")
+    return telling.title_of(study, quantity) + unit.replace("[um]", "[µm]")
+
+
+def _colours(count: int) -> list:
+    """From dark to light in the order of the values, readable without colour vision."""
+    return [mpl.colormaps["viridis"](0.88 * k / max(count - 1, 1)) for k in range(count)]
+
+
+def _overlay(study: WhatIf) -> Figure:
+    panels = list(
+        dict.fromkeys((curve.panel, curve.name) for one in study.outcomes for curve in one.curves)
+    )
+    path = study.variations[0]
+    single = not panels
+    count = len(panels) + 1
+    figure = style.new_figure(8.5, 3.2 * max(count, 1.5) if single else 2.7 * count + 1.0)
+    figure.suptitle(f"{_title(study)}: {study.measure.name}", fontsize=11.0, x=0.01, ha="left")
+    axes = figure.subplots(count, 1, squeeze=False)[:, 0]
+    colours = _colours(len(study.points))
+    for place, (panel, name) in enumerate(panels):
+        _draw_curves(axes[place], study, panel, name, colours)
+    if panels:
+        axes[0].legend(
+            title=path.path, fontsize=8.0, title_fontsize=8.0, frameon=False,
+            loc="center left", bbox_to_anchor=(1.0, 0.5),
+        )  # fmt: skip
+    _draw_numbers(axes[-1], study, colours)
+    return figure
+
+
+def _draw_curves(axes: Axes, study: WhatIf, panel: str, name: str, colours: list) -> None:
+    across = ""
+    for outcome, point, colour in zip(study.outcomes, study.points, colours, strict=True):
+        for curve in outcome.curves:
+            if (curve.panel, curve.name) != (panel, name):
+                continue
+            across = curve.across
+            x, y = (np.array(part, dtype=np.float64) for part in (curve.x, curve.y))
+            label = point.labels[0][:_LONGEST_LABEL]
+            axes.plot(x, y, color=colour, linewidth=1.3, label=label)
+    if study.measure.logarithmic:
+        axes.set_yscale("log")
+    else:
+        axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
+    if study.measure.name == "lobes":
+        _mark_operating_point(axes, study)
+    axes.margins(x=0.0)
+    axes.set_xlabel(across)
+    axes.set_ylabel(panel if not name else f"{name}\n{panel}")
+    style.finish(axes)
+
+
+def _mark_operating_point(axes: Axes, study: WhatIf) -> None:
+    cut = study.subject.cut
+    axes.plot(
+        cut.spindle_speed * 30.0 / np.pi,
+        cut.axial_depth * 1e3,
+        "o",
+        color="black",
+        markersize=6,
+        label="operating point",
+        zorder=5,
+    )
+
+
+def _draw_numbers(axes: Axes, study: WhatIf, colours: list) -> None:
+    """The number shown, over the values of the path."""
+    one = study.variations[0]
+    numbers = one.numbers
+    x = np.arange(len(one.values)) if numbers is None else np.array(numbers)
+    y = np.array([np.nan if value is None else value for value in study.values()])
+    axes.plot(x, y, color=style.GREY, linewidth=1.0, zorder=1)
+    for place, colour in enumerate(colours):
+        axes.plot(x[place], y[place], "o", color=colour, markeredgecolor="black", markersize=7)
+    missing = np.isnan(y)
+    if missing.any():
+        top = np.nanmax(y) if not missing.all() else 1.0
+        axes.plot(
+            x[missing], np.full(missing.sum(), top), "^", color="white", markeredgecolor="black",
+            markersize=8, label="none found, or no result",
+        )  # fmt: skip
+        axes.legend(fontsize=8.0, frameon=False)
+    if numbers is None:
+        axes.set_xticks(x, [_wrapped(value.label[:_LONGEST_LABEL], 16) for value in one.values])
+    if not missing.all():
+        _mark_verdicts(axes, study, x, y)
+        axes.margins(y=0.18)
+    axes.set_xlabel(one.axis_label)
+    axes.set_ylabel(_wrapped(_quantity_label(study)))
+    axes.ticklabel_format(axis="y", scilimits=(-3, 5), useOffset=False)
+    style.finish(axes)
+
+
+def _mark_verdicts(axes: Axes, study: WhatIf, x: np.ndarray, y: np.ndarray) -> None:
+    verdicts = [outcome.words.get("verdict", "") for outcome in study.outcomes]
+    if len(set(verdicts)) < 2:
+        return
+    for place, verdict in enumerate(verdicts):
+        if np.isfinite(y[place]):
+            axes.annotate(
+                verdict, (x[place], y[place]), xytext=(0, 8), textcoords="offset points",
+                ha="center", fontsize=7.5,
+            )  # fmt: skip
+
+
+def _wrapped(label: str, width: int = 26) -> str:
+    words, lines = label.split(), [""]
+    for word in words:
+        if len(lines[-1]) + len(word) > width and lines[-1]:
+            lines.append("")
+        lines[-1] = f"{lines[-1]} {word}".strip()
+    return "\n".join(lines)
+
+
+def _heat_map(study: WhatIf) -> Figure:
+    down, across = study.variations
+    shape = len(down.values), len(across.values)
+    values = np.array([np.nan if value is None else value for value in study.values()])
+    values = values.reshape(shape)
+    figure = style.new_figure(min(12.0, 4.0 + 0.62 * shape[1] + 1.2), 2.6 + 0.5 * shape[0])
+    axes = figure.subplots()
+    axes.set_facecolor("#FFFFFF")
+    colours = mpl.colormaps["viridis"].copy()
+    colours.set_bad("#FFFFFF")
+    image = axes.imshow(
+        np.ma.masked_invalid(values), origin="lower", aspect="auto", cmap=colours,
+        interpolation="nearest",
+    )  # fmt: skip
+    axes.set_title(_title(study), fontsize=10.0, loc="left")
+    _ticks(axes.xaxis, across)
+    _ticks(axes.yaxis, down)
+    axes.tick_params(axis="x", labelrotation=30)
+    axes.set_xlabel(across.path)
+    axes.set_ylabel(_wrapped(down.path.replace(".", ". ")).replace(". ", "."))
+    figure.colorbar(image, label=_quantity_label(study))
+    if values.size <= _MOST_WRITTEN:
+        _write_values(axes, study, values)
+    return figure
+
+
+def _ticks(axis: object, one: object) -> None:
+    step = -(-len(one.values) // _MOST_TICKS)
+    places = range(0, len(one.values), step)
+    axis.set_ticks(list(places), [one.values[k].label[: _LONGEST_LABEL // 2] for k in places])
+
+
+def _write_values(axes: Axes, study: WhatIf, values: np.ndarray) -> None:
+    """Values in their fields; stable and chatter where the verdict differs."""
+    finite = values[np.isfinite(values)]
+    middle = 0.5 * (finite.min() + finite.max()) if finite.size else 0.0
+    for place, outcome in enumerate(study.outcomes):
+        row, column = divmod(place, values.shape[1])
+        value = values[row, column]
+        if np.isfinite(value):
+            text, colour = f"{value:.3g}", "black" if value > middle else "white"
+        else:
+            text = "failed" if outcome.failure else "none\nfound"
+            colour = "black"
+        axes.text(column, row, text, ha="center", va="center", fontsize=7.5, color=colour)
+
+
+def _tornado(study: WhatIf) -> Figure:
+    quantity = study.measure.quantities[study.quantity]
+    base = study.values()[0]
+    order = list(telling.ranked(study))
+    figure = style.new_figure(9.0, 2.0 + 0.55 * len(order))
+    axes = figure.subplots()
+    for row, place in enumerate(reversed(order)):
+        if base is not None:
+            _draw_swing(axes, study, place, row)
+    if base is not None:
+        axes.axvline(base, color="black", linewidth=1.0)
+        text = telling.value_text(quantity, study.outcomes[0], study.quantity)
+        axes.set_title(f"{_title(study)}; as given: {text}", fontsize=10.0, loc="left")
+    axes.set_yticks(range(len(order)), [study.variations[k].path for k in reversed(order)])
+    axes.set_xlabel(_quantity_label(study))
+    for colour, label in _ENDS:
+        axes.plot([], [], "s", color=colour, markersize=8, label=label)
+    axes.legend(fontsize=8.0, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    axes.margins(x=0.22)
+    style.finish(axes)
+    return figure
+
+
+_ENDS = ((style.BLUE, "low value"), (style.ORANGE, "high value"))
+
+
+def _draw_swing(axes: Axes, study: WhatIf, place: int, row: int) -> None:
+    """Bars of one path; in two lanes where both ends lie on the same side."""
+    values = study.values()
+    base, low, high = values[0], values[1 + 2 * place], values[2 + 2 * place]
+    known = low is not None and high is not None
+    same_side = known and (low - base) * (high - base) > 0.0
+    one = study.variations[place]
+    ends = ((low, one.values[0].label, 0.15), (high, one.values[-1].label, -0.15))
+    for (value, label, lane), (colour, _) in zip(ends, _ENDS, strict=True):
+        if value is None:
+            continue
+        y, height = (row + lane, 0.28) if same_side else (row, 0.56)
+        axes.barh(y, value - base, left=base, height=height, color=colour)
+        right = value > base or (value == base and lane < 0.0)
+        axes.annotate(
+            label, (value, y), xytext=(4 if right else -4, 0), textcoords="offset points",
+            ha="left" if right else "right", va="center", fontsize=7.5,
+        )  # fmt: skip

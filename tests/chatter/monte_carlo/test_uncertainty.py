@@ -1,0 +1,217 @@
+"""Uncertain values to a band of limits and a probability."""
+
+import csv
+import json
+import math
+import re
+
+import numpy as np
+import pytest
+from scipy.stats import norm, truncnorm
+from typer.testing import CliRunner
+
+from chatter.case import loads
+from chatter.cli import app
+from chatter.errors import InputError, RunError
+from chatter.monte_carlo import study as module
+from chatter.monte_carlo.confidence import wilson_interval
+from chatter.monte_carlo.parameters import UncertainParameter, parameters_of
+from chatter.monte_carlo.sampling import samples
+from chatter.monte_carlo.study import uncertainty
+
+TEXT = """
+title = "one degree of freedom"
+
+[tool]
+teeth = 2
+diameter = "16 mm"
+
+[material]
+Ktc = "600 +- 60 MPa"
+Krc = 0
+
+[cut]
+mode = "up"
+spindle_speed = "10000 rpm"
+feed_per_tooth = "0.1 mm"
+axial_depth = "1 mm"
+radial_depth = "8 mm"
+
+[[structure.mode]]
+frequency = "922 Hz"
+damping = 0.011
+mass = "0.03993 kg"
+direction = [1, 0, 0]
+
+[lobes]
+speeds = { from = "8000 rpm", to = "12000 rpm", count = 9 }
+depths = { to = "6 mm", count = 40 }
+method = "zero-order"
+"""
+FEW = {"speeds": 3}
+
+
+@pytest.fixture
+def case():
+    return loads(TEXT)
+
+
+def limit_of(case, **patch):
+    """Limit at the speed of the cut, m."""
+    fixed = {path.replace("__", "."): value for path, value in patch.items()}
+    from chatter.monte_carlo.propagation import sample_limits, shared_net
+
+    changed = case.patch({"material.Ktc": case.get("material.Ktc"), **fixed})
+    return sample_limits(changed, shared_net(case, 3), None).operating
+
+
+def test_a_force_coefficient_propagates_by_its_reciprocal(case):
+    """The limit is c / Ktc: its quantiles are those of Ktc, from the other end."""
+    found = uncertainty(case, 150, **FEW)
+    product = limit_of(case) * 600e6
+    assert found.operating == pytest.approx(product / found.values[:, 0], rel=1e-4)
+    for level, got in zip((0.05, 0.5, 0.95), found.operating_quantiles(), strict=True):
+        exact = product / norm.ppf(1.0 - level, 600e6, 60e6)
+        assert got == pytest.approx(exact, rel=0.015)
+    # P(c / Ktc > depth) = P(Ktc < c / depth)
+    depth = product / 660e6
+    shallow = uncertainty(case.patch({"cut.axial_depth": depth}), 150, **FEW)
+    exact = norm.cdf(1.0)
+    low, high = shallow.interval
+    assert low < exact < high
+    assert shallow.probability == pytest.approx(exact, abs=0.02)
+
+
+def test_small_deviations_give_the_variance_of_first_order(case):
+    """Delta method: sum of (slope times deviation) squared, by central differences."""
+    deviations = {
+        "material.Ktc": (600e6, 6e6),
+        "structure.mode[0].damping": (0.011, 1e-4),
+        "structure.mode[0].mass": (0.03993, 4e-4),
+    }
+    # a frequency kept while the mass varies: all three move the limit smoothly
+    given = {path: f"{mean!r} +- {one!r} " for path, (mean, one) in deviations.items()}
+    units = {"material.Ktc": "Pa", "structure.mode[0].damping": "", "structure.mode[0].mass": "kg"}
+    uncertain = case.patch({path: text + units[path] for path, text in given.items()})
+    found = uncertainty(uncertain, 200, **FEW)
+    variance = 0.0
+    for path, (mean, deviation) in deviations.items():
+        ends = []
+        for sign in (-1.0, 1.0):
+            plain = {other: mid for other, (mid, _) in deviations.items()}
+            changed = uncertain.patch({**plain, path: mean + sign * deviation})
+            ends.append(limit_of(changed, material__Ktc=changed.get("material.Ktc")))
+        variance += (0.5 * (ends[1] - ends[0])) ** 2
+    assert found.operating.std(ddof=1) == pytest.approx(math.sqrt(variance), rel=0.08)
+    shares = found.shares()
+    assert sum(shares.values()) == pytest.approx(1.0, abs=0.1)
+
+
+def test_the_same_seed_gives_the_same_samples_and_another_does_not(case):
+    parameters = parameters_of(case)
+    first = samples(parameters, 120, 3)
+    assert np.array_equal(first, samples(parameters, 120, 3))
+    # more samples go on where fewer ended
+    assert np.array_equal(first, samples(parameters, 300, 3)[:120])
+    assert not np.array_equal(first, samples(parameters, 120, 4))
+
+
+def test_signs_and_bounds_hold():
+    case = loads(TEXT.replace("damping = 0.011", 'damping = "0.011 +- 0.02"'))
+    found = {one.path: one for one in parameters_of(case)}
+    damping = found["structure.mode[0].damping"]
+    assert (damping.low, damping.high) == (0.0, 1.0)
+    values = samples([damping], 1000, 1)[:, 0]
+    assert values.min() > 0.0
+    exact = truncnorm(-0.011 / 0.02, (1.0 - 0.011) / 0.02, 0.011, 0.02)
+    assert values.mean() == pytest.approx(exact.mean(), rel=0.015)
+    assert values.std() == pytest.approx(exact.std(), rel=0.02)
+    negative = UncertainParameter("a", -1.0, 1.0, -np.inf, 0.0)
+    assert samples([negative], 100, 1).max() < 0.0
+
+
+def test_probability_converges_at_least_as_one_over_the_root_of_the_count():
+    """Error of P(a + b < 1) over seeds, against that of independent samples."""
+    parameters = [UncertainParameter(name, 0.0, 1.0) for name in "ab"]
+    exact = norm.cdf(1.0 / math.sqrt(2.0))
+    spread = {}
+    for count in (50, 800):
+        shares = [
+            float(np.mean(samples(parameters, count, seed).sum(axis=1) < 1.0)) for seed in range(60)
+        ]
+        spread[count] = float(np.sqrt(np.mean((np.array(shares) - exact) ** 2)))
+        independent = math.sqrt(exact * (1.0 - exact) / count)
+        assert spread[count] < independent
+    # 16 times the samples: a quarter of the error, within what 60 seeds tell of it
+    assert spread[50] / spread[800] == pytest.approx(4.0, rel=0.35)
+
+
+def test_wilson_interval_has_its_published_values():
+    # Newcombe 1998, Table I: 81 of 263, 15 of 148, 0 of 20, 1 of 29
+    for counts, ends in (
+        ((81, 263), (0.2553, 0.3662)),
+        ((15, 148), (0.0624, 0.1605)),
+        ((0, 20), (0.0, 0.1611)),
+        ((1, 29), (0.0061, 0.1718)),
+    ):
+        assert wilson_interval(*counts) == pytest.approx(ends, abs=5e-5)
+
+
+def test_files_and_resumption(case, tmp_path, monkeypatch):
+    real, calls = module.sample_limits, []
+
+    def limits(*args):
+        if len(calls) == 7:
+            raise KeyboardInterrupt
+        calls.append(args)
+        return real(*args)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(module, "sample_limits", limits)
+        with pytest.raises(RunError, match="7 of 30 samples are finished"):
+            uncertainty(case, 30, folder=tmp_path, **FEW)
+    told = []
+    found = uncertainty(case, 30, folder=tmp_path, resumed=lambda *a: told.append(a), **FEW)
+    assert told == [(7, 30)]
+    assert np.array_equal(found.limits, uncertainty(case, 30, **FEW).limits)
+    found.save(tmp_path)
+    rows = list(csv.DictReader((tmp_path / "uncertainty.csv").read_text().splitlines()))
+    assert [float(row["spindle_speed [rpm]"]) for row in rows] == [8000.0, 10000.0, 12000.0]
+    for row, limits in zip(rows, found.quantiles().T * 1e3, strict=True):
+        got = [float(row[f"limit_{level}_percent [mm]"]) for level in (5, 50, 95)]
+        assert got == pytest.approx(limits, rel=1e-6)
+        assert got == sorted(got)
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    assert summary["operating_point"]["probability_of_stability"] == found.probability
+    assert summary["convergence"][-1]["samples"] == 30
+    assert len((tmp_path / "samples.csv").read_text().splitlines()) == 31
+    assert (tmp_path / "uncertainty.png").stat().st_size > 10_000
+
+
+def test_limits_that_are_not_found_stay_above_all_others():
+    limits = np.array([[1.0], [2.0], [3.0], [np.inf]])
+    low, middle, high = module._quantiles(limits, (0.0, 0.5, 0.95))[:, 0]
+    assert (low, middle, high) == (1.0, 2.5, np.inf)
+
+
+def test_wrong_input_is_told(case):
+    with pytest.raises(InputError, match="no value is uncertain"):
+        uncertainty(case.patch({"material.Ktc": "600 MPa"}), 10)
+    with pytest.raises(InputError, match="--samples 1"):
+        uncertainty(case, 1)
+
+
+def test_the_command(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(TEXT)
+    words = ["uncertainty", path, "--samples", 20, "--speeds", 3, "--out", tmp_path / "out"]
+    result = CliRunner().invoke(app, [str(word) for word in words])
+    assert result.exit_code == 0, result.output
+    assert "is stable with a probability of" in result.stdout
+    # 1 / Ktc is nearly straight
+    assert re.search(r"material.Ktc: (9\d|100)% of its variance", result.stdout)
+    wrong = CliRunner().invoke(
+        app, ["uncertainty", str(path), "--set", "material.Ktc=600 MPa", "--out", str(tmp_path)]
+    )
+    assert wrong.exit_code == 2
+    assert "no value is uncertain" in wrong.stderr
