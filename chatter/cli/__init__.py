@@ -4,7 +4,19 @@ from __future__ import annotations
 
 import typer
 
-from chatter.cli import bifurcation, check, examples, frf, lobes, modes, move, schema, simulate
+from chatter.cli import (
+    bifurcation,
+    check,
+    compare,
+    examples,
+    explain,
+    frf,
+    lobes,
+    modes,
+    move,
+    schema,
+    simulate,
+)
 
 app = typer.Typer(
     name="chatter",
@@ -20,6 +32,8 @@ COMMANDS = (
     simulate.simulate,
     bifurcation.bifurcation,
     modes.modes,
+    compare.compare,
+    explain.explain,
     frf.frf,
     move.move,
     examples.examples,
