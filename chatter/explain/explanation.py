@@ -102,8 +102,9 @@ class Explanation:
         return self.found.problem.case(last.fit.by_name)
 
     def _noise_floor(self) -> float | None:
-        if not getattr(self.found.kind, "noise_is_white", True):
-            return None
+        floor = getattr(self.found.kind, "noise_floor", None)
+        if floor is not None:
+            return finite_or_none(floor(self.measurement))
         shares = {}
         for run in self.measurement.runs:
             for channel in self.found.kind.channels(run):

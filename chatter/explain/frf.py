@@ -61,6 +61,16 @@ class FrequencyResponse:
             runs.append(replace(run, signals={**run.signals, "certainty": 1.0 / scatter}))
         return replace(measurement, runs=tuple(runs))
 
+    def noise_floor(self, measurement: Measurement) -> float:
+        """Scatter over the signals, as errors are told."""
+        shares = {channel: [] for channel in _CHANNELS}
+        for run in measurement.runs:
+            scatter = float(np.sqrt(np.mean(run.signals["certainty"] ** -2.0)))
+            for channel in _CHANNELS:
+                level = float(np.sqrt(np.mean(run.signals[channel] ** 2)))
+                shares[channel].append((scatter / level) ** 2)
+        return float(np.mean([np.sqrt(np.mean(parts)) for parts in shares.values()]))
+
     def predict(self, case: Case, run: Run) -> Mapping[str, NDArray[np.float64]]:
         """Receptance of the modes, with the contact where the tool is in the cut."""
         frequency = run.signals["frequency"]

@@ -69,6 +69,10 @@ class Stability:
         )
         return replace(measurement, runs=runs)
 
+    def noise_floor(self, measurement: Measurement) -> float:  # noqa: ARG002
+        """Error of a model that is right: the share of verdicts judged wrongly for no reason."""
+        return float(np.sqrt(_WRONG))
+
     def predict(self, case: Case, run: Run) -> Mapping[str, NDArray[np.float64]]:
         """Probability of a stable verdict at every point."""
         margins = stability_margins(case, run.signals["spindle_speed"], run.signals["axial_depth"])
