@@ -111,6 +111,23 @@ def _on_lines(
     return np.stack(columns, axis=1).reshape(lines.size, 3, 3)
 
 
+def _given_modes(case: Case) -> GivenModes:
+    speed = case.cut.spindle_speed if case.cut is not None else 0.0
+    modes = []
+    for place, mode in enumerate(case.structure.mode):
+        frequency = mode.frequency_at(speed)
+        if not frequency > 0.0:
+            raise InputError(
+                f"{case.name}: structure.mode[{place}].frequency_slope: {mode.frequency_slope:g} "
+                f"s/rad leaves no frequency at {speed * 30.0 / np.pi:.0f} rpm"
+            )
+        modes.append(Mode(frequency, mode.damping, mode.modal_mass, mode.direction, mode.side))
+    notes = ()
+    if any(mode.frequency_slope for mode in case.structure.mode):
+        notes = (f"natural frequencies as at {speed * 30.0 / np.pi:.0f} rpm",)
+    return GivenModes(tuple(modes), notes)
+
+
 Structure = GivenModes | MeasuredStructure
 
 
@@ -125,12 +142,7 @@ def structure_of(case: Case) -> Structure:
     """
     section = case.structure
     if section.mode:
-        return GivenModes(
-            tuple(
-                Mode(mode.frequency, mode.damping, mode.modal_mass, mode.direction, mode.side)
-                for mode in section.mode
-            )
-        )
+        return _given_modes(case)
     if section.frf:
         return MeasuredStructure(*measured_sides(case))
     from chatter.coupled.linearised import machine_structure

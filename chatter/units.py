@@ -74,6 +74,8 @@ DIMENSIONS: dict[str, Dimension] = {
     "time": Dimension("a time", "s", "0.5 s"),
     "acceleration": Dimension("an acceleration", "m/s^2", "5 m/s^2"),
     "jerk": Dimension("a jerk", "m/s^3", "500 m/s^3"),
+    "line_force_rate": Dimension("a force per length and time", "N/m/s", "5 N/mm/s"),
+    "rate": Dimension("a rate", "1/s", "0.1 1/s"),
     "velocity": Dimension("a velocity", "m/s", "420 mm/min"),
     "pressure_gradient": Dimension("a force per volume", "N/m^3", "4e13 N/m^3"),
     "drag": Dimension("a quadratic drag coefficient", "N*s^2/m^2", "300 N*s^2/m^2"),

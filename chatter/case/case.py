@@ -15,7 +15,17 @@ from chatter.case.description import Description
 from chatter.case.document import move_references
 from chatter.case.editing import Layout
 from chatter.case.material import Material
-from chatter.case.sections import Axis, Contact, Friction, Lobes, ProcessDamping, Simulation, Stock
+from chatter.case.sections import (
+    Axis,
+    Contact,
+    Dynamometer,
+    Friction,
+    Lobes,
+    ProcessDamping,
+    Simulation,
+    Stock,
+    Wear,
+)
 from chatter.case.structure import StructureSection
 from chatter.case.tool import Tool
 from chatter.errors import InputError
@@ -50,6 +60,8 @@ class Case(Description):
     structure: StructureSection | None = None
     process_damping: ProcessDamping | None = None
     contact: Contact | None = None
+    wear: Wear | None = None
+    dynamometer: Dynamometer | None = None
     friction: dict[str, Friction] = Field(default_factory=dict)
     axis: Axis | None = None
     simulation: Simulation | None = None

@@ -36,6 +36,9 @@ class Cut(Section):
     )
 
     speed_variation: SpeedVariation | None = None
+    cut_time: quantity("time", at_least=0.0) = Field(
+        0.0, description="that the tool has cut before, for [wear]"
+    )
 
     @field_validator("radial_depth")
     @classmethod

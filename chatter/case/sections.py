@@ -51,6 +51,23 @@ class Contact(Section):
     damping: quantity("damping", at_least=0.0) = 0.0
 
 
+class Wear(Section):
+    """Growth of the force coefficients with the cutting time of the tool."""
+
+    edge_tangential: quantity("line_force_rate") = Field(0.0, description="of Kte per cutting time")
+    edge_radial: quantity("line_force_rate") = Field(0.0, description="of Kre per cutting time")
+    cutting: quantity("rate") = Field(
+        0.0, description="of Ktc, Krc and Kac per cutting time, as a share of them"
+    )
+
+
+class Dynamometer(Section):
+    """Resonance of the sensor that measures the forces."""
+
+    frequency: quantity("frequency", above=0.0)
+    damping: quantity("number", above=0.0, below=1.0) = Field(description="damping ratio")
+
+
 #: law of friction -> its keys
 FRICTION_LAWS: dict[str, tuple[str, ...]] = {
     "coulomb": ("coulomb", "viscous"),
@@ -92,6 +109,23 @@ class Friction(Section):
         return self
 
 
+class Cogging(Section):
+    """Force that repeats along the axis."""
+
+    amplitude: quantity("force", at_least=0.0)
+    period: quantity("length", above=0.0)
+    phase: quantity("angle") = 0.0
+
+
+class WarmUp(Section):
+    """Friction that falls as the axis warms up."""
+
+    share: quantity("number", above=-1.0) = Field(
+        description="of the viscous friction at the start that is lost in the end"
+    )
+    time: quantity("time", above=0.0) = Field(description="constant of the decay")
+
+
 class Axis(Section):
     """A feed axis as a moving mass with friction."""
 
@@ -102,6 +136,14 @@ class Axis(Section):
     stribeck_velocity: quantity("velocity", above=0.0) | None = None
     presliding_stiffness: quantity("stiffness", above=0.0) | None = None
     presliding_damping: quantity("damping", at_least=0.0) | None = None
+    asymmetry: quantity("force") = Field(
+        0.0, description="Coulomb friction forwards above the mean of both directions"
+    )
+    offset: quantity("force") = Field(0.0, description="constant force that is held")
+    quadratic_drag: quantity("drag", at_least=0.0) = 0.0
+    cogging: Cogging | None = None
+    backlash: quantity("length", at_least=0.0) = 0.0
+    warm_up: WarmUp | None = None
 
 
 def _plane_point(given: Any) -> tuple[float, float]:

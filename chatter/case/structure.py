@@ -59,6 +59,9 @@ class ModeSection(Section):
     damping: quantity("number", above=0.0, below=1.0) = Field(description="damping ratio")
     mass: quantity("mass", above=0.0) | None = None
     stiffness: quantity("stiffness", above=0.0) | None = None
+    frequency_slope: quantity("inverse_angular_speed") = Field(
+        0.0, description="relative change of the frequency with the spindle speed"
+    )
     direction: UnitVector = Field(
         description="unit vector: x feed, y normal, z tool axis", examples=[[1, 0, 0]]
     )
@@ -70,6 +73,10 @@ class ModeSection(Section):
         text = {0: "either mass or stiffness is needed", 2: "give mass or stiffness, not both"}
         raise_if_any([("", text[given])] if given != 1 else [])
         return self
+
+    def frequency_at(self, spindle_speed: float) -> float:
+        """Natural frequency, Hz, at a spindle speed, rad/s; not above 0 where the slope ends."""
+        return self.frequency * (1.0 + self.frequency_slope * spindle_speed)
 
     @property
     def modal_mass(self) -> float:

@@ -7,7 +7,9 @@ import typer
 from chatter.cli import (
     bifurcation,
     check,
+    compare,
     examples,
+    explain,
     frf,
     lobes,
     modes,
@@ -34,6 +36,8 @@ COMMANDS = (
     whatif.whatif,
     uncertainty.uncertainty,
     modes.modes,
+    compare.compare,
+    explain.explain,
     frf.frf,
     move.move,
     examples.examples,

@@ -47,12 +47,17 @@ def cutter_of(case: Case) -> Cutter:
 
 
 def force_law(case: Case, helix: float) -> ForceLaw:
-    """Force law that the material section describes, for an edge inclined by the helix, rad."""
+    """Force law of a case after its cutting time, for an edge inclined by the helix, rad."""
     material = case.material
-    cutting = material.cutting_coefficients(helix)
+    cutting = np.asarray(material.cutting_coefficients(helix))
+    edge = np.asarray(material.edge_coefficients)
+    if case.wear is not None and case.cut is not None:
+        time = case.cut.cut_time
+        cutting = cutting * (1.0 + case.wear.cutting * time)
+        edge = edge + time * np.array([case.wear.edge_tangential, case.wear.edge_radial, 0.0])
     if material.law == "exponential":
-        return ExponentialLaw(cutting, material.h0, material.exponent, material.edge_coefficients)
-    return LinearLaw(cutting, material.edge_coefficients)
+        return ExponentialLaw(tuple(cutting), material.h0, material.exponent, tuple(edge))
+    return LinearLaw(tuple(cutting), tuple(edge))
 
 
 def edge_law(case: Case) -> LinearEdge | ExponentialEdge:

@@ -9,6 +9,7 @@ import numpy as np
 from chatter.case import Case
 from chatter.errors import InputError, RunError
 from chatter.simulation.carved import FollowingStock, after_run, set_up_on
+from chatter.simulation.dynamometer import as_measured
 from chatter.simulation.engine import COLUMNS, Record, run
 from chatter.simulation.result import SimulationResult
 from chatter.simulation.setup import Setup, set_up
@@ -177,7 +178,7 @@ def run_setup(setup: Setup, progress: Progress = no_progress) -> tuple[Simulatio
     work, dissipated = modes.energy
     result = SimulationResult(
         setup=setup if cut.stock is None else after_run(setup, cut.stock),
-        rows=record.rows[:rows],
+        rows=as_measured(setup.case, record.rows[:rows], resolution.stride * setup.step),
         energy={
             "work": float(work),
             "dissipated": float(dissipated),

@@ -1,0 +1,74 @@
+"""`chatter explain MEASUREMENT`: what the declared case lacks, or that nothing is missing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from chatter.cli.errors import reports_errors
+from chatter.cli.options import Json, OutputFolder, output_folder
+from chatter.cli.report import (
+    announce_compilation,
+    print_json,
+    print_table,
+    print_written,
+    progress_bar,
+)
+
+MeasurementPath = Annotated[
+    Path, typer.Argument(metavar="MEASUREMENT", help="Folder with measurement.toml.")
+]
+DeclaredCase = Annotated[
+    Path | None, typer.Option("--case", help="Case to judge instead of the one declared.")
+]
+
+
+@reports_errors
+def explain(
+    measurement: MeasurementPath,
+    case: DeclaredCase = None,
+    out: OutputFolder = None,
+    json: Json = False,
+) -> None:
+    """Trace what a measurement shows and its declared case lacks, and add it."""
+    from chatter.explain import explain as run_explain
+    from chatter.explain import read_measurement
+
+    declared = read_measurement(measurement, case)
+    announce_compilation()
+    with progress_bar("searching, %") as bar:
+
+        def told(_: str, share: float) -> None:
+            bar(round(100 * share), 100)
+
+        result = run_explain(declared, told)
+    written = result.save(output_folder(out, measurement.resolve().stem))
+    summary = result.summary()
+    if json:
+        print_json(summary)
+    else:
+        _print(summary)
+    print_written(written)
+
+
+def _print(summary: dict) -> None:
+    typer.echo(f"verdict: {summary['verdict']}")
+    for effect in summary["effects"]:
+        rows = [
+            [
+                key,
+                f"{one['value']:.5g}",
+                one["unit"],
+                f"{one['ci95'][0]:.5g} to {one['ci95'][1]:.5g}",
+            ]
+            for key, one in effect["parameters"].items()
+        ]
+        title = f"{effect['name']} (probability {effect['probability']:.3g}): {effect['says']}"
+        print_table(title, ["parameter", "value", "unit", "95 % interval"], rows)
+        if effect["confounded_with"]:
+            typer.echo(f"cannot be told from: {', '.join(effect['confounded_with'])}")
+    error = summary["error"]
+    rows = [[key, f"{value:.4g}"] for key, value in error.items() if isinstance(value, float)]
+    print_table("error, rms over signal", ["", ""], rows)

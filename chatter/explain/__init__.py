@@ -1,0 +1,26 @@
+"""Closing the loop: what a measurement says that the declared case lacks.
+
+=============== ====================================================================
+module          responsibility
+=============== ====================================================================
+measurement     measurement folders: runs, signals in SI, declared case
+tables          signals from CSV, NPZ, TDMS, UFF
+kinds           milling, axis, stability, frf: predictions and uncertain values
+effects         what a case may lack, each a patch
+tolerance       how far declared values may be off
+fitting         least squares with priors
+noise           noise floor of signals
+problem         a measurement as a least-squares problem
+search          candidates fitted on some runs, judged on others
+signature       where the residual lives
+explanation     verdict, effects, errors; files
+report          report.html
+comparison      `compare`: errors of the declared case
+=============== ====================================================================
+"""
+
+from chatter.explain.comparison import Comparison, compare
+from chatter.explain.explanation import Explanation, explain
+from chatter.explain.measurement import Measurement, read_measurement
+
+__all__ = ["Comparison", "Explanation", "Measurement", "compare", "explain", "read_measurement"]

@@ -1,0 +1,50 @@
+"""Errors of predictions by run and channel, as shares of the signals."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from chatter.case import Case
+from chatter.explain.kind import Kind
+from chatter.explain.measurement import Measurement, Run
+
+
+class ChannelError(NamedTuple):
+    """Error of one channel of one run."""
+
+    run: str
+    channel: str
+    error: float  # rms, SI
+    relative: float  # over the rms of the signal, 1
+
+
+def errors_of(
+    case: Case, measurement: Measurement, kind: Kind, runs: Sequence[Run] | None = None
+) -> list[ChannelError]:
+    """Errors of a case's predictions of runs, by run and channel."""
+    found = []
+    for run in measurement.runs if runs is None else runs:
+        own = case.patch(dict(run.overrides)) if run.overrides else case
+        predicted = kind.predict(own, run)
+        for channel in kind.channels(run):
+            signal = run.signals[channel]
+            error = float(np.sqrt(np.mean((predicted[channel] - signal) ** 2)))
+            level = float(np.sqrt(np.mean(signal**2)))
+            found.append(ChannelError(run.name, channel, error, error / max(level, 1e-300)))
+    return found
+
+
+def overall(errors: Sequence[ChannelError]) -> float:
+    """Normalised error of several runs: the mean over the channels of the rms over the runs."""
+    channels = sorted({one.channel for one in errors})
+    return float(
+        np.mean(
+            [
+                np.sqrt(np.mean([one.relative**2 for one in errors if one.channel == channel]))
+                for channel in channels
+            ]
+        )
+    )

@@ -1,0 +1,173 @@
+"""Least squares with priors: Levenberg-Marquardt with bounds, Jacobian in parallel.
+
+Parameters are counted in standard deviations of their priors (or in a typical size where they
+have none) from where they start, so that one step fits all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Vector = NDArray[np.float64]
+Residuals = Callable[[Vector], Vector]
+
+_WORKERS = 2
+#: of a finite difference, in units of a parameter's size
+_STEP = 1e-3
+_MOST_ROUNDS = 12
+_ENOUGH = 1e-4
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number that is fitted.
+
+    Parameters
+    ----------
+    name : str
+        Path in the case, or name within an effect.
+    start : float
+        SI.
+    size : float
+        Standard deviation of the prior, or a typical size where there is none.
+    lower, upper : float
+    prior : bool
+        Whether the start is a declared value with a standard deviation.
+    unit : str
+        SI unit, for reports.
+    """
+
+    name: str
+    start: float
+    size: float
+    lower: float = -np.inf
+    upper: float = np.inf
+    prior: bool = True
+    unit: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """Result of a fit.
+
+    Parameters
+    ----------
+    parameters : tuple of Parameter
+    values : (p,) array of float
+        SI.
+    covariance : (p, p) array of float
+        SI, from the residuals' own standard deviations and the priors.
+    cost : float
+        Sum of squares of the residuals, without priors.
+    count : int
+        Residuals.
+    jacobian : (n, p) array of float
+        At the solution, per size of a parameter.
+    residuals : (n,) array of float
+    """
+
+    parameters: tuple[Parameter, ...]
+    values: Vector
+    covariance: NDArray[np.float64]
+    cost: float
+    count: int
+    jacobian: NDArray[np.float64]
+    residuals: Vector
+
+    def interval(self, place: int) -> tuple[float, float]:
+        """95 % confidence interval of a parameter, within its bounds."""
+        parameter = self.parameters[place]
+        half = 1.96 * float(np.sqrt(max(self.covariance[place, place], 0.0)))
+        middle = float(self.values[place])
+        return max(middle - half, parameter.lower), min(middle + half, parameter.upper)
+
+    @property
+    def by_name(self) -> dict[str, float]:
+        """Values by name."""
+        return {one.name: float(v) for one, v in zip(self.parameters, self.values, strict=True)}
+
+
+def fit(
+    parameters: Sequence[Parameter],
+    residuals: Residuals,
+    start: Vector | None = None,
+    rounds: int = _MOST_ROUNDS,
+) -> Fit:
+    """Fit parameters to residuals that are scaled to a standard deviation of one.
+
+    Parameters
+    ----------
+    parameters : sequence of Parameter
+    residuals : callable
+        (p,) values in SI -> (n,) residuals.
+    start : (p,) array of float, optional
+        SI; that of the parameters by default.
+    rounds : int
+        Linearisations at the most.
+    """
+    chosen = tuple(parameters)
+    size = np.array([one.size for one in chosen])
+    origin = np.array([one.start for one in chosen])
+    lower = np.array([one.lower for one in chosen])
+    upper = np.array([one.upper for one in chosen])
+    weight = np.array([1.0 if one.prior else 0.0 for one in chosen])
+    values = np.clip(origin if start is None else start, lower, upper)
+    now = residuals(values)
+    damping = 1e-3
+    jacobian = np.zeros((now.size, len(chosen)))
+
+    def merit(r: Vector, v: Vector) -> float:
+        return float(r @ r + weight @ ((v - origin) / size) ** 2)
+
+    best = merit(now, values)
+    for _ in range(rounds):
+        jacobian = differences(residuals, values, now, size, lower, upper)
+        normal = jacobian.T @ jacobian + np.diag(weight)
+        slope = jacobian.T @ now + weight * (values - origin) / size
+        gained = 0.0
+        for _ in range(8):
+            bent = normal + damping * np.diag(np.maximum(np.diag(normal), 1e-12))
+            step = -np.linalg.solve(bent, slope) * size
+            tried = np.clip(values + step, lower, upper)
+            after = residuals(tried)
+            reached = merit(after, tried)
+            if np.isfinite(reached) and reached < best:
+                gained = best - reached
+                values, now, best = tried, after, reached
+                damping = max(damping / 5.0, 1e-9)
+                break
+            damping *= 6.0
+        if gained <= _ENOUGH * max(1.0, 1e-3 * best):
+            break
+    normal = jacobian.T @ jacobian + np.diag(weight)
+    inverse = np.linalg.pinv(normal, hermitian=True)
+    covariance = inverse * np.outer(size, size)
+    return Fit(chosen, values, covariance, float(now @ now), now.size, jacobian, now)
+
+
+def differences(
+    residuals: Residuals,
+    values: Vector,
+    now: Vector,
+    size: Vector,
+    lower: Vector,
+    upper: Vector,
+) -> NDArray[np.float64]:
+    """Jacobian (n, p) per size of each parameter, by forward differences, in threads."""
+
+    def column(place: int) -> Vector:
+        moved = values.copy()
+        step = _STEP * size[place]
+        if moved[place] + step > upper[place]:
+            step = -step
+        moved[place] += step
+        return (residuals(moved) - now) / (step / size[place])
+
+    del lower
+    with ThreadPoolExecutor(_WORKERS) as pool:
+        return np.array(list(pool.map(column, range(values.size)))).T.reshape(now.size, -1)

@@ -1,0 +1,34 @@
+"""Kinds of measurement by name: where a new one joins."""
+
+from __future__ import annotations
+
+from chatter.explain.axis import Axis
+from chatter.explain.frf import FrequencyResponse
+from chatter.explain.kind import Kind
+from chatter.explain.measurement import Measurement
+from chatter.explain.milling import Milling
+from chatter.explain.stability import Stability
+
+KINDS: dict[str, type] = {
+    "milling": Milling,
+    "axis": Axis,
+    "stability": Stability,
+    "frf": FrequencyResponse,
+}
+
+
+def kind_of(measurement: Measurement) -> tuple[Kind, Measurement]:
+    """Kind of a measurement, and the measurement prepared for it.
+
+    Raises
+    ------
+    InputError
+        If the measurement or its case lacks what the kind needs.
+    """
+    kind = KINDS[measurement.kind]()
+    needed = {"axis": ("axis",), "frf": ("structure",)}
+    measurement.case.require(
+        *needed.get(measurement.kind, ("tool", "material", "cut", "structure"))
+    )
+    prepared = getattr(kind, "prepared", None)
+    return kind, prepared(measurement) if prepared else measurement

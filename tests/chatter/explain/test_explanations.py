@@ -1,0 +1,102 @@
+"""What is missing is named, with its numbers; where nothing is, that is said."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+import tomlkit
+
+from chatter.case import load
+from chatter.errors import InputError
+from chatter.explain import compare, explain, read_measurement
+from chatter.explain.explanation import Explanation
+
+SETS = Path(__file__).resolve().parents[3] / "../shared/measurements"
+needs_sets = pytest.mark.skipif(not SETS.is_dir(), reason="no measurement sets here")
+
+
+def truth(name: str) -> dict:
+    return tomlkit.parse((SETS / name / "truth.toml").read_text()).unwrap()
+
+
+def explained(name: str) -> Explanation:
+    return explain(read_measurement(SETS / name))
+
+
+@needs_sets
+@pytest.mark.parametrize(
+    ("name", "numbers", "closeness"),
+    [
+        ("set-111", {"coulomb_friction": "coulomb"}, 0.02),
+        ("set-112", {"presliding_stiffness": "sigma0", "presliding_damping": "sigma1"}, 0.15),
+        ("set-131", {"stiffness": "stiffness_N_per_m", "damping": "damping_Ns_per_m"}, 0.01),
+    ],
+)
+def test_the_missing_effect_is_named_with_its_numbers(name, numbers, closeness):
+    summary = explained(name).summary()
+    told = truth(name)
+    assert summary["verdict"] == "explained"
+    assert [effect["name"] for effect in summary["effects"]] == told["effects"]
+    (effect,) = summary["effects"]
+    for key, true_key in numbers.items():
+        found = effect["parameters"][key]
+        assert found["value"] == pytest.approx(
+            told["true"][effect["name"]][true_key], rel=closeness
+        )
+        assert found["ci95"][0] < found["value"] < found["ci95"][1]
+    error = summary["error"]
+    assert error["after"] < 0.5 * error["before"]
+    assert error["holdout_after"] < 0.5 * error["holdout_before"]
+
+
+@needs_sets
+@pytest.mark.parametrize("name", ["set-113", "set-132"])
+def test_nothing_missing_is_said(name):
+    summary = explained(name).summary()
+    assert summary["verdict"] == "nothing-missing"
+    assert summary["effects"] == []
+    assert summary["error"]["before"] == pytest.approx(summary["error"]["after"])
+
+
+@needs_sets
+def test_the_updated_case_is_one_and_predicts_as_told(tmp_path):
+    result = explained("set-112")
+    written = {path.name for path in result.save(tmp_path)}
+    assert written == {"explanation.json", "report.html", "residual.png", "case-updated.toml"}
+    summary = json.loads((tmp_path / "explanation.json").read_text())
+    updated = load(tmp_path / "case-updated.toml")
+    measurement = read_measurement(SETS / "set-112", updated)
+    assert compare(measurement).summary()["nrmse"] == pytest.approx(
+        summary["error"]["after"], rel=1e-3
+    )
+    assert "<script" not in (tmp_path / "report.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('kind = "drilling"', "drilling"),
+        ('kind = "axis"\ncase = 3', "case"),
+        ('kind = "axis"\ncase = "case.toml"', "run"),
+        ('kind = "axis"\ncase = "case.toml"\n[[run]]\nfile = "none.csv"', "none.csv"),
+        ("kind =", "TOML"),
+    ],
+)
+def test_a_wrong_folder_is_told(tmp_path, text, words):
+    (tmp_path / "measurement.toml").write_text(text)
+    (tmp_path / "case.toml").write_text('[axis]\nmoving_mass = "10 kg"\n')
+    with pytest.raises(InputError, match=words):
+        read_measurement(tmp_path)
+
+
+def test_a_missing_channel_is_told(tmp_path):
+    (tmp_path / "measurement.toml").write_text(
+        'kind = "axis"\ncase = "case.toml"\n[[run]]\nfile = "a.csv"\n'
+    )
+    (tmp_path / "case.toml").write_text('[axis]\nmoving_mass = "10 kg"\n')
+    rows = "\n".join(f"{0.001 * i},{i}" for i in range(50))
+    (tmp_path / "a.csv").write_text(f"time [s],force [N]\n{rows}\n")
+    with pytest.raises(InputError, match="position"):
+        explain(read_measurement(tmp_path))
