@@ -21,38 +21,13 @@ from dynamics.drive_records.intervals import Estimate
 from dynamics.drive_records.law_fit import law_parameters, search
 from dynamics.drive_records.record import DriveRecord
 from dynamics.frf import MeasurementError
-from dynamics.friction.coulomb_stribeck import (
-    CoulombStribeck,
-    coulomb_stribeck_advance,
-    coulomb_stribeck_force,
-    coulomb_stribeck_table,
-)
-from dynamics.friction.lugre import LuGre, lugre_advance, lugre_force, lugre_table
-from dynamics.friction.tanh_hysteresis import (
-    TanhHysteresis,
-    tanh_advance,
-    tanh_force,
-    tanh_table,
-)
-
-FrictionLaw = LuGre | TanhHysteresis | CoulombStribeck
-
-_TABLES = {
-    LuGre: lugre_table,
-    TanhHysteresis: tanh_table,
-    CoulombStribeck: coulomb_stribeck_table,
-}
-_LEAVES = {
-    LuGre: (lugre_force, lugre_advance),
-    TanhHysteresis: (tanh_force, tanh_advance),
-    CoulombStribeck: (coulomb_stribeck_force, coulomb_stribeck_advance),
-}
+from dynamics.friction.laws import BY_SPEC, FrictionLaw
 
 
 @cache
 def _runner(kind: type) -> Callable[..., None]:
     """Compiled run of one kind of law along motions."""
-    force, advance = _LEAVES[kind]
+    force, advance = BY_SPEC[kind].force, BY_SPEC[kind].advance
 
     @njit
     def run(law, motions, time, resisted):
@@ -82,14 +57,14 @@ def friction_along(
         N or N m, positive against positive motion; at a sample the mean of the two intervals
         beside it.
     """
-    if type(law) not in _TABLES:
+    if type(law) not in BY_SPEC:
         raise TypeError(
             f"friction fit: {type(law).__name__} is none of "
-            f"{', '.join(kind.__name__ for kind in _TABLES)}"
+            f"{', '.join(kind.__name__ for kind in BY_SPEC)}"
         )
     motions = np.diff(np.asarray(position, dtype=np.float64))
     resisted = np.empty(len(motions))
-    _runner(type(law))(_TABLES[type(law)]([law], [0]), motions, sample_time, resisted)
+    _runner(type(law))(BY_SPEC[type(law)].columns([law], [0]), motions, sample_time, resisted)
     ends = np.concatenate((resisted[:1], resisted, resisted[-1:]))
     return 0.5 * (ends[1:] + ends[:-1])
 

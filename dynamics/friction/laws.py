@@ -1,11 +1,11 @@
-"""Friction laws by name and by table: where a new one joins.
+"""Friction laws by name, by specification and by table: where a new one joins.
 
-A law joins by its module and one entry in each of the tables here.
+A law joins by its module and one entry in the table here.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -17,45 +17,64 @@ from dynamics.friction.coulomb_stribeck import (
     CoulombStribeck,
     CoulombStribeckTable,
     coulomb_stribeck_advance,
+    coulomb_stribeck_force,
     coulomb_stribeck_step,
     coulomb_stribeck_table,
 )
 from dynamics.friction.implicit import INLINED
-from dynamics.friction.lugre import LuGre, LuGreTable, lugre_advance, lugre_step, lugre_table
+from dynamics.friction.lugre import (
+    LuGre,
+    LuGreTable,
+    lugre_advance,
+    lugre_force,
+    lugre_step,
+    lugre_table,
+)
 from dynamics.friction.tanh_hysteresis import (
     TanhHysteresis,
     TanhTable,
     tanh_advance,
+    tanh_force,
     tanh_step,
     tanh_table,
 )
 
 FrictionLaw = LuGre | TanhHysteresis | CoulombStribeck
 
-#: name in machine files -> specification
-LAWS = {
-    "LuGre": LuGre,
-    "tanh hysteresis": TanhHysteresis,
-    "Coulomb-Stribeck": CoulombStribeck,
+
+class LawEntry(NamedTuple):
+    """A law: its specification, its table, and its leaves."""
+
+    spec: type
+    table: type
+    columns: Callable[[Sequence[FrictionLaw], Sequence[int]], NamedTuple]
+    step: Callable  # force held over a step
+    force: Callable  # mean force over a motion at constant velocity
+    advance: Callable  # moves the state on
+
+
+#: name in machine files -> law; where a new one joins
+ENTRIES = {
+    "LuGre": LawEntry(LuGre, LuGreTable, lugre_table, lugre_step, lugre_force, lugre_advance),
+    "tanh hysteresis": LawEntry(
+        TanhHysteresis, TanhTable, tanh_table, tanh_step, tanh_force, tanh_advance
+    ),
+    "Coulomb-Stribeck": LawEntry(
+        CoulombStribeck,
+        CoulombStribeckTable,
+        coulomb_stribeck_table,
+        coulomb_stribeck_step,
+        coulomb_stribeck_force,
+        coulomb_stribeck_advance,
+    ),
 }
-#: specification -> its table
-TABLES = {
-    LuGre: lugre_table,
-    TanhHysteresis: tanh_table,
-    CoulombStribeck: coulomb_stribeck_table,
-}
-#: table -> kernel that solves for the force held over a step
-SOLVING = {
-    LuGreTable: lugre_step,
-    TanhTable: tanh_step,
-    CoulombStribeckTable: coulomb_stribeck_step,
-}
-#: table -> kernel that moves the state on
-ADVANCING = {
-    LuGreTable: lugre_advance,
-    TanhTable: tanh_advance,
-    CoulombStribeckTable: coulomb_stribeck_advance,
-}
+#: name -> specification
+LAWS = {name: entry.spec for name, entry in ENTRIES.items()}
+#: specification -> the law
+BY_SPEC = {entry.spec: entry for entry in ENTRIES.values()}
+#: table -> kernel that solves for the force held over a step, and that moves the state on
+SOLVING = {entry.table: entry.step for entry in ENTRIES.values()}
+ADVANCING = {entry.table: entry.advance for entry in ENTRIES.values()}
 
 
 class Frictions(NamedTuple):
@@ -68,12 +87,12 @@ class Frictions(NamedTuple):
 
 
 def friction_groups(laws: Sequence[FrictionLaw], ports: Sequence[int]) -> tuple[Frictions, ...]:
-    """Tables of frictions at rest, one a law that occurs, in the order of `TABLES`."""
+    """Tables of frictions at rest, one a law that occurs, in the order of `ENTRIES`."""
     groups = []
-    for kind, table in TABLES.items():
+    for kind, entry in BY_SPEC.items():
         chosen = [place for place, law in enumerate(laws) if isinstance(law, kind)]
         if chosen:
-            columns = table([laws[i] for i in chosen], [ports[i] for i in chosen])
+            columns = entry.columns([laws[i] for i in chosen], [ports[i] for i in chosen])
             force, beyond = np.zeros(len(chosen)), np.zeros(len(chosen))
             groups.append(Frictions(columns, force, beyond, np.zeros(1, dtype=np.int64)))
     return tuple(groups)
