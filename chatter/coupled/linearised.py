@@ -3,29 +3,97 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from chatter.case import Case
 from chatter.coupled.machine_cut import MachineCut, machine_cut
+from chatter.coupled.real_modes import largest_misfit, lines_around, real_modes
 from chatter.errors import InputError
-from chatter.measured_frf import MeasuredSide
-from chatter.structure import MeasuredStructure
 from chatter.virtual_machine.frf import linearised_frictions
 from chatter.virtual_machine.loop_stability import refuse_unstable_control
-from dynamics.frf import Frf, Point
 from dynamics.machine.harmonic import receptance
+from dynamics.modal import Mode
 
-#: lines of the FRFs, and how far they reach above the highest mode that matters at the tool point
+#: lines of the receptance, and how far they reach above the highest mode that matters
 _LINES = 1600
 _ABOVE = 1.5
 #: flexibility at the tool point, as a share of the largest, above which a mode matters
 _MATTERS = 0.01
 _LOWEST = 1.0
+#: misfit of the modes, over the largest receptance, of which the user should know
+_WORTH_TELLING = 0.02
 
 
-def machine_structure(case: Case) -> MeasuredStructure:
+@dataclass(frozen=True)
+class LinearisedMachine:
+    """Structure described by the receptance of a linearised machine at its tool point.
+
+    Parameters
+    ----------
+    case : Case
+    cut : MachineCut
+    """
+
+    case: Case
+    cut: MachineCut
+
+    @cached_property
+    def _guess(self) -> tuple[Mode, ...]:
+        """Modes of the structure that matter, its loops open."""
+        modes = self.cut.modes()
+        if not modes:
+            raise InputError(
+                f"{self.case.name}: structure.machine: {self.cut.file.name} is rigid at the tool"
+            )
+        least = _MATTERS * max(1.0 / mode.stiffness for mode in modes)
+        return tuple(mode for mode in modes if 1.0 / mode.stiffness > least)
+
+    @cached_property
+    def _fitted(self) -> tuple[tuple[Mode, ...], float]:
+        highest = _ABOVE * max(mode.frequency for mode in self._guess)
+        lines = lines_around(self._guess, _LOWEST, highest)
+        values = tool_receptance(self.case, self.cut, lines)
+        modes = real_modes(lines, values, self._guess)
+        return modes, largest_misfit(modes, lines, values)
+
+    @property
+    def modes(self) -> tuple[Mode, ...]:
+        """Real modes fitted to the receptance."""
+        return self._fitted[0]
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was assumed."""
+        notes = [f"dynamics of {self.cut.file.name}, linearised, its control loops closed"]
+        if self.cut.machine.frictions:
+            notes.append("frictions of axes that move slide, those of others stick")
+        misfit = self._fitted[1]
+        if misfit > _WORTH_TELLING:
+            notes.append(
+                f"methods that need modes take real ones, which miss the receptance by up to "
+                f"{misfit:.1%} of its largest value"
+            )
+        return tuple(notes)
+
+    @property
+    def directions(self) -> NDArray[np.float64]:
+        """Directions (3, 3) in which the tool point can move."""
+        return np.eye(3)
+
+    def receptance(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+        """Lines (m,) in Hz and relative receptance (m, 3, 3), without a fit, m/N."""
+        highest = _ABOVE * max(mode.frequency for mode in self._guess)
+        lines = np.union1d(
+            np.linspace(_LOWEST, highest, _LINES), lines_around(self._guess, _LOWEST, highest)
+        )
+        return lines, tool_receptance(self.case, self.cut, lines)
+
+
+def machine_structure(case: Case) -> LinearisedMachine:
     """Structure of a case whose dynamics come from a machine.
 
     The machine moves at the feed of the case, so that frictions on moving axes slide and others
@@ -38,16 +106,7 @@ def machine_structure(case: Case) -> MeasuredStructure:
     """
     cut = machine_cut(case)
     refuse_unstable_control(cut.machine, cut.file.step)
-    lines = _lines(case, cut)
-    values = tool_receptance(case, cut, lines)
-    source = f"{cut.file.name}, linearised"
-    frfs = tuple(
-        Frf(lines, values[:, i, j], "receptance", Point("tool", a), Point("tool", b), source=source)
-        for i, a in enumerate("xyz")
-        for j, b in enumerate("xyz")
-        if np.any(np.abs(values[:, i, j]) > 0.0)
-    )
-    return MeasuredStructure((MeasuredSide("tool", frfs, "tool"),), _notes(cut))
+    return LinearisedMachine(case, cut)
 
 
 def tool_receptance(
@@ -73,20 +132,3 @@ def _moving(case: Case, cut: MachineCut) -> dict[str, float]:
     teeth, speed = case.tool.teeth, case.cut.spindle_speed
     feed = case.cut.feed_per_tooth * teeth * speed / (2.0 * math.pi)
     return cut.velocities(feed, speed)
-
-
-def _lines(case: Case, cut: MachineCut) -> NDArray[np.float64]:
-    modes = cut.modes()
-    if not modes:
-        raise InputError(f"{case.name}: structure.machine: {cut.file.name} is rigid at the tool")
-    compliance = np.array([1.0 / mode.stiffness for mode in modes])
-    frequency = np.array([mode.frequency for mode in modes])
-    matters = compliance > _MATTERS * compliance.max()
-    return np.linspace(_LOWEST, _ABOVE * float(frequency[matters].max()), _LINES)
-
-
-def _notes(cut: MachineCut) -> tuple[str, ...]:
-    notes = [f"dynamics of {cut.file.name}, linearised, its control loops closed"]
-    if cut.machine.frictions:
-        notes.append("frictions of axes that move slide, those of others stick")
-    return tuple(notes)

@@ -125,6 +125,8 @@ def search(measurement: Measurement, kind: Kind, progress: Progress) -> Search:
         if math.sqrt(left / _count(problem, unseen)) < 1.0 and stages:
             break
         tried = _try_all(problem, now, fitted, unseen, progress, round_number)
+        # what every candidate gains, the uncertain values gained by going on
+        left = min(left, max((one.unseen for one in tried), default=left))
         accepted = bool(tried) and _beyond_chance(left, tried[0], problem, unseen)
         stages.append(Stage(now, left, tuple(tried), accepted))
         if not accepted:
@@ -134,7 +136,7 @@ def search(measurement: Measurement, kind: Kind, progress: Progress) -> Search:
         problem = Problem(
             measurement, kind, problem.noise_beside(best.fit.by_name), problem.effects
         )
-        now = problem.fit(fitted, best.fit.by_name, rounds=4)
+        now = problem.fit(fitted, best.fit.by_name, rounds=8)
     progress("fitting all runs", 0.95)
     final = problem.fit(measurement.runs, now.by_name, rounds=5)
     base = Problem(measurement, kind, problem.noise).fit(measurement.runs, base_values, rounds=4)
