@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import os
+
+# matrices here are small: threads of BLAS cost more than they bring, and take cores from the sweeps
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 import typer
 
 from chatter.cli import (
