@@ -51,6 +51,8 @@ UNITS = {
     "linear_back_emf": {"V*s/m": 1.0},
     "acceleration": {"m/s^2": 1.0, "mm/s^2": 1e-3},
     "jerk": {"m/s^3": 1.0},
+    "line_force_rate": {"N/m/s": 1.0, "N/mm/s": 1e3},
+    "rate": {"1/s": 1.0, "1/min": 1.0 / 60.0},
 }
 PAIRS = [(dimension, unit) for dimension, units in UNITS.items() for unit in units]
 
