@@ -1,0 +1,235 @@
+"""Two machines of Twin-Control: hammer tests two ways, a fastest move, four motors on one axis.
+
+The tests of chapter 3, "Virtualization of Machine Tools", on models of its machines: blows on the
+spindle frame and the spindle's tip by harmonic response and by simulation in time, the fastest
+100 mm with its positioning error (Comau, box in box), and preloaded rack-and-pinion drives
+(Gepro). What is published, chosen and calibrated: PROVENANCE.md.
+"""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+import chatter
+from chatter.findings import Finding, write_findings
+from chatter.machine_file import MachineFile
+from chatter.plots import style
+from chatter.virtual_machine.frf import FrfCurve, FrfResult, peaks
+from chatter.virtual_machine.move import MoveResult
+from chatter.virtual_machine.run import RunInputs, run_machine
+from dynamics.trajectory import SetPoints, set_points
+
+HERE = Path(__file__).parent
+GRAVITY = 9.81  # m/s^2 per g, the unit of the published FRFs
+#: published peaks of the models, Hz
+PUBLISHED = {
+    "frame_x": (110.0, 260.0),
+    "tip_x": (800.0, 1300.0),
+    "tip_y": (800.0, 1300.0),
+    "tip_z": (650.0,),
+}
+
+
+def peak_near(curve: FrfCurve, frequency: float, tested: bool = False) -> dict:
+    """Highest peak within 15 % of a frequency."""
+    found = peaks(curve.tested if tested else curve.harmonic)
+    near = [one for one in found if abs(one["frequency_Hz"] / frequency - 1.0) < 0.15]
+    nothing = {"frequency_Hz": float("nan"), "magnitude": float("nan")}
+    return max(near, key=lambda one: one["magnitude"], default=nothing)
+
+
+def difference(curve: FrfCurve) -> NDArray[np.float64]:
+    """Of the simulated test from the harmonic response, line by line, over the latter."""
+    lines, linear = curve.tested.frequency, curve.harmonic
+    at_lines = np.interp(lines, linear.frequency, linear.values)
+    return np.abs(curve.tested.values / at_lines - 1.0)
+
+
+class TeethRun(NamedTuple):
+    """A move of the axis with four motors; N and N m, columns are the motors."""
+
+    time: NDArray[np.float64]
+    teeth: NDArray[np.float64]  # force of each pinion on its rack, pushing forward
+    torque: NDArray[np.float64]  # of each motor
+
+
+def teeth_in(machine: MachineFile, name: str) -> TeethRun:
+    """Forces of the pinions in a move of the machine file."""
+    parts = machine.at()
+    axis = parts.axes[0]
+    drive = axis.drive.parts(axis.geometry)
+    meshes = [one for one in drive.couplings if " mesh" in one.name]
+    whole = machine.machine()
+    rows = {one.name: whole.row(one.name, one.terms) for one in meshes}
+    section = machine.move[name]
+    cycle = whole.drives[0].controller.position.timing.sample_time
+    points = set_points(section.course().trajectory, cycle, machine.step, section.standstill)
+    points = SetPoints(*(np.asarray(one) for one in points[:3]), points.steps)
+    duration = len(points.position) * cycle + section.afterwards
+    inputs = RunInputs(duration, points, outputs=rows, stride=points.steps)
+    run = run_machine(whole, machine.step, inputs)
+    teeth = np.array([one.stiffness * run.displacement[one.name] for one in meshes]).T
+    shared = run.force["drive X"] / len(meshes)
+    preloads = [motor.preload for motor in axis.drive.motors]
+    return TeethRun(run.time, teeth, shared[:, None] + np.array(preloads))
+
+
+def drive_mode(machine: MachineFile) -> float:
+    """Frequency, Hz, of the mode that moves the gantry most along X, motors braked."""
+    structure = machine.machine({"X": "brake"}).structure
+    frequencies = structure.natural_frequencies()[:6]
+    row = structure.port("leg", (1.0, 0.0, 0.0))
+    answer = structure.receptance(frequencies, row[None])[:, 0, 0]
+    return float(frequencies[np.argmax(np.abs(answer) * frequencies)])
+
+
+def of_springs(machine: MachineFile) -> float:
+    """The same, Hz, of the gantry's mass on the drives' springs alone."""
+    drive = machine.axis["X"].drive.spec()
+    soft = (
+        drive.transmission**2 / drive.coupling_stiffness
+        + drive.pinion_radius**2 / drive.gearbox_stiffness
+        + 1.0 / drive.mesh_stiffness
+    )
+    mass = machine.get("body.gantry.mass")
+    return float(np.sqrt(len(drive.motors) / soft / mass) / (2.0 * np.pi))
+
+
+def hammer_picture(result: FrfResult) -> Figure:
+    """Accelerances in g/N, harmonic and simulated, as figure 3.10 and table 3.1."""
+    figure = style.new_figure(9.0, 9.0)
+    axes = figure.subplots(len(PUBLISHED), 1)
+    for each, (name, published) in zip(axes, PUBLISHED.items(), strict=True):
+        curve = result[name]
+        for frf, line, label in (
+            (curve.harmonic, "-", "harmonic response"),
+            (curve.tested, ":", "simulated blow"),
+        ):
+            each.semilogy(frf.frequency, np.abs(frf.values) / GRAVITY, line,
+                          color=style.BLUE if line == "-" else style.RED, label=label)  # fmt: skip
+        for frequency in published:
+            each.axvline(frequency, color=style.GREY, linestyle="--", linewidth=1.0)
+        wanted = " and ".join(f"{one:g} Hz" for one in published)
+        each.set_title(f"{name}; published model: {wanted}", loc="left")
+        each.set_ylabel("[g/N]")
+        each.set_xlim(curve.harmonic.frequency[[0, -1]])
+        each.set_ylim(1e-5, None)
+        style.finish(each)
+    axes[0].legend(fontsize=8.0, frameon=False)
+    axes[-1].set_xlabel("frequency [Hz]")
+    return figure
+
+
+def move_picture(move: MoveResult) -> Figure:
+    """Position, positioning error, velocity and force, as figures 3.11 and 3.12."""
+    figure = style.new_figure(9.0, 6.0)
+    axes = figure.subplots(2, 2, sharex=True).ravel()
+    error = 1e6 * move.tracking_error[:, 0]
+    rows = (
+        (1e3 * move.scale[:, 0], "position [mm]"),
+        (error, "positioning error [µm]"),
+        (60.0 * move.velocity[:, 0], "velocity [m/min]"),
+        (1e-3 * move.effort[:, 0], "force of both motors [kN]"),
+    )
+    for each, (values, label) in zip(axes, rows, strict=True):
+        each.plot(move.time, values, color=style.BLUE, linewidth=1.2)
+        each.set_ylabel(label)
+        style.finish(each)
+    for level in (-28.0, 28.0):
+        axes[1].axhline(level, color=style.GREY, linestyle="--", linewidth=1.0)
+    axes[1].annotate("published: 28 µm at peak", (0.99, 0.93), xycoords="axes fraction",
+                     ha="right", va="top", fontsize=8.0)  # fmt: skip
+    for each in axes[2:]:
+        each.set_xlabel("time [s]")
+    return figure
+
+
+def teeth_picture(runs: dict[str, TeethRun]) -> Figure:
+    """Forces of the pinions of the left leg; the right one's are the same."""
+    figure = style.new_figure(9.0, 4.2)
+    axes = np.atleast_1d(figure.subplots(1, len(runs), sharey=True))
+    for each, (name, one) in zip(axes, runs.items(), strict=True):
+        for motor, colour in ((0, style.BLUE), (1, style.RED)):
+            each.plot(
+                one.time, 1e-3 * one.teeth[:, motor], color=colour, label=f"motor {motor + 1}"
+            )
+        each.axhline(0.0, color="black", linewidth=0.8)
+        each.set_title(name, loc="left")
+        each.set_xlabel("time [s]")
+        style.finish(each)
+    axes[0].set_ylabel("force of the pinion on the rack [kN]")
+    axes[0].legend(fontsize=8.0, frameon=False)
+    return figure
+
+
+def main(out: Path) -> list[Path]:
+    """Run the tests of both machines, return what was written."""
+    out = Path(out)
+    comau = chatter.load_machine(HERE / "comau.toml")
+    gepro = chatter.load_machine(HERE / "gepro.toml")
+    hammered = chatter.frf(comau)
+    written = hammered.save(out / "hammer")
+    move = chatter.move(comau, "fast")
+    written += move.save(out / "fastest-move")
+    drive = chatter.frf(gepro)
+    written += drive.save(out / "gepro-drive")
+    runs = {f"{name}: {_limit(gepro, name)}": teeth_in(gepro, name) for name in gepro.move}
+    for name, figure in (
+        ("hammer.png", hammer_picture(hammered)),
+        ("fastest-move.png", move_picture(move)),
+        ("preload.png", teeth_picture(runs)),
+    ):
+        figure.savefig(out / name)
+        written.append(out / name)
+    written.append(write_findings(findings(hammered, move, gepro, list(runs.values())), out))
+    return written
+
+
+def _limit(machine: MachineFile, name: str) -> str:
+    return f"{machine.move[name].acceleration:g} m/s²"
+
+
+def findings(
+    hammered: FrfResult, move: MoveResult, gepro: MachineFile, runs: list[TeethRun]
+) -> list[Finding]:
+    """What is published beside what the models obtain."""
+    rows = []
+    for name, published in PUBLISHED.items():
+        source = "figure 3.10" if name == "frame_x" else "table 3.1, model"
+        for frequency in published:
+            found = peak_near(hammered[name], frequency)["frequency_Hz"]
+            rows.append(Finding(f"{name}, harmonic", frequency, found, "Hz", source, True))
+            found = peak_near(hammered[name], frequency, tested=True)["frequency_Hz"]
+            rows.append(Finding(f"{name}, simulated blow", frequency, found, "Hz", source, True))
+    heights = (("tip_x", 800.0, 0.05), ("tip_x", 1300.0, 0.17), ("tip_z", 650.0, 0.11))
+    for name, frequency, height in heights:
+        found = peak_near(hammered[name], frequency)["magnitude"] / GRAVITY
+        rows.append(
+            Finding(f"{name}, height at {frequency:g} Hz", height, found, "g/N", "table 3.1, model")
+        )
+    for name in PUBLISHED:
+        apart = difference(hammered[name])
+        text = f"{100 * np.median(apart):.2f} %, {100 * np.percentile(apart, 95):.2f} %"
+        rows.append(Finding(f"{name}: blow from harmonic, half and 95 % of lines", "-", text))
+    error = float(np.max(np.abs(move.tracking_error))) * 1e6
+    rows.append(Finding("positioning error, 100 mm in Y", 28.0, error, "um", "section 3.3.2", True))
+    rows.append(Finding("Gepro: drive, motors braked", "-", drive_mode(gepro), "Hz"))
+    rows.append(Finding("Gepro: the same, mass on springs", "-", of_springs(gepro), "Hz"))
+    for one, name in zip(runs, gepro.move, strict=True):
+        # once preloaded and before the move, and at the least of the pinion that pushes forward
+        still = one.teeth[one.time < 0.95 * gepro.move[name].standstill][-1, 0]
+        least = float(np.min(one.teeth[one.time > gepro.move[name].standstill, 0]))
+        rows.append(
+            Finding(
+                f"Gepro, {name}: teeth of motor 1, at rest and least", "-",
+                f"{still / 1e3:.2f} kN, {least / 1e3:.2f} kN",
+            )
+        )  # fmt: skip
+    return rows
+
+
+if __name__ == "__main__":
+    main(Path("out"))
