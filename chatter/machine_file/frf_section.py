@@ -87,6 +87,12 @@ class FrfSection(StateSection):
     averages: whole_number(1, 10_000, "numbers of averages") = 3
     settling: quantity("time", at_least=0.0) = Field(0.5, description="before the excitation")
     seed: whole_number(0, 2**31, "seeds") = 1
+    spindle_speed: quantity("angular_speed", above=0.0) | None = Field(
+        None, description="of the tool, for impulses at an angle"
+    )
+    at_angle: quantity("angle") | None = Field(
+        None, description="of the spindle at which torque impulses are released"
+    )
     moving: dict[str, quantity("velocity")] = Field(
         default_factory=dict, description="axes that move during the test"
     )
@@ -107,6 +113,11 @@ class FrfSection(StateSection):
             problems.append(("read", "is missing; where a motor excites, say what is read"))
         if self.read is not None and parse_place(self.read).motor is not None and not by_motor:
             problems.append(("read", "motors are read only where a motor excites"))
+        if (self.at_angle is None) != (self.spindle_speed is None):
+            missing = "at_angle" if self.at_angle is None else "spindle_speed"
+            problems.append((missing, "is missing; impulses at an angle need angle and speed"))
+        if self.at_angle is not None and self.by != "torque impulse":
+            problems.append(("at_angle", 'belongs to by = "torque impulse"'))
         if self.band[0] >= self.band[1]:
             problems.append(("band", f"{self.band[0]:g} Hz is not below {self.band[1]:g} Hz"))
         raise_if_any(problems)

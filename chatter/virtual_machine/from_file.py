@@ -172,6 +172,8 @@ def _one_frf(
             section.settling,
             velocity,
             section.seed,
+            section.spindle_speed or 0.0,
+            section.at_angle,
         )
         tested = frf_by_test(machine, file.step, test, progress)
     return FrfCurve(name, in_words(section), harmonic, tested)

@@ -24,10 +24,13 @@ from dynamics.excitation import (
     PeriodicRecord,
     PeriodicSignal,
     PulseTrain,
+    angle_at_constant_speed,
+    angle_triggered_pulses,
     cut_at_pulses,
     frf_of_periods,
     frf_of_transients,
     full_lines,
+    half_sine_blow,
     joint_input_output_frf,
     linear_chirp,
     multisine,
@@ -71,6 +74,10 @@ class FrfTest:
         Of axes that move during the test, m/s.
     seed : int
         Of phases and of the scatter of blows.
+    spindle_speed : float
+        Of the tool in a test by torque impulses, rad/s.
+    at_angle : float, optional
+        Angle of the spindle at which the impulses are released, rad; evenly in time by default.
     """
 
     name: str
@@ -84,6 +91,8 @@ class FrfTest:
     settling: float = 0.5
     velocity: Mapping[str, float] = field(default_factory=dict)
     seed: int = 1
+    spindle_speed: float = 0.0
+    at_angle: float | None = None
 
 
 def hammer(machine: Machine, step: float, test: FrfTest, progress: Progress) -> Frf:
@@ -99,9 +108,12 @@ def hammer(machine: Machine, step: float, test: FrfTest, progress: Progress) -> 
 def torque_impulse(machine: Machine, step: float, test: FrfTest, progress: Progress) -> Frf:
     """FRF by impulses of the torque command of an axis, of the closed loop."""
     width = max(_CONTACT / test.band[1], 2.0 * step)
-    train = several_blows(
-        width, test.level, step, test.averages, _whole(test.period, step), 0.0, test.seed
-    )
+    if test.at_angle is not None:
+        train = _at_angle(test, width, step)
+    else:
+        train = several_blows(
+            width, test.level, step, test.averages, _whole(test.period, step), 0.0, test.seed
+        )
     commanded = _as_sampled(machine, step, test, train.values)
     _, response = _tested(machine, step, test, commanded, progress)
     return _of_blows(train, commanded, response, ZERO_ORDER_HOLD, test)
@@ -199,6 +211,18 @@ def _as_sampled(machine: Machine, step: float, test: FrfTest, values: NDArray) -
     place = np.arange(before, before + len(values))
     held = place - place % max(every) - before
     return np.where(held >= 0, values[np.maximum(held, 0)], 0.0)
+
+
+def _at_angle(test: FrfTest, width: float, step: float) -> PulseTrain:
+    """Pulses released as the spindle comes to an angle, a period apart at the least."""
+    turn = 2.0 * np.pi / test.spindle_speed
+    revolutions = max(1, int(np.ceil(test.period / turn)))
+    samples = round((test.averages + 1) * revolutions * turn / step)
+    # the angle counts from the start of the run, not from that of the excitation
+    start = test.spindle_speed * round(test.settling / step) * step
+    angle = angle_at_constant_speed(test.spindle_speed, samples, step, start)
+    pulse = half_sine_blow(width, test.level, step)
+    return angle_triggered_pulses(angle, test.at_angle, pulse, step, revolutions)
 
 
 def _share_of(progress: Progress, place: int, test: FrfTest) -> Progress:
