@@ -27,8 +27,7 @@ def errors_of(
     """Errors of a case's predictions of runs, by run and channel."""
     found = []
     for run in measurement.runs if runs is None else runs:
-        own = case.patch(dict(run.overrides)) if run.overrides else case
-        predicted = kind.predict(own, run)
+        predicted = kind.predict(run.of(case), run)
         for channel in kind.channels(run):
             signal = run.signals[channel]
             error = float(np.sqrt(np.mean((predicted[channel] - signal) ** 2)))

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 Vector = NDArray[np.float64]
 Residuals = Callable[[Vector], Vector]
 
-_WORKERS = 2
+#: threads; the simulations leave the interpreter alone
+WORKERS = 2
 #: of a finite difference, in units of a parameter's size
 _STEP = 1e-3
 _MOST_ROUNDS = 12
@@ -97,6 +98,7 @@ def fit(
     residuals: Residuals,
     start: Vector | None = None,
     rounds: int = _MOST_ROUNDS,
+    jacobian: NDArray[np.float64] | None = None,
 ) -> Fit:
     """Fit parameters to residuals that are scaled to a standard deviation of one.
 
@@ -108,7 +110,14 @@ def fit(
     start : (p,) array of float, optional
         SI; that of the parameters by default.
     rounds : int
-        Linearisations at the most.
+        Steps at the most.
+    jacobian : (n, p) array of float, optional
+        Near the start, per size of a parameter, where it is known.
+
+    Notes
+    -----
+    Between differences the Jacobian is brought up to date by Broyden's (1965) rank-one formula;
+    differences are taken anew where a step gains less than half of what it promised.
     """
     chosen = tuple(parameters)
     size = np.array([one.size for one in chosen])
@@ -119,31 +128,43 @@ def fit(
     values = np.clip(origin if start is None else start, lower, upper)
     now = residuals(values)
     damping = 1e-3
-    jacobian = np.zeros((now.size, len(chosen)))
 
     def merit(r: Vector, v: Vector) -> float:
         return float(r @ r + weight @ ((v - origin) / size) ** 2)
 
-    best = merit(now, values)
-    for _ in range(rounds):
+    best, exact = merit(now, values), jacobian is None
+    if jacobian is None:
         jacobian = differences(residuals, values, now, size, lower, upper)
+    else:
+        jacobian = jacobian.copy()
+    for _ in range(rounds):
         normal = jacobian.T @ jacobian + np.diag(weight)
         slope = jacobian.T @ now + weight * (values - origin) / size
-        gained = 0.0
-        for _ in range(8):
+        gained = promised = 0.0
+        for _ in range(8 if exact else 3):
             bent = normal + damping * np.diag(np.maximum(np.diag(normal), 1e-12))
             step = -np.linalg.solve(bent, slope) * size
             tried = np.clip(values + step, lower, upper)
             after = residuals(tried)
             reached = merit(after, tried)
+            moved = (tried - values) / size
             if np.isfinite(reached) and reached < best:
                 gained = best - reached
+                promised = -float(2.0 * slope @ moved + moved @ normal @ moved)
+                change = after - now - jacobian @ moved
                 values, now, best = tried, after, reached
                 damping = max(damping / 5.0, 1e-9)
                 break
             damping *= 6.0
-        if gained <= _ENOUGH * max(1.0, 1e-3 * best):
+        enough = gained <= _ENOUGH * max(1.0, 1e-3 * best)
+        if enough and exact:
             break
+        if gained > 0.0:
+            jacobian += np.outer(change, moved) / max(float(moved @ moved), 1e-300)
+        exact = enough or gained < 0.5 * promised
+        if exact:
+            jacobian = differences(residuals, values, now, size, lower, upper)
+            damping = min(damping, 1e-3)
     normal = jacobian.T @ jacobian + np.diag(weight)
     inverse = np.linalg.pinv(normal, hermitian=True)
     covariance = inverse * np.outer(size, size)
@@ -169,5 +190,5 @@ def differences(
         return (residuals(moved) - now) / (step / size[place])
 
     del lower
-    with ThreadPoolExecutor(_WORKERS) as pool:
+    with ThreadPoolExecutor(WORKERS) as pool:
         return np.array(list(pool.map(column, range(values.size)))).T.reshape(now.size, -1)

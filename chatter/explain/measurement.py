@@ -48,6 +48,10 @@ class Run:
     condition: str = ""
     direction: str = ""
 
+    def of(self, case: Case) -> Case:
+        """Return a case with the overrides of the run."""
+        return case.patch(dict(self.overrides)) if self.overrides else case
+
 
 @dataclass(frozen=True, eq=False)
 class Measurement:

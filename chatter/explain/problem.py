@@ -94,8 +94,7 @@ class Problem:
         parts = []
         for run in runs:
             try:
-                own = case.patch(dict(run.overrides)) if run.overrides else case
-                parts.append(self.kind.residuals(own, run, self.noise[run.name]))
+                parts.append(self.kind.residuals(run.of(case), run, self.noise[run.name]))
             except (RunError, InputError):
                 parts.append(np.full(self._count(run), _FAR))
         return np.concatenate(parts)
@@ -108,6 +107,7 @@ class Problem:
         runs: Sequence[Run],
         start: Mapping[str, float] | None = None,
         rounds: int = 8,
+        jacobian: NDArray[np.float64] | None = None,
     ) -> Fit:
         """Fit everything to runs.
 
@@ -117,6 +117,8 @@ class Problem:
         start : mapping of str to float, optional
             Values to start from, by name; declared ones by default.
         rounds : int
+        jacobian : (n, p) array of float, optional
+            Near the start, where it is known.
         """
         parameters = self.parameters()
         names = [one.name for one in parameters]
@@ -125,7 +127,7 @@ class Problem:
         def residuals(values: NDArray[np.float64]) -> NDArray[np.float64]:
             return self.residuals(dict(zip(names, values, strict=True)), runs)
 
-        return fit(parameters, residuals, begin, rounds)
+        return fit(parameters, residuals, begin, rounds, jacobian)
 
     def noise_beside(self, values: Mapping[str, float]) -> Noise:
         """Noise of every channel of every run, from what a case leaves of them."""
@@ -134,8 +136,7 @@ class Problem:
         case = self.case(values)
         levels: dict[str, dict[str, float]] = {}
         for run in self.measurement.runs:
-            own = case.patch(dict(run.overrides)) if run.overrides else case
-            predicted = self.kind.predict(own, run)
+            predicted = self.kind.predict(run.of(case), run)
             levels[run.name] = {
                 channel: float(
                     np.hypot(
