@@ -28,9 +28,12 @@ def errors_of(
     found = []
     for run in measurement.runs if runs is None else runs:
         predicted = kind.predict(run.of(case), run)
+        weighted = getattr(kind, "weights", None)
+        weight = weighted(run) ** 2 if weighted else None
         for channel in kind.channels(run):
             signal = run.signals[channel]
-            error = float(np.sqrt(np.mean((predicted[channel] - signal) ** 2)))
+            left = predicted[channel] - signal
+            error = float(np.sqrt(np.average(left**2, weights=weight)))
             level = float(np.sqrt(np.mean(signal**2)))
             found.append(ChannelError(run.name, channel, error, error / max(level, 1e-300)))
     return found

@@ -17,6 +17,7 @@ from chatter.explain.fitting import Fit
 from chatter.explain.kind import Effect
 from chatter.explain.kinds import kind_of
 from chatter.explain.measurement import Measurement
+from chatter.explain.problem import NUMERICS
 from chatter.explain.search import Candidate, Search, Stage, search
 from chatter.explain.signature import signature_of
 from chatter.result_files import as_json, finite_or_none, write_results
@@ -70,6 +71,8 @@ class Explanation:
         return {
             "verdict": self.verdict,
             "effects": self._effects() if self.verdict == "explained" else [],
+            # what helps, but leaves something that is not known
+            "partial": self._effects() if self.verdict == "unexplained" else [],
             "error": self._errors(),
             "candidates": self._candidates(),
             "signature": signature_of(self.measurement, self.found.kind, self.case),
@@ -112,7 +115,7 @@ class Explanation:
     def _noise_floor(self) -> float | None:
         floor = getattr(self.found.kind, "noise_floor", None)
         if floor is not None:
-            return finite_or_none(floor(self.measurement))
+            return finite_or_none(floor(self.measurement, self.case))
         shares = {}
         for run in self.measurement.runs:
             for channel in self.found.kind.channels(run):
@@ -135,24 +138,17 @@ class Explanation:
 
     def _candidates(self) -> list[dict[str, Any]]:
         stage = self.found.first
-        count = stage.before.count
+        count, unseen = stage.before.count, self.found.problem.count(self.found.unseen)
         return [
             {
                 "name": one.effect.name,
-                "holdout_error": finite_or_none(math.sqrt(one.unseen / max(1, self._unseen_count))),
+                "holdout_error": finite_or_none(math.sqrt(one.unseen / unseen)),
                 "bic": finite_or_none(
                     one.fit.cost + len(one.fit.parameters) * math.log(max(count, 2))
                 ),
             }
             for one in stage.tried
         ]
-
-    @property
-    def _unseen_count(self) -> int:
-        kind = self.found.kind
-        return sum(
-            run.signals[channel].size for run in self.found.unseen for channel in kind.channels(run)
-        )
 
     def plot(self) -> Figure:
         """Picture of what is left of the runs, before and after."""
@@ -253,5 +249,7 @@ def parameters_of(fit: Fit, effect: Effect) -> dict[str, dict[str, Any]]:
     found = {}
     for key, (value, unit) in told.items():
         half = 1.96 * math.sqrt(max(slopes[key] @ covariance @ slopes[key], 0.0))
+        # the simulation itself is no better than this
+        half = math.hypot(half, NUMERICS * abs(value))
         found[key] = {"value": value, "unit": unit, "ci95": [value - half, value + half]}
     return found

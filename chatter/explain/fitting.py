@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.stats
 from numpy.typing import NDArray
 
 Vector = NDArray[np.float64]
@@ -22,6 +23,8 @@ WORKERS = 2
 _STEP = 1e-3
 _MOST_ROUNDS = 12
 _ENOUGH = 1e-4
+#: groups from which a scatter between them can be told
+_LEAST_GROUPS = 4
 
 
 @dataclass(frozen=True)
@@ -169,6 +172,41 @@ def fit(
     inverse = np.linalg.pinv(normal, hermitian=True)
     covariance = inverse * np.outer(size, size)
     return Fit(chosen, values, covariance, float(now @ now), now.size, jacobian, now)
+
+
+def over_groups(fit: Fit, sizes: Sequence[int]) -> Fit:
+    """Fit whose covariance allows for residuals that hang together within groups.
+
+    Parameters
+    ----------
+    fit : Fit
+    sizes : sequence of int
+        Residuals in each group, in their order; the groups are independent of each other.
+
+    Notes
+    -----
+    Where the groups pull a parameter about by more than white noise would let them, its standard
+    deviation is that of the cluster-robust covariance (Liang and Zeger 1986, equation 4), with
+    Student's t for the number of groups; elsewhere it stays as it is.
+    """
+    groups = len(sizes)
+    if groups < _LEAST_GROUPS:
+        return fit
+    ends = np.cumsum(sizes)
+    pulls = np.array(
+        [
+            fit.jacobian[end - size : end].T @ fit.residuals[end - size : end]
+            for size, end in zip(sizes, ends, strict=True)
+        ]
+    )
+    pulls -= pulls.mean(axis=0)
+    size = np.array([one.size for one in fit.parameters])
+    inverse = fit.covariance / np.outer(size, size)
+    spread = inverse @ (pulls.T @ pulls) @ inverse * groups / (groups - 1)
+    wider = scipy.stats.t.ppf(0.975, groups - 1) / 1.96
+    own = np.maximum(np.diag(inverse), 1e-300)
+    factor = np.maximum(1.0, wider * np.sqrt(np.maximum(np.diag(spread), 0.0) / own))
+    return replace(fit, covariance=fit.covariance * np.outer(factor, factor))
 
 
 def differences(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,8 @@ from chatter.shown import shown
 KINDS = ("milling", "axis", "stability", "frf")
 #: keys of [[run]] that are no override of the case
 _OWN_KEYS = ("file", "condition", "direction", "title")
+#: runs of which some can be kept back, and parts that fewer are cut into
+_ENOUGH_RUNS, _PARTS = 3, 6
 #: sections of a case that a short key of a run may mean
 _SECTIONS = ("cut", "tool", "material", "axis")
 
@@ -47,6 +49,23 @@ class Run:
     cut_time: float = 0.0
     condition: str = ""
     direction: str = ""
+
+    def part(self, number: int, parts: int, columns: Sequence[str]) -> Run:
+        """Return a run of which only one of some equal parts in time is judged.
+
+        Parameters
+        ----------
+        number, parts : int
+            0 <= number < parts.
+        columns : sequence of str
+            Signals that are cut; "part" says where, so that predictions can be of the whole.
+        """
+        size = self.signals[columns[0]].size
+        begin, end = number * size // parts, (number + 1) * size // parts
+        cut = {name: self.signals[name][begin:end] for name in columns}
+        name = f"{self.name}, part {number + 1} of {parts}"
+        signals = {**self.signals, **cut, "part": np.array([begin, end])}
+        return replace(self, name=name, signals=signals)
 
     def of(self, case: Case) -> Case:
         """Return a case with the overrides of the run."""
@@ -78,6 +97,14 @@ class Measurement:
     runs: tuple[Run, ...]
     tolerances: Mapping[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+
+    def in_parts(self, columns: Sequence[str]) -> Measurement:
+        """Return the measurement with its runs cut in time where there are too few to judge by."""
+        if len(self.runs) >= _ENOUGH_RUNS:
+            return self
+        parts = -(-_PARTS // len(self.runs))
+        runs = [run.part(k, parts, columns) for run in self.runs for k in range(parts)]
+        return replace(self, runs=tuple(runs))
 
     def with_case(self, case: Case) -> Measurement:
         """Same measurement with another case declared."""

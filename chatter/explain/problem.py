@@ -90,17 +90,18 @@ class Problem:
         try:
             case = self.case(values)
         except InputError:
-            return np.concatenate([np.full(self._count(run), _FAR) for run in runs])
+            return np.full(self.count(runs), _FAR)
         parts = []
         for run in runs:
             try:
                 parts.append(self.kind.residuals(run.of(case), run, self.noise[run.name]))
             except (RunError, InputError):
-                parts.append(np.full(self._count(run), _FAR))
+                parts.append(np.full(self.count([run]), _FAR))
         return np.concatenate(parts)
 
-    def _count(self, run: Run) -> int:
-        return sum(run.signals[channel].size for channel in self.kind.channels(run))
+    def count(self, runs: Sequence[Run]) -> int:
+        """Residuals of runs."""
+        return sum(run.signals[channel].size for run in runs for channel in self.kind.channels(run))
 
     def fit(
         self,

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.explain.effects import candidates
-from chatter.explain.fitting import WORKERS, Fit
+from chatter.explain.effects import candidates, place_of
+from chatter.explain.fitting import WORKERS, Fit, over_groups
 from chatter.explain.kind import Effect, Kind
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.problem import Problem
@@ -27,6 +27,8 @@ _MOST_EFFECTS = 3
 _FULL = 4
 #: and those that are looked at again once another effect is there
 _AGAIN = 3
+#: sums of squares that differ by less say nothing about which is better
+_EQUAL = 2.0
 #: starts of a candidate that are followed after a first look
 _FOLLOWED = 2
 
@@ -144,7 +146,7 @@ def search(measurement: Measurement, kind: Kind, progress: Progress) -> Search:
     first = None
     for round_number in range(_MOST_EFFECTS):
         left = _cost(problem, now.by_name, unseen)
-        if stages and math.sqrt(left / _count(problem, unseen)) < _NOTHING_LEFT:
+        if stages and math.sqrt(left / problem.count(unseen)) < _NOTHING_LEFT:
             break
         tried = _try_all(problem, now, fitted, unseen, progress, round_number)
         # what every candidate gains, the uncertain values gained by going on
@@ -162,7 +164,8 @@ def search(measurement: Measurement, kind: Kind, progress: Progress) -> Search:
         progress("looking again at what was added first", 0.85)
         stages, problem, now = _looked_again(stages, problem, now, fitted, unseen)
     progress("fitting all runs", 0.95)
-    final = problem.fit(measurement.runs, now.by_name, rounds=8)
+    final = problem.fit(measurement.runs, now.by_name, rounds=12)
+    final = over_groups(final, [problem.count([run]) for run in measurement.runs])
     base = Problem(measurement, kind, problem.noise).fit(measurement.runs, base_values, rounds=5)
     return Search(
         measurement, kind, fitted, unseen, first, tuple(stages), problem, now, final, base
@@ -192,7 +195,7 @@ def _looked_again(
             begin = now.by_name if one.effect is stage.best.effect else begin
             found = trial.fit(fitted, begin, rounds=6)
             tried.append(Candidate(one.effect, found, _cost(trial, found.by_name, unseen)))
-        tried.sort(key=lambda one: one.unseen)
+        tried = ranked(tried)
         place = kept.index(stage)
         if not _beyond_chance(left, tried[0].unseen, problem, unseen):
             del kept[place]
@@ -215,10 +218,6 @@ def first_noise(measurement: Measurement, kind: Kind) -> dict[str, dict[str, flo
     }
 
 
-def _count(problem: Problem, runs: Sequence[Run]) -> int:
-    return sum(run.signals[channel].size for run in runs for channel in problem.kind.channels(run))
-
-
 def _cost(problem: Problem, values: Mapping[str, float], runs: Sequence[Run]) -> float:
     left = problem.residuals(values, runs)
     return float(left @ left)
@@ -226,7 +225,7 @@ def _cost(problem: Problem, values: Mapping[str, float], runs: Sequence[Run]) ->
 
 def _beyond_chance(left: float, reached: float, problem: Problem, unseen: Sequence[Run]) -> bool:
     least, share = getattr(problem.kind, "least_gain", (_GAIN, _GAIN_SHARE))
-    return left - reached > least + share * _count(problem, unseen)
+    return left - reached > least + share * problem.count(unseen)
 
 
 def _try_all(
@@ -255,8 +254,13 @@ def _try_all(
         trial = problem.with_effect(effect)
         fitted_now = trial.fit(fitted, look.values, 10, look.jacobian)
         found.append(Candidate(effect, fitted_now, _cost(trial, fitted_now.by_name, unseen)))
-    found.sort(key=lambda candidate: candidate.unseen)
-    return found
+    return ranked(found)
+
+
+def ranked(found: Sequence[Candidate]) -> list[Candidate]:
+    """Candidates, best on the unseen runs first; equals in the order of the list of effects."""
+    best = min((one.unseen for one in found), default=0.0)
+    return sorted(found, key=lambda one: (max(one.unseen, best + _EQUAL), place_of(one.effect)))
 
 
 class Look(NamedTuple):

@@ -81,6 +81,10 @@ def _process_damping(case: Case, values: Values) -> Assignments:
     return {"process_damping": {"coefficient": float(values["coefficient"]), "friction": friction}}
 
 
+def _process_damping_starts(measurement: Measurement) -> Sequence[Values]:  # noqa: ARG001
+    return [{"coefficient": value} for value in (0.0, 5e4, 2e5, 8e5)]
+
+
 # chip exponent -----------------------------------------------------------------------------------
 
 
@@ -167,6 +171,10 @@ def _shift(case: Case, values: Values) -> Assignments:
         f"structure.mode[{place}].frequency_slope": float(values["slope"])
         for place in range(len(case.structure.mode))
     }
+
+
+def _shift_starts(measurement: Measurement) -> Sequence[Values]:  # noqa: ARG001
+    return [{"slope": value} for value in (0.0, 2e-5, -2e-5, 6e-5, -6e-5)]
 
 
 # pitch -------------------------------------------------------------------------------------------
@@ -353,6 +361,7 @@ MILLING_EFFECTS: tuple[Effect, ...] = (
         lambda m: m.case.process_damping is None,
         _process_damping_parameters,
         _process_damping,
+        _process_damping_starts,
         says="the flank resists vibration into the work, the more the slower the cut",
     ),
     Effect(
@@ -379,6 +388,7 @@ MILLING_EFFECTS: tuple[Effect, ...] = (
         lambda m: _has_modes(m) and _several_speeds(m),
         _shift_parameters,
         _shift,
+        _shift_starts,
         says="natural frequencies change with the spindle speed",
     ),
     Effect(
