@@ -30,7 +30,7 @@ def errors_of(
         predicted = kind.predict(run.of(case), run)
         weighted = getattr(kind, "weights", None)
         weight = weighted(run) ** 2 if weighted else None
-        for channel in kind.channels(run):
+        for channel in getattr(kind, "judged", kind.channels)(run):
             signal = run.signals[channel]
             left = predicted[channel] - signal
             error = float(np.sqrt(np.average(left**2, weights=weight)))

@@ -118,7 +118,7 @@ class Explanation:
             return finite_or_none(floor(self.measurement, self.case))
         shares = {}
         for run in self.measurement.runs:
-            for channel in self.found.kind.channels(run):
+            for channel in getattr(self.found.kind, "judged", self.found.kind.channels)(run):
                 level = float(np.sqrt(np.mean(run.signals[channel] ** 2)))
                 noise = self.found.problem.noise[run.name][channel]
                 shares.setdefault(channel, []).append((noise / max(level, 1e-300)) ** 2)
@@ -210,12 +210,14 @@ def probability(tried: tuple[Candidate, ...], of: Candidate) -> float:
 
 
 def _confounded(stage: Stage) -> list[str]:
-    """Candidates that gain nearly as much as the best."""
+    """Candidates no more intricate than the best that gain nearly as much."""
     gain = stage.unseen - stage.best.unseen
+    intricate = len(stage.best.fit.parameters)
     return [
         other.effect.name
         for other in stage.tried[1:]
         if stage.unseen - other.unseen > (1.0 - _ALIKE) * gain
+        and len(other.fit.parameters) <= intricate
     ]
 
 
