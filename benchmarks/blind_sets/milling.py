@@ -238,12 +238,12 @@ def write_set(out: Path, number: int, rng: Rng, only: str | None = None) -> list
         _write_record(place / name, noisy[index])
         entries.append({"file": name, **_conditions_of(drawn.cuts[index], drawn.mode)})
     unseen = []
+    apart = truth / "unseen"
+    apart.mkdir()
     for place_in_set, index in enumerate(hidden):
         name = f"unseen{place_in_set + 1:02d}.csv"
-        _write_record(truth / name, noisy[index])
-        unseen.append(
-            {"file": name, **_conditions_of(drawn.cuts[index], drawn.mode), "noise": shares[index]}
-        )
+        _write_record(apart / name, noisy[index])
+        unseen.append({"file": name, **_conditions_of(drawn.cuts[index], drawn.mode)})
     title = f"set-{number:04d}"
     first = dict(entries[0])
     first.pop("file"), first.pop("cut_time")
@@ -263,15 +263,14 @@ def write_set(out: Path, number: int, rng: Rng, only: str | None = None) -> list
         },
     }  # fmt: skip
     write_toml(place / "case.toml", case)
-    write_toml(
-        place / "measurement.toml",
-        {
-            "title": f"{title}: milling runs on a dynamometer with displacement probes",
-            "kind": "milling",
-            "case": "case.toml",
-            "run": entries,
-        },
-    )
+    about = {
+        "title": f"{title}: milling runs on a dynamometer with displacement probes",
+        "kind": "milling",
+        "case": "case.toml",
+    }
+    write_toml(place / "measurement.toml", {**about, "run": entries})
+    write_toml(apart / "case.toml", case)
+    write_toml(apart / "measurement.toml", {**about, "run": unseen})
     unlisted = [name for name in names if name in UNLISTED]
     write_toml(
         truth / "truth.toml",
@@ -283,7 +282,9 @@ def write_set(out: Path, number: int, rng: Rng, only: str | None = None) -> list
             "effect_size": drawn.sizes,
             "true": {one.name: one.parameters for one in drawn.effects},
             "plant": plain(drawn.plant._asdict()),
-            "unseen": unseen,
+            "expected": {one.name: one.expected for one in drawn.effects},
+            "noise_seen": [shares[index] for index in shown_runs],
+            "noise_unseen": [shares[index] for index in hidden],
         },
     )
     return names

@@ -25,6 +25,7 @@ class Drawn:
     name: str
     parameters: dict[str, object]
     changes: dict[str, object] = field(repr=False)
+    expected: dict[str, float] = field(default_factory=dict)  # SI, by the names of explanation.json
 
     def applied(self, plant: Plant) -> Plant:
         """Plant with the effect."""
@@ -55,13 +56,18 @@ def runout(rng: Rng, plant: Plant, about: Conditions, strength: float) -> Drawn:
     offset = float(strength * rng.uniform(0.12, 0.4) * about.feed)
     angle = float(rng.uniform(0.0, TURN))
     shown = {"offset_um": 1e6 * offset, "angle_deg": float(np.degrees(angle))}
-    return Drawn("runout", shown, {"runout_offset": offset, "runout_angle": angle})
+    return Drawn(
+        "runout",
+        shown,
+        {"runout_offset": offset, "runout_angle": angle},
+        {"offset": offset, "angle": angle},
+    )
 
 
 def edge_force(rng: Rng, plant: Plant, about: Conditions, strength: float) -> Drawn:
     """The plant's own edge force is the effect: the declared case lacks it."""
     changes = {"Kte": plant.Kte, "Kre": plant.Kre}
-    return Drawn("edge_force", dict(changes), changes)
+    return Drawn("edge_force", dict(changes), changes, changes)
 
 
 def process_damping(rng: Rng, plant: Plant, about: Conditions, strength: float) -> Drawn:
@@ -70,12 +76,19 @@ def process_damping(rng: Rng, plant: Plant, about: Conditions, strength: float) 
     own = 2.0 * float(np.median(plant.damping)) * natural * float(np.min(plant.mass))
     surface_speed = 0.7 * about.speed * plant.radius
     value = float(strength * rng.uniform(0.7, 3.0) * own * surface_speed / about.depth)
-    return Drawn("process_damping", {"coefficient_N_per_m": value}, {"ploughing": value})
+    return Drawn(
+        "process_damping",
+        {"coefficient_N_per_m": value},
+        {"ploughing": value},
+        {"coefficient": value},
+    )
 
 
 def chip_exponent(rng: Rng, plant: Plant, about: Conditions, strength: float) -> Drawn:
     exponent = float(1.0 - np.clip(strength * rng.uniform(0.12, 0.3), 0.05, 0.5))
-    return Drawn("chip_exponent", {"exponent": exponent}, {"exponent": exponent})
+    return Drawn(
+        "chip_exponent", {"exponent": exponent}, {"exponent": exponent}, {"exponent": exponent}
+    )
 
 
 def missing_mode(rng: Rng, plant: Plant, about: Conditions, strength: float) -> Drawn:
@@ -100,14 +113,20 @@ def missing_mode(rng: Rng, plant: Plant, about: Conditions, strength: float) -> 
         "mass": np.append(plant.mass, mass),
         "direction": np.vstack([plant.direction, direction]),
     }
-    return Drawn("missing_mode", shown, changes)
+    expected = {
+        "frequency": frequency,
+        "damping": damping,
+        "compliance": 1.0 / stiffness,
+        "mass": mass,
+    }
+    return Drawn("missing_mode", shown, changes, expected)
 
 
 def mode_shift(rng: Rng, plant: Plant, about: Conditions, strength: float) -> Drawn:
     share = float(np.clip(strength * rng.uniform(0.04, 0.12), 0.02, 0.3)) * rng.choice([-1.0, 1.0])
     slope = float(share / about.speed)
     shown = {"slope_s_per_rad": slope, "at_highest_speed": float(share)}
-    return Drawn("mode_shift", shown, {"frequency_slope": slope})
+    return Drawn("mode_shift", shown, {"frequency_slope": slope}, {"slope": slope})
 
 
 def pitch(rng: Rng, plant: Plant, about: Conditions, strength: float) -> Drawn:
@@ -118,7 +137,8 @@ def pitch(rng: Rng, plant: Plant, about: Conditions, strength: float) -> Drawn:
     places[1:] += off
     shown: dict[str, object] = {f"tooth_{j + 2}_rad": float(off[j]) for j in range(teeth - 1)}
     shown["pitch_deg"] = np.degrees(np.diff(np.append(places, TURN))).tolist()
-    return Drawn("pitch", shown, {"tooth_angle": places})
+    expected = {f"tooth_{j + 2}": float(off[j]) for j in range(teeth - 1)}
+    return Drawn("pitch", shown, {"tooth_angle": places}, expected)
 
 
 def wear(rng: Rng, plant: Plant, about: Conditions, strength: float) -> Drawn:
@@ -133,7 +153,7 @@ def wear(rng: Rng, plant: Plant, about: Conditions, strength: float) -> Drawn:
         "wear_radial": rates["edge_radial"],
         "wear_cutting": rates["cutting"],
     }
-    return Drawn("wear", dict(rates), changes)
+    return Drawn("wear", dict(rates), changes, rates)
 
 
 def contact(rng: Rng, plant: Plant, about: Conditions, strength: float) -> Drawn:
@@ -151,14 +171,15 @@ def contact(rng: Rng, plant: Plant, about: Conditions, strength: float) -> Drawn
         "contact_damping": damping,
         "contact_share": share,
     }
-    return Drawn("contact", shown, changes)
+    return Drawn("contact", shown, changes, {"stiffness": stiffness, "damping": damping})
 
 
 def dynamometer(rng: Rng, plant: Plant, about: Conditions, strength: float) -> Drawn:
     frequency = float(rng.uniform(900.0, 2600.0) / np.sqrt(strength))
     damping = float(rng.uniform(0.02, 0.06))
     shown = {"frequency_Hz": frequency, "damping": damping}
-    return Drawn("dynamometer", shown, {"sensor_frequency": frequency, "sensor_damping": damping})
+    changes = {"sensor_frequency": frequency, "sensor_damping": damping}
+    return Drawn("dynamometer", shown, changes, {"frequency": frequency, "damping": damping})
 
 
 def slide_friction(rng: Rng, plant: Plant, about: Conditions, strength: float) -> Drawn:
@@ -167,7 +188,8 @@ def slide_friction(rng: Rng, plant: Plant, about: Conditions, strength: float) -
     velocity = float(rng.uniform(0.1, 0.3) * about.displacement * TURN * plant.frequency[mode])
     shown = {"mode": mode, "coulomb_N": force, "velocity_m_per_s": velocity}
     changes = {"slide_mode": mode, "slide_friction": force, "slide_velocity": velocity}
-    return Drawn("slide_friction", shown, changes)
+    expected = {"force": force, "velocity": velocity}
+    return Drawn("slide_friction", shown, changes, expected)
 
 
 # effects that are in no list ---------------------------------------------------------------------

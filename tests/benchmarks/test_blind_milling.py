@@ -162,6 +162,8 @@ def test_a_set_holds_no_truth_and_hangs_on_the_seed_alone(tmp_path):
     assert "runout" not in "".join(p.read_text() for p in place.glob("*.toml"))
     truth = tomlkit.parse((tmp_path / "one/truth/set-0001/truth.toml").read_text())
     assert truth["effects"] == ["runout"]
-    assert len(truth["unseen"]) == milling.UNSEEN_RUNS
+    assert len(truth["noise_unseen"]) == milling.UNSEEN_RUNS
+    unseen = list((tmp_path / "one/truth/set-0001/unseen").glob("*.csv"))
+    assert len(unseen) == milling.UNSEEN_RUNS
     assert max(truth["effect_size"]["runout"]) > 3 * min(truth["noise"])
     assert 7 <= len(list(place.glob("run*.csv"))) <= 10
