@@ -54,7 +54,7 @@ class Plant(NamedTuple):
     slide_mode: int = 0
     slide_friction: float = 0.0  # N
     slide_velocity: float = 1e-3  # m/s
-    spot_amplitude: float = 0.0
+    spot_amplitude: float = 0.0  # of the whole force, along the feed
     spot_wavelength: float = 1e-3
     spot_phase: float = 0.0
     drift_amplitude: float = 0.0
@@ -151,8 +151,8 @@ def _cutting(t, now, vel, step, known, u, v, p, c, past, force):
     drift = 1.0 + p.drift_amplitude * np.sin(2.0 * np.pi * p.drift_frequency * t + p.drift_phase)
     worn = 1.0 + p.wear_cutting * c.cut_time
     ktc, krc = p.Ktc * spots * drift * worn, p.Krc * spots * worn
-    kte = p.Kte + p.wear_tangential * c.cut_time
-    kre = p.Kre + p.wear_radial * c.cut_time
+    kte = (p.Kte + p.wear_tangential * c.cut_time) * spots
+    kre = (p.Kre + p.wear_radial * c.cut_time) * spots
     force[0] = force[1] = 0.0
     engaged = 0.0
     for j in range(teeth):
