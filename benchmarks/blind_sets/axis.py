@@ -233,7 +233,6 @@ def draw_axis(rng: Rng) -> Axis:
         mass=float(rng.uniform(120.0, 270.0)),
         viscous=float(rng.uniform(600.0, 1300.0)),
         coulomb=float(rng.uniform(60.0, 180.0)),
-        smooth=float(rng.uniform(3e-5, 5e-5)),
     )
 
 

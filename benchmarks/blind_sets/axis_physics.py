@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 SAMPLING = 1000.0  # Hz
-FINE = 60  # steps a sample
+FINE = 90  # steps a sample
 
 
 class Axis(NamedTuple):
@@ -24,7 +24,7 @@ class Axis(NamedTuple):
     mass: float
     viscous: float
     coulomb: float = 0.0
-    smooth: float = 3e-5  # speed over which the sign of the friction changes, m/s
+    smooth: float = 2e-5  # speed over which the sign of the friction changes, m/s
     above: float = 0.0  # static over Coulomb friction, N
     stribeck_velocity: float = 5e-3
     bristle_stiffness: float = 0.0
