@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from chatter.case import Case
 from chatter.errors import InputError
 from chatter.explain.fitting import Parameter
-from chatter.explain.measurement import Measurement, Run
+from chatter.explain.measurement import USABLE, Measurement, Run
 from chatter.explain.problem import scaled_difference
 from chatter.explain.tolerance import tolerated
 from dynamics.axis_force import AxisForce
@@ -23,6 +23,8 @@ _KEPT = 4
 _MOTION_CUT_OFF = 0.15
 #: speed below which noise decides on the direction, m/s, and how much less a sample there counts
 _NEAR_REST, _DOUBT = 1e-4, 20.0
+#: weight of the low pass on samples that can be used from which on one kept is used
+_ALL_USABLE = 0.999
 _NEEDED = ("time", "position", "force")
 
 
@@ -114,12 +116,13 @@ def _prepared(signals: Mapping[str, NDArray], begun: float) -> dict[str, NDArray
     velocity = np.gradient(position, step)
     force = _kept(signals["force"])
     at_rest = (np.abs(velocity) < _NEAR_REST).astype(np.float64)
+    usable = _kept(signals.get(USABLE, np.ones(velocity.size))) > _ALL_USABLE
     return {
         "time": signals["time"][::_KEPT][: force.size],
         "force": force,
         "position": _kept(signals["position"]),
         "velocity": _kept(velocity),
-        "certainty": 1.0 / (1.0 + _DOUBT * np.clip(_kept(at_rest), 0.0, 1.0)),
+        "certainty": 1.0 / (1.0 + _DOUBT * np.clip(_kept(at_rest), 0.0, 1.0)) * usable,
         "motion position": position,
         "motion velocity": velocity,
         "motion acceleration": np.gradient(velocity, step),

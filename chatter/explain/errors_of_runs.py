@@ -31,7 +31,8 @@ def errors_of(
         predicted = kind.predict(own, run)
         for channel in kind.channels(run):
             signal = run.signals[channel]
-            error = float(np.sqrt(np.mean((predicted[channel] - signal) ** 2)))
+            left = (predicted[channel] - signal) * run.usable(signal.size)
+            error = float(np.sqrt(np.mean(left**2)))
             level = float(np.sqrt(np.mean(signal**2)))
             found.append(ChannelError(run.name, channel, error, error / max(level, 1e-300)))
     return found

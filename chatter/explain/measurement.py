@@ -21,6 +21,8 @@ KINDS = ("milling", "axis", "stability", "frf")
 _OWN_KEYS = ("file", "condition", "direction", "title")
 #: sections of a case that a short key of a run may mean
 _SECTIONS = ("cut", "tool", "material", "axis")
+#: column of a run that is 0 where samples are no good, and else 1
+USABLE = "usable"
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +49,11 @@ class Run:
     cut_time: float = 0.0
     condition: str = ""
     direction: str = ""
+
+    def usable(self, size: int) -> NDArray[np.float64]:
+        """Weights (size,) of samples: 0 where they were found to be no good, else 1."""
+        weights = self.signals.get(USABLE)
+        return weights if weights is not None and weights.size == size else np.ones(size)
 
 
 @dataclass(frozen=True, eq=False)
