@@ -7,7 +7,8 @@ finding         what a check says, how bad it is, and what follows
 clock           clocks: rising, even, in seconds, without holes
 samples         gaps, flat tops, dropouts, dead channels, copies of runs
 spindle         spindle speed and number of teeth against angle and forces
-arrangement     force channels, mode of milling and depths against the declared cut
+patterns        mean force of a tooth passing, measured and of a rigid cut
+arrangement     force channels, teeth, mode of milling and depths against the declared cut
 scale           units of the forces, dead sensors
 displacement    displacements against the forces through the declared structure
 motion          axis moves: force, velocity and position against each other

@@ -69,7 +69,7 @@ def _single(measurement: Measurement, run: Run) -> str:
         return ""
     factor = float(np.exp(np.median(np.log(np.abs(values) + 1e-300) - np.log(np.abs(declared)))))
     as_given = _fit(measurement, run, values, run.direction)
-    if abs(as_given) < _MISFIT:
+    if as_given < _MISFIT:
         omega = 2.0 * np.pi * run.signals["frequency"]
         for name, order in _QUANTITIES.items():
             with np.errstate(divide="ignore", invalid="ignore"):

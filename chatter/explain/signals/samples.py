@@ -26,6 +26,8 @@ _NEEDED = {"milling": (), "axis": ("position", "force"), "frf": ("real", "imag")
 _MAY_REST = ("Fz", "z", "command")
 #: share of a channel's samples up to which they are left out; beyond, the channel is
 _MOST_LEFT_OUT = 0.3
+#: zeros in a row that no signal with noise has
+_HELD = 3
 
 
 def stretches(of: NDArray[np.bool_]) -> list[tuple[int, int]]:
@@ -161,7 +163,9 @@ def dropped_samples(values: NDArray[np.float64]) -> NDArray[np.bool_]:
         before = values[begin - 1] if begin > 0 else np.inf
         after = values[end] if end < values.size else np.inf
         jump = min(abs(before), abs(after))
-        if np.isfinite(jump) and jump > max(0.3 * level, step):
+        # noise alone holds no zero for several samples
+        held = end - begin >= _HELD and jump > 0.1 * level
+        if np.isfinite(jump) and (held or jump > max(0.3 * level, step)):
             lost[begin:end] = True
     return lost
 

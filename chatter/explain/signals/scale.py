@@ -9,12 +9,8 @@ import numpy as np
 
 from chatter.errors import InputError, RunError
 from chatter.explain.measurement import Measurement, Run
-from chatter.explain.signals.arrangement import own_case, rigid_pattern, tooth_pattern
-from chatter.explain.signals.finding import (
-    CHANNEL,
-    SignalFinding,
-    of_all_or_some,
-)
+from chatter.explain.signals.finding import CHANNEL, FATAL, SignalFinding, of_all_or_some
+from chatter.explain.signals.patterns import own_case, rigid_pattern, tooth_pattern
 
 #: factor within which a thousand is a wrong unit, and share below which a sensor is dead
 _NEAR_THOUSAND, _DEAD = 2.5, 0.02
@@ -43,7 +39,7 @@ def wrong_scales(measurement: Measurement) -> list[SignalFinding]:
             f"the forces are {typical:.3g} times those of the declared case over all runs: depth, "
             "feed, coefficients or the unit of the forces are declared wrong"
         )
-        found = [SignalFinding("fatal", "", "Fx, Fy", says)]
+        found = [SignalFinding(FATAL, "", "Fx, Fy", says)]
     return found
 
 
