@@ -32,6 +32,9 @@ from chatter.explain.signals.patterns import (
 
 #: share that is left by a cut that fits, and of what the declared one leaves
 _FITS, _BETTER = 0.25, 0.5
+#: share of what all the forces leave by which a multiple of the teeth must do better: it holds less
+#: of them always, unless it is right
+_CLEARER = 0.8
 #: declared cuts that leave less than this are not doubted
 _DOUBTED = 0.3
 #: radial depths and teeth that are tried, the former over the declared one
@@ -140,7 +143,7 @@ def _multiple(
             continue
         cut = _other_teeth(other, measurement, runs)
         best = fitted(cut.measured, cut.basis)[1]
-        if best < _FITS and cut.of_all(best) < _BETTER * of_all:
+        if best < _FITS and cut.of_all(best) < _CLEARER * of_all:
             says = f"{cut.says}: {_numbers(cut.of_all(best), of_all)}"
             return [SignalFinding(FATAL, "", "Fx, Fy", says)]
     return []

@@ -66,7 +66,7 @@ def shaken(signals):
 
 
 def with_teeth(teeth):
-    measurement = S.milling()
+    measurement = S.healthy()
     return measurement.with_case(measurement.case.patch({"tool.teeth": teeth}))
 
 
@@ -102,7 +102,7 @@ def test_effects_of_physics_are_no_faults(changes):
     ],
 )
 def test_a_fault_in_every_run_is_fatal(edit, words):
-    finding = S.worst(S.edited(S.milling(), edit))
+    finding = S.worst(S.edited(S.healthy(), edit))
     assert finding.severity == "fatal"
     assert words in finding.says
 
@@ -125,7 +125,7 @@ def test_teeth_are_counted_in_spite_of_runout():
 @pytest.mark.parametrize("with_angle", [True, False])
 @pytest.mark.parametrize("factor", [1.03, 0.96])
 def test_a_wrong_spindle_speed_is_said(factor, with_angle):
-    measurement = S.milling() if with_angle else S.edited(S.milling(), without("spindle_angle"))
+    measurement = S.healthy() if with_angle else S.edited(S.healthy(), without("spindle_angle"))
     for place, rpm in enumerate((4000.0, 3300.0, 4700.0, 3600.0)):
         speed = f"{factor * rpm} rpm"
         measurement = S.declared(measurement, [place], cut__spindle_speed=speed)
@@ -136,36 +136,64 @@ def test_a_wrong_spindle_speed_is_said(factor, with_angle):
 
 
 def test_the_other_mode_of_milling_is_said():
-    finding = S.worst(S.declared(S.milling(), cut__mode="up"))
+    finding = S.worst(S.declared(S.healthy(), cut__mode="up"))
     assert finding.severity == "fatal"
     assert "down-milling, not up-milling" in finding.says
 
 
 def test_a_radial_depth_grossly_off_is_said():
-    finding = S.worst(S.declared(S.milling(), [1], cut__radial_depth="4 mm"))
+    finding = S.worst(S.declared(S.healthy(), [1], cut__radial_depth="4 mm"))
     assert finding.severity == "run"
     assert "radial depth" in finding.says
 
 
 @pytest.mark.parametrize(
-    ("measurement", "severity", "words"),
+    ("made", "severity", "words"),
     [
-        (S.edited(S.milling(), scaled("Fy", -1.0), [2]), "run", "run3.csv: the sign of Fy"),
-        (S.edited(S.milling(), swapped("x", "y"), [2]), "run", "run3.csv: x and y are swapped"),
-        (S.declared(S.milling(), [1], cut__spindle_speed="3400 rpm"), "run", "declares 3400 rpm"),
-        (S.declared(S.milling(), [1], cut__axial_depth="3 mm"), "run", "times what the other runs"),
-        (S.edited(S.milling(), scaled("y", 1e-3), [0]), "channel", "wrong by 1000"),
-        (S.edited(S.milling(), with_samples("x", slice(None), 0.0), [0]), "channel", "x is dead"),
-        (S.edited(S.milling(), with_samples("Fx", slice(90, 99), np.nan), [0]), "samples", "9 s"),
-        (S.edited(S.milling(), with_samples("Fy", slice(300, 320), 0.0), [0]), "samples", "zero"),
-        (S.edited(S.milling(), clipped, [0]), "samples", "cut off"),
-        (S.edited(S.milling(), interrupted, [3]), "samples", "40 samples are missing"),
-        (S.edited(S.milling(), shaken, [3]), "note", "jitters"),
-        (S.edited(S.milling(), with_samples("time", slice(9, 12), 0.0), [1]), "run", "not rise"),
+        (lambda: S.edited(S.healthy(), scaled("Fy", -1.0), [2]), "run", "run3.csv: the sign of Fy"),
+        (
+            lambda: S.edited(S.healthy(), swapped("x", "y"), [2]),
+            "run",
+            "run3.csv: x and y are swapped",
+        ),
+        (
+            lambda: S.declared(S.healthy(), [1], cut__spindle_speed="3400 rpm"),
+            "run",
+            "declares 3400 rpm",
+        ),
+        (
+            lambda: S.declared(S.healthy(), [1], cut__axial_depth="3 mm"),
+            "run",
+            "times what the other runs",
+        ),
+        (lambda: S.edited(S.healthy(), scaled("y", 1e-3), [0]), "channel", "wrong by 1000"),
+        (
+            lambda: S.edited(S.healthy(), with_samples("x", slice(None), 0.0), [0]),
+            "channel",
+            "x is dead",
+        ),
+        (
+            lambda: S.edited(S.healthy(), with_samples("Fx", slice(90, 99), np.nan), [0]),
+            "samples",
+            "9 s",
+        ),
+        (
+            lambda: S.edited(S.healthy(), with_samples("Fy", slice(300, 320), 0.0), [0]),
+            "samples",
+            "zero",
+        ),
+        (lambda: S.edited(S.healthy(), clipped, [0]), "samples", "cut off"),
+        (lambda: S.edited(S.healthy(), interrupted, [3]), "samples", "40 samples are missing"),
+        (lambda: S.edited(S.healthy(), shaken, [3]), "note", "jitters"),
+        (
+            lambda: S.edited(S.healthy(), with_samples("time", slice(9, 12), 0.0), [1]),
+            "run",
+            "not rise",
+        ),
     ],
 )
-def test_a_fault_of_one_run_costs_that_alone(measurement, severity, words):
-    looked_at = checked(measurement)
+def test_a_fault_of_one_run_costs_that_alone(made, severity, words):
+    looked_at = checked(made())
     (finding,) = looked_at.findings
     assert finding.severity == severity
     assert words in finding.says
@@ -181,8 +209,8 @@ def test_a_fault_of_one_run_costs_that_alone(measurement, severity, words):
 
 
 def test_copies_of_a_run_declared_otherwise_are_both_left_out():
-    first = S.milling().runs[0].signals
-    looked_at = checked(S.edited(S.milling(), lambda _: first, [2]))
+    first = S.healthy().runs[0].signals
+    looked_at = checked(S.edited(S.healthy(), lambda _: first, [2]))
     assert {one.run for one in looked_at.findings} == {"run1.csv", "run3.csv"}
     assert len(looked_at.measurement.runs) == 2
 
@@ -199,8 +227,8 @@ def test_nothing_is_explained_beside_a_fatal_fault(tmp_path):
 
 
 def test_samples_left_out_do_not_count_in_the_error(tmp_path):
-    clean = compare(S.milling()).summary()["nrmse"]
-    spoiled = S.edited(S.milling(), with_samples("Fy", slice(300, 320), 0.0), [0])
+    clean = compare(S.healthy()).summary()["nrmse"]
+    spoiled = S.edited(S.healthy(), with_samples("Fy", slice(300, 320), 0.0), [0])
     result = compare(spoiled)
     assert result.summary()["nrmse"] == pytest.approx(clean, rel=0.02)
     assert "zero" in result.summary()["checks"][0]["says"]

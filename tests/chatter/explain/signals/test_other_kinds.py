@@ -161,7 +161,11 @@ def test_a_gap_in_a_move_is_left_out_and_the_rest_explained():
         (scaled(1000.0, "real", "imag"), "unit is wrong by 1000"),
         (scaled(-1.0, "real", "imag"), "sign is turned"),
         (
-            lambda s: {**s, "real": -s["imag"] * s["frequency"], "imag": s["real"] * s["frequency"]},
+            lambda s: {
+                **s,
+                "real": -s["imag"] * s["frequency"],
+                "imag": s["real"] * s["frequency"],
+            },
             "mobility",
         ),
         (
