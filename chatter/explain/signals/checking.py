@@ -130,10 +130,10 @@ def _rank(finding: SignalFinding) -> int:
 
 def _once(found: Sequence[SignalFinding]) -> list[SignalFinding]:
     """Findings without those that say the same again."""
-    seen: set[tuple[str, str]] = set()
+    seen: set[tuple[str, str, str]] = set()
     kept = []
     for one in found:
-        key = (one.severity, one.says)
+        key = (one.severity, one.run, one.says)
         if key not in seen:
             seen.add(key)
             kept.append(one)
