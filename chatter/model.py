@@ -118,6 +118,8 @@ def milling_model(case: Case) -> MillingModel:
         )
     if case.contact is not None:
         notes.append("the contact of tool and work acts in the time domain alone")
+    if case.structure is not None and any(mode.friction for mode in case.structure.mode):
+        notes.append("the friction of modes acts in the time domain alone")
     radius = 0.5 * case.tool.diameter
     return MillingModel(
         case=case,

@@ -9,7 +9,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from pydantic import Field, PrivateAttr, model_validator
 
 from chatter.case.base import raise_if_any
-from chatter.case.checks import engagement_problems, engagement_problems_of_draft
+from chatter.case.checks import (
+    engagement_problems,
+    engagement_problems_of_draft,
+    friction_problems,
+)
 from chatter.case.cut import Cut
 from chatter.case.description import Description
 from chatter.case.document import move_references
@@ -81,6 +85,10 @@ class Case(Description):
     @classmethod
     def _problems_of_draft(cls, data: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
         return engagement_problems_of_draft(data)
+
+    def _further_problems(self, data: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
+        del data
+        return friction_problems(self.structure, self.friction)
 
     def _resolve_files(self, content: dict[str, Any]) -> None:
         if self.structure is None:

@@ -7,6 +7,8 @@ from typing import Any
 
 from chatter.case.cut import Cut
 from chatter.case.path import field_at
+from chatter.case.sections import Friction
+from chatter.case.structure import StructureSection
 from chatter.case.tool import Tool
 
 _WIDTH = "cut.radial_depth"
@@ -46,6 +48,27 @@ def engagement_problems_of_draft(data: Mapping[str, Any]) -> list[tuple[str, str
         _length(Cut, cut, "radial_depth"),
         _length(Tool, tool, "diameter"),
     )
+
+
+def friction_problems(
+    structure: StructureSection | None, frictions: Mapping[str, Friction]
+) -> list[tuple[str, str]]:
+    """Check that the frictions named by modes are there.
+
+    Returns
+    -------
+    list of (str, str)
+        Path and sentence of what is wrong.
+    """
+    known = ", ".join(f"[friction.{name}]" for name in frictions) or "none"
+    return [
+        (
+            f"structure.mode[{place}].friction",
+            f"there is no [friction.{mode.friction}]; there is {known}",
+        )
+        for place, mode in enumerate(structure.mode if structure is not None else ())
+        if mode.friction is not None and mode.friction not in frictions
+    ]
 
 
 def _length(section: type, table: Any, key: str) -> float | None:

@@ -13,7 +13,7 @@ from pydantic import PrivateAttr, ValidationError
 
 from chatter.case.base import Section
 from chatter.case.document import parse_document, plain, read_text, value_at
-from chatter.case.editing import Layout, set_value
+from chatter.case.editing import PLAIN, Layout, set_value
 from chatter.case.path import Step, field_at, join_path, key_of, model_at, parse_path
 from chatter.case.wording import sentences, unknown_key
 from chatter.errors import InputError
@@ -36,7 +36,11 @@ class Description(Section):
     EXAMPLE_PATH: ClassVar[str]
     LAYOUT: ClassVar[Layout]
 
+    #: the file that it came from, and what was set in it since: (path, value)
     _document: Any = PrivateAttr(default=None)
+    _edits: tuple[tuple[tuple[Step, ...], Any], ...] = PrivateAttr(default=())
+    #: bare content of the file, with what was set
+    _data: Any = PrivateAttr(default=None)
     _folder: Path = PrivateAttr(default=Path())
     _name: str = PrivateAttr(default="")
 
@@ -107,7 +111,7 @@ class Description(Section):
             raise InputError(f"{name}: {error}") from None
         except RecursionError:
             raise InputError(f"{name}: is too deeply nested") from None
-        return cls._validated(document, name, Path(folder))
+        return cls._of_document(document, name, Path(folder))
 
     @classmethod
     def from_file(cls, path: str | Path) -> Self:
@@ -120,7 +124,7 @@ class Description(Section):
         """
         path = Path(path)
         document = parse_document(read_text(path, cls.NOUN), str(path))
-        return cls._validated(document, str(path), path.parent)
+        return cls._of_document(document, str(path), path.parent)
 
     @classmethod
     def from_text(cls, text: str, name: str = "", folder: str | Path = ".") -> Self:
@@ -132,11 +136,16 @@ class Description(Section):
             If the text describes nothing; all problems found are in it.
         """
         name = name or cls.NOUN
-        return cls._validated(parse_document(text, name), name, Path(folder))
+        return cls._of_document(parse_document(text, name), name, Path(folder))
 
     @classmethod
-    def _validated(cls, document: Any, name: str, folder: Path) -> Self:
-        data = document.unwrap()
+    def _of_document(cls, document: Any, name: str, folder: Path) -> Self:
+        made = cls._validated(document.unwrap(), name, folder)
+        made._document = document
+        return made
+
+    @classmethod
+    def _validated(cls, data: dict[str, Any], name: str, folder: Path) -> Self:
         try:
             made = cls.model_validate(data, context={"folder": folder})
         except ValidationError as error:
@@ -145,7 +154,7 @@ class Description(Section):
             raise InputError(
                 [*problems, *(text for text in told if text not in problems)]
             ) from None
-        made._document, made._folder, made._name = document, folder, name
+        made._data, made._folder, made._name = data, folder, name
         problems = [
             f"{name}: {path}: {text}" if path else f"{name}: {text}"
             for path, text in made._further_problems(data)
@@ -198,24 +207,28 @@ class Description(Section):
         InputError
             If a path is unknown or what comes of it is wrong; all problems found are in it.
         """
-        document = copy.deepcopy(self._source())
+        data = copied(self._plain())
+        edits = []
         problems: list[str] = []
         for path, value in values.items():
             try:
                 steps = self._steps(path)
                 self._check_known(steps)
-                given = plain(value, steps, self.NOUN)
-                set_value(document, steps, self._in_given_unit(document, steps, given), self.LAYOUT)
+                given = self._in_given_unit(data, steps, plain(value, steps, self.NOUN))
+                set_value(data, steps, copied(given), self.LAYOUT, PLAIN)
+                edits.append((steps, given))
             except InputError as error:
                 problems += [f"{self.name}: {message}" for message in error.messages]
         if problems:
             raise InputError(problems)
-        return self._validated(document, self.name, self._folder)
+        made = self._validated(data, self.name, self._folder)
+        made._document, made._edits = self._document, (*self._edits, *edits)
+        return made
 
     def deviations(self) -> dict[str, float]:
         """Standard deviations (SI) of the values given as "1650 +- 80 MPa", by path."""
         found: dict[str, float] = {}
-        self._collect_deviations(self._source(), (), found)
+        self._collect_deviations(self._plain(), (), found)
         return found
 
     def to_toml(self) -> str:
@@ -231,7 +244,7 @@ class Description(Section):
             If the file cannot be written.
         """
         path = Path(path)
-        document = copy.deepcopy(self._source())
+        document = self._source()
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             if path.parent.resolve() != self._folder.resolve():
@@ -240,12 +253,22 @@ class Description(Section):
         except OSError as error:
             raise InputError(f"{path}: cannot be written ({error.strerror})") from None
 
-    def _source(self) -> Any:
-        """Document that the description came from; made from the content where there was none."""
-        if self._document is None:
+    def _plain(self) -> dict[str, Any]:
+        """Content of the file; made from that of the description where there was none."""
+        if self._data is None:
             content = self.model_dump(mode="json", by_alias=True, exclude_unset=True)
-            self._document = tomlkit.item(plain(content))
-        return self._document
+            self._data = plain(content)
+        return self._data
+
+    def _source(self) -> Any:
+        """Document with all that was set in it."""
+        if self._document is None:
+            return tomlkit.item(copied(self._plain()))
+        # only what is written needs it, so that patches do not carry its comments about
+        document = copy.deepcopy(self._document)
+        for steps, value in self._edits:
+            set_value(document, steps, copied(value), self.LAYOUT)
+        return document
 
     @classmethod
     def _steps(cls, path: str) -> tuple[Step, ...]:
@@ -289,6 +312,15 @@ class Description(Section):
                 deviation = parse(item, field.alike(item).dimension).deviation
                 if deviation > 0.0:
                     found[join_path(steps)] = deviation
+
+
+def copied(value: Any) -> Any:
+    """Copy of nested tables and lists; what they hold is immutable."""
+    if isinstance(value, dict):
+        return {key: copied(entry) for key, entry in value.items()}
+    if isinstance(value, list):
+        return [copied(entry) for entry in value]
+    return value
 
 
 def _like(value: Any, stands: Any, field: Any, steps: tuple[Step, ...]) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 import tomlkit
@@ -27,7 +27,27 @@ class Layout(NamedTuple):
     alternatives: Mapping[str, str]
 
 
-def set_value(document: Any, steps: tuple[Step, ...], value: Any, layout: Layout) -> None:
+class Containers(NamedTuple):
+    """What new tables and lists of a document are made of."""
+
+    table: Callable[[], Any]
+    inline_table: Callable[[], Any]
+    tables: Callable[[], Any]
+
+
+#: of a document that is written as it was read
+WRITTEN = Containers(tomlkit.table, tomlkit.inline_table, tomlkit.aot)
+#: of its bare content
+PLAIN = Containers(dict, dict, list)
+
+
+def set_value(
+    document: Any,
+    steps: tuple[Step, ...],
+    value: Any,
+    layout: Layout,
+    containers: Containers = WRITTEN,
+) -> None:
     """Set, or with None remove, the value at a path; ``"*"`` stands for every place of a list.
 
     Tables on the way that are not there are made, and a table set one place past the end of a
@@ -38,41 +58,47 @@ def set_value(document: Any, steps: tuple[Step, ...], value: Any, layout: Layout
     InputError
         If the path leads through something that is no table or list, or past the end of a list.
     """
-    containers = [document]
+    reached = [document]
     for place in range(len(steps) - 1):
-        containers = [
+        reached = [
             inner
-            for item in containers
-            for inner in _enter(item, steps, place, value is None, layout)
+            for item in reached
+            for inner in _enter(
+                item,
+                steps,
+                place,
+                None if value is None else _empty(steps, place, layout, containers),
+            )
         ]
-    for item in containers:
+    for item in reached:
         if isinstance(steps[-1], str) and steps[-1] != "*":
-            _assign_key(item, steps, value, layout)
+            _assign_key(item, steps, value, layout, containers)
         else:
             _assign_places(item, steps, value)
 
 
-def _enter(
-    item: Any, steps: tuple[Step, ...], place: int, removing: bool, layout: Layout
-) -> list[Any]:
-    """Return what the step at a place leads to, made if it is not there and not to be removed."""
+def _enter(item: Any, steps: tuple[Step, ...], place: int, empty: Any) -> list[Any]:
+    """Return what the step at a place leads to; where there is nothing, put what is empty there.
+
+    With None for it, nothing is put there and nothing reached.
+    """
     step = steps[place]
     if isinstance(step, int) or step == "*":
         return [item[k] for k in _places(item, steps, place)]
     if not isinstance(item, dict):
         raise InputError(f"{join_path(steps)}: {join_path(steps[:place])} is no table")
     if step not in item:
-        if removing:
+        if empty is None:
             return []
-        item[step] = _empty(steps, place, layout)
+        item[step] = empty
     return [item[step]]
 
 
-def _empty(steps: tuple[Step, ...], place: int, layout: Layout) -> Any:
+def _empty(steps: tuple[Step, ...], place: int, layout: Layout, containers: Containers) -> Any:
     if isinstance(steps[place + 1], int) or steps[place + 1] == "*":
-        return tomlkit.aot()
+        return containers.tables()
     headed = _is_headed(steps[: place + 1], layout)
-    return tomlkit.table() if headed else tomlkit.inline_table()
+    return containers.table() if headed else containers.inline_table()
 
 
 def _is_headed(steps: tuple[Step, ...], layout: Layout) -> bool:
@@ -100,7 +126,9 @@ def _places(item: Any, steps: tuple[Step, ...], place: int) -> range:
     return range(step, step + 1)
 
 
-def _assign_key(item: Any, steps: tuple[Step, ...], value: Any, layout: Layout) -> None:
+def _assign_key(
+    item: Any, steps: tuple[Step, ...], value: Any, layout: Layout, containers: Containers
+) -> None:
     if not isinstance(item, dict):
         raise InputError(f"{join_path(steps)}: {join_path(steps[:-1])} is no table")
     key = steps[-1]
@@ -110,7 +138,7 @@ def _assign_key(item: Any, steps: tuple[Step, ...], value: Any, layout: Layout) 
     if key in layout.alternatives:
         item.pop(layout.alternatives[key], None)
     in_one_line = isinstance(value, dict) and not _is_headed(steps, layout)
-    item[key] = _inline(value) if in_one_line else value
+    item[key] = _filled(containers.inline_table(), value) if in_one_line else value
 
 
 def _assign_places(item: Any, steps: tuple[Step, ...], value: Any) -> None:
@@ -124,7 +152,6 @@ def _assign_places(item: Any, steps: tuple[Step, ...], value: Any) -> None:
             item[k] = value
 
 
-def _inline(table: dict) -> Any:
-    inline = tomlkit.inline_table()
-    inline.update(table)
-    return inline
+def _filled(table: Any, content: dict) -> Any:
+    table.update(content)
+    return table

@@ -71,6 +71,7 @@ class Dynamometer(Section):
 #: law of friction -> its keys
 FRICTION_LAWS: dict[str, tuple[str, ...]] = {
     "coulomb": ("coulomb", "viscous"),
+    "smooth-coulomb": ("coulomb", "smoothing_velocity", "viscous"),
     "coulomb-stribeck": ("coulomb", "static", "stribeck_velocity", "viscous"),
     "tanh": ("coulomb", "viscous", "presliding_stiffness"),
     "lugre": ("coulomb", "static", "stribeck_velocity", "sigma0", "sigma1", "sigma2"),
@@ -80,11 +81,14 @@ FRICTION_LAWS: dict[str, tuple[str, ...]] = {
 class Friction(Section):
     """Friction of a guide or drive."""
 
-    law: Literal["coulomb", "coulomb-stribeck", "tanh", "lugre"] = "coulomb"
+    law: Literal["coulomb", "smooth-coulomb", "coulomb-stribeck", "tanh", "lugre"] = "coulomb"
     coulomb: quantity("force", at_least=0.0) | None = None
     static: quantity("force", at_least=0.0) | None = None
     viscous: quantity("damping", at_least=0.0) | None = None
     stribeck_velocity: quantity("velocity", above=0.0) | None = None
+    smoothing_velocity: quantity("velocity", above=0.0) | None = Field(
+        None, description="below which the friction falls to zero"
+    )
     presliding_stiffness: quantity("stiffness", above=0.0) | None = None
     sigma0: quantity("stiffness", at_least=0.0) | None = Field(
         None, description="stiffness of the bristles"

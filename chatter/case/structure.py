@@ -66,6 +66,9 @@ class ModeSection(Section):
         description="unit vector: x feed, y normal, z tool axis", examples=[[1, 0, 0]]
     )
     side: Literal["tool", "workpiece"] = "tool"
+    friction: str | None = Field(
+        None, description="name of the [friction.NAME] that rubs on this mode"
+    )
 
     @model_validator(mode="after")
     def _check_inertia(self) -> ModeSection:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
+import scipy.ndimage
 import scipy.signal
 from numpy.typing import NDArray
 
@@ -25,6 +26,12 @@ _MOTION_CUT_OFF = 0.15
 _NEAR_REST, _DOUBT = 1e-4, 20.0
 #: weight of the low pass on samples that can be used from which on one kept is used
 _ALL_USABLE = 0.999
+#: samples on either side, and degree, of the polynomials through a motion that creeps
+_BESIDE, _DEGREE = 40, 3
+#: samples on either side of a reversal in which noise decides on the direction
+_TURNING = 3
+#: signals at the samples kept
+_KEPT_COLUMNS = ("force", "time", "position", "velocity", "certainty", "certainty of error")
 _NEEDED = ("time", "position", "force")
 
 
@@ -52,7 +59,7 @@ class Axis:
                 raise InputError(f"{run.name}: channel {', '.join(missing)} is missing")
             runs.append(replace(run, signals=_prepared(run.signals, begun)))
             begun += float(run.signals["time"][-1] - run.signals["time"][0])
-        return replace(measurement, runs=tuple(runs))
+        return replace(measurement, runs=tuple(runs)).in_parts(_KEPT_COLUMNS)
 
     def predict(self, case: Case, run: Run) -> Mapping[str, NDArray[np.float64]]:
         """Force at the samples kept, N."""
@@ -64,11 +71,16 @@ class Axis:
             float(signals["motion step"][0]),
             float(signals["motion begun"][0]),
         )
-        return {"force": _kept(force)}
+        begin, end = signals.get("part", (0, None))
+        return {"force": _kept(force)[begin:end]}
 
     def residuals(self, case: Case, run: Run, noise: Mapping[str, float]) -> NDArray[np.float64]:
         """Predicted less measured over the noise, which near rest is that of the direction too."""
         return scaled_difference(self, case, run, noise) * run.signals["certainty"]
+
+    def weights(self, run: Run) -> NDArray[np.float64]:
+        """Weight (n,) of the samples of a run in its error."""
+        return run.signals["certainty of error"]
 
     def uncertain(self, measurement: Measurement) -> list[Parameter]:
         """Mass and frictions that are declared."""
@@ -113,22 +125,42 @@ def axis_force(case: Case) -> AxisForce:
 def _prepared(signals: Mapping[str, NDArray], begun: float) -> dict[str, NDArray[np.float64]]:
     step = float(np.median(np.diff(signals["time"])))
     position = _smooth(signals["position"], _MOTION_CUT_OFF)
-    velocity = np.gradient(position, step)
+    velocity = _velocity(position, step)
     force = _kept(signals["force"])
-    at_rest = (np.abs(velocity) < _NEAR_REST).astype(np.float64)
     usable = _kept(signals.get(USABLE, np.ones(velocity.size))) > _ALL_USABLE
+    turning = np.abs(np.diff(np.sign(velocity), prepend=0.0)) > 0.0
+    turning = scipy.ndimage.maximum_filter1d(turning, 2 * _TURNING + 1)
+    at_rest = np.abs(velocity) < _NEAR_REST
     return {
         "time": signals["time"][::_KEPT][: force.size],
         "force": force,
         "position": _kept(signals["position"]),
         "velocity": _kept(velocity),
-        "certainty": 1.0 / (1.0 + _DOUBT * np.clip(_kept(at_rest), 0.0, 1.0)) * usable,
+        "certainty": _certainty(at_rest) * usable,
+        "certainty of error": _certainty(at_rest | turning) * usable,
         "motion position": position,
         "motion velocity": velocity,
         "motion acceleration": np.gradient(velocity, step),
         "motion step": np.array([step]),
         "motion begun": np.array([begun]),
     }
+
+
+def _certainty(doubtful: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Weight of the samples kept, less where samples are doubtful."""
+    return 1.0 / (1.0 + _DOUBT * np.clip(_kept(doubtful.astype(np.float64)), 0.0, 1.0))
+
+
+def _velocity(position: NDArray[np.float64], step: float) -> NDArray[np.float64]:
+    """Velocity (n,), m/s; where the axis creeps, over more samples.
+
+    Near rest the direction of friction hangs on velocities that are far below the noise of a
+    difference of positions.
+    """
+    velocity = np.gradient(position, step)
+    nearby = scipy.ndimage.maximum_filter1d(np.abs(velocity), 2 * _BESIDE + 1)
+    creeping = scipy.signal.savgol_filter(position, 2 * _BESIDE + 1, _DEGREE, 1, step)
+    return np.where(nearby < _NEAR_REST, creeping, velocity)
 
 
 def _smooth(values: NDArray[np.float64], cut_off: float) -> NDArray[np.float64]:

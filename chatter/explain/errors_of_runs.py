@@ -27,12 +27,13 @@ def errors_of(
     """Errors of a case's predictions of runs, by run and channel."""
     found = []
     for run in measurement.runs if runs is None else runs:
-        own = case.patch(dict(run.overrides)) if run.overrides else case
-        predicted = kind.predict(own, run)
+        predicted = kind.predict(run.of(case), run)
+        weighted = getattr(kind, "weights", None)
+        weight = weighted(run) ** 2 if weighted else None
         for channel in kind.channels(run):
             signal = run.signals[channel]
             left = (predicted[channel] - signal) * run.usable(signal.size)
-            error = float(np.sqrt(np.mean(left**2)))
+            error = float(np.sqrt(np.average(left**2, weights=weight)))
             level = float(np.sqrt(np.mean(signal**2)))
             found.append(ChannelError(run.name, channel, error, error / max(level, 1e-300)))
     return found

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from chatter.case import Case
 from chatter.explain.errors_of_runs import errors_of, overall
 from chatter.explain.fitting import Fit
+from chatter.explain.kind import Effect
 from chatter.explain.kinds import kind_of
 from chatter.explain.measurement import Measurement
-from chatter.explain.search import Candidate, Search, search
+from chatter.explain.problem import NUMERICS
+from chatter.explain.search import Candidate, Search, Stage, search
 from chatter.explain.signals import SignalFinding, checked
 from chatter.explain.signature import signature_of
 from chatter.explain.unusable import Unusable
@@ -24,7 +27,7 @@ from chatter.result_files import as_json, finite_or_none, write_results
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: what is left over the noise up to which the measurement is at its noise floor
+#: what is left of any channel over the noise up to which the measurement is at its noise floor
 AT_NOISE = 1.12
 #: gain that a candidate may lack against the best and still not be told from it, as a share
 _ALIKE = 0.03
@@ -74,10 +77,14 @@ class Explanation:
             "verdict": self.verdict,
             "checks": [one.as_dict() for one in self.checks],
             "effects": self._effects() if self.verdict == "explained" else [],
+            # what helps, but leaves something that is not known
+            "partial": self._effects() if self.verdict == "unexplained" else [],
             "error": self._errors(),
             "candidates": self._candidates(),
             "signature": signature_of(self.measurement, self.found.kind, self.case),
-            "left_over_noise": finite_or_none(self.found.left),
+            "left_over_noise": {
+                channel: finite_or_none(left) for channel, left in self.found.left.items()
+            },
         }
 
     def _errors(self) -> dict[str, Any]:
@@ -94,23 +101,27 @@ class Explanation:
             "declared": error(measurement.case),
             "before": error(before),
             "after": error(after),
-            "holdout_before": error(self._case_of_fitted(0), unseen),
-            "holdout_after": error(self._case_of_fitted(-1), unseen),
+            "holdout_before": error(self._refitted_to_fitted, unseen),
+            "holdout_after": error(self._explained_by_fitted, unseen),
         }
 
-    def _case_of_fitted(self, place: int) -> Case:
-        """Case fitted to the runs for fitting alone: before any effect, or with all of them."""
-        stages = self.found.stages
-        if place == 0 or self.verdict != "explained":
-            values = stages[0].before.by_name
-            return self.measurement.case.patch(values) if values else self.measurement.case
-        last = [stage for stage in stages if stage.accepted][-1].tried[0]
-        return self.found.problem.case(last.fit.by_name)
+    @property
+    def _refitted_to_fitted(self) -> Case:
+        """Declared case refitted to the runs for fitting alone."""
+        values = self.found.first.before.by_name
+        return self.measurement.case.patch(values) if values else self.measurement.case
+
+    @property
+    def _explained_by_fitted(self) -> Case:
+        """Case with the effects added, fitted to the runs for fitting alone."""
+        if self.verdict != "explained":
+            return self._refitted_to_fitted
+        return self.found.problem.case(self.found.of_fitted.by_name)
 
     def _noise_floor(self) -> float | None:
         floor = getattr(self.found.kind, "noise_floor", None)
         if floor is not None:
-            return finite_or_none(floor(self.measurement))
+            return finite_or_none(floor(self.measurement, self.case))
         shares = {}
         for run in self.measurement.runs:
             for channel in self.found.kind.channels(run):
@@ -120,53 +131,30 @@ class Explanation:
         return finite_or_none(float(np.mean([math.sqrt(np.mean(v)) for v in shares.values()])))
 
     def _effects(self) -> list[dict[str, Any]]:
-        found = []
-        for stage in self.found.stages:
-            if not stage.accepted:
-                continue
-            best = stage.tried[0]
-            found.append(
-                {
-                    "name": best.effect.name,
-                    "parameters": parameters_of(self.found.final, best.effect.name),
-                    "probability": round(probability(stage.tried, best), 4),
-                    "confounded_with": self._confounded(stage.tried, stage.unseen),
-                    "says": best.effect.says,
-                }
-            )
-        return found
-
-    def _confounded(self, tried: tuple[Candidate, ...], before: float) -> list[str]:
-        best = tried[0]
-        gain = before - best.unseen
         return [
-            other.effect.name
-            for other in tried[1:]
-            if before - other.unseen > (1.0 - _ALIKE) * gain
+            {
+                "name": stage.best.effect.name,
+                "parameters": parameters_of(self.found.final, stage.best.effect),
+                "probability": round(probability(stage.tried, stage.best), 4),
+                "confounded_with": _confounded(stage),
+                "says": stage.best.effect.says,
+            }
+            for stage in self.found.accepted
         ]
 
     def _candidates(self) -> list[dict[str, Any]]:
-        if not self.found.stages:
-            return []
-        stage = self.found.stages[0]
-        count = stage.before.count
+        stage = self.found.first
+        count, unseen = stage.before.count, self.found.problem.count(self.found.unseen)
         return [
             {
                 "name": one.effect.name,
-                "holdout_error": finite_or_none(math.sqrt(one.unseen / max(1, self._unseen_count))),
+                "holdout_error": finite_or_none(math.sqrt(one.unseen / unseen)),
                 "bic": finite_or_none(
                     one.fit.cost + len(one.fit.parameters) * math.log(max(count, 2))
                 ),
             }
             for one in stage.tried
         ]
-
-    @property
-    def _unseen_count(self) -> int:
-        kind = self.found.kind
-        return sum(
-            run.signals[channel].size for run in self.found.unseen for channel in kind.channels(run)
-        )
 
     def plot(self) -> Figure:
         """Picture of what is left of the runs, before and after."""
@@ -219,9 +207,8 @@ def explain(
         return Unusable(looked_at)
     kind, prepared = kind_of(looked_at.measurement)
     found = search(prepared, kind, progress)
-    accepted = any(stage.accepted for stage in found.stages)
-    at_noise = found.left <= getattr(kind, "at_noise", AT_NOISE)
-    if accepted and at_noise:
+    at_noise = max(found.left.values()) <= getattr(kind, "at_noise", AT_NOISE)
+    if found.accepted and at_noise:
         verdict = "explained"
     elif at_noise:
         verdict = "nothing-missing"
@@ -238,34 +225,47 @@ def probability(tried: tuple[Candidate, ...], of: Candidate) -> float:
     return weights[of.effect.name] / sum(weights.values())
 
 
-def parameters_of(fit: Fit, effect: str) -> dict[str, dict[str, Any]]:
-    """Parameters of an effect with their 95 % intervals; runout as offset and angle."""
-    own: dict[str, dict[str, Any]] = {}
+def _confounded(stage: Stage) -> list[str]:
+    """Candidates that gain nearly as much as the best."""
+    gain = stage.unseen - stage.best.unseen
+    return [
+        other.effect.name
+        for other in stage.tried[1:]
+        if stage.unseen - other.unseen > (1.0 - _ALIKE) * gain
+    ]
+
+
+def parameters_of(fit: Fit, effect: Effect) -> dict[str, dict[str, Any]]:
+    """Numbers that people want of an effect, with their 95 % intervals."""
+    places, own = [], {}
     for place, one in enumerate(fit.parameters):
         name, _, key = one.name.partition(".")
-        if name == effect:
-            low, high = fit.interval(place)
-            own[key] = {"value": float(fit.values[place]), "unit": one.unit, "ci95": [low, high]}
-    if effect == "runout":
-        return _polar(fit, "runout.across", "runout.along")
-    return own
+        if name == effect.name:
+            places.append(place)
+            own[key] = one
+    values = fit.values[places]
+    keys = list(own)
 
+    def numbers(at: NDArray[np.float64]) -> dict[str, tuple[float, str]]:
+        given = dict(zip(keys, (float(v) for v in at), strict=True))
+        if effect.told is None:
+            return {key: (value, own[key].unit) for key, value in given.items()}
+        return dict(effect.told(given))
 
-def _polar(fit: Fit, across: str, along: str) -> dict[str, Mapping[str, Any]]:
-    names = [one.name for one in fit.parameters]
-    places = [names.index(across), names.index(along)]
-    x, y = fit.values[places]
-    offset, angle = math.hypot(x, y), math.atan2(y, x) % (2.0 * math.pi)
+    told = numbers(values)
+    # spread of what is told by its slopes over the parameters
+    deviation = np.sqrt(np.maximum(np.diag(fit.covariance)[places], 0.0))
+    slopes = {key: np.zeros(len(places)) for key in told}
+    for place, moved in enumerate(1e-3 * deviation):
+        if moved > 0.0:
+            beside = numbers(values + moved * (np.arange(len(places)) == place))
+            for key in told:
+                slopes[key][place] = (beside[key][0] - told[key][0]) / moved
     covariance = fit.covariance[np.ix_(places, places)]
-    out = np.array([x, y]) / max(offset, 1e-300)
-    side = np.array([-out[1], out[0]])
-    spread = 1.96 * math.sqrt(max(out @ covariance @ out, 0.0))
-    turn = 1.96 * math.sqrt(max(side @ covariance @ side, 0.0)) / max(offset, 1e-300)
-    return {
-        "offset": {
-            "value": offset,
-            "unit": "m",
-            "ci95": [max(offset - spread, 0.0), offset + spread],
-        },
-        "angle": {"value": angle, "unit": "rad", "ci95": [angle - turn, angle + turn]},
-    }
+    found = {}
+    for key, (value, unit) in told.items():
+        half = 1.96 * math.sqrt(max(slopes[key] @ covariance @ slopes[key], 0.0))
+        # the simulation itself is no better than this
+        half = math.hypot(half, NUMERICS * abs(value))
+        found[key] = {"value": value, "unit": unit, "ci95": [value - half, value + half]}
+    return found

@@ -8,19 +8,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.stats
 from numpy.typing import NDArray
 
 Vector = NDArray[np.float64]
 Residuals = Callable[[Vector], Vector]
 
-_WORKERS = 2
+#: threads; the simulations leave the interpreter alone
+WORKERS = 2
 #: of a finite difference, in units of a parameter's size
 _STEP = 1e-3
 _MOST_ROUNDS = 12
 _ENOUGH = 1e-4
+#: groups from which a scatter between them can be told
+_LEAST_GROUPS = 4
 
 
 @dataclass(frozen=True)
@@ -97,6 +101,7 @@ def fit(
     residuals: Residuals,
     start: Vector | None = None,
     rounds: int = _MOST_ROUNDS,
+    jacobian: NDArray[np.float64] | None = None,
 ) -> Fit:
     """Fit parameters to residuals that are scaled to a standard deviation of one.
 
@@ -108,7 +113,14 @@ def fit(
     start : (p,) array of float, optional
         SI; that of the parameters by default.
     rounds : int
-        Linearisations at the most.
+        Steps at the most.
+    jacobian : (n, p) array of float, optional
+        Near the start, per size of a parameter, where it is known.
+
+    Notes
+    -----
+    Between differences the Jacobian is brought up to date by Broyden's (1965) rank-one formula;
+    differences are taken anew where a step gains less than half of what it promised.
     """
     chosen = tuple(parameters)
     size = np.array([one.size for one in chosen])
@@ -119,35 +131,82 @@ def fit(
     values = np.clip(origin if start is None else start, lower, upper)
     now = residuals(values)
     damping = 1e-3
-    jacobian = np.zeros((now.size, len(chosen)))
 
     def merit(r: Vector, v: Vector) -> float:
         return float(r @ r + weight @ ((v - origin) / size) ** 2)
 
-    best = merit(now, values)
-    for _ in range(rounds):
+    best, exact = merit(now, values), jacobian is None
+    if jacobian is None:
         jacobian = differences(residuals, values, now, size, lower, upper)
+    else:
+        jacobian = jacobian.copy()
+    for _ in range(rounds):
         normal = jacobian.T @ jacobian + np.diag(weight)
         slope = jacobian.T @ now + weight * (values - origin) / size
-        gained = 0.0
-        for _ in range(8):
+        gained = promised = 0.0
+        for _ in range(8 if exact else 3):
             bent = normal + damping * np.diag(np.maximum(np.diag(normal), 1e-12))
             step = -np.linalg.solve(bent, slope) * size
             tried = np.clip(values + step, lower, upper)
             after = residuals(tried)
             reached = merit(after, tried)
+            moved = (tried - values) / size
             if np.isfinite(reached) and reached < best:
                 gained = best - reached
+                promised = -float(2.0 * slope @ moved + moved @ normal @ moved)
+                change = after - now - jacobian @ moved
                 values, now, best = tried, after, reached
                 damping = max(damping / 5.0, 1e-9)
                 break
             damping *= 6.0
-        if gained <= _ENOUGH * max(1.0, 1e-3 * best):
+        enough = gained <= _ENOUGH * max(1.0, 1e-3 * best)
+        if enough and exact:
             break
+        if gained > 0.0:
+            jacobian += np.outer(change, moved) / max(float(moved @ moved), 1e-300)
+        exact = enough or gained < 0.5 * promised
+        if exact:
+            jacobian = differences(residuals, values, now, size, lower, upper)
+            damping = min(damping, 1e-3)
     normal = jacobian.T @ jacobian + np.diag(weight)
     inverse = np.linalg.pinv(normal, hermitian=True)
     covariance = inverse * np.outer(size, size)
     return Fit(chosen, values, covariance, float(now @ now), now.size, jacobian, now)
+
+
+def over_groups(fit: Fit, sizes: Sequence[int]) -> Fit:
+    """Fit whose covariance allows for residuals that hang together within groups.
+
+    Parameters
+    ----------
+    fit : Fit
+    sizes : sequence of int
+        Residuals in each group, in their order; the groups are independent of each other.
+
+    Notes
+    -----
+    Where the groups pull a parameter about by more than white noise would let them, its standard
+    deviation is that of the cluster-robust covariance (Liang and Zeger 1986, equation 4), with
+    Student's t for the number of groups; elsewhere it stays as it is.
+    """
+    groups = len(sizes)
+    if groups < _LEAST_GROUPS:
+        return fit
+    ends = np.cumsum(sizes)
+    pulls = np.array(
+        [
+            fit.jacobian[end - size : end].T @ fit.residuals[end - size : end]
+            for size, end in zip(sizes, ends, strict=True)
+        ]
+    )
+    pulls -= pulls.mean(axis=0)
+    size = np.array([one.size for one in fit.parameters])
+    inverse = fit.covariance / np.outer(size, size)
+    spread = inverse @ (pulls.T @ pulls) @ inverse * groups / (groups - 1)
+    wider = scipy.stats.t.ppf(0.975, groups - 1) / 1.96
+    own = np.maximum(np.diag(inverse), 1e-300)
+    factor = np.maximum(1.0, wider * np.sqrt(np.maximum(np.diag(spread), 0.0) / own))
+    return replace(fit, covariance=fit.covariance * np.outer(factor, factor))
 
 
 def differences(
@@ -169,5 +228,5 @@ def differences(
         return (residuals(moved) - now) / (step / size[place])
 
     del lower
-    with ThreadPoolExecutor(_WORKERS) as pool:
+    with ThreadPoolExecutor(WORKERS) as pool:
         return np.array(list(pool.map(column, range(values.size)))).T.reshape(now.size, -1)

@@ -61,7 +61,7 @@ class FrequencyResponse:
             runs.append(replace(run, signals={**run.signals, "certainty": 1.0 / scatter}))
         return replace(measurement, runs=tuple(runs))
 
-    def noise_floor(self, measurement: Measurement) -> float:
+    def noise_floor(self, measurement: Measurement, case: Case) -> float:  # noqa: ARG002
         """Scatter over the signals, as errors are told."""
         shares = {channel: [] for channel in _CHANNELS}
         for run in measurement.runs:

@@ -54,6 +54,9 @@ class Effect:
         Measurement -> start values to try, each by name; one empty mapping for the defaults.
     says : str
         What it does, for reports.
+    told : callable, optional
+        Values by name -> the numbers that people want, each with its SI unit; the parameters
+        themselves by default.
     """
 
     name: str
@@ -63,3 +66,4 @@ class Effect:
     patch: Callable[[Case, Mapping[str, float]], dict[str, Any]]
     starts: Callable[[Measurement], Sequence[Mapping[str, float]]] = lambda _: ({},)
     says: str = ""
+    told: Callable[[Mapping[str, float]], Mapping[str, tuple[float, str]]] | None = None

@@ -20,6 +20,8 @@ KINDS = ("milling", "axis", "stability", "frf")
 #: keys of [[run]] that are no override of the case
 _OWN_KEYS = ("file", "condition", "direction", "title")
 _KEYS = ("title", "kind", "case", "points", "run", "tolerance")
+#: runs of which some can be kept back, and parts that fewer are cut into
+_ENOUGH_RUNS, _PARTS = 3, 6
 #: sections of a case that a short key of a run may mean
 _SECTIONS = ("cut", "tool", "material", "axis")
 #: column of a run that is 0 where samples are no good, and else 1
@@ -56,6 +58,27 @@ class Run:
         weights = self.signals.get(USABLE)
         return weights if weights is not None and weights.size == size else np.ones(size)
 
+    def part(self, number: int, parts: int, columns: Sequence[str]) -> Run:
+        """Return a run of which only one of some equal parts in time is judged.
+
+        Parameters
+        ----------
+        number, parts : int
+            0 <= number < parts.
+        columns : sequence of str
+            Signals that are cut; "part" says where, so that predictions can be of the whole.
+        """
+        size = self.signals[columns[0]].size
+        begin, end = number * size // parts, (number + 1) * size // parts
+        cut = {name: self.signals[name][begin:end] for name in columns if name in self.signals}
+        name = f"{self.name}, part {number + 1} of {parts}"
+        signals = {**self.signals, **cut, "part": np.array([begin, end])}
+        return replace(self, name=name, signals=signals)
+
+    def of(self, case: Case) -> Case:
+        """Return a case with the overrides of the run."""
+        return case.patch(dict(self.overrides)) if self.overrides else case
+
 
 @dataclass(frozen=True, eq=False)
 class Measurement:
@@ -82,6 +105,14 @@ class Measurement:
     runs: tuple[Run, ...]
     tolerances: Mapping[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+
+    def in_parts(self, columns: Sequence[str]) -> Measurement:
+        """Return the measurement with its runs cut in time where there are too few to judge by."""
+        if len(self.runs) >= _ENOUGH_RUNS:
+            return self
+        parts = -(-_PARTS // len(self.runs))
+        runs = [run.part(k, parts, columns) for run in self.runs for k in range(parts)]
+        return replace(self, runs=tuple(runs))
 
     def with_case(self, case: Case) -> Measurement:
         """Same measurement with another case declared."""

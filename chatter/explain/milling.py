@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,14 +32,24 @@ class Milling:
         """Forces and displacements that were recorded."""
         return tuple(name for name in (*_FORCES, *_DISPLACEMENTS) if name in run.signals)
 
+    def prepared(self, measurement: Measurement) -> Measurement:
+        """Measurement whose runs, where they are few, are judged in parts."""
+        runs = [
+            replace(run, signals={**run.signals, "whole time": run.signals["time"]})
+            for run in measurement.runs
+        ]
+        # a channel that is no good may be missing in some runs
+        columns = ("time", *{name for run in measurement.runs for name in run.signals})
+        return replace(measurement, runs=tuple(runs)).in_parts(columns)
+
     def predict(self, case: Case, run: Run) -> Mapping[str, NDArray[np.float64]]:
         """Simulated signals at the samples of a run."""
-        time = run.signals["time"]
-        duration = float(time[-1] - time[0])
+        whole = run.signals["whole time"]
+        duration = float(whole[-1] - whole[0])
         turns = duration * case.cut.spindle_speed / (2.0 * math.pi) + _BEYOND
         lasting = case.patch({"simulation.revolutions": turns})
         result, _ = run_setup(set_up(lasting))
-        at = time - time[0]
+        at = run.signals["time"] - whole[0]
         found = {}
         for axis in range(3):
             found[_FORCES[axis]] = np.interp(at, result.time, result.force[:, axis])

@@ -90,24 +90,25 @@ class Problem:
         try:
             case = self.case(values)
         except InputError:
-            return np.concatenate([np.full(self._count(run), _FAR) for run in runs])
+            return np.full(self.count(runs), _FAR)
         parts = []
         for run in runs:
             try:
-                own = case.patch(dict(run.overrides)) if run.overrides else case
-                parts.append(self.kind.residuals(own, run, self.noise[run.name]))
+                parts.append(self.kind.residuals(run.of(case), run, self.noise[run.name]))
             except (RunError, InputError):
-                parts.append(np.full(self._count(run), _FAR))
+                parts.append(np.full(self.count([run]), _FAR))
         return np.concatenate(parts)
 
-    def _count(self, run: Run) -> int:
-        return sum(run.signals[channel].size for channel in self.kind.channels(run))
+    def count(self, runs: Sequence[Run]) -> int:
+        """Residuals of runs."""
+        return sum(run.signals[channel].size for run in runs for channel in self.kind.channels(run))
 
     def fit(
         self,
         runs: Sequence[Run],
         start: Mapping[str, float] | None = None,
         rounds: int = 8,
+        jacobian: NDArray[np.float64] | None = None,
     ) -> Fit:
         """Fit everything to runs.
 
@@ -117,6 +118,8 @@ class Problem:
         start : mapping of str to float, optional
             Values to start from, by name; declared ones by default.
         rounds : int
+        jacobian : (n, p) array of float, optional
+            Near the start, where it is known.
         """
         parameters = self.parameters()
         names = [one.name for one in parameters]
@@ -125,7 +128,7 @@ class Problem:
         def residuals(values: NDArray[np.float64]) -> NDArray[np.float64]:
             return self.residuals(dict(zip(names, values, strict=True)), runs)
 
-        return fit(parameters, residuals, begin, rounds)
+        return fit(parameters, residuals, begin, rounds, jacobian)
 
     def noise_beside(self, values: Mapping[str, float]) -> Noise:
         """Noise of every channel of every run, from what a case leaves of them."""
@@ -134,8 +137,7 @@ class Problem:
         case = self.case(values)
         levels: dict[str, dict[str, float]] = {}
         for run in self.measurement.runs:
-            own = case.patch(dict(run.overrides)) if run.overrides else case
-            predicted = self.kind.predict(own, run)
+            predicted = self.kind.predict(run.of(case), run)
             levels[run.name] = {
                 channel: float(
                     np.hypot(

@@ -4,24 +4,31 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from chatter.explain.effects import candidates
-from chatter.explain.fitting import Fit
+from chatter.explain.effects import candidates, place_of
+from chatter.explain.fitting import WORKERS, Fit, over_groups
 from chatter.explain.kind import Effect, Kind
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.problem import Problem
 
-#: what is left, over the noise, up to which nothing structured is left
-_AT_NOISE = 1.12
+#: what is left of unseen runs, over the noise, below which nothing more is looked for
+_NOTHING_LEFT = 1.0
 #: gain in the runs not seen that is beyond chance, and a share of their number of samples
 _GAIN, _GAIN_SHARE = 40.0, 0.004
 #: effects are added until this many, or until nothing is gained
 _MOST_EFFECTS = 3
 #: candidates that are fitted in full after a first look
 _FULL = 4
+#: and those that are looked at again once another effect is there
+_AGAIN = 3
+#: sums of squares that differ by less say nothing about which is better
+_EQUAL = 2.0
 #: starts of a candidate that are followed after a first look
 _FOLLOWED = 2
 
@@ -30,7 +37,7 @@ Progress = Callable[[str, float], None]
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """An effect tried on top of those accepted.
+    """An effect tried on top of others.
 
     Parameters
     ----------
@@ -48,24 +55,26 @@ class Candidate:
 
 @dataclass(frozen=True, eq=False)
 class Stage:
-    """One round of the search.
+    """An effect that was looked for beside others.
 
     Parameters
     ----------
     before : Fit
-        Of the effects accepted so far.
+        Of the others, to the runs for fitting.
     unseen : float
         Sum of squares on the other runs, by it.
     tried : tuple of Candidate
         Best first.
-    accepted : bool
-        Whether the best was added.
     """
 
     before: Fit
     unseen: float
     tried: tuple[Candidate, ...]
-    accepted: bool
+
+    @property
+    def best(self) -> Candidate:
+        """Candidate that the unseen runs like best."""
+        return self.tried[0]
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,11 +87,16 @@ class Search:
     kind : Kind
     fitted, unseen : tuple of Run
         Runs fitted, and runs kept back.
-    stages : tuple of Stage
+    first : Stage
+        Every candidate alone.
+    accepted : tuple of Stage
+        One an effect that was added, each tried beside all the others that were.
     problem : Problem
         With the effects accepted, and the noise beside them.
+    of_fitted : Fit
+        Of it, to the runs for fitting.
     final : Fit
-        To all runs.
+        Of it, to all runs.
     base : Fit
         Of the uncertain values alone, to all runs.
     """
@@ -91,16 +105,25 @@ class Search:
     kind: Kind
     fitted: tuple[Run, ...]
     unseen: tuple[Run, ...]
-    stages: tuple[Stage, ...]
+    first: Stage
+    accepted: tuple[Stage, ...]
     problem: Problem
+    of_fitted: Fit
     final: Fit
     base: Fit
-    notes: tuple[str, ...] = field(default_factory=tuple)
 
     @property
-    def left(self) -> float:
-        """What is left of all runs over the noise, by the effects accepted."""
-        return math.sqrt(self.final.cost / self.final.count)
+    def left(self) -> dict[str, float]:
+        """What is left of each channel over its noise, by the effects accepted."""
+        squares: dict[str, list[float]] = {}
+        begin = 0
+        for run in self.measurement.runs:
+            for channel in self.kind.channels(run):
+                end = begin + run.signals[channel].size
+                parts = self.final.residuals[begin:end]
+                squares.setdefault(channel, []).append(float(np.mean(parts**2)))
+                begin = end
+        return {channel: math.sqrt(np.mean(parts)) for channel, parts in squares.items()}
 
 
 def split_runs(runs: Sequence[Run]) -> tuple[tuple[Run, ...], tuple[Run, ...]]:
@@ -115,32 +138,73 @@ def search(measurement: Measurement, kind: Kind, progress: Progress) -> Search:
     fitted, unseen = split_runs(measurement.runs)
     problem = Problem(measurement, kind, first_noise(measurement, kind))
     progress("refitting what is uncertain", 0.0)
-    now = problem.fit(fitted, rounds=5)
+    now = problem.fit(fitted, rounds=6)
     problem = Problem(measurement, kind, problem.noise_beside(now.by_name))
-    now = problem.fit(fitted, now.by_name, rounds=4)
+    now = problem.fit(fitted, now.by_name, rounds=5)
     base_values = now.by_name
     stages: list[Stage] = []
+    first = None
     for round_number in range(_MOST_EFFECTS):
         left = _cost(problem, now.by_name, unseen)
-        if math.sqrt(left / _count(problem, unseen)) < 1.0 and stages:
+        if stages and math.sqrt(left / problem.count(unseen)) < _NOTHING_LEFT:
             break
         tried = _try_all(problem, now, fitted, unseen, progress, round_number)
         # what every candidate gains, the uncertain values gained by going on
         left = min(left, max((one.unseen for one in tried), default=left))
-        accepted = bool(tried) and _beyond_chance(left, tried[0], problem, unseen)
-        stages.append(Stage(now, left, tuple(tried), accepted))
-        if not accepted:
+        stage = Stage(now, left, tuple(tried))
+        first = first or stage
+        if not tried or not _beyond_chance(left, stage.best.unseen, problem, unseen):
             break
-        best = tried[0]
-        problem = problem.with_effect(best.effect)
-        problem = Problem(
-            measurement, kind, problem.noise_beside(best.fit.by_name), problem.effects
-        )
-        now = problem.fit(fitted, best.fit.by_name, rounds=8)
+        stages.append(stage)
+        problem = problem.with_effect(stage.best.effect)
+        values = stage.best.fit.by_name
+        problem = replace(problem, noise=problem.noise_beside(values))
+        now = problem.fit(fitted, values, rounds=8)
+    if len(stages) > 1:
+        progress("looking again at what was added first", 0.85)
+        stages, problem, now = _looked_again(stages, problem, now, fitted, unseen)
     progress("fitting all runs", 0.95)
-    final = problem.fit(measurement.runs, now.by_name, rounds=5)
-    base = Problem(measurement, kind, problem.noise).fit(measurement.runs, base_values, rounds=4)
-    return Search(measurement, kind, fitted, unseen, tuple(stages), problem, final, base)
+    final = problem.fit(measurement.runs, now.by_name, rounds=12)
+    final = over_groups(final, [problem.count([run]) for run in measurement.runs])
+    base = Problem(measurement, kind, problem.noise).fit(measurement.runs, base_values, rounds=5)
+    return Search(
+        measurement, kind, fitted, unseen, first, tuple(stages), problem, now, final, base
+    )
+
+
+def _looked_again(
+    stages: list[Stage], problem: Problem, now: Fit, fitted: Sequence[Run], unseen: Sequence[Run]
+) -> tuple[list[Stage], Problem, Fit]:
+    """Ask of every effect but the last whether it is needed, or another does better beside them.
+
+    The first was chosen when the others were not there, and may have stood for them.
+    """
+    kept = list(stages)
+    for stage in stages[:-1]:
+        others = tuple(e for e in problem.effects if e is not stage.best.effect)
+        without = replace(problem, effects=others)
+        before = without.fit(fitted, now.by_name, rounds=6)
+        left = _cost(without, before.by_name, unseen)
+        names = {effect.name for effect in others}
+        tried = []
+        for one in stage.tried[:_AGAIN]:
+            if one.effect.name in names:
+                continue
+            trial = without.with_effect(one.effect)
+            begin = {**one.fit.by_name, **before.by_name}
+            begin = now.by_name if one.effect is stage.best.effect else begin
+            found = trial.fit(fitted, begin, rounds=6)
+            tried.append(Candidate(one.effect, found, _cost(trial, found.by_name, unseen)))
+        tried = ranked(tried)
+        place = kept.index(stage)
+        if not _beyond_chance(left, tried[0].unseen, problem, unseen):
+            del kept[place]
+            problem, now = without, before
+            continue
+        kept[place] = Stage(before, left, tuple(tried))
+        problem = without.with_effect(tried[0].effect)
+        now = tried[0].fit
+    return kept, problem, now
 
 
 def first_noise(measurement: Measurement, kind: Kind) -> dict[str, dict[str, float]]:
@@ -154,19 +218,14 @@ def first_noise(measurement: Measurement, kind: Kind) -> dict[str, dict[str, flo
     }
 
 
-def _count(problem: Problem, runs: Sequence[Run]) -> int:
-    return sum(run.signals[channel].size for run in runs for channel in problem.kind.channels(run))
-
-
 def _cost(problem: Problem, values: Mapping[str, float], runs: Sequence[Run]) -> float:
     left = problem.residuals(values, runs)
     return float(left @ left)
 
 
-def _beyond_chance(left: float, best: Candidate, problem: Problem, unseen: Sequence[Run]) -> bool:
-    gain = left - best.unseen
+def _beyond_chance(left: float, reached: float, problem: Problem, unseen: Sequence[Run]) -> bool:
     least, share = getattr(problem.kind, "least_gain", (_GAIN, _GAIN_SHARE))
-    return gain > least + share * _count(problem, unseen)
+    return left - reached > least + share * problem.count(unseen)
 
 
 def _try_all(
@@ -184,53 +243,62 @@ def _try_all(
     for place, effect in enumerate(effects):
         share = (round_number + 0.7 * place / len(effects)) / (_MOST_EFFECTS + 1)
         progress(f"looking at {effect.name}", share)
-        looked += [
-            (cost, effect, start) for cost, start in first_looks(problem, effect, now, fitted)
-        ]
+        best = first_look(problem, effect, now, fitted)
+        looked.append((best.cost, effect, best))
     looked.sort(key=lambda entry: entry[0])
-    best_of: dict[str, tuple[float, Effect, dict[str, float]]] = {}
-    for entry in looked:
-        best_of.setdefault(entry[1].name, entry)
-    chosen = list(best_of.values())[:_FULL]
+    chosen = looked[:_FULL]
     found = []
-    for place, (_, effect, start) in enumerate(chosen):
+    for place, (_, effect, look) in enumerate(chosen):
         share = (round_number + 0.7 + 0.3 * place / len(chosen)) / (_MOST_EFFECTS + 1)
         progress(f"fitting {effect.name}", share)
         trial = problem.with_effect(effect)
-        fitted_now = trial.fit(fitted, start, rounds=6)
+        fitted_now = trial.fit(fitted, look.values, 10, look.jacobian)
         found.append(Candidate(effect, fitted_now, _cost(trial, fitted_now.by_name, unseen)))
-    found.sort(key=lambda candidate: candidate.unseen)
-    return found
+    return ranked(found)
 
 
-def first_looks(
-    problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]
-) -> list[tuple[float, dict[str, float]]]:
-    """Cost after one linearised step of every start of an effect, cheapest first.
+def ranked(found: Sequence[Candidate]) -> list[Candidate]:
+    """Candidates, best on the unseen runs first; equals in the order of the list of effects."""
+    best = min((one.unseen for one in found), default=0.0)
+    return sorted(found, key=lambda one: (max(one.unseen, best + _EQUAL), place_of(one.effect)))
+
+
+class Look(NamedTuple):
+    """Where a linearised step of a candidate leads."""
+
+    cost: float
+    values: dict[str, float]
+    jacobian: NDArray[np.float64]
+
+
+def first_look(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) -> Look:
+    """Best of the linearised steps from every start of an effect.
 
     The uncertain values move along by the Jacobian that is known of them.
     """
     trial = problem.with_effect(effect)
     parameters = trial.parameters()
-    known = len(now.parameters)
-    results = []
-    for start in effect.starts(problem.measurement):
+    added = parameters[len(now.parameters) :]
+
+    def from_start(start: Mapping[str, float]) -> Look:
         values = {one.name: one.start for one in parameters}
         values |= now.by_name
         values |= {f"{effect.name}.{key}": value for key, value in start.items()}
-        results.append(_one_step(trial, parameters[known:], values, now, runs))
-    results.sort(key=lambda result: result[0])
-    followed = [
-        _one_step(trial, parameters[known:], values, now, runs) for _, values in results[:_FOLLOWED]
-    ]
-    return sorted(followed, key=lambda result: result[0])
+        return _one_step(trial, added, values, now, runs)
+
+    with ThreadPoolExecutor(WORKERS) as pool:
+        looks = list(pool.map(from_start, effect.starts(problem.measurement)))
+        looks.sort(key=lambda look: look.cost)
+        followed = pool.map(
+            lambda look: _one_step(trial, added, look.values, now, runs), looks[:_FOLLOWED]
+        )
+        return min([*followed, looks[0]], key=lambda look: look.cost)
 
 
 def _one_step(
     trial: Problem, added: Sequence, values: dict[str, float], now: Fit, runs: Sequence[Run]
-) -> tuple[float, dict[str, float]]:
+) -> Look:
     residual = trial.residuals(values, runs)
-    best, reached = float(residual @ residual), values
     columns = []
     for one in added:
         step = 0.05 * one.size
@@ -243,6 +311,7 @@ def _one_step(
     normal = full.T @ full + np.diag(weight)
     step = -np.linalg.solve(normal, full.T @ residual)
     everything = [*now.parameters, *added]
+    best = Look(float(residual @ residual), values, full)
     for factor in (1.0, 0.5, 0.2):
         moved = {
             one.name: float(
@@ -252,6 +321,6 @@ def _one_step(
         }
         after = trial.residuals(moved, runs)
         cost = float(after @ after)
-        if cost < best:
-            return cost, moved
-    return best, reached
+        if cost < best.cost:
+            return Look(cost, moved, full)
+    return best

@@ -27,7 +27,7 @@ def signature_of(measurement: Measurement, kind: Kind, case: Case) -> dict[str, 
     shares, lines, dependences = {}, {}, {}
     tables: dict[str, list] = {}
     for run in measurement.runs:
-        own = case.patch(dict(run.overrides)) if run.overrides else case
+        own = run.of(case)
         predicted = kind.predict(own, run)
         for channel in kind.channels(run):
             left = run.signals[channel] - predicted[channel]

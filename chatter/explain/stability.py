@@ -69,9 +69,14 @@ class Stability:
         )
         return replace(measurement, runs=runs)
 
-    def noise_floor(self, measurement: Measurement) -> float:  # noqa: ARG002
-        """Error of a model that is right: the share of verdicts judged wrongly for no reason."""
-        return float(np.sqrt(_WRONG))
+    def noise_floor(self, measurement: Measurement, case: Case) -> float:
+        """Error that a model has that is right: verdicts scatter about their probabilities."""
+        scatter, level = [], []
+        for run in measurement.runs:
+            stable = self.predict(run.of(case), run)["stable"]
+            scatter.append(np.mean(stable * (1.0 - stable)))
+            level.append(np.mean(run.signals["stable"] ** 2))
+        return float(np.sqrt(np.mean(scatter) / np.mean(level)))
 
     def predict(self, case: Case, run: Run) -> Mapping[str, NDArray[np.float64]]:
         """Probability of a stable verdict at every point."""

@@ -59,13 +59,14 @@ _slow_decay = either_quantity("inverse_velocity", "inverse_angular_speed", at_le
 class FrictionSection(Section):
     """Friction law; about an axis its quantities are those of a rotation."""
 
-    law: Literal["LuGre", "tanh hysteresis", "Coulomb-Stribeck"]
+    law: Literal["LuGre", "tanh hysteresis", "Coulomb-Stribeck", "smooth Coulomb"]
     on: FrictionTarget
     coulomb: _force(at_least=0.0) | None = None
     static: _force(at_least=0.0) | None = None
     viscous: _viscous(at_least=0.0) | None = None
     stribeck_velocity: either_quantity("velocity", "angular_speed", above=0.0) | None = None
     stribeck_shape: quantity("number", above=0.0) | None = None
+    smoothing_velocity: either_quantity("velocity", "angular_speed", above=0.0) | None = None
     stiffness: either_quantity("stiffness", "rotational_stiffness", above=0.0) | None = Field(
         None, description="of the bristles"
     )

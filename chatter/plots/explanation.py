@@ -34,8 +34,7 @@ def plot_explanation(explanation: Explanation) -> Figure:
     for column, run in enumerate(runs):
         left = {}
         for name, case in (("before", before), ("after", after)):
-            own = case.patch(dict(run.overrides)) if run.overrides else case
-            left[name] = kind.predict(own, run)
+            left[name] = kind.predict(run.of(case), run)
         along, label = _abscissa(run.signals)
         for row, channel in enumerate(channels):
             if channel not in run.signals:

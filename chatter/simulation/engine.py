@@ -14,6 +14,7 @@ from chatter.kernels import DRIVER
 from chatter.simulation.laws import all_act, all_settle
 from cutting.edge_force import INLINED
 from cutting.tool_point import Turn
+from dynamics.modal_friction import hold, resist
 from dynamics.modal_steps import correct, predict, take_force
 
 #: columns of the record
@@ -87,13 +88,15 @@ def _keep(record, row, point):
 
 
 @njit(**DRIVER, _nrt=False)
-def run(groups, modes, point, prescribed, record, scratch, first, furthest, bins):
+def run(groups, modes, frictions, point, prescribed, record, scratch, first, furthest, bins):
     """Integrate a chunk of steps.
 
     Parameters
     ----------
     groups : tuple of law groups
     modes : ModalSteps
+    frictions : tuple of Frictions
+        On modes; empty where there are none.
     point : ToolPoint
     prescribed : Prescribed
         Rows 0 .. n; step i leads from row i-1 to row i.
@@ -123,11 +126,13 @@ def run(groups, modes, point, prescribed, record, scratch, first, furthest, bins
         _clear(point)
         if first + i > 0:
             predict(modes, scratch, point)
+            hold(frictions, modes, point)
         all_act(groups, turn, point)
         for axis in range(3):
             point.force[axis] *= prescribed.grip[i]
         if first + i > 0:
             correct(modes, scratch, point)
+            resist(frictions, modes, scratch, point)
         else:
             take_force(modes, point)
         reach = max(

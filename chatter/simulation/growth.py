@@ -136,7 +136,18 @@ def motion_of(
     bins = setup.resolution.steps_a_turn
     turns = prescribed(setup.spindle, setup.path, bins, setup.step, -1, steps + 1, ramp)
     scratch = np.zeros((len(setup.modes), 2))
-    done = run(setup.groups, modes, tool_point(), turns, record, scratch, -1, setup.furthest, bins)
+    done = run(
+        setup.groups,
+        modes,
+        setup.frictions,
+        tool_point(),
+        turns,
+        record,
+        scratch,
+        -1,
+        setup.furthest,
+        bins,
+    )
     return record.rows[:, 3:6], done
 
 

@@ -11,6 +11,7 @@ from chatter.case import Case
 from chatter.errors import InputError
 from chatter.plausibility import check_plausible
 from chatter.simulation.cutter import cutter_of, edge_law, flank_table
+from chatter.simulation.mode_friction import mode_frictions
 from chatter.simulation.resolution import Resolution, resolution_of
 from chatter.simulation.spindle import (
     Spindle,
@@ -49,6 +50,8 @@ class Setup:
     path : ToolPath
     groups : tuple
         Law groups; the cut comes first. They hold the state of one run.
+    frictions : tuple of Frictions
+        On modes; they hold the state of one run.
     furthest : float
         Displacement at which the run stops, m.
     notes : tuple of str
@@ -64,6 +67,7 @@ class Setup:
     spindle: Spindle
     path: ToolPath
     groups: tuple
+    frictions: tuple
     furthest: float
     notes: tuple[str, ...]
     left_behind: tuple = ()
@@ -144,6 +148,7 @@ def compiled(
         spindle=spindle,
         path=path,
         groups=groups,
+        frictions=mode_frictions(case),
         furthest=_FURTHEST * cutter.radius,
         notes=notes,
     )

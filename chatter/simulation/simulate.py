@@ -131,6 +131,8 @@ class ChunkedRun:
         """
         setup, bins = self.setup, self.setup.resolution.steps_a_turn
         point, scratch = tool_point(), np.zeros((len(modes.mass), 2))
+        # a rigid tool, which carves before the start, has no modes that rub
+        frictions = setup.frictions if len(modes.mass) else ()
         done, groups = first, setup.groups
         while done < last:
             count = min(self.chunk, last - done)
@@ -138,7 +140,18 @@ class ChunkedRun:
             if self.stock is not None:
                 groups = (self.stock.follow(float(turns.x[0])), *setup.groups[1:])
             try:
-                ran = run(groups, modes, point, turns, record, scratch, done, furthest, bins)
+                ran = run(
+                    groups,
+                    modes,
+                    frictions,
+                    point,
+                    turns,
+                    record,
+                    scratch,
+                    done,
+                    furthest,
+                    bins,
+                )
                 done += ran
                 progress(done, last)
             except KeyboardInterrupt:

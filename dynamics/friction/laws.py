@@ -30,6 +30,14 @@ from dynamics.friction.lugre import (
     lugre_step,
     lugre_table,
 )
+from dynamics.friction.smooth_coulomb import (
+    SmoothCoulomb,
+    SmoothCoulombTable,
+    smooth_coulomb_advance,
+    smooth_coulomb_force,
+    smooth_coulomb_step,
+    smooth_coulomb_table,
+)
 from dynamics.friction.tanh_hysteresis import (
     TanhHysteresis,
     TanhTable,
@@ -39,7 +47,7 @@ from dynamics.friction.tanh_hysteresis import (
     tanh_table,
 )
 
-FrictionLaw = LuGre | TanhHysteresis | CoulombStribeck
+FrictionLaw = LuGre | TanhHysteresis | CoulombStribeck | SmoothCoulomb
 
 
 class LawEntry(NamedTuple):
@@ -66,6 +74,14 @@ ENTRIES = {
         coulomb_stribeck_step,
         coulomb_stribeck_force,
         coulomb_stribeck_advance,
+    ),
+    "smooth Coulomb": LawEntry(
+        SmoothCoulomb,
+        SmoothCoulombTable,
+        smooth_coulomb_table,
+        smooth_coulomb_step,
+        smooth_coulomb_force,
+        smooth_coulomb_advance,
     ),
 }
 #: name -> specification

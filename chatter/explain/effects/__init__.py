@@ -19,3 +19,8 @@ def candidates(measurement: Measurement) -> list[Effect]:
         for effect in EFFECTS
         if measurement.kind in effect.kinds and effect.applies(measurement)
     ]
+
+
+def place_of(effect: Effect) -> int:
+    """Place of an effect in the list."""
+    return EFFECTS.index(effect)

@@ -26,6 +26,15 @@ def _typical_force(measurement: Measurement) -> float:
     return float(np.median(np.abs(forces)))
 
 
+def _named(**units: str):
+    """Numbers to tell: the parameters under the names of the laws."""
+
+    def told(values: Values) -> Mapping[str, tuple[float, str]]:
+        return dict(zip(units, zip(values.values(), units.values(), strict=True), strict=True))
+
+    return told
+
+
 def _keys(*names: str):
     """Patch that writes values to keys of [axis]."""
 
@@ -99,6 +108,15 @@ def _cogging(case: Case, values: Values) -> dict[str, Any]:  # noqa: ARG001
     }
 
 
+def _cogging_told(values: Values) -> Mapping[str, tuple[float, str]]:
+    phase = math.atan2(values["cosine"], values["sine"])
+    return {
+        "amplitude": (math.hypot(values["sine"], values["cosine"]), "N"),
+        "period": (values["period"], "m"),
+        "phase": (phase % (2.0 * math.pi), "rad"),
+    }
+
+
 def _cogging_starts(measurement: Measurement) -> Sequence[Values]:
     travel = max(float(np.ptp(run.signals["position"])) for run in measurement.runs)
     count = 60
@@ -146,6 +164,7 @@ AXIS_EFFECTS: tuple[Effect, ...] = (
         _force("coulomb_friction", lower=0.0),
         _keys("coulomb_friction"),
         says="a friction that does not depend on speed opposes every motion",
+        told=_named(coulomb="N"),
     ),
     Effect(
         "stribeck",
@@ -163,6 +182,7 @@ AXIS_EFFECTS: tuple[Effect, ...] = (
         _keys("presliding_stiffness", "presliding_damping"),
         _presliding_starts,
         says="friction is a spring before it slides",
+        told=_named(sigma0="N/m", sigma1="N*s/m"),
     ),
     Effect(
         "asymmetry",
@@ -196,6 +216,7 @@ AXIS_EFFECTS: tuple[Effect, ...] = (
         _cogging,
         _cogging_starts,
         says="a force repeats along the axis",
+        told=_cogging_told,
     ),
     Effect(
         "backlash",

@@ -47,6 +47,12 @@ def _runout(case: Case, values: Values) -> Assignments:  # noqa: ARG001
     return {"tool.runout": {"offset": offset, "angle": angle % _TURN}}
 
 
+def _runout_told(values: Values) -> Mapping[str, tuple[float, str]]:
+    offset = math.hypot(values["across"], values["along"])
+    angle = math.atan2(values["along"], values["across"])
+    return {"offset": (offset, "m"), "angle": (angle % _TURN, "rad")}
+
+
 # edge force --------------------------------------------------------------------------------------
 
 
@@ -73,6 +79,10 @@ def _process_damping_parameters(measurement: Measurement) -> Sequence[Parameter]
 def _process_damping(case: Case, values: Values) -> Assignments:
     friction = case.process_damping.friction if case.process_damping else _FRICTION
     return {"process_damping": {"coefficient": float(values["coefficient"]), "friction": friction}}
+
+
+def _process_damping_starts(measurement: Measurement) -> Sequence[Values]:  # noqa: ARG001
+    return [{"coefficient": value} for value in (0.0, 5e4, 2e5, 8e5)]
 
 
 # chip exponent -----------------------------------------------------------------------------------
@@ -119,6 +129,17 @@ def _missing_mode(case: Case, values: Values) -> Assignments:
     return {"structure.mode": [*known, added]}
 
 
+def _mode_told(values: Values) -> Mapping[str, tuple[float, str]]:
+    """Frequency, damping, mass, and the direction as an angle from x within half a turn."""
+    stiffness = 1.0 / max(values["compliance"], 1e-16)
+    return {
+        "frequency": (values["frequency"], "Hz"),
+        "damping": (values["damping"], ""),
+        "mass": (stiffness / (_TURN * values["frequency"]) ** 2, "kg"),
+        "direction": (values["angle"] % math.pi, "rad"),
+    }
+
+
 def _mode_starts(measurement: Measurement) -> Sequence[Values]:
     """Frequencies around and between the known modes, along x and y."""
     known = sorted(mode.frequency for mode in measurement.case.structure.mode)
@@ -150,6 +171,10 @@ def _shift(case: Case, values: Values) -> Assignments:
         f"structure.mode[{place}].frequency_slope": float(values["slope"])
         for place in range(len(case.structure.mode))
     }
+
+
+def _shift_starts(measurement: Measurement) -> Sequence[Values]:  # noqa: ARG001
+    return [{"slope": value} for value in (0.0, 2e-5, -2e-5, 6e-5, -6e-5)]
 
 
 # pitch -------------------------------------------------------------------------------------------
@@ -234,6 +259,67 @@ def _dynamometer_starts(measurement: Measurement) -> Sequence[Values]:
     return [{"frequency": float(f)} for f in np.geomspace(400.0, 1.2 * highest, 14)]
 
 
+# slide friction ----------------------------------------------------------------------------------
+
+
+def _slide_parameters(measurement: Measurement) -> Sequence[Parameter]:
+    """Friction on every mode, and the velocity below which it falls to zero."""
+    size = 0.1 * _typical_force(measurement)
+    modes = range(len(measurement.case.structure.mode))
+    return [
+        *(_free(f"coulomb_{place + 1}", 0.0, size, "N", lower=0.0) for place in modes),
+        Parameter("smoothing_velocity", 1e-3, 5e-4, 5e-5, 2e-2, True, "m/s"),
+    ]
+
+
+def _typical_force(measurement: Measurement) -> float:
+    forces = [
+        float(np.sqrt(np.mean(run.signals[name] ** 2)))
+        for run in measurement.runs
+        for name in ("Fx", "Fy")
+        if name in run.signals
+    ]
+    return float(np.median(forces)) if forces else 100.0
+
+
+def _slide(case: Case, values: Values) -> Assignments:
+    velocity = float(values["smoothing_velocity"])
+    given: Assignments = {}
+    for place in range(len(case.structure.mode)):
+        coulomb = float(values[f"coulomb_{place + 1}"])
+        if coulomb > 0.0:
+            given[f"friction.slide_{place + 1}"] = {
+                "law": "smooth-coulomb",
+                "coulomb": coulomb,
+                "smoothing_velocity": velocity,
+            }
+            given[f"structure.mode[{place}].friction"] = f"slide_{place + 1}"
+    return given
+
+
+def _slide_starts(measurement: Measurement) -> Sequence[Values]:
+    force = 0.1 * _typical_force(measurement)
+    modes = range(len(measurement.case.structure.mode))
+    return [{f"coulomb_{place + 1}": force} for place in modes]
+
+
+def _slide_told(values: Values) -> Mapping[str, tuple[float, str]]:
+    """The strongest friction, on which mode, counted from 1, and the others."""
+    levels = {key: v for key, v in values.items() if key.startswith("coulomb_")}
+    strongest = max(levels, key=levels.__getitem__)
+    return {
+        "coulomb": (levels[strongest], "N"),
+        "mode": (float(strongest.rpartition("_")[2]), ""),
+        "smoothing_velocity": (values["smoothing_velocity"], "m/s"),
+        **{key: (level, "N") for key, level in levels.items() if key != strongest},
+    }
+
+
+def _no_friction(measurement: Measurement) -> bool:
+    modes = measurement.case.structure.mode if measurement.case.structure else ()
+    return bool(modes) and not any(mode.friction for mode in modes)
+
+
 def _has_modes(measurement: Measurement) -> bool:
     case = measurement.case
     return case.structure is not None and bool(case.structure.mode)
@@ -259,6 +345,7 @@ MILLING_EFFECTS: tuple[Effect, ...] = (
         _runout_parameters,
         _runout,
         says="the teeth run off the spindle axis",
+        told=_runout_told,
     ),
     Effect(
         "edge_force",
@@ -274,6 +361,7 @@ MILLING_EFFECTS: tuple[Effect, ...] = (
         lambda m: m.case.process_damping is None,
         _process_damping_parameters,
         _process_damping,
+        _process_damping_starts,
         says="the flank resists vibration into the work, the more the slower the cut",
     ),
     Effect(
@@ -292,6 +380,7 @@ MILLING_EFFECTS: tuple[Effect, ...] = (
         _missing_mode,
         _mode_starts,
         says="the structure has a mode more",
+        told=_mode_told,
     ),
     Effect(
         "mode_shift",
@@ -299,6 +388,7 @@ MILLING_EFFECTS: tuple[Effect, ...] = (
         lambda m: _has_modes(m) and _several_speeds(m),
         _shift_parameters,
         _shift,
+        _shift_starts,
         says="natural frequencies change with the spindle speed",
     ),
     Effect(
@@ -333,5 +423,15 @@ MILLING_EFFECTS: tuple[Effect, ...] = (
         _dynamometer,
         _dynamometer_starts,
         says="the force sensor has a resonance of its own",
+    ),
+    Effect(
+        "slide_friction",
+        ("milling",),
+        _no_friction,
+        _slide_parameters,
+        _slide,
+        _slide_starts,
+        says="dry friction rubs on a mode of the structure",
+        told=_slide_told,
     ),
 )

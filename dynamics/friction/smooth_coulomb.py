@@ -1,0 +1,137 @@
+"""Coulomb friction that passes smoothly through zero: F = FC tanh(v / vc) + c v.
+
+A regularisation, not a law of contact: below the velocity vc the friction creeps where a real one
+sticks. It is what many simulations take for Coulomb friction (Andersson, Soderberg and Bjorklund
+2007, equation 5), so that their results can be met exactly.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numba.extending import register_jitable
+from numpy.typing import ArrayLike, NDArray
+
+from dynamics.friction.implicit import INLINED, held_force
+
+
+@dataclass(frozen=True)
+class SmoothCoulomb:
+    """Parameters of one smooth friction; about an axis read N m, rad for N, m.
+
+    Parameters
+    ----------
+    coulomb : float
+        FC, N; not below 0.
+    smoothing_velocity : float
+        vc, m/s; above 0.
+    viscous : float
+        c, N s/m; not below 0.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is out of its range; the message names it.
+    """
+
+    coulomb: float
+    smoothing_velocity: float
+    viscous: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("coulomb", "viscous"):
+            if not 0.0 <= getattr(self, name) < math.inf:
+                raise ValueError(
+                    f"smooth friction: {name} must be 0 or above, not {getattr(self, name)}"
+                )
+        if not 0.0 < self.smoothing_velocity < math.inf:
+            raise ValueError(
+                "smooth friction: smoothing_velocity must be above 0, not "
+                f"{self.smoothing_velocity}"
+            )
+
+    def steady_state_force(self, velocity: ArrayLike) -> NDArray[np.float64]:
+        """Force at constant velocities in m/s, N."""
+        velocity = np.asarray(velocity, dtype=np.float64)
+        return self.coulomb * np.tanh(velocity / self.smoothing_velocity) + self.viscous * velocity
+
+    def stiffness_in_motion(self, frequency: ArrayLike, velocity: float) -> NDArray[np.complex128]:
+        """Dynamic stiffness j w dF/dv, N/m, about a velocity in m/s, 0 included; Hz."""
+        steep = 1.0 / math.cosh(min(abs(velocity) / self.smoothing_velocity, 300.0)) ** 2
+        slope = self.viscous + self.coulomb / self.smoothing_velocity * steep
+        return 2j * np.pi * np.asarray(frequency, dtype=np.float64) * slope
+
+    def describing_function(self, amplitude: float, frequency: float) -> tuple[float, float]:
+        """Equivalent stiffness, N/m, and damping, N s/m, of x = A sin(w t); m, Hz.
+
+        Notes
+        -----
+        The stiffness is 0; the damping is the mean over the cycle, and tends to 4 FC / (pi A w)
+        + c as the smoothing vanishes (Den Hartog 1931).
+        """
+        peak = 2.0 * np.pi * frequency * amplitude
+        angle = (np.arange(4000) + 0.5) * (0.5 * np.pi / 4000)
+        force = self.steady_state_force(peak * np.sin(angle))
+        return 0.0, float(2.0 * np.mean(force * np.sin(angle)) / peak)
+
+
+class SmoothCoulombTable(NamedTuple):
+    """Smooth frictions as the kernels see them; columns (n,)."""
+
+    coulomb: NDArray[np.float64]  # FC, N
+    smoothing_velocity: NDArray[np.float64]  # vc, m/s
+    viscous: NDArray[np.float64]  # c, N s/m
+    port: NDArray[np.int64]
+    rate: NDArray[np.float64]  # mean velocity of the last step, m/s: state
+
+
+def smooth_coulomb_table(laws: Sequence[SmoothCoulomb], ports: Sequence[int]) -> SmoothCoulombTable:
+    """Return frictions at rest on ports."""
+    columns = []
+    for name in SmoothCoulombTable._fields[:3]:
+        column = np.array([getattr(law, name) for law in laws], dtype=np.float64)
+        column.flags.writeable = False
+        columns.append(column)
+    port = np.array(ports, dtype=np.int64)
+    port.flags.writeable = False
+    return SmoothCoulombTable(*columns, port, np.zeros(len(laws)))
+
+
+@register_jitable(**INLINED)
+def _resist(law, i, sign, way, h):  # noqa: ARG001
+    speed = way / h
+    return law.coulomb[i] * math.tanh(speed / law.smoothing_velocity[i]) + law.viscous[i] * speed
+
+
+@register_jitable(**INLINED)
+def _rest(law, i):  # noqa: ARG001
+    return 0.0
+
+
+@register_jitable(**INLINED)
+def _stored(law, i, motion, h):  # noqa: ARG001
+    return 0.0
+
+
+@register_jitable(**INLINED)
+def smooth_coulomb_force(law, i, motion, h):
+    """Force, N, of a motion (m) at constant velocity in a time h (s)."""
+    sign = 1.0 if motion >= 0.0 else -1.0
+    return sign * _resist(law, i, sign, abs(motion), h)
+
+
+@register_jitable(**INLINED)
+def smooth_coulomb_step(law, i, dx_free, gx, v_free, g, h):
+    """Held force, N, and motion of the law, m; see `implicit.held_force`."""
+    stiffness = (law.coulomb[i] / law.smoothing_velocity[i] + law.viscous[i]) / h
+    return held_force(_rest, _resist, _stored, law, i, stiffness, dx_free, gx, v_free, g, h)
+
+
+@register_jitable(**INLINED)
+def smooth_coulomb_advance(law, i, motion, h):
+    """Note a motion, m, in a time h, s."""
+    law.rate[i] = motion / h
