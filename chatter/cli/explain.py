@@ -57,7 +57,8 @@ def print_checks(checks: list[dict[str, str]]) -> None:
     """Print what was found in the signals, with what follows."""
     from chatter.explain.report import FOLLOWS
 
-    for one in checks:
+    fatal = [one for one in checks if one["severity"] == "fatal"]
+    for one in fatal or checks:
         typer.echo(f"{one['says']} ({FOLLOWS[one['severity']]})")
 
 

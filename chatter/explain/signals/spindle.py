@@ -20,7 +20,9 @@ _SETTLED = 0.35
 _SEARCHED = 0.22
 #: shares of a signal's variance that repeats with a right speed, and with a wrong one beside it
 _REPEATS = 0.8
-_BESIDE = 0.6
+#: of a tooth period a revolution, within which speeds are looked at
+_BELOW_A_TOOTH = 0.85
+_BESIDE = 0.8
 _BINS = 72
 _MOST_TEETH = 16
 #: share of the runs in which another number of teeth must be counted
@@ -56,7 +58,7 @@ def wrong_speeds(measurement: Measurement) -> list[SignalFinding]:
     for run in measurement.runs:
         declared = declared_speed(measurement, run)
         by_angle = speed_by_angle(run)
-        by_forces = speed_by_forces(run, declared)
+        by_forces = speed_by_forces(run, declared, measurement.case.tool.teeth)
         words = []
         if by_angle is not None and abs(by_angle / declared - 1.0) > _WRONG:
             hint = _as_unit(by_angle, declared)
@@ -64,7 +66,7 @@ def wrong_speeds(measurement: Measurement) -> list[SignalFinding]:
             ratio = by_angle / declared
         if by_forces is not None and abs(by_forces / declared - 1.0) > _WRONG:
             words.append(f"its forces repeat with a spindle at {_rpm(by_forces)}")
-            ratio = by_forces / declared
+            ratio = by_forces / declared if len(words) == 1 else by_angle / declared
         if words:
             says = f"{run.name}: {' and '.join(words)}; the case declares {_rpm(declared)}"
             found.append(SignalFinding(RUN, run.name, "spindle_angle" if by_angle else "", says))
@@ -114,12 +116,13 @@ def speed_by_angle(run: Run) -> float | None:
     return float(np.polyfit(time - time[0], angle, 1)[0])
 
 
-def speed_by_forces(run: Run, declared: float) -> float | None:
+def speed_by_forces(run: Run, declared: float, teeth: int) -> float | None:
     """Spindle speed with whose revolution the forces repeat; None where they do not tell.
 
     The share of the variance that means over the revolution's angle explain, over speeds around
     the declared one; another speed is told only where it explains nearly all and the declared one
-    clearly less.
+    clearly less. Speeds with which another whole number of tooth periods makes a revolution are not
+    looked at.
     """
     chosen = settled(run, declared)
     time = run.signals["time"][chosen]
@@ -128,7 +131,7 @@ def speed_by_forces(run: Run, declared: float) -> float | None:
     if not signals or turns < 2.0 or time.size < 4 * _BINS:
         return None
     step = 0.1 / (turns * 8.0)
-    count = int(_SEARCHED / step)
+    count = int(min(_SEARCHED, _BELOW_A_TOOTH / teeth) / step)
     ratios = 1.0 + step * np.arange(-count, count + 1)
     shares = np.array([_repeating(time, signals, ratio * declared) for ratio in ratios])
     best = float(shares.max())
