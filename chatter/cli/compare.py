@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from chatter.cli.errors import reports_errors
-from chatter.cli.explain import DeclaredCase, MeasurementPath
+from chatter.cli.explain import DeclaredCase, MeasurementPath, print_checks
 from chatter.cli.options import Json, OutputFolder, output_folder
 from chatter.cli.report import announce_compilation, print_json, print_table, print_written
 
@@ -26,6 +26,7 @@ def compare(
     if json:
         print_json(result.summary())
     else:
+        print_checks([one.as_dict() for one in result.checks])
         rows = [
             [one.run, one.channel, f"{one.error:.4g}", f"{100.0 * one.relative:.2f}"]
             for one in result.errors

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from chatter.case import Case
 from chatter.errors import InputError
 from chatter.explain.fitting import Parameter
-from chatter.explain.measurement import Measurement, Run
+from chatter.explain.measurement import USABLE, Measurement, Run
 from chatter.explain.noise import white_level
 from chatter.explain.problem import scaled_difference
 from chatter.explain.tolerance import tolerated
@@ -27,6 +27,8 @@ _KEPT = 4
 _MOTION_CUT_OFF, _FINER_CUT_OFF = 0.15, 0.3
 #: speed of an axis that creeps, m/s
 _NEAR_REST = 1e-4
+#: weight of the low pass on samples that can be used from which on one kept is used
+_ALL_USABLE = 0.999
 #: samples on either side, and degree, of the polynomials through a motion that creeps
 _BESIDE, _DEGREE = 40, 3
 #: standard deviations of the noise from which the motor runs ahead
@@ -176,7 +178,8 @@ def _prepared(
     step = float(np.median(np.diff(signals["time"])))
     motion = _motion(signals["position"], step, _MOTION_CUT_OFF)
     force = _kept(signals["force"])
-    certainty = _certainty(signals, step, begun, rubbing)
+    usable = _kept(signals.get(USABLE, np.ones(signals["force"].size))) > _ALL_USABLE
+    certainty = _certainty(signals, step, begun, rubbing) * usable
     return {
         "time": signals["time"][::_KEPT][: force.size],
         "force": force,

@@ -10,6 +10,7 @@ from typing import Any
 from chatter.explain.errors_of_runs import ChannelError, errors_of, overall
 from chatter.explain.kinds import kind_of
 from chatter.explain.measurement import Measurement
+from chatter.explain.signals import SignalFinding, checked
 from chatter.explain.signature import signature_of
 from chatter.result_files import as_json, write_results
 
@@ -24,18 +25,22 @@ class Comparison:
     errors : sequence of ChannelError
     signature : dict
         Where the residual lives.
+    checks : tuple of SignalFinding
+        What is no good in the signals.
     """
 
     measurement: Measurement
     errors: Sequence[ChannelError]
     signature: dict[str, Any]
+    checks: tuple[SignalFinding, ...] = ()
 
     def summary(self) -> dict[str, Any]:
         """Content of compare.json."""
         return {
             "title": self.measurement.title,
             "kind": self.measurement.kind,
-            "nrmse": overall(self.errors),
+            "nrmse": overall(self.errors) if self.errors else None,
+            "checks": [one.as_dict() for one in self.checks],
             "runs": [one._asdict() for one in self.errors],
             "signature": self.signature,
         }
@@ -59,6 +64,10 @@ def compare(measurement: Measurement) -> Comparison:
     InputError
         If the measurement or its case cannot be used.
     """
-    kind, prepared = kind_of(measurement)
+    looked_at = checked(measurement)
+    if looked_at.forbids_prediction:
+        return Comparison(looked_at.measurement, (), {}, looked_at.findings)
+    kind, prepared = kind_of(looked_at.measurement)
     errors = errors_of(prepared.case, prepared, kind)
-    return Comparison(prepared, errors, signature_of(prepared, kind, prepared.case))
+    signature = signature_of(prepared, kind, prepared.case)
+    return Comparison(prepared, errors, signature, looked_at.findings)

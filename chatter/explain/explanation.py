@@ -19,7 +19,9 @@ from chatter.explain.kinds import kind_of
 from chatter.explain.measurement import Measurement
 from chatter.explain.problem import NUMERICS
 from chatter.explain.search import Candidate, Search, Stage, search
+from chatter.explain.signals import SignalFinding, checked
 from chatter.explain.signature import signature_of
+from chatter.explain.unusable import Unusable
 from chatter.result_files import as_json, finite_or_none, write_results
 
 if TYPE_CHECKING:
@@ -46,11 +48,14 @@ class Explanation:
     found : Search
     verdict : str
         "explained", "nothing-missing" or "unexplained".
+    checks : tuple of SignalFinding
+        What is no good in the signals, and was left out.
     """
 
     measurement: Measurement
     found: Search
     verdict: str
+    checks: tuple[SignalFinding, ...] = ()
 
     @property
     def case(self) -> Case:
@@ -70,6 +75,7 @@ class Explanation:
         """Content of explanation.json."""
         return {
             "verdict": self.verdict,
+            "checks": [one.as_dict() for one in self.checks],
             "effects": self._effects() if self.verdict == "explained" else [],
             # what helps, but leaves something that is not known
             "partial": self._effects() if self.verdict == "unexplained" else [],
@@ -175,7 +181,9 @@ class Explanation:
         return [*written, path]
 
 
-def explain(measurement: Measurement, progress: Progress = lambda *_: None) -> Explanation:
+def explain(
+    measurement: Measurement, progress: Progress = lambda *_: None
+) -> Explanation | Unusable:
     """Find out what the declared case of a measurement lacks.
 
     Parameters
@@ -188,8 +196,16 @@ def explain(measurement: Measurement, progress: Progress = lambda *_: None) -> E
     ------
     InputError
         If the measurement or its case cannot be used.
+
+    Notes
+    -----
+    Where the checks find the set or its declared case plainly wrong, no effect is looked for.
     """
-    kind, prepared = kind_of(measurement)
+    progress("checking the signals", 0.0)
+    looked_at = checked(measurement)
+    if looked_at.is_fatal:
+        return Unusable(looked_at)
+    kind, prepared = kind_of(looked_at.measurement)
     found = search(prepared, kind, progress)
     at_noise = max(found.left.values()) <= getattr(kind, "at_noise", AT_NOISE)
     if found.accepted and at_noise:
@@ -198,7 +214,7 @@ def explain(measurement: Measurement, progress: Progress = lambda *_: None) -> E
         verdict = "nothing-missing"
     else:
         verdict = "unexplained"
-    return Explanation(prepared, found, verdict)
+    return Explanation(prepared, found, verdict, looked_at.findings)
 
 
 def probability(tried: tuple[Candidate, ...], of: Candidate) -> float:

@@ -23,6 +23,14 @@ _SAYING = {
     "leaves noise alone.",
     "unexplained": "Something is missing that none of the effects known here explains.",
 }
+#: what follows of a finding in the signals, by how bad it is
+FOLLOWS = {
+    "fatal": "nothing can be concluded",
+    "run": "the run is left out",
+    "channel": "the channel is left out in this run",
+    "samples": "the samples are left out",
+    "note": "a note",
+}
 
 
 def report_of(explanation: Explanation, summary: dict[str, Any], picture: Figure) -> str:
@@ -39,6 +47,7 @@ def report_of(explanation: Explanation, summary: dict[str, Any], picture: Figure
     parts = [
         f"<h1>{title}</h1>",
         f"<p><b>{summary['verdict']}</b>. {_SAYING[summary['verdict']]}</p>",
+        findings_of(summary["checks"]),
         _effects(summary),
         "<h2>Error</h2>",
         _errors(summary),
@@ -56,10 +65,24 @@ def report_of(explanation: Explanation, summary: dict[str, Any], picture: Figure
         "<h2>Values refitted</h2>",
         _values(explanation),
     ]
-    body = "\n".join(parts)
+    return page_of(title, "\n".join(parts))
+
+
+def page_of(title: str, body: str) -> str:
+    """Return a page that needs nothing else, of a title and a body in HTML."""
     return (
         '<!doctype html><html lang="en"><head><meta charset="utf-8">'
         f"<title>{title}</title><style>{_STYLE}</style></head><body>{body}</body></html>\n"
+    )
+
+
+def findings_of(checks: list[dict[str, str]]) -> str:
+    """Return what was found in the signals, as a table; nothing where nothing was."""
+    if not checks:
+        return ""
+    return "<h2>The data</h2>" + _table(
+        ["what follows", "run", "channel", "what was found"],
+        [[FOLLOWS[one["severity"]], one["run"], one["channel"], one["says"]] for one in checks],
     )
 
 

@@ -31,6 +31,7 @@ def signature_of(measurement: Measurement, kind: Kind, case: Case) -> dict[str, 
         predicted = kind.predict(own, run)
         for channel in kind.channels(run):
             left = run.signals[channel] - predicted[channel]
+            left = left * run.usable(left.size)
             level = float(np.sqrt(np.mean(run.signals[channel] ** 2)))
             share = float(np.sqrt(np.mean(left**2))) / max(level, 1e-300)
             shares.setdefault(channel, {})[run.name] = share

@@ -37,6 +37,8 @@ def plot_explanation(explanation: Explanation) -> Figure:
             left[name] = kind.predict(run.of(case), run)
         along, label = _abscissa(run.signals)
         for row, channel in enumerate(channels):
+            if channel not in run.signals:
+                continue
             panel, signal = panels[row, column], run.signals[channel]
             x = along if along is not None and along.size == signal.size else np.arange(signal.size)
             panel.plot(x, signal, color="#BBBBBB", lw=0.6, label="measured")
