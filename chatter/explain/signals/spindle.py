@@ -20,6 +20,8 @@ _SETTLED = 0.35
 _SEARCHED = 0.22
 #: shares of a signal's variance that repeats with a right speed, and with a wrong one beside it
 _REPEATS = 0.8
+#: runs, and share of them, that agree on another speed, from which on it is that of all
+_AGREEING, _AGREEING_SHARE = 3, 0.2
 #: power of the tooth-passing frequency of a right speed over that of a wrong one
 _STRONGER = 1.5
 #: of a tooth period a revolution, within which speeds are looked at
@@ -85,7 +87,10 @@ def wrong_speeds(measurement: Measurement) -> list[SignalFinding]:
             f": the spindle turned at {np.median(ratios):.4g} times what the case declares "
             f"({100.0 * (np.median(ratios) - 1.0):+.2g} %)"
         )
-    return of_all_or_some(found, measurement, about) + notes
+    # runs that agree on how far it is off speak for those that are too short to tell
+    agree = len(ratios) >= _AGREEING and np.ptp(ratios) < _WRONG
+    share = _AGREEING_SHARE if agree else 0.5
+    return of_all_or_some(found, measurement, about, share) + notes
 
 
 def _rpm(speed: float) -> str:
