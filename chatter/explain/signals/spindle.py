@@ -20,6 +20,10 @@ _SETTLED = 0.35
 _SEARCHED = 0.22
 #: shares of a signal's variance that repeats with a right speed, and with a wrong one beside it
 _REPEATS = 0.8
+#: runs, and share of them, that agree on another speed, from which on it is that of all
+_AGREEING, _AGREEING_SHARE = 3, 0.2
+#: power of the tooth-passing frequency of a right speed over that of a wrong one
+_STRONGER = 1.5
 #: of a tooth period a revolution, within which speeds are looked at
 _BELOW_A_TOOTH = 0.85
 _BESIDE = 0.8
@@ -83,7 +87,10 @@ def wrong_speeds(measurement: Measurement) -> list[SignalFinding]:
             f": the spindle turned at {np.median(ratios):.4g} times what the case declares "
             f"({100.0 * (np.median(ratios) - 1.0):+.2g} %)"
         )
-    return of_all_or_some(found, measurement, about) + notes
+    # runs that agree on how far it is off speak for those that are too short to tell
+    agree = len(ratios) >= _AGREEING and np.ptp(ratios) < _WRONG
+    share = _AGREEING_SHARE if agree else 0.5
+    return of_all_or_some(found, measurement, about, share) + notes
 
 
 def _rpm(speed: float) -> str:
@@ -131,7 +138,7 @@ def speed_by_forces(run: Run, declared: float, teeth: int) -> float | None:
     if not signals or turns < 2.0 or time.size < 4 * _BINS:
         return None
     step = 0.1 / (turns * 8.0)
-    count = int(min(_SEARCHED, _BELOW_A_TOOTH / teeth) / step)
+    count = int(min(_SEARCHED, _BELOW_A_TOOTH / (teeth + 1)) / step)
     ratios = 1.0 + step * np.arange(-count, count + 1)
     shares = np.array([_repeating(time, signals, ratio * declared) for ratio in ratios])
     best = float(shares.max())
@@ -141,7 +148,16 @@ def speed_by_forces(run: Run, declared: float, teeth: int) -> float | None:
     good = np.flatnonzero(shares > best - 0.05)
     nearest = good[np.argmin(np.abs(good - count))]
     around = np.arange(max(nearest - 3, 0), min(nearest + 4, ratios.size))
-    return float(ratios[around[np.argmax(shares[around])]] * declared)
+    found = float(ratios[around[np.argmax(shares[around])]] * declared)
+    # chatter may be a multiple of another revolution, but the teeth do not pass with it
+    passing = [tooth_passing(time, signals, speed * teeth) for speed in (declared, found)]
+    return found if passing[1] > _STRONGER * passing[0] else None
+
+
+def tooth_passing(time: Vector, signals: list[Vector], frequency: float) -> float:
+    """Power of signals at an angular frequency, rad/s."""
+    wave = np.exp(-1j * frequency * (time - time[0]))
+    return float(sum(np.abs(wave @ (values - values.mean())) ** 2 for values in signals))
 
 
 def _repeating(time: Vector, signals: list[Vector], speed: float) -> float:
