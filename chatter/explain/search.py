@@ -21,6 +21,8 @@ from chatter.explain.problem import Problem
 _NOTHING_LEFT = 1.0
 #: gain in the runs not seen that is beyond chance, and a share of their number of samples
 _GAIN, _GAIN_SHARE = 40.0, 0.004
+#: share of what is left above the noise that an effect must take away
+_SLIVER = 0.05
 #: effects are added until this many, or until nothing is gained
 _MOST_EFFECTS = 3
 #: candidates that are fitted in full after a first look
@@ -228,7 +230,9 @@ def _cost(problem: Problem, values: Mapping[str, float], runs: Sequence[Run]) ->
 
 def _beyond_chance(left: float, reached: float, problem: Problem, unseen: Sequence[Run]) -> bool:
     least, share = getattr(problem.kind, "least_gain", (_GAIN, _GAIN_SHARE))
-    return left - reached > least + share * problem.count(unseen)
+    count = problem.count(unseen)
+    # what takes away a sliver of a misfit stands for something else
+    return left - reached > max(least + share * count, _SLIVER * (left - count))
 
 
 def _try_all(
