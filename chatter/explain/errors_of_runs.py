@@ -39,14 +39,14 @@ def errors_of(
     return found
 
 
+def by_channel(errors: Sequence[ChannelError]) -> dict[str, float]:
+    """Rms over the runs of the normalised errors, by channel."""
+    return {
+        channel: float(np.sqrt(np.mean([e.relative**2 for e in errors if e.channel == channel])))
+        for channel in dict.fromkeys(one.channel for one in errors)
+    }
+
+
 def overall(errors: Sequence[ChannelError]) -> float:
     """Normalised error of several runs: the mean over the channels of the rms over the runs."""
-    channels = sorted({one.channel for one in errors})
-    return float(
-        np.mean(
-            [
-                np.sqrt(np.mean([one.relative**2 for one in errors if one.channel == channel]))
-                for channel in channels
-            ]
-        )
-    )
+    return float(np.mean(list(by_channel(errors).values())))

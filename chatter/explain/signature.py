@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from chatter.case import Case
 from chatter.explain.kind import Kind
@@ -13,6 +13,9 @@ from chatter.explain.residual.finding import Finding
 from chatter.explain.residual.lead import Lead, lead_of
 from chatter.explain.residual.left import Noise, Residual, residual_of
 from chatter.explain.residual.views import look, nothing_beyond_chance
+
+if TYPE_CHECKING:
+    from chatter.explain.explanation import Explanation
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,3 +71,53 @@ def signature_of(
     """
     residual = residual_of(measurement, kind, case, noise)
     return Signature(residual, look(residual))
+
+
+@dataclass(frozen=True, eq=False)
+class Signatures:
+    """Signatures of a measurement before and after.
+
+    Parameters
+    ----------
+    refitted : Signature
+        Of the declared case, refitted within its tolerances.
+    with_added : Signature or None
+        Of the case with the effects that were added, also where they explain a part alone.
+    unexplained : bool
+    """
+
+    refitted: Signature
+    with_added: Signature | None
+    unexplained: bool
+
+    @cached_property
+    def lead(self) -> Lead | None:
+        """Free-form description of what nothing known explains; None where nothing is."""
+        if not self.unexplained:
+            return None
+        if self.with_added is not None and self.with_added.lead.finding.beyond_chance:
+            return self.with_added.lead
+        return self.refitted.lead
+
+    def summary(self) -> dict[str, Any]:
+        """Entry of explanation.json."""
+        return {
+            "refitted": self.refitted.summary(),
+            "with_what_was_added": self.with_added.summary() if self.with_added else None,
+            "lead": self.lead.summary() if self.lead else None,
+        }
+
+
+def signatures_of(explanation: Explanation) -> Signatures:
+    """Look at what the refitted case leaves, and at what is left beside what was added."""
+    found, measurement = explanation.found, explanation.measurement
+    noise = found.problem.noise
+    added = None
+    if found.accepted:
+        case = found.problem.case(found.final.by_name)
+        added = signature_of(measurement, found.kind, case, noise)
+    return Signatures(
+        signature_of(measurement, found.kind, explanation.refitted, noise),
+        added,
+        explanation.verdict == "unexplained",
+    )

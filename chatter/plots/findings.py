@@ -10,6 +10,7 @@ from itertools import cycle
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from chatter.explain.residual.finding import Bars, Curves, Finding, Map, Panel, Points
 from chatter.plots import style
@@ -99,16 +100,21 @@ def _(panel: Curves, axes: Axes) -> None:
         for number, place in enumerate(places):
             label = name if number == 0 else None
             axes.axvline(place, color=style.GREY, lw=0.9, ls=":", label=label)
-    if "x" in panel.logarithmic:
-        axes.set_xscale("log")
-    if "y" in panel.logarithmic:
-        axes.set_yscale("log")
+    _scale(axes, panel.logarithmic)
     if panel.floor is not None:
         axes.axhline(panel.floor, color="black", lw=0.9, ls="--")
     axes.set_xlabel(panel.x_label)
     axes.set_ylabel(panel.y_label)
     if any(curve.label for curve in panel.curves) or panel.marks:
         axes.legend(**_LEGEND)
+
+
+def _scale(axes: Axes, logarithmic: str) -> None:
+    for name, axis in (("x", axes.xaxis), ("y", axes.yaxis)):
+        if name in logarithmic:
+            (axes.set_xscale if name == "x" else axes.set_yscale)("log")
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.set_minor_formatter(NullFormatter())
 
 
 @draw.register
@@ -120,6 +126,7 @@ def _(panel: Map, axes: Axes) -> None:
     )
     axes.set_xlabel(panel.x_label)
     axes.set_ylabel(panel.y_label)
+    _scale(axes, panel.logarithmic)
     bar = axes.figure.colorbar(image, ax=axes)
     bar.set_label(panel.label, fontsize=8.5)
     bar.ax.tick_params(labelsize=8.0)
@@ -137,8 +144,7 @@ _CLASSES = (
 @draw.register
 def _(panel: Points, axes: Axes) -> None:
     draw_points(panel, axes)
-    for curve in panel.curves:
-        axes.plot(curve.x, curve.y, color="black", lw=1.2, label=curve.label)
+    _scale(axes, panel.logarithmic)
     axes.set_xlabel(panel.x_label)
     axes.set_ylabel(panel.y_label)
     axes.margins(y=0.15)

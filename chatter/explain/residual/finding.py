@@ -79,16 +79,17 @@ class Map:
     x_label: str
     y_label: str
     label: str
+    logarithmic: str = ""
 
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """Points of several classes over two variables, and curves among them."""
+    """Points of several classes over two variables."""
 
     classes: Mapping[str, tuple[Array, Array]]
     x_label: str
     y_label: str
-    curves: tuple[Curve, ...] = ()
+    logarithmic: str = ""
 
 
 Panel = Bars | Curves | Map | Points

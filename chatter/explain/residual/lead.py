@@ -144,7 +144,7 @@ def _taken(form: Form) -> str:
 def _table(variable: Variable, tie: Tie) -> dict[str, Any]:
     scale = told_scale(tie)
     rows = [
-        [float(x * variable.scale), float(y * scale), float(e * scale)]
+        [float(variable.told(x)), float(y * scale), float(e * scale)]
         for x, y, e in zip(tie.middles, tie.found.coefficients, tie.found.errors, strict=True)
         if np.isfinite(y)
     ]
@@ -257,7 +257,7 @@ def _lead_by_two(residual: Residual, tie: _TieOfTwo) -> Callable[[], Lead]:
         alone = Tie(tie.channel, tie.form, tie.found, tie.edges[0])
         scale = told_scale(alone)
         x, y = (
-            edges * variable.scale for edges, variable in zip(tie.edges, tie.variables, strict=True)
+            variable.told(edges) for edges, variable in zip(tie.edges, tie.variables, strict=True)
         )
         values = scale * tie.found.coefficients.reshape(y.size - 1, x.size - 1)
         says = (
@@ -278,7 +278,10 @@ def _lead_by_two(residual: Residual, tie: _TieOfTwo) -> Callable[[], Lead]:
             for i in range(x.size - 1)
             if np.isfinite(values[j, i])
         ]
-        panel = Map(x, y, values, *labels, y_label(alone))
+        scales = "".join(
+            axis for axis, v in zip("xy", tie.variables, strict=True) if v.logarithmic
+        )
+        panel = Map(x, y, values, *labels, y_label(alone), scales)
         return Lead(
             Finding("lead", says, True, numbers, panel),
             {"columns": [*labels, y_label(alone)], "rows": rows},

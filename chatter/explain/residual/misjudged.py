@@ -79,7 +79,7 @@ def _map_of(tests: _Tests) -> Points:
         name: (tests.speed[chosen] * _RPM, tests.depth[chosen] * 1e3)
         for name, chosen in classes.items()
     }
-    return Points(points, "spindle speed [rpm]", "axial depth [mm]")
+    return Points(points, "spindle speed [rpm]", "axial depth [mm]", logarithmic="y")
 
 
 def over_speed(residual: Residual) -> Finding:

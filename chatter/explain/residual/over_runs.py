@@ -34,6 +34,7 @@ class Measure(NamedTuple):
     """A number that tells of the residual of a run."""
 
     name: str
+    says: str
     of: Callable[[Left], float]
     unit: Callable[[str], tuple[str, float]]
 
@@ -82,12 +83,12 @@ CONDITIONS: Mapping[str, tuple[Condition, ...]] = {
 
 MEASURES: Mapping[str, tuple[Measure, ...]] = {
     "milling": (
-        Measure("share by which the prediction is too small", _gain, _percent),
-        Measure("size over the signal", _size, _percent),
+        Measure("gain", "share by which the prediction is too small", _gain, _percent),
+        Measure("size", "size over the signal", _size, _percent),
     ),
     "axis": (
-        Measure("mean along the direction of motion", _friction, told_unit),
-        Measure("mean", lambda left: float(np.mean(left.values)), told_unit),
+        Measure("mean x direction", "mean along the direction of motion", _friction, told_unit),
+        Measure("mean", "mean", lambda left: float(np.mean(left.values)), told_unit),
     ),
 }
 
@@ -150,7 +151,7 @@ def _words(growth: Growth) -> str:
     x_low, x_high = (growth.condition.scale * float(growth.x[order[p]]) for p in (0, -1))
     rises = "rises" if growth.found.coefficient > 0.0 else "falls"
     return (
-        f"The {growth.measure.name} of what is left of {growth.channel} {rises} with the "
+        f"The {growth.measure.says} of what is left of {growth.channel} {rises} with the "
         f"{growth.condition.name}, from {low:.3g} {unit} at {x_low:.4g} {growth.condition.unit} to "
         f"{high:.3g} {unit} at {x_high:.4g} {growth.condition.unit} (rank correlation "
         f"{growth.found.coefficient:+.2f} over {growth.x.size} runs)"
@@ -180,7 +181,7 @@ def _panel(shown: list[Growth]) -> Curves:
     return Curves(
         tuple(curves),
         f"{first.condition.name} [{first.condition.unit}]",
-        f"{first.measure.name} [{unit}]",
+        f"left: {first.measure.name} [{unit}]",
         floor=0.0,
         joined=False,
     )

@@ -96,9 +96,7 @@ def _sentence(variable: Variable, ties: list[Tie]) -> str:
     coefficients, middles = first.found.coefficients, first.middles
     sure = np.abs(coefficients) - 2.0 * first.found.errors
     place = int(np.nanargmax(sure)) if np.any(np.isfinite(sure)) else 0
-    where = f"{middles[place] * variable.scale:.3g} {variable.unit}".strip()
-    if variable.unit.startswith("log10"):
-        where = f"{10.0 ** middles[place] * 1e3:.2g} mm"
+    where = f"{variable.told(middles[place]):.3g} {variable.unit}".strip()
     return (
         f"Of what is left, {shares} hangs on {variable.label}: most at {where}, "
         f"{size_of(first, place)}."
@@ -134,7 +132,7 @@ def panel_of(variable: Variable, ties: list[Tie]) -> Curves:
     alike = [tie for tie in ties if y_label(tie).split("[")[1] == label.split("[")[1]]
     curves = tuple(
         Curve(
-            tie.middles * variable.scale,
+            variable.told(tie.middles),
             tie.found.coefficients * told_scale(tie),
             y_label(tie).split(" [")[0],
             tie.found.errors * told_scale(tie),
@@ -143,7 +141,8 @@ def panel_of(variable: Variable, ties: list[Tie]) -> Curves:
     )
     unit = f" [{variable.unit}]" if variable.unit else ""
     words = label if len(curves) == 1 else f"left [{label.split('[')[1]}"
-    return Curves(curves, f"{variable.name}{unit}", words, floor=0.0)
+    scale = "x" if variable.logarithmic else ""
+    return Curves(curves, f"{variable.name}{unit}", words, floor=0.0, logarithmic=scale)
 
 
 # periods -----------------------------------------------------------------------------------------

@@ -16,6 +16,8 @@ _DRAWS, _ALLOWED = 4000, 5e-4
 _NEAR, _OUTSTANDING = 1.6, 4.0
 #: periods over the range of the variable at least
 _FEWEST_PERIODS = 3.0
+#: and over that of a run that has a say
+_LEAST_TURNS = 1.5
 #: distance from a pattern that a run has by itself, in lines that its length can tell apart
 _ASIDE = 1.5
 #: periods looked at within one over the range of the variable
@@ -113,11 +115,14 @@ def _lines(scaled: Array, weight: Array, variable: Array, wavenumber: Array) -> 
     scaled, weight, variable = scaled[::stride], weight[::stride], variable[::stride]
     constant = (scaled @ weight) / max(float(weight @ weight), 1e-300)
     scaled = scaled - constant * weight
-    taken = np.empty(wavenumber.size)
+    taken, reach = np.empty(wavenumber.size), float(np.ptp(variable))
     for place, k in enumerate(wavenumber):
         angle = 2.0 * np.pi * k * variable
         cosine, sine = np.cos(angle) * weight, np.sin(angle) * weight
         a, b, c = cosine @ cosine, cosine @ sine, sine @ sine
+        if k * reach < _LEAST_TURNS:
+            taken[place] = 2.0
+            continue
         p, q = cosine @ scaled, sine @ scaled
         determinant = a * c - b * b
         if determinant > 1e-9 * a * c:

@@ -34,6 +34,8 @@ class Variable:
         Told over SI.
     of : callable
         Left -> (n,) values in SI, nan where they are not known.
+    logarithmic : bool
+        Whether `of` gives the decimal logarithm.
     """
 
     name: str
@@ -41,6 +43,11 @@ class Variable:
     unit: str
     scale: float
     of: Callable[[Left], Array]
+    logarithmic: bool = False
+
+    def told(self, values: Array) -> Array:
+        """Values in the unit in which they are told."""
+        return (10.0**values if self.logarithmic else values) * self.scale
 
 
 @dataclass(frozen=True)
@@ -138,9 +145,10 @@ AXIS = (
     Variable(
         "way since reversal",
         "the way since the last reversal",
-        "log10 of m",
-        1.0,
+        "mm",
+        1e3,
         _way_since_reversal,
+        logarithmic=True,
     ),
     Variable("acceleration", "the acceleration", "m/s²", 1.0, _acceleration),
     Variable("direction", "the direction of motion", "", 1.0, direction),
