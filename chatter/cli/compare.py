@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from chatter.cli.errors import reports_errors
-from chatter.cli.explain import DeclaredCase, MeasurementPath
+from chatter.cli.explain import DeclaredCase, MeasurementPath, print_views
 from chatter.cli.options import Json, OutputFolder, output_folder
 from chatter.cli.report import announce_compilation, print_json, print_table, print_written
 
@@ -27,8 +27,16 @@ def compare(
         print_json(result.summary())
     else:
         rows = [
-            [one.run, one.channel, f"{one.error:.4g}", f"{100.0 * one.relative:.2f}"]
+            [
+                one.run,
+                one.channel,
+                f"{one.error:.4g}",
+                f"{100.0 * one.relative:.2f}",
+                f"{one.error / one.noise:.2f}",
+            ]
             for one in result.errors
         ]
-        print_table(declared.title, ["run", "channel", "rms error [SI]", "of the signal [%]"], rows)
+        headers = ["run", "channel", "rms error [SI]", "of the signal [%]", "times the noise"]
+        print_table(declared.title, headers, rows)
+        print_views(result.signature.summary())
     print_written(written)

@@ -46,8 +46,12 @@ class BeforeAfter:
         return {
             channel: {
                 "noise_floor": finite_or_none(self.noise[channel]),
-                "fitted_runs": {step: finite_or_none(e[channel]) for step, e in self.fitted.items()},
-                "unseen_runs": {step: finite_or_none(e[channel]) for step, e in self.unseen.items()},
+                "fitted_runs": {
+                    step: finite_or_none(e[channel]) for step, e in self.fitted.items()
+                },
+                "unseen_runs": {
+                    step: finite_or_none(e[channel]) for step, e in self.unseen.items()
+                },
             }
             for channel in self.channels
         }
@@ -82,10 +86,13 @@ def before_after(explanation: Explanation, residual: Residual) -> BeforeAfter:
 
 def noise_by_channel(residual: Residual) -> dict[str, float]:
     """Noise over the signal, by channel."""
+    # samples that count less are no noisier than others
+    white = getattr(residual.kind, "noise_is_white", True)
     floors = {}
     for channel in residual.channels:
         shares = [
-            np.mean(part.deviation**2) / max(float(np.mean(part.measured**2)), 1e-300)
+            (np.min if white else np.mean)(part.deviation**2)
+            / max(float(np.mean(part.measured**2)), 1e-300)
             for part in residual.of(channel)
         ]
         floors[channel] = float(np.sqrt(np.mean(shares)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -19,6 +20,7 @@ class ChannelError(NamedTuple):
     channel: str
     error: float  # rms, SI
     relative: float  # over the rms of the signal, 1
+    noise: float = math.nan  # rms, SI, where it was looked at
 
 
 def errors_of(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -69,7 +70,7 @@ def lobes_before_after(explanation: Explanation) -> LobesBeforeAfter | None:
         cases[STEPS[2]] = explanation.case
         without = _without_effects(explanation)
     try:
-        ranged = _ranged(measurement.case, speed, depth)
+        ranged = _ranged(speed, depth)
         diagrams = {step: lobes(case.patch(ranged)) for step, case in cases.items()}
         alone = lobes(without.patch(ranged)) if without is not None else None
     except (InputError, RunError) as error:
@@ -94,7 +95,7 @@ def _cuts(explanation: Explanation) -> tuple[Array, Array, NDArray[np.bool_] | N
     )
 
 
-def _ranged(case: Case, speed: Array, depth: Array) -> dict[str, dict[str, str | int]]:
+def _ranged(speed: Array, depth: Array) -> dict[str, dict[str, str | int]]:
     """Speeds and depths of a diagram that holds all cuts."""
     speeds = {
         "from": f"{speed.min() / _BEYOND * _RPM:.6g} rpm",
@@ -121,7 +122,7 @@ def _sentences(
 ) -> list[str]:
     says = []
     steps = list(diagrams)
-    for before, after in zip(steps, steps[1:], strict=False):
+    for before, after in pairwise(steps):
         says.append(f"{_names(before, after)}{_change(diagrams[before], diagrams[after])}")
     if alone is not None:
         names = " and ".join(stage.best.effect.name for stage in explanation.found.accepted)
@@ -152,9 +153,7 @@ def _finite(before: LobeDiagram, after: LobeDiagram) -> tuple[Array, Array, Arra
 
 def _largest_change(before: LobeDiagram, after: LobeDiagram) -> float:
     _, old, new = _finite(before, after)
-    appeared = np.isfinite(before.limits.critical_depth) != np.isfinite(
-        after.limits.critical_depth
-    )
+    appeared = np.isfinite(before.limits.critical_depth) != np.isfinite(after.limits.critical_depth)
     if appeared.any() or old.size == 0:
         return 1.0 if appeared.any() else 0.0
     return float(np.max(np.abs(new / old - 1.0)))

@@ -1,4 +1,4 @@
-"""Pictures of an explanation: signals and what is left of them, errors and lobes before and after."""
+"""Pictures of an explanation: what is left of signals, errors and lobes before and after."""
 
 from __future__ import annotations
 
@@ -73,15 +73,11 @@ def _shown(residual: Residual) -> list[str]:
     """First run, the one in the middle, and the one that is farthest from its noise."""
     names = list(dict.fromkeys(part.run.name for part in residual.parts))
     worst = max(residual.parts, key=lambda part: part.over_noise).run.name
-    chosen = {names[0], names[len(names) // 2], worst, *names[: _SHOWN_RUNS]}
-    ordered = [worst] + [n for n in (names[0], names[len(names) // 2], *names) if n != worst]
-    keep = list(dict.fromkeys(ordered))[:_SHOWN_RUNS]
-    return [name for name in names if name in keep and name in chosen]
+    wanted = list(dict.fromkeys([worst, names[0], names[len(names) // 2], *names]))
+    return [name for name in names if name in wanted[:_SHOWN_RUNS]]
 
 
-def _draw_left(
-    axes: Axes, residuals: dict[str, Residual], channel: str, run: str
-) -> None:
+def _draw_left(axes: Axes, residuals: dict[str, Residual], channel: str, run: str) -> None:
     parts = {
         label: next(p for p in residual.parts if (p.channel, p.run.name) == (channel, run))
         for label, residual in residuals.items()
@@ -155,7 +151,8 @@ def plot_errors(errors: BeforeAfter) -> Figure:
         axes.set_title(title, loc="left")
         style.finish(axes)
     panels[0].set_ylabel("error over signal [%]")
-    panels[1].legend(fontsize=8.0, frameon=False)
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper right", ncols=4, fontsize=8.0, frameon=False)
     panels[0].margins(y=0.15)
     return figure
 

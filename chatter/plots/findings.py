@@ -51,7 +51,7 @@ def draw_finding(axes: Axes, finding: Finding) -> None:
 @singledispatch
 def draw(panel: Panel, axes: Axes) -> None:
     """Draw a panel."""
-    raise TypeError(type(panel).__name__)
+    raise TypeError(f"{type(panel).__name__} is not drawn on {type(axes).__name__}")
 
 
 @draw.register

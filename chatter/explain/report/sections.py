@@ -89,7 +89,12 @@ def findings_of(checks: Sequence[dict[str, str]]) -> str:
         table_of(
             ["what follows", "run", "channel", "what was found"],
             [
-                [FOLLOWS.get(one["severity"], one["severity"]), one["run"], one["channel"], one["says"]]
+                [
+                    FOLLOWS.get(one["severity"], one["severity"]),
+                    one["run"],
+                    one["channel"],
+                    one["says"],
+                ]
                 for one in checks
             ],
         ),
@@ -217,7 +222,15 @@ def _values(explanation: Explanation, summary: dict[str, Any], _: Figure) -> str
                 f"{number(low)} to {number(high)}",
             ]
         )
-    headers = ["path", "declared", "tolerance", "fitted", "change", "in tolerances", "95 % interval"]
+    headers = [
+        "path",
+        "declared",
+        "tolerance",
+        "fitted",
+        "change",
+        "in tolerances",
+        "95 % interval",
+    ]
     words = "In SI units; the tolerance is one standard deviation of the declared value."
     return section("Values refitted", paragraph(words), table_of(headers, rows)) if rows else ""
 

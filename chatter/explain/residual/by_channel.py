@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -21,6 +22,11 @@ def over_noise(parts: tuple[Left, ...]) -> float:
 def is_above(residual: Residual, channel: str) -> bool:
     """Whether a channel is above its noise; of noise nobody asks what it hangs on."""
     return over_noise(residual.of(channel)) > AT_NOISE
+
+
+def above_noise(residual: Residual, channels: Sequence[str]) -> list[str]:
+    """Those of some channels that are above their noise."""
+    return [channel for channel in channels if is_above(residual, channel)]
 
 
 def by_channel(residual: Residual) -> Finding:

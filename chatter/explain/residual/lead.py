@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.explain.residual.by_channel import above_noise
 from chatter.explain.residual.dependence import (
     Dependence,
     Sample,
@@ -87,7 +88,10 @@ def lead_of(residual: Residual, findings: Sequence[Finding]) -> Lead:
     variables = variables_of(residual)
     if not variables:
         return _strongest(findings)
-    channels = [c for c in residual.channels if c in _FORCES] or list(residual.channels)
+    above = above_noise(residual, residual.channels)
+    channels = [channel for channel in above if channel in _FORCES] or above
+    if not channels:
+        return _of_nothing(0.0)
     ties = [(best_tie(residual, c, v), v) for c in channels for v in variables]
     ties.sort(key=lambda one: -one[0].found.share)
     told = [(tie, v) for tie, v in ties if tie.found.beyond_chance]
@@ -171,7 +175,7 @@ def _lead_by_period(residual: Residual, tie: PeriodTie) -> Callable[[], Lead]:
                 Sample(part.scaled, weight, places_in(np.mod(turns, 1.0) * length, edges))
             )
         folded = dependence(samples, _PHASE_BINS)
-        shape = Tie(tie.channel, tie.form, folded, edges)
+        shape = Tie(tie.channel, tie.form, folded, 0.5 * (edges[1:] + edges[:-1]))
         told = length * variable.scale
         says = (
             f"{100.0 * tie.found.share:.2g} % of what is left of {tie.channel}{_taken(tie.form)} "
@@ -232,7 +236,8 @@ def _best_of_two(
                 samples = []
                 for part in parts:
                     x, y = (
-                        places_in(v.of(part), e) for v, e in zip((first, second), edges, strict=True)
+                        places_in(v.of(part), e)
+                        for v, e in zip((first, second), edges, strict=True)
                     )
                     place = np.where((x >= 0) & (y >= 0), y * columns + x, -1)
                     samples.append(Sample(part.scaled, form.weight(part) / part.deviation, place))
@@ -254,7 +259,7 @@ class _TieOfTwo(NamedTuple):
 def _lead_by_two(residual: Residual, tie: _TieOfTwo) -> Callable[[], Lead]:
     def lead() -> Lead:
         first, second = tie.variables
-        alone = Tie(tie.channel, tie.form, tie.found, tie.edges[0])
+        alone = Tie(tie.channel, tie.form, tie.found, tie.edges[0][1:])
         scale = told_scale(alone)
         x, y = (
             variable.told(edges) for edges, variable in zip(tie.edges, tie.variables, strict=True)
@@ -278,9 +283,7 @@ def _lead_by_two(residual: Residual, tie: _TieOfTwo) -> Callable[[], Lead]:
             for i in range(x.size - 1)
             if np.isfinite(values[j, i])
         ]
-        scales = "".join(
-            axis for axis, v in zip("xy", tie.variables, strict=True) if v.logarithmic
-        )
+        scales = "".join(axis for axis, v in zip("xy", tie.variables, strict=True) if v.logarithmic)
         panel = Map(x, y, values, *labels, y_label(alone), scales)
         return Lead(
             Finding("lead", says, True, numbers, panel),

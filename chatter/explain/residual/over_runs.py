@@ -75,9 +75,7 @@ CONDITIONS: Mapping[str, tuple[Condition, ...]] = {
             1e3,
             lambda left: float(np.max(np.abs(left.run.signals["velocity"]))),
         ),
-        Condition(
-            "travel", "mm", 1e3, lambda left: float(np.ptp(left.run.signals["position"]))
-        ),
+        Condition("travel", "mm", 1e3, lambda left: float(np.ptp(left.run.signals["position"]))),
     ),
 }
 
@@ -138,9 +136,7 @@ def _growths(residual: Residual) -> list[Growth]:
                 continue
             for measure in MEASURES[residual.kind.name]:
                 y = np.array([measure.of(part) for part in parts])
-                found.append(
-                    Growth(channel, measure, condition, x, y, rank_correlation(x, y))
-                )
+                found.append(Growth(channel, measure, condition, x, y, rank_correlation(x, y)))
     return found
 
 

@@ -6,8 +6,9 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from chatter.explain.residual.by_channel import is_above
+from chatter.explain.residual.by_channel import above_noise
 from chatter.explain.residual.dependence import (
     Dependence,
     Sample,
@@ -27,6 +28,7 @@ from chatter.explain.residual.variables import (
 )
 
 View = Callable[[Residual], Finding]
+Array = NDArray[np.float64]
 
 #: noise of a mean over which a sentence tells where it is largest
 _SHOWN_CHANNELS = 2
@@ -38,12 +40,7 @@ class Tie(NamedTuple):
     channel: str
     form: Form
     found: Dependence
-    edges: np.ndarray
-
-    @property
-    def middles(self) -> np.ndarray:
-        """Of the bins."""
-        return 0.5 * (self.edges[1:] + self.edges[:-1])
+    middles: Array
 
 
 def over_variable(name: str) -> View:
@@ -51,9 +48,12 @@ def over_variable(name: str) -> View:
 
     def view(residual: Residual) -> Finding:
         variable = named(residual, name)
-        ties = [best_tie(residual, channel, variable) for channel in residual.channels]
-        shown = [t for t in ties if t.found.beyond_chance and is_above(residual, t.channel)]
-        shown.sort(key=lambda t: -t.found.share)
+        channels = above_noise(residual, residual.channels)
+        if not channels:
+            return Finding(variable.name, variable.label, False)
+        ties = [best_tie(residual, channel, variable) for channel in channels]
+        shown = [tie for tie in ties if tie.found.beyond_chance]
+        shown.sort(key=lambda tie: -tie.found.share)
         numbers = {
             tie.channel: {
                 "share": tie.found.share,
@@ -80,26 +80,37 @@ def best_tie(residual: Residual, channel: str, variable: Variable) -> Tie:
     values = [variable.of(part) for part in parts]
     edges = edges_of(np.concatenate(values))
     places = [places_in(v, edges) for v in values]
+    middles = _means(np.concatenate(values), np.concatenate(places), edges)
     ties = []
     for form in FORMS[residual.kind.name]:
         samples = [
             Sample(part.scaled, form.weight(part) / part.deviation, place)
             for part, place in zip(parts, places, strict=True)
         ]
-        ties.append(Tie(channel, form, dependence(samples, edges.size - 1), edges))
+        ties.append(Tie(channel, form, dependence(samples, edges.size - 1), middles))
     return max(ties, key=lambda tie: (tie.found.beyond_chance, tie.found.share))
 
 
+def _means(values: Array, places: Array, edges: Array) -> Array:
+    """Mean of a variable in every bin, its middle where it holds nothing."""
+    known = places >= 0
+    counts = np.bincount(places[known], minlength=edges.size - 1)
+    sums = np.bincount(places[known], weights=values[known], minlength=edges.size - 1)
+    return np.where(counts > 0, sums / np.maximum(counts, 1), 0.5 * (edges[1:] + edges[:-1]))
+
+
 def _sentence(variable: Variable, ties: list[Tie]) -> str:
-    shares = " and ".join(f"{100 * tie.found.share:.2g} % in {tie.channel}" for tie in ties)
+    shares = ", ".join(
+        f"{100.0 * tie.found.share:.2g} % of what is left of {tie.channel}" for tie in ties
+    )
     first = ties[0]
     coefficients, middles = first.found.coefficients, first.middles
     sure = np.abs(coefficients) - 2.0 * first.found.errors
     place = int(np.nanargmax(sure)) if np.any(np.isfinite(sure)) else 0
     where = f"{variable.told(middles[place]):.3g} {variable.unit}".strip()
     return (
-        f"Of what is left, {shares} hangs on {variable.label}: most at {where}, "
-        f"{size_of(first, place)}."
+        f"{shares} hang{'s' if len(ties) == 1 else ''} on {variable.label}: {first.channel} is "
+        f"most off at {where}, by {size_of(first, place)}."
     )
 
 
@@ -107,9 +118,9 @@ def size_of(tie: Tie, place: int) -> str:
     """Coefficient of a bin, in words."""
     value = float(tie.found.coefficients[place])
     if tie.form.relative:
-        return f"{100.0 * value:+.2g} % of what is predicted of {tie.channel}"
+        return f"{100.0 * value:+.2g} % of what is predicted"
     unit, scale = told_unit(tie.channel)
-    words = f"{value * scale:+.3g} {unit} of {tie.channel}"
+    words = f"{value * scale:+.3g} {unit}"
     return f"{words} {tie.form.says}".strip()
 
 
@@ -179,12 +190,12 @@ class PeriodTie(NamedTuple):
 
 
 def best_period(
-    residual: Residual, variable: Variable, channels: Sequence[str] | None = None
+    residual: Residual, variable: Variable, channels: Sequence[str]
 ) -> PeriodTie | None:
     """Channel and form with the clearest period in a variable, or None where there is none."""
     shortest = shortest_period(residual, variable)
     ties = []
-    for channel in residual.channels if channels is None else channels:
+    for channel in channels:
         parts = residual.of(channel)
         values = [variable.of(part) for part in parts]
         own = None
@@ -205,12 +216,12 @@ def over_period(name: str) -> View:
 
     def view(residual: Residual) -> Finding:
         variable = named(residual, name)
-        tie = best_period(residual, variable)
+        tie = best_period(residual, variable, above_noise(residual, residual.channels))
         view_name = f"period in {variable.name}"
         if tie is None:
             return Finding(view_name, f"a period in {variable.label}", False)
         found = tie.found
-        beyond = found.beyond_chance and is_above(residual, tie.channel)
+        beyond = found.beyond_chance
         form = f", taken {tie.form.says}," if tie.form.says else ""
         says = f"a period in {variable.label}"
         if beyond:
@@ -237,5 +248,3 @@ def over_period(name: str) -> View:
         return Finding(view_name, says, beyond, numbers, panel)
 
     return view
-
-

@@ -116,9 +116,13 @@ def _lines(scaled: Array, weight: Array, variable: Array, wavenumber: Array) -> 
     constant = (scaled @ weight) / max(float(weight @ weight), 1e-300)
     scaled = scaled - constant * weight
     taken, reach = np.empty(wavenumber.size), float(np.ptp(variable))
+    # every wavenumber turns the samples on by the same angle
+    wave = weight * np.exp(2j * np.pi * wavenumber[0] * variable)
+    turned = np.exp(2j * np.pi * (wavenumber[1] - wavenumber[0]) * variable)
     for place, k in enumerate(wavenumber):
-        angle = 2.0 * np.pi * k * variable
-        cosine, sine = np.cos(angle) * weight, np.sin(angle) * weight
+        if place:
+            wave = wave * turned
+        cosine, sine = wave.real, wave.imag
         a, b, c = cosine @ cosine, cosine @ sine, sine @ sine
         if k * reach < _LEAST_TURNS:
             taken[place] = 2.0

@@ -185,18 +185,18 @@ def _sentence(told: dict, by_channel: dict[str, list[Shares]], numbers: dict) ->
                 words += f" (such as {first.lines[0]:.0f} Hz in {first.left.run.name})"
         parts.append(words)
     text = (
-        f"Of what is left of {channel} beyond the noise ({level:.3g} times the noise), "
+        f"Of what is left of {channel} beyond the noise ({level:.3g} times the noise): "
         f"{', '.join(parts)}."
     )
     return text + (f" {_rule_in_words(rule)}" if rule else "")
 
 
 _AT = (
-    "lies at harmonics of the tooth frequency",
+    "at harmonics of the tooth frequency",
     "at the other harmonics of the spindle",
     "near natural frequencies of the case",
     "at lines that are none of these",
-    "is broad",
+    "broad",
 )
 
 
@@ -230,9 +230,7 @@ def _panel(residual: Residual, by_channel: dict[str, list[Shares]], told: dict) 
     grid = np.linspace(highest / _GRID, highest, _GRID)
     curves = []
     for name, label in (("whole", "everything"), ("density", "between the harmonics")):
-        spectra = [
-            np.interp(grid, one.split.frequency, getattr(one.split, name)) for one in found
-        ]
+        spectra = [np.interp(grid, one.split.frequency, getattr(one.split, name)) for one in found]
         amplitude = np.sqrt(np.mean(spectra, axis=0))
         curves.append(Curve(grid, amplitude, label))
     return Curves(
