@@ -31,12 +31,17 @@ class Condition(NamedTuple):
 
 
 class Measure(NamedTuple):
-    """A number that tells of the residual of a run."""
+    """A number that tells of the residual of a run.
+
+    A trend counts only where ``also``, the same in another measure, has it too: a residual that
+    is the same in all runs falls over the signal, one that is a share of it rises by itself.
+    """
 
     name: str
     says: str
     of: Callable[[Left], float]
     unit: Callable[[str], tuple[str, float]]
+    also: Callable[[Left], float] | None = None
 
 
 def _gain(left: Left) -> float:
@@ -46,8 +51,13 @@ def _gain(left: Left) -> float:
 
 def _size(left: Left) -> float:
     """Root mean square beyond the noise, over the signal."""
+    return _absolute(left) / max(math.sqrt(float(np.mean(left.measured**2))), 1e-300)
+
+
+def _absolute(left: Left) -> float:
+    """Root mean square beyond the noise, SI."""
     beyond = float(np.mean(left.values**2) - np.mean(left.deviation**2))
-    return math.sqrt(max(beyond, 0.0) / max(float(np.mean(left.measured**2)), 1e-300))
+    return math.sqrt(max(beyond, 0.0))
 
 
 def _friction(left: Left) -> float:
@@ -82,7 +92,7 @@ CONDITIONS: Mapping[str, tuple[Condition, ...]] = {
 MEASURES: Mapping[str, tuple[Measure, ...]] = {
     "milling": (
         Measure("gain", "share by which the prediction is too small", _gain, _percent),
-        Measure("size", "size over the signal", _size, _percent),
+        Measure("size", "size over the signal", _size, _percent, _absolute),
     ),
     "axis": (
         Measure("mean x direction", "mean along the direction of motion", _friction, told_unit),
@@ -136,7 +146,14 @@ def _growths(residual: Residual) -> list[Growth]:
                 continue
             for measure in MEASURES[residual.kind.name]:
                 y = np.array([measure.of(part) for part in parts])
-                found.append(Growth(channel, measure, condition, x, y, rank_correlation(x, y)))
+                correlation = rank_correlation(x, y)
+                if measure.also is not None:
+                    other = rank_correlation(x, np.array([measure.also(part) for part in parts]))
+                    if correlation.coefficient * other.coefficient <= 0.0:
+                        correlation = RankCorrelation(0.0, 1.0)
+                    else:
+                        correlation = max(correlation, other, key=lambda one: one.probability)
+                found.append(Growth(channel, measure, condition, x, y, correlation))
     return found
 
 
