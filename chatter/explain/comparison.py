@@ -49,7 +49,10 @@ class Comparison:
     def plot(self) -> Figure:
         """Picture of measured signals and what the case leaves of them."""
         from chatter.plots.explanation import plot_residuals
+        from chatter.plots.findings import plot_findings
 
+        if self.measurement.kind == "stability":
+            return plot_findings(self.signature.findings[:1])
         title = f"{self.measurement.title}: what {self.measurement.case.name} leaves"
         return plot_residuals({"left": self.signature.residual}, title)
 

@@ -23,7 +23,9 @@ Array = NDArray[np.float64]
 #: kinds of measurement with a cut in them
 KINDS_WITH_A_CUT = ("milling", "stability")
 _RPM = 30.0 / math.pi
-_SPEEDS = 160
+_SPEEDS, _DEPTHS = 100, 60
+#: speeds at which it is asked whether an effect acts in lobes at all
+_ASKED = 16
 #: speeds beyond those that were measured, and depths beyond the deepest cut
 _BEYOND, _DEEPER = 1.15, 1.25
 #: change of limits that is no more than that of the method
@@ -65,17 +67,15 @@ def lobes_before_after(explanation: Explanation) -> LobesBeforeAfter | None:
         return None
     speed, depth, stable = _cuts(explanation)
     cases = {STEPS[0]: measurement.case, STEPS[1]: explanation.refitted}
-    without = None
     if explanation.verdict == "explained":
         cases[STEPS[2]] = explanation.case
-        without = _without_effects(explanation)
     try:
-        ranged = _ranged(speed, depth)
+        ranged = _ranged(speed, depth, _SPEEDS)
         diagrams = {step: lobes(case.patch(ranged)) for step, case in cases.items()}
-        alone = lobes(without.patch(ranged)) if without is not None else None
+        acts = _acts(explanation, _ranged(speed, depth, _ASKED))
     except (InputError, RunError) as error:
         return LobesBeforeAfter({}, speed, depth, stable, (f"No lobes: {error}.",))
-    says = _sentences(explanation, diagrams, alone)
+    says = _sentences(explanation, diagrams, acts)
     return LobesBeforeAfter(diagrams, speed, depth, stable, tuple(says))
 
 
@@ -95,17 +95,17 @@ def _cuts(explanation: Explanation) -> tuple[Array, Array, NDArray[np.bool_] | N
     )
 
 
-def _ranged(speed: Array, depth: Array) -> dict[str, dict[str, str | int]]:
+def _ranged(speed: Array, depth: Array, count: int) -> dict[str, dict[str, str | int]]:
     """Speeds and depths of a diagram that holds all cuts."""
     speeds = {
         "from": f"{speed.min() / _BEYOND * _RPM:.6g} rpm",
         "to": f"{speed.max() * _BEYOND * _RPM:.6g} rpm",
-        "count": _SPEEDS,
+        "count": count,
     }
     deepest = _DEEPER * float(depth.max())
     return {
         "lobes.speeds": speeds,
-        "lobes.depths": {"to": f"{1e3 * deepest:.6g} mm", "count": 100},
+        "lobes.depths": {"to": f"{1e3 * deepest:.6g} mm", "count": _DEPTHS},
     }
 
 
@@ -117,21 +117,27 @@ def _without_effects(explanation: Explanation) -> Case:
     return explanation.measurement.case.patch(values) if values else explanation.measurement.case
 
 
-def _sentences(
-    explanation: Explanation, diagrams: dict[str, LobeDiagram], alone: LobeDiagram | None
-) -> list[str]:
+def _acts(explanation: Explanation, ranged: dict[str, dict[str, str | int]]) -> bool:
+    """Whether the effects that were added move linear lobes by themselves."""
+    if explanation.verdict != "explained":
+        return False
+    without, with_effects = (
+        lobes(case.patch(ranged)) for case in (_without_effects(explanation), explanation.case)
+    )
+    return _largest_change(without, with_effects) >= _SAME
+
+
+def _sentences(explanation: Explanation, diagrams: dict[str, LobeDiagram], acts: bool) -> list[str]:
     says = []
     steps = list(diagrams)
     for before, after in pairwise(steps):
         says.append(f"{_names(before, after)}{_change(diagrams[before], diagrams[after])}")
-    if alone is not None:
+    if explanation.verdict == "explained" and not acts:
         names = " and ".join(stage.best.effect.name for stage in explanation.found.accepted)
-        far = _largest_change(alone, diagrams[steps[-1]])
-        if far < _SAME:
-            says.append(
-                f"{names} by itself does not act in linear lobes: what changes in them is the "
-                "refitting beside it."
-            )
+        says.append(
+            f"{names} by itself does not act in linear lobes: what changes in them is the "
+            "refitting beside it."
+        )
     if explanation.measurement.kind == "milling":
         says.append(
             "The lobes are for the radial depth and the direction of cut of the declared case; "

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
 from chatter.plots import style
+from chatter.plots.findings import plot_findings
 
 if TYPE_CHECKING:
     from chatter.explain.before_after import BeforeAfter
@@ -20,6 +23,8 @@ if TYPE_CHECKING:
     from chatter.explain.residual.left import Residual
 
 _SHOWN_RUNS = 3
+#: deepest over shallowest cut beyond which depths are drawn on a logarithmic scale
+_WIDE = 15.0
 _RPM = 30.0 / math.pi
 _STEP_COLOURS = (style.GREY, style.ORANGE, style.BLUE)
 _STEP_LINES = ("--", "-.", "-")
@@ -39,8 +44,23 @@ def plot_explanation(explanation: Explanation) -> Figure:
             stage.best.effect.name for stage in explanation.found.accepted
         )
         residuals[label] = added.residual
+    if explanation.measurement.kind == "stability":
+        return _plot_verdicts(explanation)
     title = f"{explanation.measurement.title}: {explanation.verdict}"
     return plot_residuals(residuals, title)
+
+
+def _plot_verdicts(explanation: Explanation) -> Figure:
+    """Draw where tests are judged wrongly, before and after."""
+    signatures = {"refitted": explanation.signatures.refitted}
+    if explanation.signatures.with_added is not None:
+        signatures["with what was added"] = explanation.signatures.with_added
+    return plot_findings(
+        [
+            replace(signature.findings[0], view=f"{signature.findings[0].view}, {name}")
+            for name, signature in signatures.items()
+        ]
+    )
 
 
 def plot_residuals(residuals: dict[str, Residual], title: str) -> Figure:
@@ -179,7 +199,13 @@ def plot_lobes_before_after(found: LobesBeforeAfter) -> Figure:
         )
         top = max(top, 1e3 * diagram.deepest)
     _draw_cuts(axes, found)
-    axes.set_ylim(0.0, top)
+    depths = 1e3 * found.depth
+    if depths.max() > _WIDE * depths.min():
+        axes.set_yscale("log")
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axes.set_ylim(0.5 * depths.min(), top)
+    else:
+        axes.set_ylim(0.0, top)
     axes.set_xlabel("spindle speed [rpm]")
     axes.set_ylabel("axial depth [mm]")
     style.finish(axes)

@@ -95,35 +95,39 @@ def over_depth(residual: Residual) -> Finding:
 
 
 def _over(tests: _Tests, values: Array, name: str, unit: str) -> Finding:
-    found = rank_correlation(values, tests.surprise)
-    beyond = found.probability < _ALLOWED
-    cuts = np.array_split(np.argsort(values), _BINS)
-    middles = np.array([float(np.mean(values[cut])) for cut in cuts])
-    means = np.array([float(np.mean(tests.surprise[cut])) for cut in cuts])
-    errors = np.array(
-        [
-            math.sqrt(float(np.sum(tests.likely[cut] * (1.0 - tests.likely[cut])))) / cut.size
-            for cut in cuts
-        ]
-    )
-    place = int(np.argmax(np.abs(means)))
-    more = "more" if means[place] > 0.0 else "less"
-    says = (
-        f"Tests are {more} often stable than the case has it near {middles[place]:.4g} {unit} (by "
-        f"{100.0 * abs(means[place]):.0f} % of them); rank correlation with the {name} "
-        f"{found.coefficient:+.2f} over {values.size} tests."
-        if beyond
-        else name
-    )
+    """Where tests of the verdict that is foretold worst are judged wrongly.
+
+    Tests far above any limit chatter by every case: they would hide what the others tell.
+    """
+    too_careful = np.sum(tests.wrong & tests.stable) >= np.sum(tests.wrong & ~tests.stable)
+    verdict, foretold = ("stable", "chatter") if too_careful else ("to chatter", "stable")
+    chosen = tests.stable if too_careful else ~tests.stable
+    x, surprise, wrong = values[chosen], tests.surprise[chosen], tests.wrong[chosen]
+    found = rank_correlation(x, surprise)
+    beyond = found.probability < _ALLOWED and wrong.any() and not wrong.all()
+    says = name
+    if beyond:
+        bad, good = (
+            f"{part.size} judged {words} lie at {part.min():.4g} to {part.max():.4g} {unit}"
+            for part, words in ((x[wrong], foretold), (x[~wrong], "right"))
+        )
+        says = (
+            f"Of the {x.size} tests found {verdict}, the {bad}, the {good} (rank correlation with "
+            f"the {name} {found.coefficient:+.2f})."
+        )
+    cuts = [cut for cut in np.array_split(np.argsort(x), _BINS) if cut.size]
+    middles = np.array([float(np.mean(x[cut])) for cut in cuts])
+    means = np.array([float(np.mean(wrong[cut])) for cut in cuts])
     numbers = {
+        "of_tests_found": verdict,
         "rank_correlation": found.coefficient,
         "probability_of_chance": found.probability,
-        "table": [[float(x), float(y)] for x, y in zip(middles, means, strict=True)],
+        "share_judged_wrongly": [[float(m), float(y)] for m, y in zip(middles, means, strict=True)],
     }
     panel = Curves(
-        (Curve(middles, 100.0 * means, "", 100.0 * errors),),
+        (Curve(middles, 100.0 * means),),
         f"{name} [{unit}]",
-        "tests stable beyond the case [%]",
+        f"judged wrongly of those found {verdict} [%]",
         floor=0.0,
     )
-    return Finding(name, says, beyond, numbers, panel)
+    return Finding(name, says, bool(beyond), numbers, panel)
