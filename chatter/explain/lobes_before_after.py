@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,14 +20,16 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-#: kinds of measurement with a cut in them
-KINDS_WITH_A_CUT = ("milling", "stability")
+#: what lobes need of a case
+_NEEDED = ("tool", "material", "cut", "structure")
 _RPM = 30.0 / math.pi
 _SPEEDS, _DEPTHS = 100, 60
 #: speeds at which it is asked whether an effect acts in lobes at all
 _ASKED = 16
 #: speeds beyond those that were measured, and depths beyond the deepest cut
 _BEYOND, _DEEPER = 1.15, 1.25
+#: factor in speed around a single cut, and depths in units of the lowest limit
+_AROUND_ONE, _LOWEST_LIMITS = 2.0, 3.0
 #: change of limits that is no more than that of the method
 _SAME = 1e-4
 
@@ -56,53 +58,70 @@ class LobesBeforeAfter:
 
 
 def lobes_before_after(explanation: Explanation) -> LobesBeforeAfter | None:
-    """Compute lobes before and after; None where the measurement holds no cut.
+    """Compute lobes before and after; None where the case holds no cut.
 
     Parameters
     ----------
     explanation : Explanation
     """
     measurement = explanation.measurement
-    if measurement.kind not in KINDS_WITH_A_CUT or measurement.case.structure is None:
+    if any(getattr(measurement.case, section) is None for section in _NEEDED):
         return None
-    speed, depth, stable = _cuts(explanation)
     cases = {STEPS[0]: measurement.case, STEPS[1]: explanation.refitted}
     if explanation.verdict == "explained":
         cases[STEPS[2]] = explanation.case
     try:
-        ranged = _ranged(speed, depth, _SPEEDS)
+        cuts = _cuts(explanation)
+        ranged = _ranged(cuts, _SPEEDS)
         diagrams = {step: lobes(case.patch(ranged)) for step, case in cases.items()}
-        acts = _acts(explanation, _ranged(speed, depth, _ASKED))
+        acts = _acts(explanation, _ranged(cuts, _ASKED))
     except (InputError, RunError) as error:
-        return LobesBeforeAfter({}, speed, depth, stable, (f"No lobes: {error}.",))
+        return LobesBeforeAfter({}, np.empty(0), np.empty(0), None, (f"No lobes: {error}.",))
     says = _sentences(explanation, diagrams, acts)
-    return LobesBeforeAfter(diagrams, speed, depth, stable, tuple(says))
+    return LobesBeforeAfter(diagrams, cuts.speed, cuts.depth, cuts.stable, tuple(says))
 
 
-def _cuts(explanation: Explanation) -> tuple[Array, Array, NDArray[np.bool_] | None]:
+class _Cuts(NamedTuple):
+    """Cuts measured, and the lowest limit of the declared case by the quick solution, m."""
+
+    speed: Array
+    depth: Array
+    stable: NDArray[np.bool_] | None
+    lowest_limit: float
+
+
+def _cuts(explanation: Explanation) -> _Cuts:
     measurement = explanation.measurement
+    lowest = lobes(measurement.case, "zero-order").zero_order.lowest_depth
+    lowest = lowest if math.isfinite(lowest) else 0.0
     if measurement.kind == "stability":
         columns = [
             np.concatenate([run.signals[name] for run in measurement.runs])
             for name in ("spindle_speed", "axial_depth", "stable")
         ]
-        return columns[0], columns[1], columns[2] > 0.5
-    cuts = [run.of(measurement.case).cut for run in measurement.runs]
-    return (
+        return _Cuts(columns[0], columns[1], columns[2] > 0.5, lowest)
+    if measurement.kind == "milling":
+        cuts = [run.of(measurement.case).cut for run in measurement.runs]
+    else:
+        cuts = [measurement.case.cut]
+    return _Cuts(
         np.array([cut.spindle_speed for cut in cuts]),
         np.array([cut.axial_depth for cut in cuts]),
         None,
+        lowest,
     )
 
 
-def _ranged(speed: Array, depth: Array, count: int) -> dict[str, dict[str, str | int]]:
+def _ranged(cuts: _Cuts, count: int) -> dict[str, dict[str, str | int]]:
     """Speeds and depths of a diagram that holds all cuts."""
+    speed, depth = cuts.speed, cuts.depth
+    beyond = _BEYOND if speed.size > 1 else _AROUND_ONE
     speeds = {
-        "from": f"{speed.min() / _BEYOND * _RPM:.6g} rpm",
-        "to": f"{speed.max() * _BEYOND * _RPM:.6g} rpm",
+        "from": f"{speed.min() / beyond * _RPM:.6g} rpm",
+        "to": f"{speed.max() * beyond * _RPM:.6g} rpm",
         "count": count,
     }
-    deepest = _DEEPER * float(depth.max())
+    deepest = max(_DEEPER * float(depth.max()), _LOWEST_LIMITS * cuts.lowest_limit)
     return {
         "lobes.speeds": speeds,
         "lobes.depths": {"to": f"{1e3 * deepest:.6g} mm", "count": _DEPTHS},

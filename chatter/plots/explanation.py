@@ -216,7 +216,7 @@ def plot_lobes_before_after(found: LobesBeforeAfter) -> Figure:
 def _draw_cuts(axes: Axes, found: LobesBeforeAfter) -> None:
     speed, depth = found.speed * _RPM, 1e3 * found.depth
     if found.stable is None:
-        axes.plot(speed, depth, "D", color="black", mfc="white", ms=5, label="runs measured")
+        axes.plot(speed, depth, "D", color="black", mfc="white", ms=5, label="cuts")
         return
     for chosen, marker, colour, label in (
         (found.stable, "o", style.GREEN, "measured stable"),

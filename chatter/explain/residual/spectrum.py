@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +14,7 @@ from chatter.explain.residual.finding import Curve, Curves, Finding
 from chatter.explain.residual.harmonics import Harmonics, Split
 from chatter.explain.residual.left import Left, Residual
 from chatter.structure import structure_of
+from dynamics.modal import Mode
 
 Array = NDArray[np.float64]
 
@@ -27,6 +29,8 @@ _BEYOND, _WORTH = 5.0, 0.05
 #: relative spread over the runs below which lines follow a rule
 _FOLLOWS, _CLEARLY = 0.08, 2.0
 _FEWEST_RUNS = 4
+#: frequencies of a picture, and of these how many make a band
+_GRID, _BAND = 240, 9
 
 CLASSES = (
     "harmonics of the tooth frequency",
@@ -73,8 +77,10 @@ def spectrum(residual: Residual) -> Finding:
         }
         if level > AT_NOISE and sure.any():
             told[channel] = (level, shares, sure, rule)
-    says = _sentence(told, by_channel, numbers) if told else "frequency"
-    return Finding("frequency", says, bool(told), numbers, _panel(residual, by_channel, told))
+    levels = {channel: numbers[channel]["over_noise"] for channel in numbers}
+    pooled = _pooled(max(told or levels, key=levels.get), by_channel)
+    says = _sentence(told, by_channel, numbers) + _strongest(pooled) if told else "frequency"
+    return Finding("frequency", says, bool(told), numbers, _panel(pooled))
 
 
 def _shares(left: Left, split: Split) -> Shares:
@@ -217,27 +223,55 @@ def _rule_in_words(rule: dict) -> str:
     return told[rule["rule"]]
 
 
-_GRID = 240
+class _Pooled(NamedTuple):
+    """Amplitude of a channel over its noise, root mean square over all runs."""
+
+    channel: str
+    frequency: Array
+    whole: Array
+    between: Array
+    modes: Sequence[Mode]
 
 
-def _panel(residual: Residual, by_channel: dict[str, list[Shares]], told: dict) -> Curves:
-    levels = {channel: over_noise(residual.of(channel)) for channel in by_channel}
-    channel = max(told or levels, key=levels.get)
+def _pooled(channel: str, by_channel: dict[str, list[Shares]]) -> _Pooled:
     found = by_channel[channel]
-    highest = min(float(one.split.frequency[-1]) for one in found)
     modes = structure_of(found[0].left.case).modes
+    highest = min(float(one.split.frequency[-1]) for one in found)
     highest = min(highest, 4.0 * max(mode.frequency for mode in modes))
     grid = np.linspace(highest / _GRID, highest, _GRID)
-    curves = []
-    for name, label in (("whole", "everything"), ("density", "between the harmonics")):
-        spectra = [np.interp(grid, one.split.frequency, getattr(one.split, name)) for one in found]
-        amplitude = np.sqrt(np.mean(spectra, axis=0))
-        curves.append(Curve(grid, amplitude, label))
+    whole, between = (
+        np.sqrt(
+            np.mean(
+                [np.interp(grid, one.split.frequency, getattr(one.split, name)) for one in found],
+                axis=0,
+            )
+        )
+        for name in ("whole", "density")
+    )
+    return _Pooled(channel, grid, whole, between, modes)
+
+
+def _strongest(pooled: _Pooled) -> str:
+    """Where a band of frequencies stands out, in words."""
+    squares = np.convolve(pooled.whole**2, np.ones(_BAND) / _BAND, mode="same")
+    at = float(pooled.frequency[int(np.argmax(squares))])
+    width = _BAND * float(pooled.frequency[1] - pooled.frequency[0])
+    nearest = min(pooled.modes, key=lambda mode: abs(mode.frequency - at))
+    apart = abs(nearest.frequency - at)
+    if apart <= max(width, _NEAR * nearest.damping * nearest.frequency):
+        return f" It is largest around {at:.0f} Hz, by the natural frequency of a mode."
+    return f" It is largest around {at:.0f} Hz, where the case has no natural frequency."
+
+
+def _panel(pooled: _Pooled) -> Curves:
     return Curves(
-        tuple(curves),
+        (
+            Curve(pooled.frequency, pooled.whole, "everything"),
+            Curve(pooled.frequency, pooled.between, "between the harmonics"),
+        ),
         "frequency [Hz]",
-        f"left of {channel} over noise, all runs",
-        {"natural frequency": tuple(mode.frequency for mode in modes)},
+        f"left of {pooled.channel} over noise, all runs",
+        {"natural frequency": tuple(mode.frequency for mode in pooled.modes)},
         floor=1.0,
         logarithmic="y",
     )
