@@ -32,7 +32,7 @@ def compare(
                 one.channel,
                 f"{one.error:.4g}",
                 f"{100.0 * one.relative:.2f}",
-                f"{one.error / one.noise:.2f}",
+                f"{one.over_noise:.2f}",
             ]
             for one in result.errors
         ]

@@ -86,13 +86,10 @@ def before_after(explanation: Explanation, residual: Residual) -> BeforeAfter:
 
 def noise_by_channel(residual: Residual) -> dict[str, float]:
     """Noise over the signal, by channel."""
-    # samples that count less are no noisier than others
-    white = getattr(residual.kind, "noise_is_white", True)
     floors = {}
     for channel in residual.channels:
         shares = [
-            (np.min if white else np.mean)(part.deviation**2)
-            / max(float(np.mean(part.measured**2)), 1e-300)
+            part.noise**2 / max(float(np.mean(part.measured**2)), 1e-300)
             for part in residual.of(channel)
         ]
         floors[channel] = float(np.sqrt(np.mean(shares)))

@@ -42,7 +42,7 @@ class Comparison:
             "title": self.measurement.title,
             "kind": self.measurement.kind,
             "nrmse": overall(self.errors),
-            "runs": [{**one._asdict(), "over_noise": one.error / one.noise} for one in self.errors],
+            "runs": [one._asdict() for one in self.errors],
             "signature": self.signature.summary(),
         }
 
@@ -74,7 +74,7 @@ class Comparison:
         heading = "run,channel,rms error [SI],rms error over signal,noise [SI],rms error over noise"
         rows = [
             f"{one.run},{one.channel},{one.error:.6g},{one.relative:.6g},{one.noise:.6g},"
-            f"{one.error / one.noise:.6g}"
+            f"{one.over_noise:.6g}"
             for one in self.errors
         ]
         return "\n".join([heading, *rows]) + "\n"
@@ -96,5 +96,6 @@ def compare(measurement: Measurement) -> Comparison:
 
 def _error(part: Left) -> ChannelError:
     error = float(np.sqrt(np.mean(part.values**2)))
-    noise = float(np.sqrt(np.mean(part.deviation**2)))
-    return ChannelError(part.run.name, part.channel, error, part.relative, noise)
+    return ChannelError(
+        part.run.name, part.channel, error, part.relative, part.noise, part.over_noise
+    )

@@ -21,6 +21,7 @@ class ChannelError(NamedTuple):
     error: float  # rms, SI
     relative: float  # over the rms of the signal, 1
     noise: float = math.nan  # rms, SI, where it was looked at
+    over_noise: float = math.nan  # rms over the noise, sample by sample
 
 
 def errors_of(

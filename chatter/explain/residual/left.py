@@ -33,7 +33,9 @@ class Left:
     measured, predicted : (n,) array of float
         SI.
     deviation : (n,) array of float
-        Standard deviation of the noise, SI.
+        Standard deviation of the noise, SI; larger where a sample counts less.
+    noise : float
+        Root mean square of the noise, SI.
     """
 
     run: Run
@@ -42,6 +44,7 @@ class Left:
     measured: Array
     predicted: Array
     deviation: Array
+    noise: float
 
     @property
     def values(self) -> Array:
@@ -124,6 +127,10 @@ def residual_of(
         for channel in kind.channels(run):
             measured = run.signals[channel]
             level = None if noise is None else noise[run.name][channel]
+            deviation = _deviation(kind, run, measured, predicted[channel], level)
+            # samples that count less are no noisier than others
+            white = getattr(kind, "noise_is_white", True)
+            noise_level = deviation.min() if white else np.sqrt(np.mean(deviation**2))
             parts.append(
                 Left(
                     run,
@@ -131,7 +138,8 @@ def residual_of(
                     channel,
                     measured,
                     predicted[channel],
-                    _deviation(kind, run, measured, predicted[channel], level),
+                    deviation,
+                    float(noise_level),
                 )
             )
     return Residual(measurement, kind, case, tuple(parts))

@@ -29,7 +29,7 @@ def residual_from(kind, case, runs, measured, predicted, deviation):
     parts = [
         Left(
             run, run.of(case), channel, values, predicted[run.name][channel],
-            np.full(values.size, deviation),
+            np.full(values.size, deviation), deviation,
         )
         for run in runs
         for channel, values in measured[run.name].items()
