@@ -48,6 +48,8 @@ class AxisForce:
         N, m, rad.
     backlash : float
         Way of the motor in which it does not drive the slide, m.
+    motor_mass : float
+        Part of the mass on the motor's side of the backlash, kg.
     warm_up_share, warm_up_time : float
         Of the viscous friction at the start, 1, that decays with a time constant, s.
     """
@@ -66,6 +68,7 @@ class AxisForce:
     cogging_period: float = 0.01
     cogging_phase: float = 0.0
     backlash: float = 0.0
+    motor_mass: float = 0.0
     warm_up_share: float = 0.0
     warm_up_time: float = 1.0
 
@@ -76,6 +79,7 @@ class AxisForce:
         acceleration: NDArray[np.float64],
         step: float,
         begun: float = 0.0,
+        motor_acceleration: NDArray[np.float64] | None = None,
     ) -> NDArray[np.float64]:
         """Force (n,), N, along a motion.
 
@@ -87,6 +91,9 @@ class AxisForce:
             Between samples, s.
         begun : float
             Time that the axis had moved before, s, for the warm-up.
+        motor_acceleration : (n,) array of float, optional
+            m/s^2, where the motor's own motion is known: the motion is then that of the slide,
+            and what drives it through the backlash follows from it; else it is the motor's.
         """
         time = begun + step * np.arange(position.size)
         warm = 1.0 + self.warm_up_share * np.exp(-time / self.warm_up_time)
@@ -95,6 +102,8 @@ class AxisForce:
         turn = 2.0 * math.pi / self.cogging_period
         force = force + self.cogging_amplitude * np.sin(turn * position + self.cogging_phase)
         friction = self._dry(position, velocity, step)
+        if motor_acceleration is not None:
+            return force + friction + self.motor_mass * (motor_acceleration - acceleration)
         if self.backlash > 0.0:
             driven = drives_slide(position, self.backlash)
             return np.where(driven, force + friction, 0.0)

@@ -49,6 +49,11 @@ class Contact(Section):
 
     stiffness: quantity("stiffness", at_least=0.0)
     damping: quantity("damping", at_least=0.0) = 0.0
+    full_at: quantity("number", above=0.0, at_most=1.0) = Field(
+        1.0,
+        description="engaged share of the depth from which on the contact acts whole; 1: it grows "
+        "until the whole depth is engaged, near 0: it acts whole as soon as any edge cuts",
+    )
 
 
 class Wear(Section):
@@ -147,6 +152,9 @@ class Axis(Section):
     quadratic_drag: quantity("drag", at_least=0.0) = 0.0
     cogging: Cogging | None = None
     backlash: quantity("length", at_least=0.0) = 0.0
+    motor_mass: quantity("mass", at_least=0.0) | None = Field(
+        None, description="part of the moving mass on the motor's side of the backlash"
+    )
     warm_up: WarmUp | None = None
 
 

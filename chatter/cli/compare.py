@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from chatter.cli.errors import reports_errors
-from chatter.cli.explain import DeclaredCase, MeasurementPath, print_views
+from chatter.cli.explain import DeclaredCase, MeasurementPath, print_checks, print_views
 from chatter.cli.options import Json, OutputFolder, output_folder
 from chatter.cli.report import announce_compilation, print_json, print_table, print_written
 
@@ -26,6 +26,7 @@ def compare(
     if json:
         print_json(result.summary())
     else:
+        print_checks([one.as_dict() for one in result.checks])
         rows = [
             [
                 one.run,
@@ -38,5 +39,6 @@ def compare(
         ]
         headers = ["run", "channel", "rms error [SI]", "of the signal [%]", "times the noise"]
         print_table(declared.title, headers, rows)
-        print_views(result.signature.summary())
+        if result.signature is not None:
+            print_views(result.signature.summary())
     print_written(written)

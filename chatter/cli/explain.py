@@ -53,8 +53,18 @@ def explain(
     print_written(written)
 
 
+def print_checks(checks: list[dict[str, str]]) -> None:
+    """Print what was found in the signals, with what follows."""
+    from chatter.explain.report import FOLLOWS
+
+    fatal = [one for one in checks if one["severity"] == "fatal"]
+    for one in fatal or checks:
+        typer.echo(f"{one['says']} ({FOLLOWS[one['severity']]})")
+
+
 def _print(summary: dict) -> None:
     typer.echo(f"verdict: {summary['verdict']}")
+    print_checks(summary["checks"])
     for effect in summary["effects"]:
         rows = [
             [
@@ -73,6 +83,8 @@ def _print(summary: dict) -> None:
     rows = [[key, f"{value:.4g}"] for key, value in error.items() if isinstance(value, float)]
     print_table("error, rms over signal", ["", ""], rows)
     signature = summary["signature"]
+    if signature["refitted"] is None:
+        return
     lead = signature["lead"]
     if lead is not None:
         typer.echo(f"a lead: {lead['says']}")

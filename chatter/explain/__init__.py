@@ -4,7 +4,11 @@
 module          responsibility
 =============== ====================================================================
 measurement     measurement folders: runs, signals in SI, declared case
-tables          signals from CSV, NPZ, TDMS, UFF
+tables          signals from CSV, NPZ, TDMS, universal files
+headings        names and units of columns
+columns         columns that a kind needs
+signals         checks of the signals before anything is blamed on physics
+unusable        verdict where the data and the declared case plainly contradict each other
 kinds           milling, axis, stability, frf: predictions and uncertain values
 effects         what a case may lack, each a patch
 tolerance       how far declared values may be off

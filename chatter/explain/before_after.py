@@ -81,7 +81,10 @@ def before_after(explanation: Explanation, residual: Residual) -> BeforeAfter:
             for step, case in cases.items()
         }
 
-    return BeforeAfter(noise_by_channel(residual), errors(found.fitted), errors(found.unseen))
+    fitted, unseen = errors(found.fitted), errors(found.unseen)
+    told = set(fitted[STEPS[0]]) & set(unseen[STEPS[0]])
+    noise = {key: level for key, level in noise_by_channel(residual).items() if key in told}
+    return BeforeAfter(noise, fitted, unseen)
 
 
 def noise_by_channel(residual: Residual) -> dict[str, float]:

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from chatter.explain.errors_of_runs import ChannelError, overall
+from chatter.explain.errors_of_runs import ChannelError, errors_of, overall
 from chatter.explain.kinds import kind_of
 from chatter.explain.measurement import Measurement
-from chatter.explain.residual.left import Left
+from chatter.explain.signals import SignalFinding, checked
 from chatter.explain.signature import Signature, signature_of
 from chatter.result_files import as_json, write_results
 
@@ -28,22 +26,26 @@ class Comparison:
     ----------
     measurement : Measurement
     errors : sequence of ChannelError
-    signature : Signature
-        Where the residual lives.
+    signature : Signature or None
+        Where the residual lives; None where nothing could be predicted.
+    checks : tuple of SignalFinding
+        What is no good in the signals.
     """
 
     measurement: Measurement
     errors: Sequence[ChannelError]
-    signature: Signature
+    signature: Signature | None
+    checks: tuple[SignalFinding, ...] = ()
 
     def summary(self) -> dict[str, Any]:
         """Content of compare.json."""
         return {
             "title": self.measurement.title,
             "kind": self.measurement.kind,
-            "nrmse": overall(self.errors),
+            "nrmse": overall(self.errors) if self.errors else None,
+            "checks": [one.as_dict() for one in self.checks],
             "runs": [one._asdict() for one in self.errors],
-            "signature": self.signature.summary(),
+            "signature": self.signature.summary() if self.signature is not None else None,
         }
 
     def plot(self) -> Figure:
@@ -64,11 +66,11 @@ class Comparison:
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write compare.csv, compare.json, compare.png and signature.png."""
-        return write_results(
-            folder,
-            {"compare.csv": self._table(), "compare.json": as_json(self.summary())},
-            {"compare.png": self.plot(), "signature.png": self.plot_signature()},
-        )
+        pictures = {}
+        if self.signature is not None:
+            pictures = {"compare.png": self.plot(), "signature.png": self.plot_signature()}
+        texts = {"compare.csv": self._table(), "compare.json": as_json(self.summary())}
+        return write_results(folder, texts, pictures)
 
     def _table(self) -> str:
         heading = "run,channel,rms error [SI],rms error over signal,noise [SI],rms error over noise"
@@ -88,14 +90,14 @@ def compare(measurement: Measurement) -> Comparison:
     InputError
         If the measurement or its case cannot be used.
     """
-    kind, prepared = kind_of(measurement)
+    looked_at = checked(measurement)
+    if looked_at.forbids_prediction:
+        return Comparison(looked_at.measurement, (), None, looked_at.findings)
+    kind, prepared = kind_of(looked_at.measurement)
     signature = signature_of(prepared, kind, prepared.case)
-    errors = [_error(part) for part in signature.residual.parts]
-    return Comparison(prepared, errors, signature)
-
-
-def _error(part: Left) -> ChannelError:
-    error = float(np.sqrt(np.mean(part.values**2)))
-    return ChannelError(
-        part.run.name, part.channel, error, part.relative, part.noise, part.over_noise
-    )
+    parts = {(part.run.name, part.channel): part for part in signature.residual.parts}
+    errors = []
+    for one in errors_of(prepared.case, prepared, kind):
+        part = parts[one.run, one.channel]
+        errors.append(one._replace(noise=part.noise, over_noise=part.over_noise))
+    return Comparison(prepared, errors, signature, looked_at.findings)

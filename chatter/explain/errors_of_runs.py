@@ -33,9 +33,9 @@ def errors_of(
         predicted = kind.predict(run.of(case), run)
         weighted = getattr(kind, "weights", None)
         weight = weighted(run) ** 2 if weighted else None
-        for channel in kind.channels(run):
+        for channel in getattr(kind, "judged", kind.channels)(run):
             signal = run.signals[channel]
-            left = predicted[channel] - signal
+            left = (predicted[channel] - signal) * run.usable(signal.size)
             error = float(np.sqrt(np.average(left**2, weights=weight)))
             level = float(np.sqrt(np.mean(signal**2)))
             found.append(ChannelError(run.name, channel, error, error / max(level, 1e-300)))

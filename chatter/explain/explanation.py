@@ -21,7 +21,9 @@ from chatter.explain.kinds import kind_of
 from chatter.explain.measurement import Measurement
 from chatter.explain.problem import NUMERICS
 from chatter.explain.search import Candidate, Search, Stage, search
+from chatter.explain.signals import SignalFinding, checked
 from chatter.explain.signature import Signatures, signatures_of
+from chatter.explain.unusable import Unusable
 from chatter.result_files import as_json, finite_or_none, write_results
 
 if TYPE_CHECKING:
@@ -48,11 +50,14 @@ class Explanation:
     found : Search
     verdict : str
         "explained", "nothing-missing" or "unexplained".
+    checks : tuple of SignalFinding
+        What is no good in the signals, and was left out.
     """
 
     measurement: Measurement
     found: Search
     verdict: str
+    checks: tuple[SignalFinding, ...] = ()
 
     @property
     def case(self) -> Case:
@@ -72,6 +77,7 @@ class Explanation:
         """Content of explanation.json."""
         return {
             "verdict": self.verdict,
+            "checks": [one.as_dict() for one in self.checks],
             "effects": self._effects() if self.verdict == "explained" else [],
             # what helps, but leaves something that is not known
             "partial": self._effects() if self.verdict == "unexplained" else [],
@@ -131,7 +137,7 @@ class Explanation:
             return finite_or_none(floor(self.measurement, self.case))
         shares = {}
         for run in self.measurement.runs:
-            for channel in self.found.kind.channels(run):
+            for channel in getattr(self.found.kind, "judged", self.found.kind.channels)(run):
                 level = float(np.sqrt(np.mean(run.signals[channel] ** 2)))
                 noise = self.found.problem.noise[run.name][channel]
                 shares.setdefault(channel, []).append((noise / max(level, 1e-300)) ** 2)
@@ -188,7 +194,9 @@ class Explanation:
         return [*written, path]
 
 
-def explain(measurement: Measurement, progress: Progress = lambda *_: None) -> Explanation:
+def explain(
+    measurement: Measurement, progress: Progress = lambda *_: None
+) -> Explanation | Unusable:
     """Find out what the declared case of a measurement lacks.
 
     Parameters
@@ -201,8 +209,16 @@ def explain(measurement: Measurement, progress: Progress = lambda *_: None) -> E
     ------
     InputError
         If the measurement or its case cannot be used.
+
+    Notes
+    -----
+    Where the checks find the set or its declared case plainly wrong, no effect is looked for.
     """
-    kind, prepared = kind_of(measurement)
+    progress("checking the signals", 0.0)
+    looked_at = checked(measurement)
+    if looked_at.is_fatal:
+        return Unusable(looked_at)
+    kind, prepared = kind_of(looked_at.measurement)
     found = search(prepared, kind, progress)
     at_noise = max(found.left.values()) <= getattr(kind, "at_noise", AT_NOISE)
     if found.accepted and at_noise:
@@ -211,7 +227,7 @@ def explain(measurement: Measurement, progress: Progress = lambda *_: None) -> E
         verdict = "nothing-missing"
     else:
         verdict = "unexplained"
-    return Explanation(prepared, found, verdict)
+    return Explanation(prepared, found, verdict, looked_at.findings)
 
 
 def probability(tried: tuple[Candidate, ...], of: Candidate) -> float:
@@ -223,12 +239,14 @@ def probability(tried: tuple[Candidate, ...], of: Candidate) -> float:
 
 
 def _confounded(stage: Stage) -> list[str]:
-    """Candidates that gain nearly as much as the best."""
+    """Candidates no more intricate than the best that gain nearly as much."""
     gain = stage.unseen - stage.best.unseen
+    intricate = len(stage.best.fit.parameters)
     return [
         other.effect.name
         for other in stage.tried[1:]
         if stage.unseen - other.unseen > (1.0 - _ALIKE) * gain
+        and len(other.fit.parameters) <= intricate
     ]
 
 

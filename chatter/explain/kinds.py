@@ -26,9 +26,14 @@ def kind_of(measurement: Measurement) -> tuple[Kind, Measurement]:
         If the measurement or its case lacks what the kind needs.
     """
     kind = KINDS[measurement.kind]()
+    require_sections(measurement)
+    prepared = getattr(kind, "prepared", None)
+    return kind, prepared(measurement) if prepared else measurement
+
+
+def require_sections(measurement: Measurement) -> None:
+    """Raise InputError where the case lacks a section that the kind of measurement needs."""
     needed = {"axis": ("axis",), "frf": ("structure",)}
     measurement.case.require(
         *needed.get(measurement.kind, ("tool", "material", "cut", "structure"))
     )
-    prepared = getattr(kind, "prepared", None)
-    return kind, prepared(measurement) if prepared else measurement

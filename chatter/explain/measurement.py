@@ -19,10 +19,13 @@ from chatter.shown import shown
 KINDS = ("milling", "axis", "stability", "frf")
 #: keys of [[run]] that are no override of the case
 _OWN_KEYS = ("file", "condition", "direction", "title")
+_KEYS = ("title", "kind", "case", "points", "run", "tolerance")
 #: runs of which some can be kept back, and parts that fewer are cut into
 _ENOUGH_RUNS, _PARTS = 3, 6
 #: sections of a case that a short key of a run may mean
 _SECTIONS = ("cut", "tool", "material", "axis")
+#: column of a run that is 0 where samples are no good, and else 1
+USABLE = "usable"
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +53,11 @@ class Run:
     condition: str = ""
     direction: str = ""
 
+    def usable(self, size: int) -> NDArray[np.float64]:
+        """Weights (size,) of samples: 0 where they were found to be no good, else 1."""
+        weights = self.signals.get(USABLE)
+        return weights if weights is not None and weights.size == size else np.ones(size)
+
     def part(self, number: int, parts: int, columns: Sequence[str]) -> Run:
         """Return a run of which only one of some equal parts in time is judged.
 
@@ -62,7 +70,7 @@ class Run:
         """
         size = self.signals[columns[0]].size
         begin, end = number * size // parts, (number + 1) * size // parts
-        cut = {name: self.signals[name][begin:end] for name in columns}
+        cut = {name: self.signals[name][begin:end] for name in columns if name in self.signals}
         name = f"{self.name}, part {number + 1} of {parts}"
         signals = {**self.signals, **cut, "part": np.array([begin, end])}
         return replace(self, name=name, signals=signals)
@@ -129,6 +137,11 @@ def read_measurement(folder: str | Path, case: str | Path | Case | None = None) 
     path = Path(folder)
     path = path if path.is_file() else path / "measurement.toml"
     content = _content(path)
+    unknown = [key for key in content if key not in _KEYS]
+    if unknown:
+        raise InputError(
+            [f"{path}: {key} is no key; there are {', '.join(_KEYS)}" for key in unknown]
+        )
     kind = content.get("kind")
     if kind not in KINDS:
         raise InputError(f"{path}: kind: {shown(kind)} is none of {', '.join(KINDS)}")
@@ -137,12 +150,16 @@ def read_measurement(folder: str | Path, case: str | Path | Case | None = None) 
         points = _file(path, content, "points")
         runs = (Run(points.name, {}, read_signals(points)),)
     else:
+        entries = content.get("run", [])
+        if not isinstance(entries, list) or any(not isinstance(one, dict) for one in entries):
+            raise InputError(f"{path}: run: runs are tables [[run]] with a file each")
         runs = tuple(
-            _run(path, place, entry, declared) for place, entry in enumerate(content.get("run", ()))
+            _run(path, kind, place, entry, declared) for place, entry in enumerate(entries)
         )
     if not runs:
         raise InputError(f"{path}: there is no [[run]]")
-    tolerances = {key: float(value) for key, value in content.get("tolerance", {}).items()}
+    _refuse_names_twice(path, runs)
+    tolerances = _tolerances(path, content.get("tolerance", {}))
     title = str(content.get("title", path.parent.name))
     return Measurement(kind, title, path.parent, declared, runs, tolerances)
 
@@ -156,6 +173,23 @@ def _content(path: Path) -> dict[str, Any]:
         raise InputError(f"{path}: is no TOML file: {error}") from error
 
 
+def _refuse_names_twice(path: Path, runs: Sequence[Run]) -> None:
+    names = [run.name for run in runs]
+    for name in sorted(set(names)):
+        if names.count(name) > 1:
+            raise InputError(f"{path}: {name} is the file of {names.count(name)} runs")
+
+
+def _tolerances(path: Path, given: Any) -> dict[str, float]:
+    if not isinstance(given, dict):
+        raise InputError(f"{path}: tolerance: {shown(given)} is no table of keys and shares")
+    for key, value in given.items():
+        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        if not is_number or not 0.0 <= value < 10.0:
+            raise InputError(f"{path}: tolerance.{key}: {shown(value)} is no share such as 0.05")
+    return {key: float(value) for key, value in given.items()}
+
+
 def _file(path: Path, content: Mapping[str, Any], key: str) -> Path:
     name = content.get(key)
     if not isinstance(name, str):
@@ -163,22 +197,37 @@ def _file(path: Path, content: Mapping[str, Any], key: str) -> Path:
     return path.parent / name
 
 
-def _run(path: Path, place: int, entry: Mapping[str, Any], declared: Case) -> Run:
+def _run(path: Path, kind: str, place: int, entry: Mapping[str, Any], declared: Case) -> Run:
     where = f"{path}: run {place + 1}"
+    if not isinstance(entry.get("file"), str):
+        raise InputError(f"{where}: file: {shown(entry.get('file'))} is no file name")
     file = _file(path, entry, "file")
+    where = f"{path}: run {place + 1} ({file.name})"
     overrides = {
         _path_of(where, key, declared): value
         for key, value in entry.items()
         if key not in _OWN_KEYS
     }
+    _refuse_overrides(where, declared, overrides)
+    direction = entry.get("direction", "")
     return Run(
         file.name,
         overrides,
-        read_signals(file),
+        read_signals(file, kind, str(direction)),
         _seconds(where, entry.get("cut_time", 0.0)),
         str(entry.get("condition", "")),
-        str(entry.get("direction", "")),
+        str(direction),
     )
+
+
+def _refuse_overrides(where: str, declared: Case, overrides: Mapping[str, Any]) -> None:
+    """Raise InputError naming the run where its values are none that the case can take."""
+    if not overrides:
+        return
+    try:
+        declared.patch(dict(overrides))
+    except InputError as error:
+        raise InputError([f"{where}: {message}" for message in error.messages]) from error
 
 
 def _path_of(where: str, key: str, declared: Case) -> str:

@@ -38,7 +38,8 @@ class Milling:
             replace(run, signals={**run.signals, "whole time": run.signals["time"]})
             for run in measurement.runs
         ]
-        columns = tuple(measurement.runs[0].signals)
+        # a channel that is no good may be missing in some runs
+        columns = ("time", *{name for run in measurement.runs for name in run.signals})
         return replace(measurement, runs=tuple(runs)).in_parts(columns)
 
     def predict(self, case: Case, run: Run) -> Mapping[str, NDArray[np.float64]]:

@@ -144,6 +144,7 @@ class Problem:
                         white_level(
                             (run.signals[channel] - predicted[channel])
                             * run.signals.get("certainty", 1.0)
+                            * run.usable(run.signals[channel].size)
                         ),
                         NUMERICS * np.sqrt(np.mean(run.signals[channel] ** 2)),
                     )
@@ -160,7 +161,8 @@ def scaled_difference(
     predicted = kind.predict(case, run)
     return np.concatenate(
         [
-            (predicted[channel] - run.signals[channel]) / noise[channel]
+            (predicted[channel] - run.signals[channel])
+            * (run.usable(run.signals[channel].size) / noise[channel])
             for channel in kind.channels(run)
         ]
     )

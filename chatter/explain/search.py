@@ -21,6 +21,8 @@ from chatter.explain.problem import Problem
 _NOTHING_LEFT = 1.0
 #: gain in the runs not seen that is beyond chance, and a share of their number of samples
 _GAIN, _GAIN_SHARE = 40.0, 0.004
+#: share of what is left above the noise that an effect must take away
+_SLIVER = 0.05
 #: effects are added until this many, or until nothing is gained
 _MOST_EFFECTS = 3
 #: candidates that are fitted in full after a first look
@@ -208,7 +210,10 @@ def _looked_again(
 
 
 def first_noise(measurement: Measurement, kind: Kind) -> dict[str, dict[str, float]]:
-    """A share of every signal, before anything better is known."""
+    """Noise where the kind knows it; else a share of every signal, until something is known."""
+    known = getattr(kind, "noise", None)
+    if known is not None:
+        return {run.name: known(run) for run in measurement.runs}
     return {
         run.name: {
             channel: 0.03 * float(np.sqrt(np.mean(run.signals[channel] ** 2))) + 1e-30
@@ -225,7 +230,9 @@ def _cost(problem: Problem, values: Mapping[str, float], runs: Sequence[Run]) ->
 
 def _beyond_chance(left: float, reached: float, problem: Problem, unseen: Sequence[Run]) -> bool:
     least, share = getattr(problem.kind, "least_gain", (_GAIN, _GAIN_SHARE))
-    return left - reached > least + share * problem.count(unseen)
+    count = problem.count(unseen)
+    # what takes away a sliver of a misfit stands for something else
+    return left - reached > max(least + share * count, _SLIVER * (left - count))
 
 
 def _try_all(
@@ -246,7 +253,7 @@ def _try_all(
         best = first_look(problem, effect, now, fitted)
         looked.append((best.cost, effect, best))
     looked.sort(key=lambda entry: entry[0])
-    chosen = looked[:_FULL]
+    chosen = _one_a_name(looked)[:_FULL]
     found = []
     for place, (_, effect, look) in enumerate(chosen):
         share = (round_number + 0.7 + 0.3 * place / len(chosen)) / (_MOST_EFFECTS + 1)
@@ -255,6 +262,14 @@ def _try_all(
         fitted_now = trial.fit(fitted, look.values, 10, look.jacobian)
         found.append(Candidate(effect, fitted_now, _cost(trial, fitted_now.by_name, unseen)))
     return ranked(found)
+
+
+def _one_a_name(looked: list[tuple[float, Effect, Look]]) -> list[tuple[float, Effect, Look]]:
+    """Best variant of every effect, in their order."""
+    kept: dict[str, tuple[float, Effect, Look]] = {}
+    for entry in looked:
+        kept.setdefault(entry[1].name, entry)
+    return list(kept.values())
 
 
 def ranked(found: Sequence[Candidate]) -> list[Candidate]:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from chatter.explain.explanation import Explanation
     from chatter.explain.kind import Signals
     from chatter.explain.lobes_before_after import LobesBeforeAfter
-    from chatter.explain.residual.left import Residual
+    from chatter.explain.residual.left import Left, Residual
 
 _SHOWN_RUNS = 3
 #: deepest over shallowest cut beyond which depths are drawn on a logarithmic scale
@@ -80,12 +80,18 @@ def plot_residuals(residuals: dict[str, Residual], title: str) -> Figure:
     panels = figure.subplots(len(channels), len(runs), squeeze=False)
     for row, channel in enumerate(channels):
         for column, name in enumerate(runs):
-            _draw_left(panels[row, column], residuals, channel, name)
+            _draw_left(panels[row, column], _parts(residuals, channel, name))
             if row == 0:
                 panels[row, column].set_title(name, loc="left")
             style.finish(panels[row, column])
-    handles, labels = panels[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper right", ncols=4, fontsize=8.0, frameon=False)
+    told = [axes.get_legend_handles_labels() for axes in panels.ravel()]
+    figure.legend(
+        *max(told, key=lambda one: len(one[1])),
+        loc="outside upper right",
+        ncols=4,
+        fontsize=8.0,
+        frameon=False,
+    )
     return figure
 
 
@@ -97,13 +103,23 @@ def _shown(residual: Residual) -> list[str]:
     return [name for name in names if name in wanted[:_SHOWN_RUNS]]
 
 
-def _draw_left(axes: Axes, residuals: dict[str, Residual], channel: str, run: str) -> None:
-    parts = {
-        label: next(p for p in residual.parts if (p.channel, p.run.name) == (channel, run))
+def _parts(residuals: dict[str, Residual], channel: str, run: str) -> dict[str, Left]:
+    """Parts of a channel of a run; none where it was left out."""
+    return {
+        label: part
         for label, residual in residuals.items()
+        for part in residual.parts
+        if (part.channel, part.run.name) == (channel, run)
     }
+
+
+def _draw_left(axes: Axes, parts: dict[str, Left]) -> None:
+    if not parts:
+        axes.text(0.5, 0.5, "left out", ha="center", transform=axes.transAxes)
+        return
     first = next(iter(parts.values()))
     x, label = _abscissa(first.run.signals, first.measured.size)
+    channel = first.channel
     unit, scale = _unit(channel)
     order = np.argsort(x)
     axes.plot(x[order], scale * first.measured[order], color="#B5B5B5", lw=0.7, label="measured")

@@ -138,7 +138,8 @@ def compiled(
     chip = case.simulation.chip if case.simulation else "delay"
     groups: tuple = (CHIPS[chip](case, cutter, slices, modes, resolution, spindle, path),)
     if case.contact is not None:
-        groups += (ToolContact(case.contact.stiffness, case.contact.damping),)
+        contact = case.contact
+        groups += (ToolContact(contact.stiffness, contact.damping, contact.full_at),)
     return Setup(
         case=case,
         cutter=cutter,

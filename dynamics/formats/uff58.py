@@ -48,7 +48,7 @@ _HEADING_LINES = 11
 
 
 @dataclass(frozen=True)
-class _Axis:
+class Axis:
     """Records 8 to 10: what an axis holds."""
 
     code: int
@@ -56,7 +56,7 @@ class _Axis:
 
 
 @dataclass(frozen=True)
-class _Heading:
+class Heading:
     """The eleven text records of a dataset 58."""
 
     title: str
@@ -68,9 +68,9 @@ class _Heading:
     is_even: bool
     first: float
     step: float
-    abscissa: _Axis
-    numerator: _Axis
-    denominator: _Axis
+    abscissa: Axis
+    numerator: Axis
+    denominator: Axis
 
 
 def read_uff58(path: Path) -> list[Frf]:
@@ -101,7 +101,7 @@ def read_uff58(path: Path) -> list[Frf]:
     """
     units = FileUnits()
     frfs: list[Frf] = []
-    coherences: list[tuple[_Heading, NDArray[np.float64]]] = []
+    coherences: list[tuple[Heading, NDArray[np.float64]]] = []
     held: Counter[str] = Counter()
     for dataset in read_datasets(path):
         if dataset.number == 164:
@@ -110,13 +110,13 @@ def read_uff58(path: Path) -> list[Frf]:
             held[f"dataset {dataset.number}"] += 1
             continue
         where = f"{path}: dataset {dataset.order}"
-        heading, first_byte = _heading(dataset, where)
+        heading, first_byte = read_heading(dataset, where)
         held[_described(heading)] += 1
         if heading.function_type == _FREQUENCY_RESPONSE and _is_translation(heading):
-            abscissa, values = _values(dataset, heading, first_byte, where)
+            abscissa, values = read_values(dataset, heading, first_byte, where)
             frfs.append(_frf(heading, abscissa, values, units, where))
         elif heading.function_type == _COHERENCE:
-            _, values = _values(dataset, heading, first_byte, where)
+            _, values = read_values(dataset, heading, first_byte, where)
             coherences.append((heading, values.real))
     if not frfs:
         content = ", ".join(f"{count} x {name}" for name, count in held.items()) or "no dataset"
@@ -126,16 +126,16 @@ def read_uff58(path: Path) -> list[Frf]:
     return [_with_coherence(frf, coherences) for frf in frfs]
 
 
-def _described(heading: _Heading) -> str:
+def _described(heading: Heading) -> str:
     name = _FUNCTION_TYPES.get(heading.function_type, f"function type {heading.function_type}")
     return name if _is_translation(heading) else f"{name} of a rotation"
 
 
-def _is_translation(heading: _Heading) -> bool:
+def _is_translation(heading: Heading) -> bool:
     return max(abs(heading.response[1]), abs(heading.reference[1])) <= 3
 
 
-def _heading(dataset: Dataset, where: str) -> tuple[_Heading, int]:
+def read_heading(dataset: Dataset, where: str) -> tuple[Heading, int]:
     """Parse the eleven text records; also return where in the body the numbers begin."""
     end = 0
     for _ in range(_HEADING_LINES):
@@ -152,9 +152,9 @@ def _heading(dataset: Dataset, where: str) -> tuple[_Heading, int]:
         ) from None
 
 
-def _parsed_heading(lines: list[str]) -> _Heading:
+def _parsed_heading(lines: list[str]) -> Heading:
     points, form = lines[5], lines[6]
-    return _Heading(
+    return Heading(
         title=lines[0].strip(),
         function_type=int(points[0:5]),
         response=(int(points[41:51] or 0), int(points[51:55] or 0)),
@@ -174,13 +174,13 @@ def _real(field: str) -> float:
     return float(field.replace("D", "E").replace("d", "e"))
 
 
-def _axis(line: str) -> _Axis:
+def _axis(line: str) -> Axis:
     unit = line[47:67].strip()
-    return _Axis(code=int(line[0:10]), unit="" if unit.upper() == "NONE" else unit)
+    return Axis(code=int(line[0:10]), unit="" if unit.upper() == "NONE" else unit)
 
 
-def _values(
-    dataset: Dataset, heading: _Heading, first_byte: int, where: str
+def read_values(
+    dataset: Dataset, heading: Heading, first_byte: int, where: str
 ) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
     """Abscissa and ordinate of a function, as stored."""
     if heading.ordinate_type not in _ORDINATE:
@@ -205,7 +205,7 @@ def _values(
     return abscissa, table[:, 0] + 1j * imaginary
 
 
-def _text_table(payload: bytes, heading: _Heading, columns: int, where: str) -> NDArray[np.float64]:
+def _text_table(payload: bytes, heading: Heading, columns: int, where: str) -> NDArray[np.float64]:
     words = payload.decode("latin-1").replace("D", "E").split()
     if len(words) != heading.count * columns:
         raise MeasurementError(
@@ -218,7 +218,7 @@ def _text_table(payload: bytes, heading: _Heading, columns: int, where: str) -> 
 
 
 def _binary_table(
-    dataset: Dataset, payload: bytes, heading: _Heading, columns: int, where: str
+    dataset: Dataset, payload: bytes, heading: Heading, columns: int, where: str
 ) -> NDArray[np.float64]:
     """Numbers of a dataset 58b.
 
@@ -247,7 +247,7 @@ def _binary_table(
 
 
 def _frf(
-    heading: _Heading,
+    heading: Heading,
     abscissa: NDArray[np.float64],
     values: NDArray[np.complex128],
     units: FileUnits,
@@ -258,7 +258,7 @@ def _frf(
             f"{where}: the frequency response is stored as real numbers; its phase is missing"
         )
     quantity, factor = _quantity_and_factor(heading, units, where)
-    content, frequency_factor = _content(heading.abscissa, units, where)
+    content, frequency_factor = axis_content(heading.abscissa, units, where)
     if content not in (None, "frequency"):
         raise MeasurementError(f"{where}: the abscissa is a {content}, not a frequency")
     name = "" if heading.title.upper() == "NONE" else f" ({heading.title})"
@@ -266,21 +266,21 @@ def _frf(
         frequency=abscissa * frequency_factor,
         values=values * factor,
         quantity=quantity,
-        response=_point(heading.response),
-        reference=_point(heading.reference),
+        response=point_of(heading.response),
+        reference=point_of(heading.reference),
         source=f"{where}{name}",
     )
 
 
-def _quantity_and_factor(heading: _Heading, units: FileUnits, where: str) -> tuple[Quantity, float]:
+def _quantity_and_factor(heading: Heading, units: FileUnits, where: str) -> tuple[Quantity, float]:
     """Quantity of the FRF and factor to SI, from labels and data types of the ordinate."""
     if heading.numerator.unit and not heading.denominator.unit:
         try:
             return frf_unit(heading.numerator.unit)  # the label holds the whole ratio
         except MeasurementError:
             pass
-    response, response_factor = _content(heading.numerator, units, where)
-    force, force_factor = _content(heading.denominator, units, where)
+    response, response_factor = axis_content(heading.numerator, units, where)
+    force, force_factor = axis_content(heading.denominator, units, where)
     if response not in _QUANTITY or force != "force":
         raise MeasurementError(
             f"{where}: neither unit labels nor data types ({heading.numerator.code} over "
@@ -290,7 +290,7 @@ def _quantity_and_factor(heading: _Heading, units: FileUnits, where: str) -> tup
     return _QUANTITY[response], response_factor / force_factor
 
 
-def _content(axis: _Axis, units: FileUnits, where: str) -> tuple[Channel | None, float]:
+def axis_content(axis: Axis, units: FileUnits, where: str) -> tuple[Channel | None, float]:
     """What an axis holds and its factor to SI; None where nothing tells."""
     by_code = _CONTENT.get(axis.code)
     if axis.unit:
@@ -310,7 +310,8 @@ def _content(axis: _Axis, units: FileUnits, where: str) -> tuple[Channel | None,
     return by_code, 1.0
 
 
-def _point(node_and_direction: tuple[int, int]) -> Point:
+def point_of(node_and_direction: tuple[int, int]) -> Point:
+    """Point of a node number and a direction code of a dataset 58."""
     node, code = node_and_direction
     return Point(
         node=str(node) if node else "",
@@ -319,9 +320,9 @@ def _point(node_and_direction: tuple[int, int]) -> Point:
     )
 
 
-def _with_coherence(frf: Frf, coherences: list[tuple[_Heading, NDArray[np.float64]]]) -> Frf:
+def _with_coherence(frf: Frf, coherences: list[tuple[Heading, NDArray[np.float64]]]) -> Frf:
     for heading, values in coherences:
-        points = (_point(heading.response), _point(heading.reference))
+        points = (point_of(heading.response), point_of(heading.reference))
         if points == (frf.response, frf.reference) and values.shape == frf.frequency.shape:
             return replace(frf, coherence=values)
     return frf

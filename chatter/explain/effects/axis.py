@@ -124,8 +124,21 @@ def _cogging_starts(measurement: Measurement) -> Sequence[Values]:
     return [{"period": travel / turns} for turns in np.linspace(1.0, 20.0, count)]
 
 
-def _backlash_parameters(measurement: Measurement) -> Sequence[Parameter]:  # noqa: ARG001
-    return [_free("backlash", 2e-5, 5e-6, "m", lower=0.0, upper=1e-3)]
+def _backlash_parameters(measurement: Measurement) -> Sequence[Parameter]:
+    gap = _free("backlash", 2e-5, 5e-6, "m", lower=0.0, upper=1e-3)
+    if not _motor_seen(measurement):
+        return [gap]
+    mass = measurement.case.axis.moving_mass
+    return [gap, _free("motor_mass", 0.2 * mass, 0.05 * mass, "kg", lower=0.0, upper=mass)]
+
+
+def _motor_seen(measurement: Measurement) -> bool:
+    """Whether the motion of the motor was measured beside that of the slide."""
+    return any("play" in run.signals for run in measurement.runs)
+
+
+def _backlash(case: Case, values: Values) -> dict[str, Any]:  # noqa: ARG001
+    return {f"axis.{key}": float(value) for key, value in values.items()}
 
 
 def _backlash_starts(measurement: Measurement) -> Sequence[Values]:  # noqa: ARG001
@@ -223,7 +236,7 @@ AXIS_EFFECTS: tuple[Effect, ...] = (
         _KIND,
         lambda m: not m.case.axis.backlash,
         _backlash_parameters,
-        _keys("backlash"),
+        _backlash,
         _backlash_starts,
         says="the motor crosses a gap at every reversal",
     ),

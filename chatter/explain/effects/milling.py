@@ -231,8 +231,12 @@ def _contact_parameters(measurement: Measurement) -> Sequence[Parameter]:
     ]
 
 
-def _contact(case: Case, values: Values) -> Assignments:  # noqa: ARG001
-    return {"contact": {key: float(values[key]) for key in ("stiffness", "damping")}}
+def _contact(full_at: float):
+    def patch(case: Case, values: Values) -> Assignments:  # noqa: ARG001
+        given = {key: float(values[key]) for key in ("stiffness", "damping")}
+        return {"contact": {**given, "full_at": full_at}}
+
+    return patch
 
 
 # dynamometer -------------------------------------------------------------------------------------
@@ -333,10 +337,6 @@ def _several_teeth(measurement: Measurement) -> bool:
     return measurement.case.tool.teeth > 1
 
 
-def _is_frf(measurement: Measurement) -> bool:
-    return measurement.kind != "milling" or measurement.case.contact is None
-
-
 MILLING_EFFECTS: tuple[Effect, ...] = (
     Effect(
         "runout",
@@ -407,13 +407,17 @@ MILLING_EFFECTS: tuple[Effect, ...] = (
         _wear,
         says="forces grow with the time that the tool has cut",
     ),
-    Effect(
-        "contact",
-        ("milling", "frf"),
-        lambda m: _has_modes(m) and _is_frf(m),
-        _contact_parameters,
-        _contact,
-        says="tool and workpiece touch like a spring and a damper while in the cut",
+    *(
+        Effect(
+            "contact",
+            kinds,
+            lambda m: _has_modes(m) and m.case.contact is None,
+            _contact_parameters,
+            _contact(full_at),
+            says="tool and workpiece touch like a spring and a damper while in the cut",
+        )
+        # in proportion to the engaged depth, or whole as soon as an edge cuts
+        for kinds, full_at in ((("milling", "frf"), 1.0), (("milling",), 1e-3))
     ),
     Effect(
         "dynamometer",

@@ -34,8 +34,11 @@ def by_channel(residual: Residual) -> Finding:
     levels = {channel: over_noise(residual.of(channel)) for channel in residual.channels}
     above = {channel: level for channel, level in levels.items() if level > AT_NOISE}
     names = tuple(_short(run.name) for run in residual.measurement.runs)
+    found = {(part.channel, part.run.name): part.over_noise for part in residual.parts}
     series = {
-        channel: np.array([part.over_noise for part in residual.of(channel)])
+        channel: np.array(
+            [found.get((channel, run.name), np.nan) for run in residual.measurement.runs]
+        )
         for channel in residual.channels
     }
     return Finding(

@@ -18,6 +18,8 @@ Noise = Mapping[str, Mapping[str, float]]
 
 #: noise that is taken where none was found, as a share of the signal
 _LEAST_NOISE = 1e-6
+#: weight of a sample that counts for nothing
+_LEAST_CERTAIN = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,38 +126,43 @@ def residual_of(
     for run in measurement.runs:
         own = run.of(case)
         predicted = kind.predict(own, run)
+        levels = noise[run.name] if noise is not None else _known(kind, run)
         for channel in kind.channels(run):
-            measured = run.signals[channel]
-            level = None if noise is None else noise[run.name][channel]
-            deviation = _deviation(kind, run, measured, predicted[channel], level)
-            # samples that count less are no noisier than others
-            white = getattr(kind, "noise_is_white", True)
-            noise_level = deviation.min() if white else np.sqrt(np.mean(deviation**2))
-            parts.append(
-                Left(
-                    run,
-                    own,
-                    channel,
-                    measured,
-                    predicted[channel],
-                    deviation,
-                    float(noise_level),
-                )
-            )
+            # samples that are no good count as predicted
+            usable = run.usable(run.signals[channel].size) > 0.0
+            measured = np.where(usable, run.signals[channel], predicted[channel])
+            certainty = _certainty(run, channel)
+            if getattr(kind, "noise_is_white", True) or hasattr(kind, "noise"):
+                level = levels.get(channel)
+                if level is None:
+                    level = white_level((measured - predicted[channel]) * certainty)
+                least = _LEAST_NOISE * float(np.sqrt(np.mean(measured**2))) + 1e-300
+                level = max(level, least)
+                deviation = level / certainty
+            else:
+                deviation = _scatter(run, certainty, predicted[channel])
+                level = float(np.sqrt(np.mean(deviation**2)))
+            parts.append(Left(run, own, channel, measured, predicted[channel], deviation, level))
     return Residual(measurement, kind, case, tuple(parts))
 
 
-def _deviation(
-    kind: Kind, run: Run, measured: Array, predicted: Array, level: float | None
-) -> Array:
-    certainty = run.signals.get("certainty", np.ones(measured.size))
-    if not getattr(kind, "noise_is_white", True):
-        if "certainty" in run.signals:
-            return 1.0 / certainty
-        # verdicts: how far a probability is from one, by itself
-        likely = np.clip(predicted, 1e-6, 1.0 - 1e-6)
-        return np.sqrt(likely * (1.0 - likely))
-    if level is None:
-        level = white_level((measured - predicted) * certainty)
-    least = _LEAST_NOISE * float(np.sqrt(np.mean(measured**2))) + 1e-300
-    return max(level, least) / certainty
+def _known(kind: Kind, run: Run) -> Mapping[str, float]:
+    """Noise that a kind knows beforehand, by channel."""
+    return kind.noise(run) if hasattr(kind, "noise") else {}
+
+
+def _certainty(run: Run, channel: str) -> Array:
+    """How much samples of a channel count, 1 at the most."""
+    for name in (f"{channel} certainty", "certainty"):
+        if name in run.signals:
+            return np.maximum(run.signals[name], _LEAST_CERTAIN)
+    return np.ones(run.signals[channel].size)
+
+
+def _scatter(run: Run, certainty: Array, predicted: Array) -> Array:
+    """Standard deviation of every line of a FRF, or of a verdict."""
+    if "certainty" in run.signals:
+        return 1.0 / run.signals["certainty"]
+    # verdicts: how far a probability is from one, by itself
+    likely = np.clip(predicted, 1e-6, 1.0 - 1e-6)
+    return np.sqrt(likely * (1.0 - likely)) / certainty

@@ -56,7 +56,7 @@ def _size(left: Left) -> float:
 
 def _absolute(left: Left) -> float:
     """Root mean square beyond the noise, SI."""
-    beyond = float(np.mean(left.values**2) - np.mean(left.deviation**2))
+    beyond = float(np.mean(left.values**2)) - left.noise**2
     return math.sqrt(max(beyond, 0.0))
 
 

@@ -56,6 +56,8 @@ def spectrum(residual: Residual) -> Finding:
     by_channel: dict[str, list[Shares]] = {channel: [] for channel in residual.channels}
     for run in residual.measurement.runs:
         parts = [part for part in residual.parts if part.run is run]
+        if not parts:
+            continue
         harmonics = Harmonics(parts[0])
         for part in parts:
             by_channel[part.channel].append(_shares(part, harmonics.split(part)))

@@ -1,0 +1,94 @@
+"""What a check of measured signals found: where, how bad, and what is left out for it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.explain.measurement import Measurement
+
+#: how bad, and what follows: nothing can be concluded from the set; the run, the channel of the
+#: run or samples of the run are left out; nothing follows
+FATAL, RUN, CHANNEL, SAMPLES, NOTE = "fatal", "run", "channel", "samples", "note"
+
+
+@dataclass(frozen=True, eq=False)
+class SignalFinding:
+    """One finding.
+
+    Parameters
+    ----------
+    severity : str
+        "fatal", "run", "channel", "samples" or "note".
+    run : str
+        Name of its file; empty where it concerns the whole set.
+    channel : str
+        Empty where it concerns all.
+    says : str
+        One sentence, with numbers.
+    samples : (n,) array of bool, optional
+        Samples that are left out.
+    """
+
+    severity: str
+    run: str
+    channel: str
+    says: str
+    samples: NDArray[np.bool_] | None = None
+
+    def as_dict(self) -> dict[str, str]:
+        """As it stands in explanation.json."""
+        return {
+            "severity": self.severity,
+            "run": self.run,
+            "channel": self.channel,
+            "says": self.says,
+        }
+
+
+@dataclass(frozen=True)
+class Check:
+    """A check of a measurement.
+
+    Parameters
+    ----------
+    name : str
+    kinds : tuple of str
+        Kinds of measurement that it is for.
+    finds : callable
+        Measurement -> findings.
+    says : str
+        What it looks for.
+    """
+
+    name: str
+    kinds: tuple[str, ...]
+    finds: Callable[[Measurement], list[SignalFinding]]
+    says: str
+
+
+def of_all_or_some(
+    found: list[SignalFinding], measurement: Measurement, about: str, share: float = 0.5
+) -> list[SignalFinding]:
+    """Make findings of single runs fatal where they concern more than a share of the runs.
+
+    Parameters
+    ----------
+    found : list of SignalFinding
+        At most one a run.
+    measurement : Measurement
+    about : str
+        What it says about the set, as a sentence with {count} and {runs}.
+    share : float
+    """
+    count = len({one.run for one in found})
+    if count <= share * len(measurement.runs):
+        return found
+    text = about.format(count=count, runs=len(measurement.runs))
+    channels = {one.channel for one in found}
+    channel = channels.pop() if len(channels) == 1 else ""
+    notes = [SignalFinding(NOTE, one.run, one.channel, one.says) for one in found]
+    return [SignalFinding(FATAL, "", channel, text), *notes]
