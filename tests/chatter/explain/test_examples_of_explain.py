@@ -9,7 +9,7 @@ import pytest
 from chatter.case import load
 from chatter.example_cases import examples
 from chatter.explain import compare, explain, read_measurement
-from chatter.explain.lobes_before_after import lobes_before_after
+from chatter.explain import lobes_before_after as lobes_before_after_module
 
 NAMES = ("explain-axis", "explain-frf", "explain-milling", "explain-stability")
 HEADINGS = (
@@ -45,7 +45,9 @@ def test_every_example_tells_its_story(name):
         ("explain-frf", "contact", {"stiffness": 1116321.5, "damping": 66.09}, True),
     ],
 )
-def test_example_runs_and_reports(name, effect, numbers, lobes, tmp_path, capsys):
+def test_example_runs_and_reports(name, effect, numbers, lobes, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(lobes_before_after_module, "_SPEEDS", 16)
+    monkeypatch.setattr(lobes_before_after_module, "_ASKED", 6)
     written = examples()[name].run(tmp_path)
     assert f"missing: {effect}" in capsys.readouterr().out
     assert all(path.is_file() for path in written)
@@ -77,7 +79,7 @@ def test_example_runs_and_reports(name, effect, numbers, lobes, tmp_path, capsys
     load(tmp_path / "case-updated.toml")
 
 
-def test_a_mode_that_was_missed_is_found_in_few_runs():
+def test_a_mode_that_was_missed_is_found_in_few_runs(monkeypatch):
     whole = measurement("explain-milling")
     few = replace(whole, runs=whole.runs[:3])
     result = explain(few)
@@ -89,7 +91,8 @@ def test_a_mode_that_was_missed_is_found_in_few_runs():
         view for view in summary["signature"]["refitted"]["views"] if view["view"] == "frequency"
     )
     assert "the case has no natural frequency" in frequency["says"]
-    lobes = lobes_before_after(result)
+    monkeypatch.setattr(lobes_before_after_module, "_SPEEDS", 24)
+    lobes = lobes_before_after_module.lobes_before_after(result)
     before, after = (
         lobes.diagrams[step].limits.critical_depth for step in ("refitted", "with what was added")
     )
