@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from chatter.cli.errors import reports_errors
-from chatter.cli.explain import DeclaredCase, MeasurementPath, print_checks
+from chatter.cli.explain import DeclaredCase, MeasurementPath, print_checks, print_views
 from chatter.cli.options import Json, OutputFolder, output_folder
 from chatter.cli.report import announce_compilation, print_json, print_table, print_written
 
@@ -28,8 +28,17 @@ def compare(
     else:
         print_checks([one.as_dict() for one in result.checks])
         rows = [
-            [one.run, one.channel, f"{one.error:.4g}", f"{100.0 * one.relative:.2f}"]
+            [
+                one.run,
+                one.channel,
+                f"{one.error:.4g}",
+                f"{100.0 * one.relative:.2f}",
+                f"{one.over_noise:.2f}",
+            ]
             for one in result.errors
         ]
-        print_table(declared.title, ["run", "channel", "rms error [SI]", "of the signal [%]"], rows)
+        headers = ["run", "channel", "rms error [SI]", "of the signal [%]", "times the noise"]
+        print_table(declared.title, headers, rows)
+        if result.signature is not None:
+            print_views(result.signature.summary())
     print_written(written)

@@ -82,3 +82,19 @@ def _print(summary: dict) -> None:
     error = summary["error"]
     rows = [[key, f"{value:.4g}"] for key, value in error.items() if isinstance(value, float)]
     print_table("error, rms over signal", ["", ""], rows)
+    signature = summary["signature"]
+    if signature["refitted"] is None:
+        return
+    lead = signature["lead"]
+    if lead is not None:
+        typer.echo(f"a lead: {lead['says']}")
+    typer.echo("what the refitted case leaves:")
+    print_views(signature["refitted"])
+
+
+def print_views(signature: dict) -> None:
+    """Print what the views of a residual say."""
+    for view in signature["views"]:
+        if view["beyond_chance"]:
+            typer.echo(f"  {view['says']}")
+    typer.echo(f"  {signature['nothing_beyond_chance']}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -19,6 +20,8 @@ class ChannelError(NamedTuple):
     channel: str
     error: float  # rms, SI
     relative: float  # over the rms of the signal, 1
+    noise: float = math.nan  # rms, SI, where it was looked at
+    over_noise: float = math.nan  # rms over the noise, sample by sample
 
 
 def errors_of(
@@ -39,14 +42,14 @@ def errors_of(
     return found
 
 
+def by_channel(errors: Sequence[ChannelError]) -> dict[str, float]:
+    """Rms over the runs of the normalised errors, by channel."""
+    return {
+        channel: float(np.sqrt(np.mean([e.relative**2 for e in errors if e.channel == channel])))
+        for channel in dict.fromkeys(one.channel for one in errors)
+    }
+
+
 def overall(errors: Sequence[ChannelError]) -> float:
     """Normalised error of several runs: the mean over the channels of the rms over the runs."""
-    channels = sorted({one.channel for one in errors})
-    return float(
-        np.mean(
-            [
-                np.sqrt(np.mean([one.relative**2 for one in errors if one.channel == channel]))
-                for channel in channels
-            ]
-        )
-    )
+    return float(np.mean(list(by_channel(errors).values())))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.case import Case
+from chatter.explain.before_after import BeforeAfter, before_after
 from chatter.explain.errors_of_runs import errors_of, overall
 from chatter.explain.fitting import Fit
 from chatter.explain.kind import Effect
@@ -20,7 +22,7 @@ from chatter.explain.measurement import Measurement
 from chatter.explain.problem import NUMERICS
 from chatter.explain.search import Candidate, Search, Stage, search
 from chatter.explain.signals import SignalFinding, checked
-from chatter.explain.signature import signature_of
+from chatter.explain.signature import Signatures, signatures_of
 from chatter.explain.unusable import Unusable
 from chatter.result_files import as_json, finite_or_none, write_results
 
@@ -81,11 +83,22 @@ class Explanation:
             "partial": self._effects() if self.verdict == "unexplained" else [],
             "error": self._errors(),
             "candidates": self._candidates(),
-            "signature": signature_of(self.measurement, self.found.kind, self.case),
+            "error_by_channel": self.before_after.summary(),
+            "signature": self.signatures.summary(),
             "left_over_noise": {
                 channel: finite_or_none(left) for channel, left in self.found.left.items()
             },
         }
+
+    @cached_property
+    def signatures(self) -> Signatures:
+        """Where the residual lives, before and after."""
+        return signatures_of(self)
+
+    @cached_property
+    def before_after(self) -> BeforeAfter:
+        """Errors by channel, before and after."""
+        return before_after(self, self.signatures.refitted.residual)
 
     def _errors(self) -> dict[str, Any]:
         kind, measurement = self.found.kind, self.measurement
@@ -101,21 +114,21 @@ class Explanation:
             "declared": error(measurement.case),
             "before": error(before),
             "after": error(after),
-            "holdout_before": error(self._refitted_to_fitted, unseen),
-            "holdout_after": error(self._explained_by_fitted, unseen),
+            "holdout_before": error(self.refitted_to_fitted, unseen),
+            "holdout_after": error(self.explained_by_fitted, unseen),
         }
 
     @property
-    def _refitted_to_fitted(self) -> Case:
+    def refitted_to_fitted(self) -> Case:
         """Declared case refitted to the runs for fitting alone."""
         values = self.found.first.before.by_name
         return self.measurement.case.patch(values) if values else self.measurement.case
 
     @property
-    def _explained_by_fitted(self) -> Case:
+    def explained_by_fitted(self) -> Case:
         """Case with the effects added, fitted to the runs for fitting alone."""
         if self.verdict != "explained":
-            return self._refitted_to_fitted
+            return self.refitted_to_fitted
         return self.found.problem.case(self.found.of_fitted.by_name)
 
     def _noise_floor(self) -> float | None:

@@ -62,7 +62,7 @@ class Unusable:
                 "holdout_after": None,
             },
             "candidates": [],
-            "signature": {"lead": {"residual": "", "over": "", "share": 0.0}},
+            "signature": {"refitted": None, "with_what_was_added": None, "lead": None},
             "left_over_noise": {},
         }
 

@@ -1,0 +1,159 @@
+"""How much of a residual hangs on a variable, judged on runs that were not looked at.
+
+The residual is fitted by g(v) w, g a step function over bins of the variable v and w a weight (one,
+or the predicted signal where a coefficient may hang on v). The steps are read from all runs but
+one and explain that one, so that a share of zero or less is what noise gives. Chance is looked at
+by shifting every run's residual in time against its variables: that keeps its spectrum and its
+size and breaks nothing but the tie.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+#: shifts against which a share is held, and standard deviations of theirs that it must exceed
+_SHIFTS, _BEYOND = 150, 3.0
+#: shares below this are not told, whatever their significance
+LEAST_SHARE = 0.01
+#: runs below which every run is cut into this many folds
+_FEW_RUNS, _FOLDS = 3, 4
+
+
+class Sample(NamedTuple):
+    """One run of a channel for a dependence.
+
+    Parameters
+    ----------
+    scaled : (n,) array
+        Residual over the noise.
+    weight : (n,) array
+        Weight over the noise.
+    place : (n,) array of int
+        Bin of every sample; -1 for none.
+    """
+
+    scaled: Array
+    weight: Array
+    place: Indices
+
+
+class Dependence(NamedTuple):
+    """Share of a residual that hangs on a variable.
+
+    Parameters
+    ----------
+    share : float
+        Of the sum of squares over the noise, by runs not looked at; below 0 for noise.
+    chance : float
+        Share that shifted residuals do not exceed.
+    coefficients, errors : (bins,) array
+        g of every bin from all runs, nan where there are no samples, and its standard error.
+    """
+
+    share: float
+    chance: float
+    coefficients: Array
+    errors: Array
+
+    @property
+    def beyond_chance(self) -> bool:
+        """Whether it is more than noise gives."""
+        return self.share > max(self.chance, LEAST_SHARE)
+
+
+def edges_of(values: Array, count: int = 24) -> Array:
+    """Edges of bins, half of them evenly spaced and half of them evenly filled."""
+    known = values[np.isfinite(values)]
+    if known.size == 0 or known.min() == known.max():
+        middle = float(known[0]) if known.size else 0.0
+        return np.array([middle - 0.5, middle + 0.5])
+    even = np.linspace(known.min(), known.max(), count // 2 + 1)
+    filled = np.quantile(known, np.linspace(0.0, 1.0, count // 2 + 1))
+    edges = np.unique(np.concatenate((even, filled)))
+    # edges that nearly coincide make bins that hold nothing
+    keep = np.concatenate(([True], np.diff(edges) > 1e-3 * (edges[-1] - edges[0])))
+    keep[-1] = True
+    return edges[keep]
+
+
+def places_in(values: Array, edges: Array) -> Indices:
+    """Bin of every value; -1 where it is not known."""
+    place = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
+    return np.where(np.isfinite(values), place, -1)
+
+
+def dependence(samples: Sequence[Sample], bins: int, seed: int = 0) -> Dependence:
+    """Share of a residual that a step function of a variable explains in runs not looked at.
+
+    Parameters
+    ----------
+    samples : sequence of Sample
+        One a run.
+    bins : int
+    seed : int
+        Of the shifts.
+    """
+    folds = [fold for sample in samples for fold in _folds(sample, len(samples))]
+    weights = [_sums(fold.place, fold.weight**2, bins) for fold in folds]
+    folds = _without_constant(folds)
+    total = sum(float(s.scaled @ s.scaled) for s in samples)
+    share = _share(folds, weights, bins) / max(total, 1e-300)
+    chance = np.inf
+    if share > LEAST_SHARE:
+        rng = np.random.default_rng(seed)
+        shifted = np.array([_share(_shifted(folds, rng), weights, bins) for _ in range(_SHIFTS)])
+        shifted /= max(total, 1e-300)
+        # what a shift loses by chance is no measure of how far it may gain
+        spread = float(np.std(shifted))
+        chance = max(float(shifted.max()), float(shifted.mean()) + _BEYOND * spread)
+    all_weights = np.sum(weights, axis=0)
+    products = sum(_sums(s.place, s.scaled * s.weight, bins) for s in samples)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        coefficients = np.where(all_weights > 0.0, products / all_weights, np.nan)
+        errors = np.where(all_weights > 0.0, 1.0 / np.sqrt(all_weights), np.nan)
+    return Dependence(share, chance, coefficients, errors)
+
+
+def _folds(sample: Sample, runs: int) -> list[Sample]:
+    if runs >= _FEW_RUNS:
+        return [sample]
+    cuts = np.array_split(np.arange(sample.scaled.size), _FOLDS)
+    return [Sample(*(column[cut] for column in sample)) for cut in cuts]
+
+
+def _without_constant(folds: Sequence[Sample]) -> list[Sample]:
+    """Folds less the one multiple of the weight that suits all: a constant hangs on nothing."""
+    weights = sum(float(s.weight @ s.weight) for s in folds)
+    constant = sum(float(s.scaled @ s.weight) for s in folds) / max(weights, 1e-300)
+    return [s._replace(scaled=s.scaled - constant * s.weight) for s in folds]
+
+
+def _shifted(folds: Sequence[Sample], rng: np.random.Generator) -> list[Sample]:
+    return [s._replace(scaled=np.roll(s.scaled, rng.integers(s.scaled.size))) for s in folds]
+
+
+def _sums(place: Indices, values: Array, bins: int) -> Array:
+    known = place >= 0
+    if known.all():
+        return np.bincount(place, weights=values, minlength=bins)
+    return np.bincount(place[known], weights=values[known], minlength=bins)
+
+
+def _share(folds: Sequence[Sample], weights: Sequence[Array], bins: int) -> float:
+    """Sum of squares that every fold loses by the steps of the others."""
+    products = [_sums(s.place, s.scaled * s.weight, bins) for s in folds]
+    all_products, all_weights = np.sum(products, axis=0), np.sum(weights, axis=0)
+    lost = 0.0
+    for own, weight in zip(products, weights, strict=True):
+        others = all_weights - weight
+        known = others > 1e-12 * np.maximum(all_weights, 1e-300)
+        steps = np.where(known, (all_products - own) / np.where(known, others, 1.0), 0.0)
+        lost += float(np.sum(2.0 * steps * own - steps**2 * weight))
+    return lost

@@ -1,0 +1,128 @@
+"""What a view found: a sentence in plain words, its numbers, and what to draw."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Bars:
+    """Bars in groups: one group a category, one bar a series.
+
+    Parameters
+    ----------
+    categories : tuple of str
+    series : mapping of str to (n,) array of float
+    label : str
+        Of the values.
+    floor : float, optional
+        Level that is drawn as a line.
+    """
+
+    categories: tuple[str, ...]
+    series: Mapping[str, Array]
+    label: str
+    floor: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A curve, with the standard errors of its values where they are known."""
+
+    x: Array
+    y: Array
+    label: str = ""
+    spread: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Curves:
+    """Curves over one variable.
+
+    Parameters
+    ----------
+    curves : tuple of Curve
+    x_label, y_label : str
+    marks : mapping of str to tuple of float
+        Upright lines, by what they stand for.
+    floor : float, optional
+        Level that is drawn as a line.
+    logarithmic : str
+        Of "x", "y", "xy" or "": axes with a logarithmic scale.
+    joined : bool
+        Whether the values are joined by lines.
+    """
+
+    curves: tuple[Curve, ...]
+    x_label: str
+    y_label: str
+    marks: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    floor: float | None = None
+    logarithmic: str = ""
+    joined: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class Map:
+    """Values over two variables, nan where there are none."""
+
+    x_edges: Array
+    y_edges: Array
+    values: Array  # (y, x)
+    x_label: str
+    y_label: str
+    label: str
+    logarithmic: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """Points of several classes over two variables."""
+
+    classes: Mapping[str, tuple[Array, Array]]
+    x_label: str
+    y_label: str
+    logarithmic: str = ""
+
+
+Panel = Bars | Curves | Map | Points
+
+
+@dataclass(frozen=True, eq=False)
+class Finding:
+    """What one view says of a residual.
+
+    Parameters
+    ----------
+    view : str
+        Name of the view.
+    says : str
+        One sentence with numbers; what was looked at, where nothing was found.
+    beyond_chance : bool
+        Whether it shows more than chance does.
+    numbers : mapping
+        As JSON knows them.
+    panel : Panel, optional
+    """
+
+    view: str
+    says: str
+    beyond_chance: bool
+    numbers: Mapping[str, Any] = field(default_factory=dict)
+    panel: Panel | None = None
+
+    def summary(self) -> dict[str, Any]:
+        """Entry of explanation.json."""
+        return {
+            "view": self.view,
+            "says": self.says,
+            "beyond_chance": self.beyond_chance,
+            "numbers": dict(self.numbers),
+        }

@@ -1,0 +1,136 @@
+"""Periods in a variable: lines of the residual that lie at the same wavelength in every run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+#: draws of periods near by against which a share is held, and their share that may reach it
+_DRAWS, _ALLOWED = 4000, 5e-4
+#: factor in wavelength within which they are drawn, and by which a line stands out of them
+_NEAR, _OUTSTANDING = 1.6, 4.0
+#: periods over the range of the variable at least
+_FEWEST_PERIODS = 3.0
+#: and over that of a run that has a say
+_LEAST_TURNS = 1.5
+#: distance from a pattern that a run has by itself, in lines that its length can tell apart
+_ASIDE = 1.5
+#: periods looked at within one over the range of the variable
+_FINENESS = 4
+#: the most wavelengths looked at, and the most samples a run
+_MOST, _MOST_SAMPLES = 900, 20000
+_LEAST_SHARE = 0.01
+
+
+class Period(NamedTuple):
+    """A period in a variable, with phase and size free in every run.
+
+    Parameters
+    ----------
+    length : float
+        SI unit of the variable.
+    share : float
+        Of the sum of squares over the noise; the period of a run is read from the others.
+    beyond_chance : bool
+        Whether runs agree on it beyond chance.
+    lengths, shares : (m,) array
+        Share over the period.
+    """
+
+    length: float
+    share: float
+    beyond_chance: bool
+    lengths: Array
+    shares: Array
+
+
+def period_in(
+    scaled: Sequence[Array],
+    weight: Sequence[Array],
+    variable: Sequence[Array],
+    shortest: float,
+    own: Sequence[float] | None = None,
+    seed: int = 0,
+) -> Period | None:
+    """Period of a variable on which runs agree.
+
+    Parameters
+    ----------
+    scaled, weight : sequence of (n,) array
+        Residual and weight over the noise, one a run.
+    variable : sequence of (n,) array
+    shortest : float
+        Period below which none is looked for.
+    own : sequence of float, optional
+        Period that every run has by itself (feed per revolution); it and its parts are left out.
+
+    Returns
+    -------
+    Period or None
+        None where the variable spans too few of the shortest periods.
+    """
+    longest = max(float(np.ptp(v)) for v in variable)
+    if longest < 2.0 * _FEWEST_PERIODS * shortest or len(scaled) < 2:
+        return None
+    count = int(min(_MOST, _FINENESS * longest / shortest))
+    wavenumber = np.linspace(_FEWEST_PERIODS / longest, 1.0 / shortest, count)
+    total = sum(float(s @ s) for s in scaled)
+    lines = np.array(
+        [_lines(s, w, v, wavenumber) for s, w, v in zip(scaled, weight, variable, strict=True)]
+    )
+    for line, values, length in zip(lines, variable, own or (), strict=False):
+        turns = wavenumber * length
+        aside = np.abs(turns - np.round(turns)) / length * float(np.ptp(values))
+        line[(aside < _ASIDE) & (np.round(turns) > 0)] = 0.0
+    together = lines.sum(axis=0)
+    chosen = np.argmax(together - lines, axis=1)  # of every run, by the others
+    explained = float(lines[np.arange(len(lines)), chosen].sum())
+    rng = np.random.default_rng(seed)
+    near = wavenumber[chosen] * _NEAR ** rng.uniform(-1.0, 1.0, size=(_DRAWS, len(lines)))
+    drawn = np.clip(np.searchsorted(wavenumber, near), 0, count - 1)
+    by_chance = lines[np.arange(len(lines)), drawn].sum(axis=1)
+    share = explained / max(total, 1e-300)
+    rare = float(np.mean(by_chance >= explained)) <= _ALLOWED
+    rare &= explained > _OUTSTANDING * float(np.median(by_chance))
+    # runs agree where most of them choose the same line
+    best = int(np.argmax(together))
+    agreed = float(np.mean(np.abs(chosen - best) <= _FINENESS // 2)) > 0.5
+    return Period(
+        float(1.0 / wavenumber[best]),
+        share,
+        rare and agreed and share > _LEAST_SHARE,
+        1.0 / wavenumber,
+        together / max(total, 1e-300),
+    )
+
+
+def _lines(scaled: Array, weight: Array, variable: Array, wavenumber: Array) -> Array:
+    """Sum of squares that a line of every wavenumber takes from one run, less that of noise."""
+    stride = max(1, scaled.size // _MOST_SAMPLES)
+    scaled, weight, variable = scaled[::stride], weight[::stride], variable[::stride]
+    constant = (scaled @ weight) / max(float(weight @ weight), 1e-300)
+    scaled = scaled - constant * weight
+    taken, reach = np.empty(wavenumber.size), float(np.ptp(variable))
+    # every wavenumber turns the samples on by the same angle
+    wave = weight * np.exp(2j * np.pi * wavenumber[0] * variable)
+    turned = np.exp(2j * np.pi * (wavenumber[1] - wavenumber[0]) * variable)
+    for place, k in enumerate(wavenumber):
+        if place:
+            wave = wave * turned
+        cosine, sine = wave.real, wave.imag
+        a, b, c = cosine @ cosine, cosine @ sine, sine @ sine
+        if k * reach < _LEAST_TURNS:
+            taken[place] = 2.0
+            continue
+        p, q = cosine @ scaled, sine @ scaled
+        determinant = a * c - b * b
+        if determinant > 1e-9 * a * c:
+            taken[place] = (c * p * p - 2.0 * b * p * q + a * q * q) / determinant
+        else:
+            taken[place] = 0.0
+    return stride * (taken - 2.0)

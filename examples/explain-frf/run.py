@@ -1,0 +1,42 @@
+"""Tap tests that change when the tool is in the cut: contact.
+
+Eight FRFs, idle and in the cut; the README tells the story.
+"""
+
+from pathlib import Path
+
+from chatter.explain import explain, read_measurement
+from chatter.explain.lobes_before_after import lobes_before_after
+from chatter.plots.explanation import plot_lobes_before_after
+
+HERE = Path(__file__).parent
+
+
+def main(out: Path) -> list[Path]:
+    """Find out what the declared case lacks, print the story, return what was written."""
+    result = explain(read_measurement(HERE / "measurement"))
+    print(f"verdict: {result.verdict}")
+    for finding in result.signatures.refitted.telling:
+        print(finding.says)
+    summary = result.summary()
+    for effect in summary["effects"]:
+        numbers = ", ".join(
+            f"{key} {one['value']:.4g} {one['unit']} ({one['ci95'][0]:.4g} to {one['ci95'][1]:.4g})"
+            for key, one in effect["parameters"].items()
+        )
+        print(f"missing: {effect['name']}: {numbers}")
+    error = summary["error"]
+    print(
+        f"error on runs that were not seen: {100 * error['holdout_before']:.3g} % before, "
+        f"{100 * error['holdout_after']:.3g} % after, noise {100 * error['noise_floor']:.3g} %"
+    )
+    written = result.save(out)
+    lobes = lobes_before_after(result)
+    for sentence in lobes.says:
+        print(sentence)
+    plot_lobes_before_after(lobes).savefig(out / "lobes.png")
+    return [*written, out / "lobes.png"]
+
+
+if __name__ == "__main__":
+    main(Path("out"))

@@ -1,0 +1,127 @@
+"""Examples with a story: what is missing is found again, the report holds what it should."""
+
+import json
+import math
+from dataclasses import replace
+
+import pytest
+
+from chatter.case import load
+from chatter.example_cases import examples
+from chatter.explain import compare, explain, read_measurement
+from chatter.explain import lobes_before_after as lobes_before_after_module
+
+NAMES = ("explain-axis", "explain-frf", "explain-milling", "explain-stability")
+HEADINGS = (
+    "What was added",
+    "Error before and after",
+    "Where the residual lives",
+    "Candidates",
+    "Values refitted",
+)
+
+
+def measurement(name):
+    return read_measurement(examples()[name].folder / "measurement")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_example_tells_its_story(name):
+    folder = examples()[name].folder
+    text = (folder / "README.md").read_text(encoding="utf-8")
+    assert "blind_sets" in text  # how the data were made
+    for picture in (line for line in text.splitlines() if line.startswith("![")):
+        assert (folder / picture.partition("](")[2].rstrip(")")).is_file()
+    assert text.count("![") >= 1
+    size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
+    assert size < 800_000
+    assert measurement(name).runs
+
+
+@pytest.mark.parametrize(
+    ("name", "effect", "numbers", "lobes"),
+    [
+        ("explain-axis", "presliding", {"sigma0": 1588740.0}, False),
+        ("explain-frf", "contact", {"stiffness": 1116321.5, "damping": 66.09}, True),
+    ],
+)
+def test_example_runs_and_reports(name, effect, numbers, lobes, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(lobes_before_after_module, "_SPEEDS", 16)
+    monkeypatch.setattr(lobes_before_after_module, "_ASKED", 6)
+    written = examples()[name].run(tmp_path)
+    assert f"missing: {effect}" in capsys.readouterr().out
+    assert all(path.is_file() for path in written)
+    summary = json.loads((tmp_path / "explanation.json").read_text())
+    assert summary["verdict"] == "explained"
+    (found,) = summary["effects"]
+    for key, true in numbers.items():  # as the generator drew them
+        assert found["parameters"][key]["value"] == pytest.approx(true, rel=0.05)
+    error = summary["error"]
+    assert error["holdout_after"] < 1.3 * error["noise_floor"]
+    signature = summary["signature"]
+    assert any(view["beyond_chance"] for view in signature["refitted"]["views"])
+    assert not any(view["beyond_chance"] for view in signature["with_what_was_added"]["views"])
+    for channel in summary["error_by_channel"].values():
+        assert channel["unseen_runs"]["with what was added"] < channel["unseen_runs"]["refitted"]
+        assert channel["unseen_runs"]["with what was added"] < 1.5 * channel["noise_floor"]
+
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    for heading in (*HEADINGS, *(["Lobes before and after"] if lobes else [])):
+        assert f"<h2>{heading}</h2>" in page
+    for view in signature["refitted"]["views"]:
+        if view["beyond_chance"]:
+            assert view["says"][:40] in page
+    assert "<script" not in page
+    assert "http" not in page  # nothing is fetched
+    assert page.count("data:image/png;base64") >= 3
+    if lobes:
+        assert "by itself does not act in linear lobes" in page
+    load(tmp_path / "case-updated.toml")
+
+
+def test_a_mode_that_was_missed_is_found_in_few_runs(monkeypatch):
+    whole = measurement("explain-milling")
+    few = replace(whole, runs=whole.runs[:3])
+    result = explain(few)
+    summary = result.summary()
+    assert [effect["name"] for effect in summary["effects"]] == ["missing_mode"]
+    found = summary["effects"][0]["parameters"]
+    assert found["frequency"]["value"] == pytest.approx(1648.8, rel=0.01)
+    frequency = next(
+        view for view in summary["signature"]["refitted"]["views"] if view["view"] == "frequency"
+    )
+    assert "the case has no natural frequency" in frequency["says"]
+    monkeypatch.setattr(lobes_before_after_module, "_SPEEDS", 24)
+    lobes = lobes_before_after_module.lobes_before_after(result)
+    before, after = (
+        lobes.diagrams[step].limits.critical_depth for step in ("refitted", "with what was added")
+    )
+    assert not math.isclose(before.min(), after.min(), rel_tol=1e-3)
+    assert not any("does not act" in sentence for sentence in lobes.says)
+
+
+def test_declared_lobes_forbid_tests_that_were_stable(tmp_path):
+    result = compare(measurement("explain-stability"))
+    wrong = result.signature.findings[0]
+    assert wrong.beyond_chance
+    assert wrong.numbers["stable_though_predicted_chatter"] > 0.8 * wrong.numbers["wrong"]
+    written = result.save(tmp_path)
+    assert {path.name for path in written} == {
+        "compare.csv",
+        "compare.json",
+        "compare.png",
+        "signature.png",
+    }
+    assert json.loads((tmp_path / "compare.json").read_text())["signature"]["views"]
+
+
+def test_compare_tells_errors_over_the_noise(tmp_path):
+    result = compare(measurement("explain-axis"))
+    heading, *rows = result.save(tmp_path)[0].read_text().splitlines()
+    assert heading.split(",")[-2:] == ["noise [SI]", "rms error over noise"]
+    assert len(rows) == 6
+    run, channel, error, _, noise, over = rows[0].split(",")
+    assert (run, channel) == ("move01.npz", "force")
+    # near rest little is known of the direction, and samples count less
+    assert 1.0 < float(over) < float(error) / float(noise)
+    assert all(0.2 < float(row.split(",")[4]) < 5.0 for row in rows)
