@@ -91,8 +91,7 @@ def set_up_machine(case: Case, on_machine: MachineCut | None = None) -> MachineS
     resolution = _resolution(case, cutter, modes, step)
     notes = _notes(cut)
     base = compiled(case, cutter, modes, resolution, notes)
-    settling = case.structure.settling
-    before = round((_SETTLING if settling is None else settling) / step)
+    before = round(_time_before(case, cut) / step)
     feed = base.path.feed
     points = _set_points(cut, feed, case.cut.spindle_speed, (before * step) + _length(base, step))
     tables = _tables(cut, case, step, points)
@@ -118,6 +117,20 @@ def tool_side(setup: MachineSetup) -> ToolSide:
         force=np.zeros(3),
         torque=np.zeros(1),
     )
+
+
+def _time_before(case: Case, cut: MachineCut) -> float:
+    """Time that the machine runs in the air, s: its axes have their feed at its end."""
+    settling = case.structure.settling
+    if settling is None:
+        return _SETTLING
+    if cut.feeds and settling < _SPEEDING_UP:
+        raise InputError(
+            f"{case.name}: structure.settling: {settling:g} s is given, but the axes "
+            f"{', '.join(cut.feeds)} of {cut.file.name} take {_SPEEDING_UP:g} s to come to the "
+            f"feed; {_SPEEDING_UP:g} s or more is wanted"
+        )
+    return settling
 
 
 def _step(case: Case, cut: MachineCut, cutter: Cutter) -> float:

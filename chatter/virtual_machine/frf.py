@@ -63,17 +63,33 @@ def linearised_frf(
 
 
 def linearised_frictions(
-    machine: Machine, velocity: Mapping[str, float], amplitude: float | None = None
+    machine: Machine,
+    velocity: Mapping[str, float],
+    amplitude: float | Mapping[str, float] | None = None,
 ) -> dict[str, Linearised]:
-    """How each friction is linearised in a state of motion, by its name."""
+    """How each friction is linearised in a state of motion, by its name.
+
+    Parameters
+    ----------
+    machine : Machine
+    velocity : mapping of str to float
+        Of axes that move, m/s.
+    amplitude : float or mapping of str to float, optional
+        Of the motion at frictions that do not slide, m (rad): at all, or by their names; at those
+        without one it vanishes.
+    """
     moving = rigid_motion(machine, velocity) if velocity else np.zeros(machine.structure.size)
-    resting = _at_rest if amplitude is None else at_amplitude(amplitude)
     return {
         one.name: at_velocity(float(one.row @ moving))
         if abs(one.row @ moving) > _RESTING
-        else resting
+        else _resting(one.name, amplitude)
         for one in machine.frictions
     }
+
+
+def _resting(name: str, amplitude: float | Mapping[str, float] | None) -> Linearised:
+    here = amplitude.get(name) if isinstance(amplitude, Mapping) else amplitude
+    return _at_rest if here is None else at_amplitude(here)
 
 
 def _at_rest(law: FrictionLaw, frequency: NDArray[np.float64]) -> NDArray[np.complex128]:

@@ -111,6 +111,13 @@ STUDIES: dict[str, ReadyStudy] = {
             only=("rest",),
         ),
         ReadyStudy(
+            "friction-amplitude",
+            "What does the amplitude of the vibration do to lobes where a guide rubs?",
+            "friction-amplitude/case.toml",
+            ("structure.friction_amplitude=0.2 um, 1 um, 2 um, 4 um, 7 um, 20 um, 60 um",),
+            "lobes",
+        ),
+        ReadyStudy(
             "contact",
             "What does the contact of tool and work do to the table?",
             "machine-coupled-milling/machine.toml",
