@@ -43,6 +43,10 @@ class Case(Description):
 
     NOUN: ClassVar[str] = "case"
     EXAMPLE_PATH: ClassVar[str] = "cut.axial_depth"
+    OTHER_KIND: ClassVar[tuple[tuple[str, ...], str]] = (
+        ("body", "beam", "connector", "point"),
+        "machine",
+    )
     LAYOUT: ClassVar[Layout] = Layout(
         headed=frozenset({("friction", "*")}),
         alternatives={
