@@ -24,6 +24,7 @@ from chatter.case.sections import (
     ProcessDamping,
     Simulation,
     Stock,
+    Uncertainty,
     Wear,
 )
 from chatter.case.structure import StructureSection
@@ -71,6 +72,7 @@ class Case(Description):
     simulation: Simulation | None = None
     stock: Stock | None = None
     lobes: Lobes | None = None
+    uncertainty: Uncertainty | None = None
 
     #: takes the place of the file that structure.machine names; no file holds it
     _machine: Any = PrivateAttr(default=None)
