@@ -28,6 +28,7 @@ from chatter.case.sections import (
     ProcessDamping,
     Simulation,
     Stock,
+    Uncertainty,
     Wear,
 )
 from chatter.case.structure import StructureSection
@@ -47,6 +48,10 @@ class Case(Description):
 
     NOUN: ClassVar[str] = "case"
     EXAMPLE_PATH: ClassVar[str] = "cut.axial_depth"
+    OTHER_KIND: ClassVar[tuple[tuple[str, ...], str]] = (
+        ("body", "beam", "connector", "point"),
+        "machine",
+    )
     LAYOUT: ClassVar[Layout] = Layout(
         headed=frozenset({("friction", "*")}),
         alternatives={
@@ -71,6 +76,7 @@ class Case(Description):
     simulation: Simulation | None = None
     stock: Stock | None = None
     lobes: Lobes | None = None
+    uncertainty: Uncertainty | None = None
 
     #: takes the place of the file that structure.machine names; no file holds it
     _machine: Any = PrivateAttr(default=None)

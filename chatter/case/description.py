@@ -14,8 +14,17 @@ from pydantic import PrivateAttr, ValidationError
 from chatter.case.base import Section
 from chatter.case.document import parse_document, plain, read_text, value_at
 from chatter.case.editing import PLAIN, Layout, set_value
-from chatter.case.path import Step, field_at, join_path, key_of, model_at, parse_path
-from chatter.case.wording import sentences, unknown_key
+from chatter.case.path import (
+    Step,
+    field_at,
+    info_at,
+    is_mapping,
+    join_path,
+    key_of,
+    model_at,
+    parse_path,
+)
+from chatter.case.wording import nearest, sentences, unknown_key
 from chatter.errors import InputError
 from chatter.shown import shown
 from chatter.units import parse, write
@@ -35,6 +44,8 @@ class Description(Section):
     NOUN: ClassVar[str]
     EXAMPLE_PATH: ClassVar[str]
     LAYOUT: ClassVar[Layout]
+    #: sections that only another kind of file has, and how that is called
+    OTHER_KIND: ClassVar[tuple[tuple[str, ...], str]]
 
     #: the file that it came from, and what was set in it since: (path, value)
     _document: Any = PrivateAttr(default=None)
@@ -149,6 +160,7 @@ class Description(Section):
         try:
             made = cls.model_validate(data, context={"folder": folder})
         except ValidationError as error:
+            cls._refuse_other_kind(data, name)
             problems = sentences(error, cls, name)
             told = [f"{name}: {path}: {text}" for path, text in cls._problems_of_draft(data)]
             raise InputError(
@@ -162,6 +174,15 @@ class Description(Section):
         if problems:
             raise InputError(problems)
         return made
+
+    @classmethod
+    def _refuse_other_kind(cls, data: Mapping[str, Any], name: str) -> None:
+        """Say in one sentence that a file of the other kind is given."""
+        keys, noun = cls.OTHER_KIND
+        found = [key for key in keys if key in data]
+        if len(found) > 1:
+            listed = " and ".join(f"[{key}]" for key in found)
+            raise InputError(f"{name}: is a {noun} ({listed}); a {cls.NOUN} is wanted")
 
     def get(self, path: str) -> Any:
         """Return the value at a dotted path, in SI; a tuple of all where a step is ``[*]``.
@@ -210,10 +231,12 @@ class Description(Section):
         data = copied(self._plain())
         edits = []
         problems: list[str] = []
+        unknown: list[str] = []
         for path, value in values.items():
             try:
                 steps = self._steps(path)
                 self._check_known(steps)
+                unknown += self._newly_made(data, steps)
                 given = self._in_given_unit(data, steps, plain(value, steps, self.NOUN))
                 set_value(data, steps, copied(given), self.LAYOUT, PLAIN)
                 edits.append((steps, given))
@@ -221,7 +244,13 @@ class Description(Section):
                 problems += [f"{self.name}: {message}" for message in error.messages]
         if problems:
             raise InputError(problems)
-        made = self._validated(data, self.name, self._folder)
+        try:
+            made = self._validated(data, self.name, self._folder)
+        except InputError as error:
+            # a table that was made and is not whole: its name is hardly meant
+            raise InputError(
+                [f"{self.name}: {text}" for text in unknown] or error.messages
+            ) from None
         made._document, made._edits = self._document, (*self._edits, *edits)
         return made
 
@@ -283,6 +312,19 @@ class Description(Section):
             if named and key_of(section, step) is None:
                 here = steps[: place + 1]
                 raise InputError(f"{join_path(steps)}: {unknown_key(cls, here)}")
+
+    @classmethod
+    def _newly_made(cls, document: Any, steps: tuple[Step, ...]) -> list[str]:
+        """Say where a path leads into a table of a name that none of its kind has."""
+        for place in range(1, len(steps) - 1):
+            kind, name = steps[:place], steps[place]
+            info = info_at(cls, kind)
+            stands = value_at(document, kind)
+            if info is None or not is_mapping(info.annotation) or not stands or name in stands:
+                continue
+            hint = nearest(str(name), [str(one) for one in stands])
+            return [f"{join_path(steps)}: there is no {join_path((*kind, name))}; {hint}"]
+        return []
 
     @classmethod
     def _in_given_unit(cls, document: Any, steps: tuple[Step, ...], value: Any) -> Any:

@@ -66,14 +66,14 @@ def model_at(model: type[BaseModel], steps: tuple[Step, ...]) -> type[BaseModel]
         sections = _sections(annotation)
         if isinstance(step, int) or step == "*":
             continue
-        if _is_mapping(annotation):
+        if is_mapping(annotation):
             annotation = get_args(annotation)[1]
             continue
         if not sections or key_of(sections[0], step) is None:
             return None
         annotation = sections[0].model_fields[key_of(sections[0], step)].annotation
     sections = _sections(annotation)
-    return sections[0] if sections and not _is_mapping(annotation) else None
+    return sections[0] if sections and not is_mapping(annotation) else None
 
 
 def info_at(model: type[BaseModel], steps: tuple[Step, ...]) -> FieldInfo | None:
@@ -113,7 +113,8 @@ def _sections(annotation: Any) -> list[type[BaseModel]]:
     return [section for part in get_args(annotation) for section in _sections(part)]
 
 
-def _is_mapping(annotation: Any) -> bool:
+def is_mapping(annotation: Any) -> bool:
+    """Whether an annotation is that of tables by name."""
     return get_origin(annotation) is dict
 
 

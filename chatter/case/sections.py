@@ -281,3 +281,21 @@ class Lobes(Section):
         text = f"{points} points in all; at most {MOST_POINTS} are allowed"
         raise_if_any([("", text)] if points > MOST_POINTS else [])
         return self
+
+
+class Correlation(Section):
+    """How two uncertain values go together."""
+
+    between: tuple[str, str] = Field(
+        description="paths of values with a standard deviation",
+        examples=[["material.Ktc", "material.Krc"]],
+    )
+    coefficient: quantity("number", above=-1.0, below=1.0) = Field(
+        description="of correlation, of the normal distributions"
+    )
+
+
+class Uncertainty(Section):
+    """What is known of values given with a standard deviation, besides it."""
+
+    correlation: tuple[Correlation, ...] = ()

@@ -150,7 +150,16 @@ def _also_file_names(schema: dict) -> None:
 
 
 #: keys that say how a machine cuts
-OF_MACHINE = ("feed", "tool_axis", "spindle", "condition", "position", "friction", "settling")
+OF_MACHINE = (
+    "feed",
+    "tool_axis",
+    "spindle",
+    "condition",
+    "position",
+    "friction",
+    "friction_amplitude",
+    "settling",
+)
 
 
 class StructureSection(Section):
@@ -181,6 +190,11 @@ class StructureSection(Section):
         None, description="of axes of the machine"
     )
     friction: bool | None = Field(None, description="false: the machine without any")
+    friction_amplitude: quantity("length", above=0.0) | None = Field(
+        None,
+        description="of the vibration along axes whose friction rests: lobes take their describing "
+        "functions at it instead of their stiffness at rest",
+    )
     settling: quantity("time", at_least=0.0) | None = Field(
         None, description="time that the machine runs in the air before the cut; 1 s by default"
     )
@@ -195,6 +209,8 @@ class StructureSection(Section):
                 for key in OF_MACHINE
                 if getattr(self, key) is not None
             ]
+        if self.friction is False and self.friction_amplitude is not None:
+            problems.append(("friction_amplitude", "is given, but friction = false leaves none"))
         if len(named) > 1:
             listed = " and ".join(named)
             problems.append(("", f"{listed} are both given; the structure comes from one of them"))

@@ -81,6 +81,8 @@ def _wrong_type(item: Any, steps: tuple[Step, ...]) -> str:
         return f"{shown(given)} is given, a list is wanted{hint}"
     if kind.startswith("string"):
         return f"{shown(given)} is given, text in quotes is wanted"
+    if kind.startswith("bool"):
+        return f"{shown(given)} is given, true or false is wanted"
     return f"{shown(given)} is not allowed here"
 
 

@@ -18,6 +18,7 @@ from chatter.cli.options import (
 from chatter.cli.report import (
     announce_compilation,
     print_json,
+    print_line,
     print_table,
     print_written,
     progress_bar,
@@ -118,5 +119,18 @@ def _print_peaks(summary: dict) -> None:
                     ]
                 )
         state = f" ({curve['state']})" if curve["state"] else ""
-        title = f"{curve['name']}{state}: peaks of the {curve['quantity']}"
-        print_table(title, ["", "frequency [Hz]", "magnitude [SI]", "damping [%]"], rows)
+        of_what = f"{curve['name']}{state}: peaks of the {curve['quantity']}"
+        if rows:
+            headers = ["", "frequency [Hz]", f"magnitude [{curve['unit']}]", "damping [%]"]
+            print_table(of_what, headers, rows)
+        else:
+            print_line(_without_peaks(of_what, curve))
+
+
+def _without_peaks(of_what: str, curve: dict) -> str:
+    lowest, highest = curve["band_Hz"]
+    largest = curve["largest"]
+    return (
+        f"{of_what}: none from {lowest:g} to {highest:g} Hz; the largest value is "
+        f"{largest['magnitude']:.4g} {curve['unit']} at {largest['frequency_Hz']:.4g} Hz"
+    )

@@ -10,6 +10,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
+from rich.text import Text
 
 #: messages go to stderr, so that stdout holds results alone
 MESSAGES = Console(stderr=True, highlight=False, soft_wrap=True)
@@ -52,12 +53,18 @@ def print_json(summary: dict) -> None:
 
 def print_table(title: str, headers: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
     """Print a table on stdout."""
-    table = Table(title=title, title_justify="left")
+    # as text: a unit in brackets is no markup
+    table = Table(title=Text(title), title_justify="left")
     for header in headers:
-        table.add_column(header, justify="right")
+        table.add_column(Text(header), justify="right")
     for row in rows:
-        table.add_row(*row)
+        table.add_row(*(Text(cell) for cell in row))
     RESULTS.print(table)
+
+
+def print_line(text: str) -> None:
+    """Print a line of a result on stdout."""
+    RESULTS.print(text, markup=False)
 
 
 def print_notes(notes: Sequence[str]) -> None:

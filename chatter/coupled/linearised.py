@@ -70,7 +70,13 @@ class LinearisedMachine:
         """What was assumed."""
         notes = [f"dynamics of {self.cut.file.name}, linearised, its control loops closed"]
         if self.cut.machine.frictions:
-            notes.append("frictions of axes that move slide, those of others stick")
+            amplitude = self.case.structure.friction_amplitude
+            others = (
+                "stick"
+                if amplitude is None
+                else f"are linearised at vibration of {amplitude * 1e6:g} um along their axes"
+            )
+            notes.append(f"frictions of axes that move slide, those of others {others}")
         misfit = self._fitted[1]
         if misfit > _WORTH_TELLING:
             notes.append(
@@ -110,7 +116,7 @@ def machine_structure(case: Case) -> LinearisedMachine:
 
 
 def tool_receptance(
-    case: Case, cut: MachineCut, frequency: NDArray[np.float64], amplitude: float | None = None
+    case: Case, cut: MachineCut, frequency: NDArray[np.float64]
 ) -> NDArray[np.complex128]:
     """Receptance (m, 3, 3) of the tool against the workpiece in the directions of the cut, m/N.
 
@@ -120,12 +126,27 @@ def tool_receptance(
     cut : MachineCut
     frequency : (m,) array of float
         Hz, above 0.
-    amplitude : float, optional
-        Of the motion at frictions that do not slide, m (rad), for their describing functions.
     """
     moving = _moving(case, cut)
-    frictions = linearised_frictions(cut.machine, moving, amplitude)
+    frictions = linearised_frictions(cut.machine, moving, _amplitudes(case, cut))
     return receptance(cut.machine, frequency, cut.tool, cut.file.step, frictions)
+
+
+def _amplitudes(case: Case, cut: MachineCut) -> dict[str, float] | None:
+    """Amplitude at every friction for the one along the axes, m; at motors by the transmission."""
+    along = case.structure.friction_amplitude
+    if along is None:
+        return None
+    found = {}
+    for one in cut.machine.frictions:
+        # one friction of the file may act at several places: "name[1]"
+        target = cut.file.friction[one.name.partition("[")[0]].on
+        drive = None if target.motor is None else cut.file.axis[target.motor].drive
+        if drive is None:
+            found[one.name] = along
+        elif not drive.turns:
+            found[one.name] = along / drive.spec().transmission
+    return found
 
 
 def _moving(case: Case, cut: MachineCut) -> dict[str, float]:

@@ -104,6 +104,7 @@ def machine_cut(case: Case, friction: bool | None = None) -> MachineCut:
     file = case.machine_file()
     if file.tool_point is None:
         raise InputError(f"{file.name}: tool_point is missing; {case.name} cuts there")
+    _refuse_unknown_axes(case, file)
     machine = file.machine(section.condition, section.position)
     wanted = section.friction if friction is None else friction
     if wanted is False:
@@ -122,6 +123,17 @@ def machine_cut(case: Case, friction: bool | None = None) -> MachineCut:
         spindle, sense = _spindle_row(case, file, machine, name, workpiece, axes[2])
     feeds = _feeds(machine, tool, [one for one in machine.axes if one != name])
     return MachineCut(file, machine, tool, spindle, name, sense, feeds)
+
+
+def _refuse_unknown_axes(case: Case, file: MachineFile) -> None:
+    for key in ("condition", "position"):
+        for name in getattr(case.structure, key) or ():
+            if name not in file.axis:
+                known = ", ".join(file.axis) or "none"
+                raise InputError(
+                    f'{case.name}: structure.{key}: {file.name} has no axis "{name}"; there are '
+                    f"{known}"
+                )
 
 
 def cut_directions(case: Case) -> NDArray[np.float64]:

@@ -25,8 +25,9 @@ from dynamics.trajectory.set_points import SetPoints
 #: steps of the time that a tooth is in the cut, and between teeth, at the least
 _STEPS_A_CUT = 40
 _STEPS_A_PITCH = 16
-#: time that the machine runs before the cut, and over which its axes come to speed, s
-_SETTLING, _SPEEDING_UP = 1.0, 0.3
+#: time that the machine runs before the cut, over which its axes come to speed, and in which they
+#: can at all, s
+_SETTLING, _SPEEDING_UP, _LEAST_SPEEDING_UP = 1.0, 0.3, 0.05
 #: rows of the record, at the most
 _MOST_ROWS = 200_000
 
@@ -91,10 +92,10 @@ def set_up_machine(case: Case, on_machine: MachineCut | None = None) -> MachineS
     resolution = _resolution(case, cutter, modes, step)
     notes = _notes(cut)
     base = compiled(case, cutter, modes, resolution, notes)
-    settling = case.structure.settling
-    before = round((_SETTLING if settling is None else settling) / step)
+    before = round(_time_before(case, cut) / step)
     feed = base.path.feed
-    points = _set_points(cut, feed, case.cut.spindle_speed, (before * step) + _length(base, step))
+    duration = before * step + _length(base, step)
+    points = _set_points(cut, feed, case.cut.spindle_speed, duration, before * step)
     tables = _tables(cut, case, step, points)
     known = {field.name: getattr(base, field.name) for field in fields(Setup)}
     return MachineSetup(**known, on_machine=cut, tables=tables, machine_step=step, settling=before)
@@ -118,6 +119,20 @@ def tool_side(setup: MachineSetup) -> ToolSide:
         force=np.zeros(3),
         torque=np.zeros(1),
     )
+
+
+def _time_before(case: Case, cut: MachineCut) -> float:
+    """Time that the machine runs in the air, s: its axes have their feed at its end."""
+    settling = case.structure.settling
+    if settling is None:
+        return _SETTLING
+    if cut.feeds and settling < _LEAST_SPEEDING_UP:
+        raise InputError(
+            f"{case.name}: structure.settling: {settling:g} s is given, but the axes "
+            f"{', '.join(cut.feeds)} of {cut.file.name} have to come to the feed in it; "
+            f"{_LEAST_SPEEDING_UP:g} s or more is wanted"
+        )
+    return settling
 
 
 def _step(case: Case, cut: MachineCut, cutter: Cutter) -> float:
@@ -152,23 +167,26 @@ def _length(base: Setup, step: float) -> float:
     return base.resolution.turns * 2.0 * math.pi / base.spindle.speed + 10.0 * step
 
 
-def _set_points(cut: MachineCut, feed: float, speed: float, duration: float) -> SetPoints:
-    """Axes that come to speed smoothly and keep it, the spindle at speed from the start."""
+def _set_points(
+    cut: MachineCut, feed: float, speed: float, duration: float, before: float
+) -> SetPoints:
+    """Axes that come to speed smoothly before the cut, the spindle at speed from the start."""
     machine = cut.machine
     cycle = max(
         (drive.controller.position.timing.sample_time for drive in machine.drives),
         default=cut.file.step,
     )
     time = cycle * np.arange(math.ceil(duration / cycle) + 2)
-    share = np.clip(time / _SPEEDING_UP, 0.0, 1.0)
+    ramp = max(min(_SPEEDING_UP, before), _LEAST_SPEEDING_UP)
+    share = np.clip(time / ramp, 0.0, 1.0)
     # half a cosine of velocity
     rising = 0.5 * (1.0 - np.cos(np.pi * share))
     way = np.where(
         share < 1.0,
-        0.5 * _SPEEDING_UP * (share - np.sin(np.pi * share) / np.pi),
-        time - 0.5 * _SPEEDING_UP,
+        0.5 * ramp * (share - np.sin(np.pi * share) / np.pi),
+        time - 0.5 * ramp,
     )
-    gain = np.where(share < 1.0, 0.5 * np.pi / _SPEEDING_UP * np.sin(np.pi * share), 0.0)
+    gain = np.where(share < 1.0, 0.5 * np.pi / ramp * np.sin(np.pi * share), 0.0)
     columns = [np.zeros((time.size, max(len(machine.axes), 1))) for _ in range(3)]
     for axis, velocity in cut.velocities(feed, speed).items():
         place = machine.axes.index(axis)

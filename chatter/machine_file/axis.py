@@ -56,6 +56,16 @@ class AxisSection(Section):
         for key in ("brake", "control"):
             if kind is None and getattr(self, key) is not None:
                 problems.append((key, "is given, but the axis has no drive"))
+        if self.control is not None and self.control.motors == "each":
+            problems += [
+                (
+                    f"drive.motors[{place}].preload",
+                    f'{motor.preload:g} N m is given, but with control.motors = "each" the '
+                    'controllers of the motors take it back; "together" keeps it',
+                )
+                for place, motor in enumerate(() if kind is None else self.drive.motors)
+                if motor.preload
+            ]
         if kind is not None and self.drive.turns and (self.carries or self.position):
             problems.append(
                 ("", f'drive.kind = "{kind}" turns; position and carries do not belong to it')

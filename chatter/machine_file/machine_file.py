@@ -37,6 +37,10 @@ class MachineFile(Description):
 
     NOUN: ClassVar[str] = "machine"
     EXAMPLE_PATH: ClassVar[str] = "axis.Y.control.position.gain"
+    OTHER_KIND: ClassVar[tuple[tuple[str, ...], str]] = (
+        ("tool", "material", "cut", "structure"),
+        "case",
+    )
     LAYOUT: ClassVar[Layout] = Layout(
         headed=frozenset(
             {

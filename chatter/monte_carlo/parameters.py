@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ from chatter.errors import InputError
 from chatter.what_if.subject import deviations_of, field_of, value_of
 
 if TYPE_CHECKING:
+    from chatter.case import Case
     from chatter.what_if.subject import Subject
 
 #: of the open ends, where the quantile function is infinite or a bound itself
@@ -47,7 +49,7 @@ class UncertainParameter:
 
 
 def parameters_of(subject: Subject) -> tuple[UncertainParameter, ...]:
-    """Uncertain values of a case with its machine, taken as independent of each other.
+    """Uncertain values of a case with its machine; `correlation_of` says how they go together.
 
     Raises
     ------
@@ -64,6 +66,41 @@ def parameters_of(subject: Subject) -> tuple[UncertainParameter, ...]:
             'Ktc = "1650 +- 80 MPa", or --set material.Ktc="1650 +- 80 MPa"'
         )
     return tuple(found)
+
+
+def correlation_of(
+    case: Case, parameters: Sequence[UncertainParameter]
+) -> NDArray[np.float64] | None:
+    """Correlation (p, p) of the normal distributions that [uncertainty] gives; None without.
+
+    Raises
+    ------
+    InputError
+        If a path is not that of an uncertain value, or the coefficients contradict one another.
+    """
+    pairs = case.uncertainty.correlation if case.uncertainty else ()
+    if not pairs:
+        return None
+    known = [one.path for one in parameters]
+    matrix = np.eye(len(known))
+    for place, pair in enumerate(pairs):
+        where = f"{case.name}: uncertainty.correlation[{place}]"
+        for number, path in enumerate(pair.between):
+            if path not in known:
+                raise InputError(
+                    f"{where}.between[{number}]: {path} has no standard deviation; those that "
+                    f"have are {', '.join(known)}"
+                )
+        i, j = (known.index(path) for path in pair.between)
+        if i == j:
+            raise InputError(f"{where}.between: {pair.between[0]} is there twice")
+        matrix[i, j] = matrix[j, i] = pair.coefficient
+    if np.linalg.eigvalsh(matrix)[0] < _SMALLEST:
+        raise InputError(
+            f"{case.name}: uncertainty.correlation: no distribution has all these coefficients "
+            "together; make them smaller"
+        )
+    return matrix
 
 
 def _bounds(subject: Subject, path: str, mean: float) -> tuple[float, float]:

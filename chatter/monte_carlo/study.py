@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from chatter.case import Case
 from chatter.errors import InputError
 from chatter.monte_carlo.confidence import wilson_interval
-from chatter.monte_carlo.parameters import UncertainParameter, parameters_of
+from chatter.monte_carlo.parameters import UncertainParameter, correlation_of, parameters_of
 from chatter.monte_carlo.propagation import (
     Net,
     SampleLimits,
@@ -261,8 +261,9 @@ def uncertainty(
     """
     check_counts(count, speeds, seed)
     parameters = parameters_of(case)
+    correlation = correlation_of(case, parameters)
     net = shared_net(case, speeds)
-    values = samples(parameters, count, seed)
+    values = samples(parameters, count, seed, correlation)
     found = _all_limits(case, parameters, values, net, method, folder, progress, resumed)
     return Uncertainty(
         case=case,

@@ -15,11 +15,6 @@ if TYPE_CHECKING:
     from chatter.virtual_machine.frf import FrfResult
 
 _COLOURS = (style.BLUE, style.RED, style.GREEN, style.ORANGE, style.GREY, "#CC79A7", "#56B4E9")
-_LABELS = {
-    "receptance": ("receptance", "m/N"),
-    "mobility": ("mobility", "(m/s)/N"),
-    "accelerance": ("accelerance", "(m/s²)/N"),
-}
 _LEAST_COHERENCE = 0.999
 
 
@@ -43,10 +38,12 @@ def plot_frf(result: FrfResult) -> Figure:
         rows, 1, sharex=True, gridspec_kw={"height_ratios": [2.2, 1.0, 0.8][:rows]}
     )
     figure.suptitle(result.machine, fontsize=11.0, x=0.01, ha="left")
-    what, unit = _LABELS[result.curves[0].harmonic.quantity]
+    units = {curve.unit for curve in result.curves}
     for place, curve in enumerate(result.curves):
         colour = _COLOURS[place % len(_COLOURS)]
         label = curve.name if not curve.state else f"{curve.name}: {curve.state}"
+        if len(units) > 1:
+            label += f" [{curve.unit}]"
         _draw(axes[:2], curve.harmonic, label, colour=colour, linestyle="-", linewidth=1.4)
         if curve.tested is not None:
             _draw(axes[:2], curve.tested, "", colour=colour, linestyle=":", linewidth=1.8)
@@ -56,7 +53,8 @@ def plot_frf(result: FrfResult) -> Figure:
         for name, line in (("linearised", "-"), ("test in time", ":")):
             axes[0].plot([], [], color="black", linestyle=line, label=name)
     axes[0].set_yscale("log")
-    axes[0].set_ylabel(f"{what} [{unit}]")
+    what = result.curves[0].harmonic.quantity
+    axes[0].set_ylabel(f"{what} [{units.pop()}]" if len(units) == 1 else what)
     axes[1].set_ylabel("phase [deg]")
     axes[1].set_yticks([-180, -90, 0, 90, 180])
     axes[1].set_ylim(-190, 190)

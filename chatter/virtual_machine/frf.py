@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.result_files import as_json, finite_or_none, write_results
+from chatter.result_files import as_json, write_results
+from chatter.virtual_machine.frf_peaks import peaks, peaks_of_test
 from chatter.virtual_machine.rigid_motion import rigid_motion
 from dynamics.frf import Frf
 from dynamics.friction.coulomb_stribeck import CoulombStribeck
@@ -25,8 +26,9 @@ if TYPE_CHECKING:
 _RESTING = 1e-12
 #: stiffness of a dry friction at rest, N/m (N m/rad): it holds, and nothing in a machine is stiffer
 _HELD = 1e14
-#: a peak is told if it stands out by this factor from the valleys beside it
-_STANDS_OUT = 1.15
+#: what makes the unit of a motion that of each quantity, and the unit of what excites
+_RATES = {"receptance": "", "mobility": "/s", "accelerance": "/s^2"}
+_LOADS = {"force": "N", "torque": "(N*m)"}
 
 
 def linearised_frf(
@@ -61,17 +63,33 @@ def linearised_frf(
 
 
 def linearised_frictions(
-    machine: Machine, velocity: Mapping[str, float], amplitude: float | None = None
+    machine: Machine,
+    velocity: Mapping[str, float],
+    amplitude: float | Mapping[str, float] | None = None,
 ) -> dict[str, Linearised]:
-    """How each friction is linearised in a state of motion, by its name."""
+    """How each friction is linearised in a state of motion, by its name.
+
+    Parameters
+    ----------
+    machine : Machine
+    velocity : mapping of str to float
+        Of axes that move, m/s.
+    amplitude : float or mapping of str to float, optional
+        Of the motion at frictions that do not slide, m (rad): at all, or by their names; at those
+        without one it vanishes.
+    """
     moving = rigid_motion(machine, velocity) if velocity else np.zeros(machine.structure.size)
-    resting = _at_rest if amplitude is None else at_amplitude(amplitude)
     return {
         one.name: at_velocity(float(one.row @ moving))
         if abs(one.row @ moving) > _RESTING
-        else resting
+        else _resting(one.name, amplitude)
         for one in machine.frictions
     }
+
+
+def _resting(name: str, amplitude: float | Mapping[str, float] | None) -> Linearised:
+    here = amplitude.get(name) if isinstance(amplitude, Mapping) else amplitude
+    return _at_rest if here is None else at_amplitude(here)
 
 
 def _at_rest(law: FrictionLaw, frequency: NDArray[np.float64]) -> NDArray[np.complex128]:
@@ -94,17 +112,48 @@ class FrfCurve:
         Of the linearised machine.
     tested : Frf, optional
         By a test in time.
+    excited : {"force", "torque"}
+    read : {"displacement", "rotation"}
     """
 
     name: str
     state: str
     harmonic: Frf
     tested: Frf | None = None
+    excited: Literal["force", "torque"] = "force"
+    read: Literal["displacement", "rotation"] = "displacement"
+
+    @property
+    def unit(self) -> str:
+        """SI unit of the values."""
+        motion = {"displacement": "m", "rotation": "rad"}[self.read] + _RATES[
+            self.harmonic.quantity
+        ]
+        # the spelling of measured files: a/b/c, and brackets around a product
+        return f"{motion}/{_LOADS[self.excited]}"
 
     def as_quantity(self, quantity: str) -> FrfCurve:
         """Same curve as receptance, mobility or accelerance."""
         tested = None if self.tested is None else self.tested.as_quantity(quantity)
-        return FrfCurve(self.name, self.state, self.harmonic.as_quantity(quantity), tested)
+        return replace(self, harmonic=self.harmonic.as_quantity(quantity), tested=tested)
+
+    def summary(self) -> dict:
+        """Peaks, and the largest value where there are none."""
+        height = np.abs(self.harmonic.values)
+        largest = int(np.argmax(height))
+        return {
+            "name": self.name,
+            "state": self.state,
+            "quantity": self.harmonic.quantity,
+            "unit": self.unit,
+            "band_Hz": [float(self.harmonic.frequency[0]), float(self.harmonic.frequency[-1])],
+            "largest": {
+                "frequency_Hz": float(self.harmonic.frequency[largest]),
+                "magnitude": float(height[largest]),
+            },
+            "peaks": peaks(self.harmonic),
+            "tested_peaks": None if self.tested is None else peaks_of_test(self.tested),
+        }
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,16 +171,7 @@ class FrfResult:
         """Peaks of every curve, for people and machines."""
         return {
             "machine": self.machine,
-            "curves": [
-                {
-                    "name": curve.name,
-                    "state": curve.state,
-                    "quantity": curve.harmonic.quantity,
-                    "peaks": peaks(curve.harmonic),
-                    "tested_peaks": None if curve.tested is None else peaks(curve.tested),
-                }
-                for curve in self.curves
-            ],
+            "curves": [curve.summary() for curve in self.curves],
         }
 
     def plot(self) -> Figure:
@@ -145,18 +185,14 @@ class FrfResult:
         texts = {"summary.json": as_json(self.summary())}
         for curve in self.curves:
             stem = curve.name.replace(" ", "-").replace("/", "-").replace(":", "-")
-            texts[f"{stem}.csv"] = as_csv(curve.harmonic)
+            texts[f"{stem}.csv"] = as_csv(curve.harmonic, curve.unit)
             if curve.tested is not None:
-                texts[f"{stem}-test.csv"] = as_csv(curve.tested)
+                texts[f"{stem}-test.csv"] = as_csv(curve.tested, curve.unit)
         return write_results(folder, texts, {"frf.png": self.plot()})
 
 
-_UNITS = {"receptance": "m/N", "mobility": "m/s/N", "accelerance": "m/s^2/N"}
-
-
-def as_csv(frf: Frf) -> str:
-    """An FRF as the CSV that `chatter modes` reads."""
-    unit = _UNITS[frf.quantity]
+def as_csv(frf: Frf, unit: str) -> str:
+    """An FRF in a unit as the CSV that `chatter modes` reads."""
     columns = [frf.frequency, frf.values.real, frf.values.imag]
     header = f"frequency [Hz],real [{unit}],imag [{unit}]"
     if frf.coherence is not None:
@@ -164,62 +200,3 @@ def as_csv(frf: Frf) -> str:
         header += ",coherence"
     rows = [",".join(f"{value:.9g}" for value in row) for row in np.column_stack(columns)]
     return "\n".join([header, *rows]) + "\n"
-
-
-def peaks(frf: Frf) -> list[dict]:
-    """Peaks of the magnitude: frequency, height and damping by half power.
-
-    The damping is None where a neighbour hides the flanks.
-    """
-    height = np.abs(frf.values)
-    found = []
-    for place in range(1, len(height) - 1):
-        if not height[place - 1] < height[place] >= height[place + 1]:
-            continue
-        left = _valley(height, place, -1)
-        right = _valley(height, place, 1)
-        if height[place] < _STANDS_OUT * max(height[left], height[right]):
-            continue
-        top, at = _vertex(frf.frequency, height, place)
-        damping = _half_power(frf.frequency, height, place, top, at)
-        found.append({"frequency_Hz": at, "magnitude": top, "damping": finite_or_none(damping)})
-    return found
-
-
-def _valley(height: NDArray, place: int, way: int) -> int:
-    """Lowest line between a peak and the next higher one on a side."""
-    lowest = place
-    while 0 <= place + way < len(height) and height[place + way] <= height[lowest] * 1e6:
-        place += way
-        if height[place] < height[lowest]:
-            lowest = place
-        elif height[place] > height[lowest] * _STANDS_OUT:
-            break
-    return lowest
-
-
-def _vertex(frequency: NDArray, height: NDArray, place: int) -> tuple[float, float]:
-    """Height and frequency of the parabola through a peak and its neighbours."""
-    f, y = frequency[place - 1 : place + 2], height[place - 1 : place + 2]
-    bend, slope, _ = np.polyfit(f - f[1], y, 2)
-    if bend >= 0.0:
-        return float(y[1]), float(f[1])
-    off = -0.5 * slope / bend
-    return float(y[1] + 0.5 * slope * off), float(f[1] + off)
-
-
-def _half_power(frequency: NDArray, height: NDArray, place: int, top: float, at: float) -> float:
-    level = top / np.sqrt(2.0)
-    sides = []
-    for way in (-1, 1):
-        line = place
-        while 0 < line < len(height) - 1 and height[line] > level:
-            if (height[line + way] - height[line]) > 0.0 and line != place:
-                return float("nan")
-            line += way
-        if height[line] > level:
-            return float("nan")
-        inner = line - way
-        share = (height[inner] - level) / (height[inner] - height[line])
-        sides.append(frequency[inner] + share * (frequency[line] - frequency[inner]))
-    return float((sides[1] - sides[0]) / (2.0 * at))

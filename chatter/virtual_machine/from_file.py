@@ -176,7 +176,20 @@ def _one_frf(
             section.at_angle,
         )
         tested = frf_by_test(machine, file.step, test, progress)
-    return FrfCurve(name, in_words(section), harmonic, tested)
+    return FrfCurve(
+        name,
+        in_words(section),
+        harmonic,
+        tested,
+        "torque" if _turns(section.excite) else "force",
+        "rotation" if _turns(section.read or section.excite) else "displacement",
+    )
+
+
+def _turns(text: str) -> bool:
+    """Whether a place of a test is a motor, or a rotation."""
+    place = parse_place(text)
+    return place.motor is not None or place.direction.startswith("r")
 
 
 def in_words(section: FrfSection) -> str:

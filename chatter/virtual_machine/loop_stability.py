@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from chatter.errors import InputError
 from chatter.virtual_machine.engine import advance
 from dynamics.control import ControlError, DriveController, RegulatedMotor
-from dynamics.control.drive_table import TORQUE_SET
 from dynamics.machine.description import Machine
 from dynamics.machine.groups import ControlledDrives
 from dynamics.machine.loop import Loads
@@ -42,7 +41,7 @@ class LoopMotion:
     frequency : float
         Hz.
     drive : str
-        Drive that feeds it most.
+        Drive that puts the most work into it.
     """
 
     growth: float
@@ -95,8 +94,7 @@ def least_stable_motion(machine: Machine, step: float) -> LoopMotion | None:
     motion[~still] = vectors[:, decisive]
     time = period * step
     growth = math.log(max(abs(multipliers[decisive]), 1e-300)) / time
-    place = _feeding_drive(tables, drives, motion)
-    frequency = _frequency(tables, drives, motion.real, int(drives.port[place]), growth)
+    frequency, place = _heard(tables, drives, motion.real, growth)
     return LoopMotion(growth, frequency, machine.drives[place].name)
 
 
@@ -189,24 +187,10 @@ def _unread(transition: NDArray[np.float64], structure: int) -> NDArray[np.bool_
         unread = more
 
 
-def _feeding_drive(
-    tables: MachineTables, drives: ControlledDrives, vector: NDArray[np.complex128]
-) -> int:
-    """Drive with the largest product of torque and speed of its motor."""
-    count = len(tables.steps.state)
-    speed = np.abs(vector[:count] @ tables.steps.velocity)[drives.port]
-    held = vector[count : count + drives.control.state.size].reshape(drives.control.state.shape)
-    return int(np.argmax(speed * np.abs(held[:, TORQUE_SET])))
-
-
-def _frequency(
-    tables: MachineTables,
-    drives: ControlledDrives,
-    motion: NDArray[np.float64],
-    port: int,
-    growth: float,
-) -> float:
-    """Strongest frequency of a motion at the motor it is fed by, Hz."""
+def _heard(
+    tables: MachineTables, drives: ControlledDrives, motion: NDArray[np.float64], growth: float
+) -> tuple[float, int]:
+    """Strongest frequency of a motion, Hz, at the drive that puts the most work into it."""
     start = 0
     states = _states(tables, drives)
     for state in states:
@@ -217,12 +201,15 @@ def _frequency(
     # what is linear may be scaled at each step, so that no growth leaves the numbers
     kept = math.exp(-growth * tables.steps.step)
     loads = Loads(tables.loads.port, np.zeros((2, 0)))
-    speed = np.empty(_HEARD)
+    speed = np.empty((_HEARD, len(drives.port)))
+    work = np.zeros(len(drives.port))
     for i in range(_HEARD):
         advance(tables.groups, tables.steps, loads, i, 1)
+        speed[i] = tables.steps.v[drives.port]
+        way = tables.steps.u[drives.port] - tables.steps.u_before[drives.port]
+        work += tables.steps.force[drives.port] * way
         for state in (*states, tables.steps.u, tables.steps.v):
             state *= kept
-        speed[i] = tables.steps.v[port]
-    window = np.hanning(_HEARD)
-    lines = np.abs(np.fft.rfft(window * speed))
-    return float(np.argmax(lines) / (_HEARD * tables.steps.step))
+    place = int(np.argmax(work))
+    lines = np.abs(np.fft.rfft(np.hanning(_HEARD) * speed[:, place]))
+    return float(np.argmax(lines) / (_HEARD * tables.steps.step)), place

@@ -233,38 +233,34 @@ def _frf(subject: Subject, method: str | None, only: tuple[str, ...]) -> Outcome
     numbers: dict[str, float | None] = {}
     curves = []
     highest = (-1.0, "", 0.0, "")
-    for name, unit, frequency, values in frfs:
+    for name, quantity, unit, frequency, values in frfs:
         size = np.abs(values)
         peak = int(np.argmax(size))
         if size[peak] > highest[0]:
             highest = (float(size[peak]), name, float(frequency[peak]), unit)
         numbers[f"peak of {name} [{unit}]"] = float(size[peak])
         numbers[f"frequency of {name} [Hz]"] = float(frequency[peak])
-        label = f"{_QUANTITIES_OF_FRF[unit]} [{unit}]"
+        label = f"{quantity} [{unit}]"
         curves.append(Curve(label, name, _numbers(frequency), _numbers(size), "frequency [Hz]"))
     own = {"highest_peak": highest[0], "peak_frequency_Hz": highest[2]}
     units = {"highest_peak": highest[3]}
     return Outcome({**own, **numbers}, {"highest": highest[1]}, tuple(curves), units=units)
 
 
-_UNITS_OF_FRF = {"receptance": "m/N", "mobility": "m/s/N", "accelerance": "m/s^2/N"}
-_QUANTITIES_OF_FRF = {unit: name for name, unit in _UNITS_OF_FRF.items()}
-
-
-def _case_frfs(case: Case) -> list[tuple[str, str, Any, Any]]:
+def _case_frfs(case: Case) -> list[tuple[str, str, str, Any, Any]]:
     """FRFs of the tool against the workpiece that are not zero."""
     from chatter.structure import structure_of
 
     case.require("structure")
     lines, values = structure_of(case).receptance()
     return [
-        (f"tool {way}", "m/N", lines, values[:, k, k])
+        (f"tool {way}", "receptance", "m/N", lines, values[:, k, k])
         for k, way in enumerate("xyz")
         if np.any(np.abs(values[:, k, k]) > 0.0)
     ]
 
 
-def _machine_frfs(machine: Any, only: tuple[str, ...]) -> list[tuple[str, str, Any, Any]]:
+def _machine_frfs(machine: Any, only: tuple[str, ...]) -> list[tuple[str, str, str, Any, Any]]:
     """FRFs that a machine file asks for, of the linearised machine."""
     from chatter.virtual_machine.from_file import default_frfs, frfs
 
@@ -284,7 +280,7 @@ def _machine_frfs(machine: Any, only: tuple[str, ...]) -> list[tuple[str, str, A
     found = []
     for curve in frfs(machine, linear).curves:
         frf = curve.harmonic
-        found.append((curve.name, _UNITS_OF_FRF[frf.quantity], frf.frequency, frf.values))
+        found.append((curve.name, frf.quantity, curve.unit, frf.frequency, frf.values))
     return found
 
 

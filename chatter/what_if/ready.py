@@ -64,6 +64,15 @@ _PLOUGHING = {
     "process_damping": {"indentation_force": "4e13 N/m^3", "friction": 0.3},
 }
 
+#: lobes straight from the FRFs of the machine, without a fit of modes at every place
+_WORKSPACE = {
+    "lobes": {
+        "method": "zero-order",
+        "speeds": {"from": "600 rpm", "to": "1800 rpm", "count": 200},
+        "depths": {"to": "6 mm"},
+    }
+}
+
 STUDIES: dict[str, ReadyStudy] = {
     study.name: study
     for study in (
@@ -100,6 +109,13 @@ STUDIES: dict[str, ReadyStudy] = {
             ("machine.friction.translation_y.coulomb=25 N, 50 N, 100 N, 200 N",),
             "frf",
             only=("rest",),
+        ),
+        ReadyStudy(
+            "friction-amplitude",
+            "What does the amplitude of the vibration do to lobes where a guide rubs?",
+            "friction-amplitude/case.toml",
+            ("structure.friction_amplitude=0.2 um, 1 um, 2 um, 4 um, 7 um, 20 um, 60 um",),
+            "lobes",
         ),
         ReadyStudy(
             "contact",
@@ -140,6 +156,26 @@ STUDIES: dict[str, ReadyStudy] = {
             "frf",
             {"machine.frf.tool_z": {"excite": "tcp:z", "band": ["30 Hz", "500 Hz"]}},
             only=("tool_z",),
+        ),
+        ReadyStudy(
+            "workspace-lobes",
+            "What are the lobes of a cut where the head stands higher or lower?",
+            "face-mill-chatter/case.toml",
+            ("machine.axis.Z.position=-200 mm, -100 mm, 0 mm, 100 mm, 200 mm",),
+            "lobes",
+            _WORKSPACE,
+        ),
+        ReadyStudy(
+            "workspace",
+            "Where in the workspace does a cut go how deep?",
+            "face-mill-chatter/case.toml",
+            (
+                "machine.axis.X.position=-200 mm, 0 mm, 200 mm",
+                "machine.axis.Z.position=-200 mm, 0 mm, 200 mm",
+            ),
+            "lobes",
+            _WORKSPACE,
+            quantity="critical_depth_mm",
         ),
         ReadyStudy(
             "pitch",

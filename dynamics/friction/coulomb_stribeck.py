@@ -15,6 +15,7 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import ArrayLike, NDArray
 
+from dynamics.friction.columns import parameter_columns, port_column
 from dynamics.friction.implicit import INLINED, held_force
 
 
@@ -108,14 +109,8 @@ def coulomb_stribeck_table(
     laws: Sequence[CoulombStribeck], ports: Sequence[int]
 ) -> CoulombStribeckTable:
     """Return frictions at rest on ports."""
-    columns = []
-    for name in CoulombStribeckTable._fields[:5]:
-        column = np.array([getattr(law, name) for law in laws], dtype=np.float64)
-        column.flags.writeable = False
-        columns.append(column)
-    port = np.array(ports, dtype=np.int64)
-    port.flags.writeable = False
-    return CoulombStribeckTable(*columns, port, np.zeros(len(laws)))
+    columns = parameter_columns(laws, CoulombStribeckTable._fields[:5])
+    return CoulombStribeckTable(*columns, port_column(ports), np.zeros(len(laws)))
 
 
 @register_jitable(**INLINED)

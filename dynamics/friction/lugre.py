@@ -21,6 +21,7 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import ArrayLike, NDArray
 
+from dynamics.friction.columns import parameter_columns, port_column
 from dynamics.friction.harmonic import describing_function
 from dynamics.friction.implicit import INLINED, held_force
 
@@ -151,14 +152,8 @@ class LuGreTable(NamedTuple):
 
 def lugre_table(laws: Sequence[LuGre], ports: Sequence[int]) -> LuGreTable:
     """Return frictions at rest on ports, with unbent bristles."""
-    columns = []
-    for name in LuGreTable._fields[:9]:
-        column = np.array([getattr(law, name) for law in laws], dtype=np.float64)
-        column.flags.writeable = False
-        columns.append(column)
-    port = np.array(ports, dtype=np.int64)
-    port.flags.writeable = False
-    return LuGreTable(*columns, port, np.zeros(len(laws)), np.zeros(len(laws)))
+    columns = parameter_columns(laws, LuGreTable._fields[:9])
+    return LuGreTable(*columns, port_column(ports), np.zeros(len(laws)), np.zeros(len(laws)))
 
 
 @register_jitable(**INLINED)

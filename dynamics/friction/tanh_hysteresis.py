@@ -30,6 +30,7 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import ArrayLike, NDArray
 
+from dynamics.friction.columns import parameter_columns, port_column
 from dynamics.friction.harmonic import describing_function
 from dynamics.friction.implicit import INLINED, held_force
 from dynamics.friction.reversals import (
@@ -131,14 +132,10 @@ class TanhTable(NamedTuple):
 
 def tanh_table(laws: Sequence[TanhHysteresis], ports: Sequence[int]) -> TanhTable:
     """Return frictions on ports that have not moved yet."""
-    columns = []
-    for name in TanhTable._fields[:5]:
-        column = np.array([getattr(law, name) for law in laws], dtype=np.float64)
-        column.flags.writeable = False
-        columns.append(column)
-    port = np.array(ports, dtype=np.int64)
-    port.flags.writeable = False
-    return TanhTable(*columns, port, *reversal_columns(len(laws)), np.zeros(len(laws)))
+    columns = parameter_columns(laws, TanhTable._fields[:5])
+    return TanhTable(
+        *columns, port_column(ports), *reversal_columns(len(laws)), np.zeros(len(laws))
+    )
 
 
 @register_jitable(**INLINED)

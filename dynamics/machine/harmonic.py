@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PchipInterpolator
 
 from dynamics.control import controller_response
 from dynamics.control.sampling import zero_order_hold_response
@@ -13,6 +14,8 @@ from dynamics.friction.laws import FrictionLaw
 from dynamics.machine.description import Friction, Machine
 from dynamics.reduction import undamped_modes
 
+#: cycles of a friction at an amplitude that stand for those at all frequencies
+_CYCLES_GONE_THROUGH = 20
 #: dynamic stiffness, N/m, of a friction at frequencies, Hz
 Linearised = Callable[[FrictionLaw, NDArray[np.float64]], NDArray[np.complex128]]
 
@@ -32,12 +35,27 @@ def at_velocity(velocity: float) -> Linearised:
 
 
 def at_amplitude(amplitude: float) -> Linearised:
-    """Friction under harmonic motion of an amplitude, m (rad), about rest."""
+    """Friction under harmonic motion of an amplitude, m (rad), about rest.
 
-    def describing(law: FrictionLaw, frequency: NDArray) -> NDArray[np.complex128]:
+    Its cycle is gone through at a few frequencies; in between the dynamic stiffness, which changes
+    with speed alone, is interpolated over the logarithm of the frequency, keeping its trend.
+    """
+
+    def at(law: FrictionLaw, frequency: NDArray) -> NDArray[np.complex128]:
         pairs = [law.describing_function(amplitude, float(line)) for line in frequency]
         return np.array(
             [k + 2j * np.pi * f * c for (k, c), f in zip(pairs, frequency, strict=True)]
+        )
+
+    def describing(law: FrictionLaw, frequency: NDArray) -> NDArray[np.complex128]:
+        lines = np.asarray(frequency, dtype=np.float64)
+        if lines.size <= _CYCLES_GONE_THROUGH:
+            return at(law, lines)
+        nodes = np.geomspace(lines.min(), lines.max(), _CYCLES_GONE_THROUGH)
+        found = at(law, nodes)
+        return sum(
+            way * PchipInterpolator(np.log(nodes), part)(np.log(lines))
+            for way, part in ((1.0, found.real), (1j, found.imag))
         )
 
     return describing

@@ -159,25 +159,27 @@ def move(s):
 
 
 @register_jitable(**INLINED)
+def _answer(s, p, force, state, displacement, velocity):
+    """Add what a force on a port does to state and ports over the step."""
+    for i in range(s.after.shape[0]):
+        s.after[i] += state[p, i] * force
+    for q in range(s.u.shape[0]):
+        s.u[q] += displacement[p, q] * force
+        s.v[q] += velocity[p, q] * force
+
+
+@register_jitable(**INLINED)
 def add_held(s, p, force):
     """Add a force held over the step, after `move`."""
     s.force[p] += force
-    for i in range(s.after.shape[0]):
-        s.after[i] += s.held[p, i] * force
-    for q in range(s.u.shape[0]):
-        s.u[q] += s.moved_by_held[p, q] * force
-        s.v[q] += s.sped_by_held[p, q] * force
+    _answer(s, p, force, s.held, s.moved_by_held, s.sped_by_held)
 
 
 @register_jitable(**INLINED)
 def add_change(s, p, change):
     """Add a change of a force over the step, after `move`."""
     s.change[p] += change
-    for i in range(s.after.shape[0]):
-        s.after[i] += s.ramp[p, i] * change
-    for q in range(s.u.shape[0]):
-        s.u[q] += s.moved_by_ramp[p, q] * change
-        s.v[q] += s.sped_by_ramp[p, q] * change
+    _answer(s, p, change, s.ramp, s.moved_by_ramp, s.sped_by_ramp)
 
 
 @register_jitable(**INLINED)

@@ -24,7 +24,7 @@ def refused(folder, machine, structure=None, **given):
         ({"feed": [0, 0, 1]}, ["structure.feed", "perpendicular to the tool axis"]),
         ({"spindle": "Q"}, ["structure.spindle", '"Q"', "S", "X"]),
         ({"tool_axis": [0, 1, 0]}, ["structure.tool_axis", "spindle S"]),
-        ({"condition": {"Q": "brake"}}, ['"Q"', '"X"']),
+        ({"condition": {"Q": "brake"}}, ["structure.condition", '"Q"', "X"]),
         ({"condition": {"X": "brake"}}, ["brake"]),
     ],
 )
@@ -88,3 +88,20 @@ def test_the_schema_knows_the_keys():
     told = json.dumps(chatter.schema())
     for key in ("machine", "feed", "tool_axis", "spindle", "condition", "friction", "settling"):
         assert f'"{key}"' in told
+
+
+def test_no_time_to_come_to_the_feed(tmp_path):
+    told = refused(tmp_path, slide(True), {"settling": 0.01})
+    assert "structure.settling: 0.01 s is given" in told
+    assert "X" in told
+    assert "0.05 s or more is wanted" in told
+    # where there is little, axes come to the feed in what there is
+    path = written(tmp_path, slide(True))
+    case = cut_case({"machine": str(path), "settling": 0.1})
+    setup = set_up_machine(case)
+    points = setup.tables.groups[0].points
+    cycle = points.steps * setup.step
+    # feed of 0.1 mm by four teeth and 50 turns a second
+    speed = abs(points.velocity[:, 0])
+    assert speed[int(0.1 / cycle) + 1] == pytest.approx(0.02)
+    assert speed[int(0.05 / cycle)] == pytest.approx(0.01, rel=0.05)

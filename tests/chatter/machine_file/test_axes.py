@@ -1,5 +1,6 @@
 """Drives, control and frictions of machine files."""
 
+import copy
 import math
 
 import numpy as np
@@ -117,11 +118,17 @@ def test_each_place_of_a_connector_has_its_friction(head_on_beam):
 
 @pytest.mark.parametrize(("motors", "count"), [("together", 1), ("each", 2)])
 def test_two_motors_on_a_rack(line, changed, motors, count):
-    data = changed(line, ["axis", "Y", "drive"], RACK)
+    data = changed(line, ["axis", "Y", "drive"], copy.deepcopy(RACK))
     data = changed(data, ["axis", "Y", "control", "motors"], motors)
+    if motors == "each":
+        # two controllers would take the preload back
+        with pytest.raises(InputError, match=r'axis\.Y.*motors\[0\]\.preload.*2 N m.*"together"'):
+            MachineFile.from_dict(data)
+        for motor in data["axis"]["Y"]["drive"]["motors"]:
+            del motor["preload"]
     machine = MachineFile.from_dict(data).machine()
     assert len(machine.drives) == count
-    assert len(machine.preloads) == 2
+    assert len(machine.preloads) == (2 if motors == "together" else 0)
     assert [one.name for one in machine.frictions] == ["guide", "screw[0]", "screw[1]"]
     assert machine.drives[0].controller.measuring.transmission == pytest.approx(4e-3)
 

@@ -15,7 +15,7 @@ from chatter.cli import app
 from chatter.errors import InputError, RunError
 from chatter.monte_carlo import study as module
 from chatter.monte_carlo.confidence import wilson_interval
-from chatter.monte_carlo.parameters import UncertainParameter, parameters_of
+from chatter.monte_carlo.parameters import UncertainParameter, correlation_of, parameters_of
 from chatter.monte_carlo.sampling import samples
 from chatter.monte_carlo.study import uncertainty
 
@@ -215,3 +215,65 @@ def test_the_command(tmp_path):
     )
     assert wrong.exit_code == 2
     assert "no value is uncertain" in wrong.stderr
+
+
+BOTH = {
+    "material.Krc": "200 +- 30 MPa",
+    "uncertainty.correlation": [{"between": ["material.Ktc", "material.Krc"], "coefficient": 0.8}],
+}
+
+
+@pytest.mark.parametrize("coefficient", [-0.6, 0.8])
+def test_correlated_samples(case, coefficient):
+    """Correlation as asked for, and each value's hypercube as without."""
+    pair = {"between": ["material.Ktc", "material.Krc"], "coefficient": coefficient}
+    both = case.patch({**BOTH, "uncertainty.correlation": [pair]})
+    parameters = parameters_of(both)
+    matrix = correlation_of(both, parameters)
+    found = samples(parameters, 1000, 3, matrix)
+    assert np.corrcoef(found.T)[0, 1] == pytest.approx(coefficient, abs=0.03)
+    apart = samples(parameters, 1000, 3)
+    assert abs(np.corrcoef(apart.T)[0, 1]) < 0.1
+    assert np.sort(found, axis=0) == pytest.approx(np.sort(apart, axis=0))
+
+
+def test_correlation_widens_the_band(case):
+    """The zeroth-order limit falls as 1/Kt at a fixed ratio Kr/Kt: what goes together adds up."""
+    wide = uncertainty(case.patch(BOTH), 100, seed=1, **FEW)
+    apart = uncertainty(case.patch({"material.Krc": "200 +- 30 MPa"}), 100, seed=1, **FEW)
+    assert np.std(wide.operating) > 1.05 * np.std(apart.operating)
+
+
+@pytest.mark.parametrize(
+    ("pairs", "words"),
+    [
+        (
+            [{"between": ["material.Ktc", "cut.axial_depth"], "coefficient": 0.5}],
+            ["uncertainty.correlation[0].between[1]", "cut.axial_depth", "material.Krc"],
+        ),
+        (
+            [{"between": ["material.Ktc", "material.Ktc"], "coefficient": 0.5}],
+            ["uncertainty.correlation[0].between", "twice"],
+        ),
+        (
+            [
+                {"between": ["material.Ktc", "material.Krc"], "coefficient": 0.9},
+                {"between": ["material.Krc", "structure.mode[0].damping"], "coefficient": 0.9},
+                {"between": ["material.Ktc", "structure.mode[0].damping"], "coefficient": -0.9},
+            ],
+            ["uncertainty.correlation", "no distribution"],
+        ),
+    ],
+)
+def test_correlations_that_cannot_be(case, pairs, words):
+    damping = {"structure.mode[0].damping": "0.011 +- 0.001"}
+    with pytest.raises(InputError) as error:
+        uncertainty(case.patch({**BOTH, **damping, "uncertainty.correlation": pairs}), 10, **FEW)
+    for word in words:
+        assert word in str(error.value)
+
+
+def test_a_coefficient_beyond_one(case):
+    pair = {"between": ["material.Ktc", "material.Krc"], "coefficient": 1.2}
+    with pytest.raises(InputError, match=r"correlation\[0\]\.coefficient.*less than 1"):
+        case.patch({**BOTH, "uncertainty.correlation": [pair]})

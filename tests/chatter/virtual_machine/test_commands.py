@@ -90,6 +90,34 @@ def test_frf_of_the_tool_point_where_none_is_asked_for(machine_text, machine_fil
     refused(chatter("move", machine_file, sets=["title=b"]), tmp_path / "none", "no [move.NAME]")
 
 
+def test_where_there_is_no_peak_the_largest_value_is_told(machine_file):
+    options = ["--excite", "table:y", "--by", "linearised", "--band", "200 Hz, 300 Hz"]
+    result = chatter("frf", machine_file, *options, "--no-friction")
+    assert result.exit_code == 0, result.output
+    assert "none from 200 to 300 Hz; the largest value is" in result.stdout
+    assert "m/N at 200 Hz" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("excite", "read", "unit"),
+    [
+        ("motor:Y", "table:y", "m/(N*m)"),
+        ("motor:Y", "motor:Y", "rad/(N*m)"),
+        ("table:y", "table:rx", "rad/N"),
+        ("table:rz", "table:rz", "rad/(N*m)"),
+    ],
+)
+def test_units_say_what_is_excited_and_read(machine_file, tmp_path, excite, read, unit):
+    options = ["--excite", excite, "--read", read, "--by", "linearised", "--json"]
+    result = chatter("frf", machine_file, *options)
+    assert result.exit_code == 0, result.output
+    (curve,) = strict(result.stdout)["curves"]
+    assert curve["unit"] == unit
+    (path,) = (tmp_path / "out").glob("*.csv")
+    header, _ = columns_of(path)
+    assert header == ["frequency [Hz]", f"real [{unit}]", f"imag [{unit}]"]
+
+
 def test_move_of_all_moves(machine_file, tmp_path):
     result = chatter("move", machine_file, "--json")
     assert result.exit_code == 0, result.output

@@ -1,14 +1,18 @@
 """Stability of sampled loops against closed forms, and their steady motion in the z-domain."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from chatter.errors import InputError
+from chatter.machine_file import load_machine
 from chatter.virtual_machine.loop_stability import least_stable_motion, refuse_unstable_control
 from chatter.virtual_machine.run import RunInputs, run_machine
 from dynamics.trajectory import SetPoints
 
 STEP = 1e-4
+MANDELLI = Path(__file__).parents[3] / "examples" / "machine-mandelli-m5" / "machine.toml"
 J, T = 0.01, 2e-4
 
 
@@ -96,3 +100,16 @@ def test_sine_of_the_set_point_in_the_z_domain(controller, rigid_motor, frequenc
     steady = run.displacement["drive Y"][-2001:-1]
     found = 2.0 * np.mean(steady * z ** -(sample[-2001:-1] + 1.0))
     assert found == pytest.approx(1e-3 * wanted, rel=1e-6)
+
+
+@pytest.mark.parametrize("axis", ["Y", "Z"])
+@pytest.mark.parametrize(
+    "change", [("velocity.proportional_gain", 80.0), ("position.gain", 1000.0)]
+)
+def test_the_axis_that_is_unstable_is_named(axis, change):
+    """Of two axes on one structure, the one whose gain is too high."""
+    file = load_machine(MANDELLI)
+    machine = file.patch({f"axis.{axis}.control.{change[0]}": change[1]}).machine()
+    motion = least_stable_motion(machine, file.step)
+    assert not motion.stable
+    assert motion.drive == axis

@@ -1,0 +1,54 @@
+"""Paths and files that lead nowhere are told in one sentence, with exit code 2."""
+
+import pytest
+from typer.testing import CliRunner
+
+from chatter.cli import app
+from chatter.what_if.ready import STUDIES
+
+CASE = "friction-amplitude/case.toml"
+MACHINE = "friction-amplitude/machine.toml"
+
+
+@pytest.fixture(scope="module")
+def folder():
+    return STUDIES["friction-amplitude"].file().parents[1]
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (
+            ["whatif", CASE, "--vary", "machine.axis.Q.position=1 mm, 2 mm"],
+            ["machine.toml: axis.Q.position", "there is no axis.Q", "Y"],
+        ),
+        (
+            ["whatif", MACHINE, "--vary", "body.tabel.mass=1 kg, 2 kg"],
+            ["machine.toml: body.tabel.mass", "there is no body.tabel", '"table"'],
+        ),
+        (["frf", CASE], ["case.toml: is a case ([tool] and [material]", "a machine is wanted"]),
+        (["check", MACHINE], ["machine.toml: is a machine ([body]", "a case is wanted"]),
+        (
+            ["simulate", CASE, "--set", "structure.condition.Q=brake"],
+            ["case.toml: structure.condition", '"Q"', "there are Y"],
+        ),
+        (
+            ["simulate", CASE, "--set", "structure.position.Q=3 mm"],
+            ["case.toml: structure.position", '"Q"', "there are Y"],
+        ),
+        (
+            ["simulate", CASE, "--set", "structure.friction=5"],
+            ["case.toml: structure.friction: 5 is given", "true or false"],
+        ),
+    ],
+)
+def test_one_sentence(folder, tmp_path, words, told):
+    command, file, *options = words
+    out = tmp_path / "out"
+    result = CliRunner().invoke(app, [command, str(folder / file), *options, "--out", str(out)])
+    assert result.exit_code == 2, result.output
+    (line,) = result.stderr.strip().splitlines()
+    assert line.startswith("chatter: ")
+    for word in told:
+        assert word in line
+    assert not out.exists()
