@@ -85,6 +85,16 @@ class Axis:
             (*_KEPT_COLUMNS, *_PLAY_COLUMNS) if ahead else _KEPT_COLUMNS
         )
 
+    def reweighted(self, measurement: Measurement, case: Case) -> Measurement:
+        """Measurement whose samples count as far as the force of a case is certain there."""
+        runs = []
+        for run in measurement.runs:
+            law = replace(axis_force(run.of(case)), backlash=0.0)
+            begin, end = run.signals.get("part", (0, None))
+            certainty = _certainty(run.signals, law)[begin:end]
+            runs.append(replace(run, signals={**run.signals, "certainty": certainty}))
+        return replace(measurement, runs=tuple(runs))
+
     def predict(self, case: Case, run: Run) -> Mapping[str, NDArray[np.float64]]:
         """Force at the samples kept, N."""
         signals = run.signals
@@ -117,8 +127,7 @@ class Axis:
 
     def noise(self, run: Run) -> dict[str, float]:
         """Standard deviation of the noise of every channel."""
-        level = float(np.sqrt(np.mean(run.signals["force"] ** 2)))
-        noise = {"force": math.hypot(float(run.signals["noise"][0]), _FOLLOWED * level)}
+        noise = {"force": float(run.signals["noise"][0])}
         if "play" in run.signals:
             noise["play"] = float(run.signals["noise"][1])
         return noise
@@ -178,21 +187,21 @@ def _prepared(
     step = float(np.median(np.diff(signals["time"])))
     motion = _motion(signals["position"], step, _MOTION_CUT_OFF)
     force = _kept(signals["force"])
-    usable = _kept(signals.get(USABLE, np.ones(signals["force"].size))) > _ALL_USABLE
-    certainty = _certainty(signals, step, begun, rubbing) * usable
-    return {
+    prepared = {
         "time": signals["time"][::_KEPT][: force.size],
         "force": force,
         "position": _kept(signals["position"]),
         "velocity": _kept(motion[1]),
-        "certainty": certainty,
+        "motion as measured": signals["position"],
         "motion position": motion[0],
         "motion velocity": motion[1],
         "motion acceleration": motion[2],
         "motion step": np.array([step]),
         "motion begun": np.array([begun]),
-        "noise": np.array([_noise_of(signals["force"])]),
+        "noise": np.array([_noise(signals["force"])]),
+        "usable when kept": _kept(signals.get(USABLE, np.ones(motion[0].size))) > _ALL_USABLE,
     }
+    return {**prepared, "certainty": _certainty(prepared, rubbing)}
 
 
 def _motion(position: NDArray[np.float64], step: float, cut_off: float) -> tuple[NDArray, ...]:
@@ -202,23 +211,26 @@ def _motion(position: NDArray[np.float64], step: float, cut_off: float) -> tuple
     return smooth, velocity, np.gradient(np.gradient(smooth, step), step)
 
 
-def _certainty(
-    signals: Mapping[str, NDArray], step: float, begun: float, rubbing: AxisForce
-) -> NDArray[np.float64]:
+def _certainty(prepared: Mapping[str, NDArray], rubbing: AxisForce) -> NDArray[np.float64]:
     """Weight of the samples kept: 1, or less where the force hangs on how the motion is smoothed.
 
     At a reversal a dry friction jumps within less than the motion is resolved to. How far off its
     force may be is seen from a motion smoothed less.
     """
+    step, begun = float(prepared["motion step"][0]), float(prepared["motion begun"][0])
     forces = [
-        _kept(rubbing.along(*_motion(signals["position"], step, cut_off), step, begun))
+        _kept(rubbing.along(*_motion(prepared["motion as measured"], step, cut_off), step, begun))
         for cut_off in (_MOTION_CUT_OFF, _FINER_CUT_OFF)
     ]
     doubt = scipy.ndimage.maximum_filter1d(np.abs(forces[1] - forces[0]), 2 * _NEARBY + 1)
-    noise = _noise_of(signals["force"])
-    certainty = 1.0 / np.hypot(1.0, doubt / max(noise, 1e-12))
+    certainty = 1.0 / np.hypot(1.0, doubt / max(float(prepared["noise"][0]), 1e-12))
     certainty[:_ENDS] = certainty[-_ENDS:] = _LEAST_CERTAIN
-    return np.maximum(certainty, _LEAST_CERTAIN)
+    return np.maximum(certainty, _LEAST_CERTAIN) * prepared["usable when kept"]
+
+
+def _noise(force: NDArray[np.float64]) -> float:
+    """Standard deviation, N, of the force about what can be told of it along a motion."""
+    return math.hypot(_noise_of(force), _FOLLOWED * float(np.sqrt(np.mean(force**2))))
 
 
 def _noise_of(signal: NDArray[np.float64]) -> float:
@@ -259,7 +271,7 @@ def _of_motor(
         "play": _centred(play, certainty),
         "play certainty": certainty,
         "whole play certainty": certainty,
-        "noise": np.array([_noise_of(signals["force"]), drift]),
+        "noise": np.array([_noise(signals["force"]), drift]),
     }
 
 

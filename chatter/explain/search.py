@@ -166,6 +166,12 @@ def search(measurement: Measurement, kind: Kind, progress: Progress) -> Search:
         progress("looking again at what was added first", 0.85)
         stages, problem, now = _looked_again(stages, problem, now, fitted, unseen)
     progress("fitting all runs", 0.95)
+    reweighted = getattr(kind, "reweighted", None)
+    if stages and reweighted is not None:
+        measurement = reweighted(measurement, problem.case(now.by_name))
+        fitted, unseen = split_runs(measurement.runs)
+        problem = replace(problem, measurement=measurement)
+        now = problem.fit(fitted, now.by_name, rounds=8)
     final = problem.fit(measurement.runs, now.by_name, rounds=12)
     final = over_groups(final, [problem.count([run]) for run in measurement.runs])
     base = Problem(measurement, kind, problem.noise).fit(measurement.runs, base_values, rounds=5)

@@ -30,7 +30,7 @@ def explained(name: str) -> Explanation:
     ("name", "numbers", "closeness"),
     [
         ("set-111", {"coulomb": "coulomb"}, 0.02),
-        ("set-112", {"sigma0": "sigma0", "sigma1": "sigma1"}, 0.15),
+        ("set-112", {"sigma0": "sigma0", "sigma1": "sigma1"}, 0.2),
         ("set-131", {"stiffness": "stiffness_N_per_m", "damping": "damping_Ns_per_m"}, 0.01),
     ],
 )
