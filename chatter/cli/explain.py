@@ -97,4 +97,5 @@ def print_views(signature: dict) -> None:
     for view in signature["views"]:
         if view["beyond_chance"]:
             typer.echo(f"  {view['says']}")
-    typer.echo(f"  {signature['nothing_beyond_chance']}")
+    if signature["nothing_beyond_chance"]:
+        typer.echo(f"  {signature['nothing_beyond_chance']}")

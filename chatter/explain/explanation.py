@@ -29,6 +29,8 @@ from chatter.result_files import as_json, finite_or_none, write_results
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from chatter.explain.lobes_before_after import LobesBeforeAfter
+
 #: what is left of any channel over the noise up to which the measurement is at its noise floor
 AT_NOISE = 1.12
 #: gain that a candidate may lack against the best and still not be told from it, as a share
@@ -99,6 +101,13 @@ class Explanation:
     def before_after(self) -> BeforeAfter:
         """Errors by channel, before and after."""
         return before_after(self, self.signatures.refitted.residual)
+
+    @cached_property
+    def lobes(self) -> LobesBeforeAfter | None:
+        """Stability lobes before and after; None where the case holds no cut."""
+        from chatter.explain.lobes_before_after import lobes_before_after
+
+        return lobes_before_after(self)
 
     def _errors(self) -> dict[str, Any]:
         kind, measurement = self.found.kind, self.measurement

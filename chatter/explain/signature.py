@@ -115,7 +115,8 @@ def signatures_of(explanation: Explanation) -> Signatures:
     added = None
     if found.accepted:
         case = found.problem.case(found.final.by_name)
-        added = signature_of(measurement, found.kind, case, noise)
+        # samples count as far as the law that was found is certain of them
+        added = signature_of(found.measurement, found.kind, case, noise)
     return Signatures(
         signature_of(measurement, found.kind, explanation.refitted, noise),
         added,

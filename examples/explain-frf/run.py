@@ -6,7 +6,6 @@ Eight FRFs, idle and in the cut; the README tells the story.
 from pathlib import Path
 
 from chatter.explain import explain, read_measurement
-from chatter.explain.lobes_before_after import lobes_before_after
 from chatter.plots.explanation import plot_lobes_before_after
 
 HERE = Path(__file__).parent
@@ -31,10 +30,9 @@ def main(out: Path) -> list[Path]:
         f"{100 * error['holdout_after']:.3g} % after, noise {100 * error['noise_floor']:.3g} %"
     )
     written = result.save(out)
-    lobes = lobes_before_after(result)
-    for sentence in lobes.says:
+    for sentence in result.lobes.says:
         print(sentence)
-    plot_lobes_before_after(lobes).savefig(out / "lobes.png")
+    plot_lobes_before_after(result.lobes).savefig(out / "lobes.png")
     return [*written, out / "lobes.png"]
 
 

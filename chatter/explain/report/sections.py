@@ -6,7 +6,6 @@ import html
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from chatter.explain.lobes_before_after import lobes_before_after
 from chatter.explain.report.page import (
     number,
     paragraph,
@@ -238,7 +237,7 @@ def _values(explanation: Explanation, summary: dict[str, Any], _: Figure) -> str
 def _lobes(explanation: Explanation, summary: dict[str, Any], _: Figure) -> str:  # noqa: ARG001
     from chatter.plots.explanation import plot_lobes_before_after
 
-    found = lobes_before_after(explanation)
+    found = explanation.lobes
     if found is None:
         return ""
     parts = [paragraph(text) for text in found.says]

@@ -22,6 +22,8 @@ Indices = NDArray[np.intp]
 _SHIFTS, _BEYOND = 150, 3.0
 #: shares below this are not told, whatever their significance
 LEAST_SHARE = 0.01
+#: weight of a bin over the largest below which nothing is known there: no cut, no share of it
+_LEAST_WEIGHT = 1e-5
 #: runs below which every run is cut into this many folds
 _FEW_RUNS, _FOLDS = 3, 4
 
@@ -115,9 +117,10 @@ def dependence(samples: Sequence[Sample], bins: int, seed: int = 0) -> Dependenc
         chance = max(float(shifted.max()), float(shifted.mean()) + _BEYOND * spread)
     all_weights = np.sum(weights, axis=0)
     products = sum(_sums(s.place, s.scaled * s.weight, bins) for s in samples)
+    known = all_weights > _LEAST_WEIGHT * all_weights.max()
     with np.errstate(divide="ignore", invalid="ignore"):
-        coefficients = np.where(all_weights > 0.0, products / all_weights, np.nan)
-        errors = np.where(all_weights > 0.0, 1.0 / np.sqrt(all_weights), np.nan)
+        coefficients = np.where(known, products / all_weights, np.nan)
+        errors = np.where(known, 1.0 / np.sqrt(all_weights), np.nan)
     return Dependence(share, chance, coefficients, errors)
 
 

@@ -92,7 +92,7 @@ def test_a_mode_that_was_missed_is_found_in_few_runs(monkeypatch):
     )
     assert "the case has no natural frequency" in frequency["says"]
     monkeypatch.setattr(lobes_before_after_module, "_SPEEDS", 24)
-    lobes = lobes_before_after_module.lobes_before_after(result)
+    lobes = result.lobes
     before, after = (
         lobes.diagrams[step].limits.critical_depth for step in ("refitted", "with what was added")
     )

@@ -1,0 +1,54 @@
+"""Every kind of panel is drawn, also where something is missing in it."""
+
+import numpy as np
+import pytest
+
+from chatter.explain.residual.dependence import Sample, dependence
+from chatter.explain.residual.finding import Bars, Curve, Curves, Finding, Map, Points
+from chatter.explain.residual.lead import lead_of
+from chatter.explain.residual.views import look
+from chatter.plots.findings import plot_findings
+
+X = np.array([0.01, 0.1, 1.0, 10.0])
+PANELS = {
+    "bars": Bars(("run1", "run2"), {"Fx": np.array([1.0, np.nan])}, "left over noise", 1.0),
+    "curves": Curves(
+        (Curve(X, X, "a", 0.1 * X),), "way [mm]", "left [N]", {"mode": (1.0,)}, 1.0, "xy"
+    ),
+    "map": Map(X, X, np.full((3, 3), np.nan), "x", "y", "left [N]", "x"),
+    "points": Points({"stable": (X, X), "chatter": (X[:0], X[:0])}, "speed", "depth", "y"),
+}
+
+
+@pytest.mark.parametrize("panel", PANELS.values(), ids=PANELS)
+def test_a_panel_is_drawn(panel, tmp_path):
+    figure = plot_findings([Finding("view", "says", True, {}, panel)])
+    assert figure.axes[0].get_title(loc="left") == "view"
+    figure.savefig(tmp_path / "panel.png")
+
+
+def test_all_views_and_the_lead_are_drawn(milling, axis, tmp_path):
+    for made in (
+        milling(lambda case, time, force: 0.1 * force),
+        axis(lambda s: 6.0 * np.sign(s["velocity"]) * np.sign(s["position"])),
+    ):
+        findings = look(made)
+        figure = plot_findings([*findings, lead_of(made, findings).finding])
+        figure.savefig(tmp_path / "views.png")
+        titles = {axes.get_title(loc="left") for axes in figure.axes}
+        assert {one.view for one in findings if one.panel is not None} <= titles
+
+
+def test_nothing_is_told_where_nothing_is_predicted():
+    # bins 0 to 3 hold a cut; in bin 4 hardly anything is predicted, and noise is no share of it
+    rng = np.random.default_rng(1)
+    samples = []
+    for _ in range(5):
+        place = rng.integers(0, 5, 1000)
+        weight = np.where(place == 4, 1e-9, 50.0)
+        values = 0.2 * weight * (place == 2) + rng.standard_normal(1000)
+        samples.append(Sample(values, weight, place))
+    found = dependence(samples, 5)
+    assert found.beyond_chance
+    np.testing.assert_allclose(found.coefficients[:4], [0.0, 0.0, 0.2, 0.0], atol=0.01)
+    assert np.isnan(found.coefficients[4])
