@@ -25,6 +25,8 @@ _GAIN, _GAIN_SHARE = 40.0, 0.004
 _SLIVER = 0.05
 #: effects are added until this many, or until nothing is gained
 _MOST_EFFECTS = 3
+#: candidates tried as the first where the best does not lead near the noise, and how near that is
+_ALTERNATIVES, _NEAR_NOISE = 2, 1.3
 #: candidates that are fitted in full after a first look
 _FULL = 4
 #: and those that are looked at again once another effect is there
@@ -144,24 +146,8 @@ def search(measurement: Measurement, kind: Kind, progress: Progress) -> Search:
     problem = Problem(measurement, kind, problem.noise_beside(now.by_name))
     now = problem.fit(fitted, now.by_name, rounds=5)
     base_values = now.by_name
-    stages: list[Stage] = []
-    first = None
-    for round_number in range(_MOST_EFFECTS):
-        left = _cost(problem, now.by_name, unseen)
-        if stages and math.sqrt(left / problem.count(unseen)) < _NOTHING_LEFT:
-            break
-        tried = _try_all(problem, now, fitted, unseen, progress, round_number)
-        # what every candidate gains, the uncertain values gained by going on
-        left = min(left, max((one.unseen for one in tried), default=left))
-        stage = Stage(now, left, tuple(tried))
-        first = first or stage
-        if not tried or not _beyond_chance(left, stage.best.unseen, problem, unseen):
-            break
-        stages.append(stage)
-        problem = problem.with_effect(stage.best.effect)
-        values = stage.best.fit.by_name
-        problem = replace(problem, noise=problem.noise_beside(values))
-        now = problem.fit(fitted, values, rounds=8)
+    first = _stage(problem, now, fitted, unseen, progress, 0)
+    stages, problem, now = _best_way(problem, now, first, fitted, unseen, progress)
     if len(stages) > 1:
         progress("looking again at what was added first", 0.85)
         stages, problem, now = _looked_again(stages, problem, now, fitted, unseen)
@@ -178,6 +164,88 @@ def search(measurement: Measurement, kind: Kind, progress: Progress) -> Search:
     return Search(
         measurement, kind, fitted, unseen, first, tuple(stages), problem, now, final, base
     )
+
+
+class Way(NamedTuple):
+    """Effects added one after the other."""
+
+    stages: list[Stage]
+    problem: Problem
+    now: Fit
+
+
+def _stage(
+    problem: Problem,
+    now: Fit,
+    fitted: Sequence[Run],
+    unseen: Sequence[Run],
+    progress: Progress,
+    round_number: int,
+) -> Stage:
+    tried = _try_all(problem, now, fitted, unseen, progress, round_number)
+    # what every candidate gains, the uncertain values gained by going on
+    left = _cost(problem, now.by_name, unseen)
+    left = min(left, max((one.unseen for one in tried), default=left))
+    return Stage(now, left, tuple(tried))
+
+
+def _best_way(
+    problem: Problem,
+    now: Fit,
+    first: Stage,
+    fitted: Sequence[Run],
+    unseen: Sequence[Run],
+    progress: Progress,
+) -> Way:
+    """Follow the best candidate and, where that does not lead to the noise, the next ones too.
+
+    Of two effects that are missing, neither may do well alone, and a third best in their place.
+    """
+    best = _forward(problem, now, first, fitted, unseen, progress)
+    for place in range(1, min(_ALTERNATIVES + 1, len(first.tried))):
+        if not best.stages or _over_noise(best, unseen) < _NEAR_NOISE:
+            break
+        turned = (first.tried[place], *first.tried[:place], *first.tried[place + 1 :])
+        start = replace(first, tried=turned)
+        way = _forward(problem, now, start, fitted, unseen, progress, most=2)
+        if _cost_alike(way, problem, unseen) < _cost_alike(best, problem, unseen):
+            best = way
+    return best
+
+
+def _forward(
+    problem: Problem,
+    now: Fit,
+    stage: Stage,
+    fitted: Sequence[Run],
+    unseen: Sequence[Run],
+    progress: Progress,
+    most: int = _MOST_EFFECTS,
+) -> Way:
+    """Add effects, the first as told by a stage, as long as unseen runs gain by them."""
+    stages: list[Stage] = []
+    while stage.tried and _beyond_chance(stage.unseen, stage.best.unseen, problem, unseen):
+        stages.append(stage)
+        problem = problem.with_effect(stage.best.effect)
+        values = stage.best.fit.by_name
+        problem = replace(problem, noise=problem.noise_beside(values))
+        now = problem.fit(fitted, values, rounds=8)
+        way = Way(stages, problem, now)
+        if len(stages) == most or _over_noise(way, unseen) < _NOTHING_LEFT:
+            break
+        stage = _stage(problem, now, fitted, unseen, progress, len(stages))
+    return Way(stages, problem, now)
+
+
+def _over_noise(way: Way, unseen: Sequence[Run]) -> float:
+    """What is left of unseen runs over their noise."""
+    left = _cost(way.problem, way.now.by_name, unseen)
+    return math.sqrt(left / way.problem.count(unseen))
+
+
+def _cost_alike(way: Way, problem: Problem, unseen: Sequence[Run]) -> float:
+    """Sum of squares on unseen runs with the noise of a problem, so that ways compare."""
+    return _cost(replace(way.problem, noise=problem.noise), way.now.by_name, unseen)
 
 
 def _looked_again(
