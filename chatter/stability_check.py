@@ -14,9 +14,8 @@ from chatter.model import MillingModel, milling_model
 from chatter.result_files import as_json, finite_or_none, write_results
 from chatter.search_range import deepest_depth
 from chatter.stability.limit_curve import LimitCurve
+from chatter.stability.multiplier import Multiplier, bifurcation_kind
 from chatter.stability.semi_discretization import (
-    Multiplier,
-    bifurcation_kind,
     chatter_frequency,
     converged_multiplier,
     multipliers,

@@ -337,7 +337,14 @@ def advance_step(period, step, vector, state, following):
 
 
 @njit(**KERNEL)
-def apply_period_map(period, vector, out, state, following):
+def period_scratch(period):
+    """Scratch arrays of `apply_period_map`."""
+    size = period.from_left.shape[1]
+    return np.empty(size), np.empty(size)
+
+
+@njit(**KERNEL)
+def apply_period_map(period, vector, out, scratch):
     """Set out to the image of the vector after one tooth period.
 
     Parameters
@@ -345,9 +352,9 @@ def apply_period_map(period, vector, out, state, following):
     period : PeriodMap
     vector, out : (2n + nodes r,) array of float
         State, then the motion at the nodes during the last period.
-    state, following : (2n,) array of float
-        Scratch.
+    scratch : tuple of two (2n,) arrays of float
     """
+    state, following = scratch
     steps, size, rank = period.from_left.shape
     state[:] = vector[:size]
     for s in range(steps):
