@@ -93,6 +93,11 @@ class MillingModel:
         return delays, means / depth
 
     @property
+    def mean_directional(self) -> NDArray[np.float64]:
+        """Mean directional matrix over a turn (r, r), N/m^2, of all delays together."""
+        return self.mean_couplings[1].sum(axis=0)
+
+    @property
     def is_uniform(self) -> bool:
         """True where all teeth are alike, evenly spaced, upright, and the speed is constant."""
         cutter = self.cutter

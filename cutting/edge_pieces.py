@@ -1,7 +1,8 @@
 """Edges of a tool as pieces along their length, for the linear analysis of stability.
 
 A piece belongs to one tooth and cuts, between an entry and an exit angle, the surface that one
-certain earlier pass has left. Along it the place on the tool, the arc and the delay vary linearly.
+certain earlier pass has left. Along it place on the tool and delay vary linearly with the height,
+and the arc with the length.
 An upright edge in a tool of one helix is one piece from the tip to any height; corners are cut
 into pieces by their curvature; where runout, setting errors or serration decide which pass left the
 surface, every pass has its own arc.
@@ -25,9 +26,9 @@ from cutting.tool import Cutter, corner_height
 
 _TURN = 2.0 * math.pi
 #: a corner turns by this much within a piece, and its arc changes by it, rad
-_PIECE_TURN = math.radians(3.0)
+_PIECE_TURN = math.radians(2.0)
 #: an edge trails by this much within a piece where every piece has passes of its own, rad
-_PIECE_LAG = 0.05
+_PIECE_LAG = 0.03
 _PIECES_A_WAVE = 24
 #: arcs shorter than this are none, rad
 _SHORTEST_ARC = 1e-9
@@ -45,6 +46,7 @@ class EdgePieces(NamedTuple):
     delay: NDArray[np.float64]  # angle since the pass that left the surface, rad (P, 2)
     immersion: NDArray[np.float64]  # axial immersion angle, rad (P, 2)
     radius: NDArray[np.float64]  # m (P, 2)
+    corner: NDArray[np.float64]  # radius of the corner that the piece lies on, m; 0 for none (P,)
     group: NDArray[np.int64]  # pieces of equal, constant delay; -1 where it varies (P,)
     group_delay: NDArray[np.float64]  # rad (G,)
     cutting: NDArray[np.float64]  # slope at the reference chip: tangential .. axial, N/m^2 (P, 3)
@@ -52,7 +54,10 @@ class EdgePieces(NamedTuple):
     inset: NDArray[np.float64]  # m (P,)
     exponent: float  # of the slope: slope = cutting (chip/reference)^exponent, 0 for a linear law
     reference: float  # m
-    damping: NDArray[np.float64]  # force per edge length, rate and 1/V: tangential, radial, N/m (2,)
+    outline: NDArray[np.float64]  # radius at the tip's cylinder, corner radius, edge angle (3,)
+    damping: NDArray[
+        np.float64
+    ]  # force per edge length, rate and 1/V: tangential, radial, N/m (2,)
 
 
 class _Line(NamedTuple):
@@ -176,6 +181,20 @@ def _passes(
     return arcs
 
 
+def _arcs_of_passes(
+    rise: NDArray[np.float64], inset: NDArray[np.float64], arcs: NDArray[np.float64]
+) -> list[tuple[int, tuple[float, float], tuple[float, float]]]:
+    """Arcs (pass, entries, exits) at both ends of a piece from those at ends and middle.
+
+    Rows of `rise`, `inset` and `arcs` are the low end, the high end and the middle. Where the ends
+    do not see the same passes, the arcs are those of the middle all along.
+    """
+    low, high, middle = (_passes(rise[i], inset[i], *arcs[i]) for i in range(3))
+    if [k for k, _, _ in low] != [k for k, _, _ in high] or len(low) != len(middle):
+        return [(k, (first, first), (last, last)) for k, first, last in middle]
+    return [(a[0], (a[1], b[1]), (a[2], b[2])) for a, b in zip(low, high, strict=True)]
+
+
 def edge_pieces(
     cutter: Cutter,
     laws: list[ForceLaw],
@@ -208,46 +227,51 @@ def edge_pieces(
     line = _line(cutter, deepest, mode, radial_depth, heights)
     lag = np.tan(np.asarray(cutter.helix)) / cutter.radius
     rows: list[tuple] = []
-    entry, leave = slice_engagement(mode, radial_depth, cutter.radius, np.maximum(line.radius, 1e-12))
+    entry, leave = slice_engagement(
+        mode, radial_depth, cutter.radius, np.maximum(line.radius, 1e-12)
+    )
     for piece in range(line.length.size):
         ends = slice(piece, piece + 2)
         middle = 0.5 * (line.height[piece] + line.height[piece + 1])
         angle = cutter.tooth_angles[:, None] - np.outer(lag, [*line.height[ends], middle])
         kappa = line.immersion[piece]
-        sine = math.sin(0.5 * (kappa[0] + kappa[1]))
         arc = _arc_of_piece(entry[ends], leave[ends])
         if arc is None:
             continue
-        radial = cutter.radial_offsets.copy()
+        waves = np.zeros((cutter.teeth, 3))
         if wave:
-            radial += [
-                float(cutter.serration.radius_change(np.array([middle]), tooth, cutter.teeth)[0])
-                for tooth in range(cutter.teeth)
-            ]
-        offset = radial * sine + cutter.axial_offsets * math.cos(0.5 * (kappa[0] + kappa[1]))
+            heights_of = np.array([*line.height[ends], middle])
+            waves = np.array(
+                [
+                    cutter.serration.radius_change(heights_of, tooth, cutter.teeth)
+                    for tooth in range(cutter.teeth)
+                ]
+            )
+        turned = np.array([*kappa, 0.5 * (kappa[0] + kappa[1])])
+        radial, axial = cutter.radial_offsets[:, None] + waves, cutter.axial_offsets[:, None]
+        offset = radial * np.sin(turned) + axial * np.cos(turned)
         earlier, ahead = earlier_passes(angle[:, 2:])
+        arcs = np.stack([*arc.T, arc.mean(axis=1)])
         for tooth in range(cutter.teeth):
             order, alpha = earlier[tooth, 0], ahead[tooth, 0]
-            rise = sine * feed_per_turn * alpha / _TURN
-            inset = offset[order] - offset[tooth]
-            bends = np.ptp(arc) > 0.0 and not own_passes
-            found = [(0, *arc[:, 0])]
+            rise = np.sin(turned)[:, None] * feed_per_turn * alpha / _TURN
+            inset = (offset[order] - offset[tooth]).T
+            found = [(0, arc[0], arc[1])]
             if own_passes:
-                mean = arc.mean(axis=1)
-                found = _passes(rise, inset, mean[0], mean[1])
+                found = _arcs_of_passes(rise, inset, arcs)
             for k, first, last in found:
                 other = order[k]
                 gap = alpha[k] + (angle[other] - angle[tooth]) - (angle[other, 2] - angle[tooth, 2])
                 rows.append(
                     (
                         line.height[piece], line.height[piece + 1] - line.height[piece],
-                        line.length[piece], angle[tooth, :2],
-                        arc[0] if bends else (first, first), arc[1] if bends else (last, last),
+                        line.length[piece], angle[tooth, :2], first, last,
                         gap[:2], kappa, line.radius[ends], _reference_slope(laws[tooth]),
-                        rise[k], inset[k],
+                        rise[2, k], inset[2, k],
+                        cutter.corner_radius if kappa[0] < kappa[1] else 0.0,
                     )
                 )  # fmt: skip
-    return _as_arrays(rows, laws[0], flank)
+    return _as_arrays(rows, cutter, laws[0], flank)
 
 
 def _arc_of_piece(
@@ -272,12 +296,15 @@ def _reference_slope(law: ForceLaw) -> NDArray[np.float64]:
 
 
 def _as_arrays(
-    rows: list[tuple], law: ForceLaw, flank: ViscousProcessDamping | Ploughing | None
+    rows: list[tuple],
+    cutter: Cutter,
+    law: ForceLaw,
+    flank: ViscousProcessDamping | Ploughing | None,
 ) -> EdgePieces:
     count = len(rows)
     columns = [np.array(column, dtype=np.float64) for column in zip(*rows, strict=True)]
     if count == 0:
-        columns = [np.zeros((0, 2))] * 12
+        columns = [np.zeros((0, 2))] * 13
     delay = columns[6]
     constant = np.abs(delay[:, 0] - delay[:, 1]) < 1e-12 if count else np.zeros(0, dtype=bool)
     groups: list[float] = []
@@ -300,7 +327,8 @@ def _as_arrays(
         bottom=columns[0], thickness=columns[1], length=columns[2], angle=columns[3],
         entry=columns[4], exit=columns[5], delay=delay, immersion=columns[7], radius=columns[8],
         group=group, group_delay=np.array(groups), cutting=columns[9], feed=columns[10],
-        inset=columns[11], exponent=exponent, reference=reference, damping=damping,
+        inset=columns[11], corner=columns[12], exponent=exponent, reference=reference, damping=damping,
+        outline=np.array([cutter.radius, cutter.corner_radius, cutter.edge_angle]),
     )  # fmt: skip
 
 
@@ -330,6 +358,40 @@ def period_angle(cutter: Cutter) -> float:
         if alike and cutter.serration is None:
             return _TURN / parts
     return _TURN
+
+
+@register_jitable
+def part_below(pieces, piece, depth):
+    """Part of a piece, from its low end and along its length, that lies below a depth (m)."""
+    share = (depth - pieces.bottom[piece]) / pieces.thickness[piece]
+    if share >= 1.0:
+        return 1.0
+    corner = pieces.corner[piece]
+    if corner == 0.0 or share <= 0.0:
+        return share
+    low, high = pieces.immersion[piece, 0], pieces.immersion[piece, 1]
+    return (math.acos(1.0 - depth / corner) - low) / (high - low)
+
+
+@register_jitable
+def radius_at(pieces, height):
+    """Radius of the edge at a height above the tip, m."""
+    radius, corner, angle = pieces.outline[0], pieces.outline[1], pieces.outline[2]
+    top = corner * (1.0 - math.cos(angle))
+    if height < top:
+        return radius - corner + corner * math.sin(math.acos(1.0 - height / corner))
+    return radius - corner * (1.0 - math.sin(angle)) + (height - top) / math.tan(angle)
+
+
+@register_jitable
+def share_of_height(pieces, piece, place):
+    """Height of a place along a piece above its low end, as a share of the piece's."""
+    corner = pieces.corner[piece]
+    if corner == 0.0:
+        return place
+    low, high = pieces.immersion[piece, 0], pieces.immersion[piece, 1]
+    height = corner * (1.0 - math.cos(low + place * (high - low)))
+    return (height - pieces.bottom[piece]) / pieces.thickness[piece]
 
 
 @register_jitable
@@ -406,7 +468,7 @@ def coupling_at(pieces, piece, place, spindle, weight, speed_factor, basis, stif
         N/m and N s/m: the force on the tool is -stiffness u - dashpot u'. Overwritten.
     """
     turned = pieces.angle[piece, 1] - pieces.angle[piece, 0]
-    phi = spindle + pieces.angle[piece, 0] + place * turned
+    phi = spindle + pieces.angle[piece, 0] + share_of_height(pieces, piece, place) * turned
     kappa = pieces.immersion[piece, 0]
     bend = pieces.immersion[piece, 1] - kappa
     s, c = math.sin(phi), math.cos(phi)

@@ -84,6 +84,7 @@ def draw_limit(axes: Axes, diagram: LobeDiagram) -> None:
 
 
 _METHOD_LABEL = {
+    "collocation": "limit, collocation",
     "semi-discretization": "limit, semi-discretization",
     "zero-order": "limit, zeroth-order",
     "time": "limit, time domain",

@@ -101,9 +101,7 @@ def chatter_frequency(cut: CutArrays, speed: float, depth: float) -> float:
     s = base + 1j * line * harmonic
     spectrum = np.exp(-np.outer(s, time)) @ (weight[:, None] * force)
     w, zeta = cut.natural_frequency, cut.damping
-    modal = (spectrum @ cut.force_gain.T) / (
-        s[:, None] ** 2 + 2.0 * zeta * w * s[:, None] + w**2
-    )
+    modal = (spectrum @ cut.force_gain.T) / (s[:, None] ** 2 + 2.0 * zeta * w * s[:, None] + w**2)
     amplitude = np.linalg.norm(modal @ cut.shape, axis=1)
     return float(abs(s[np.argmax(amplitude)].imag)) / (2.0 * np.pi)
 

@@ -43,6 +43,8 @@ class CutArrays(NamedTuple):
     points: ElementPoints
     response: ResponseTable
     longest: float  # element, s
+    fastest: float  # vibration that elements resolve, with no cut, rad/s
+    stiffening: float  # by which its square grows with depth, rad^2/s^2/m
     longest_angle: float  # element, rad
     edge_place: NDArray[np.float64]  # Gauss points on [0, 1], row q for q of them (17, 16)
     edge_weight: NDArray[np.float64]  # (17, 16)
@@ -58,6 +60,21 @@ def relevant_frequency(
     reach = np.linalg.norm(shape, axis=1) * np.linalg.norm(force_gain, axis=1)
     peak = reach / (2.0 * np.maximum(damping, 1e-6) * natural_frequency**2)
     return float(natural_frequency[peak >= _RELEVANT_PEAK * peak.max()].max())
+
+
+def _stiffening(modes: tuple[NDArray[np.float64], ...], pieces: EdgePieces) -> float:
+    """Square of the frequency that the stiffness of the cut adds for each depth, rad^2/s^2/m."""
+    _, _, shape, force_gain = modes
+    reach = float(np.max(np.linalg.norm(shape, axis=1) * np.linalg.norm(force_gain, axis=1)))
+    if pieces.bottom.size == 0:
+        return 0.0
+    arc = np.abs(pieces.exit - pieces.entry).max(axis=1)
+    lean = pieces.length / pieces.thickness
+    share = arc / (2.0 * math.pi) * np.linalg.norm(pieces.cutting, axis=1) * lean
+    # all edges that stand in the cut at a height, on average, and one at the least
+    at_tip = pieces.bottom <= pieces.bottom.min()
+    largest = np.linalg.norm(pieces.cutting, axis=1).max()
+    return 0.5 * reach * float(max(share[at_tip].sum(), largest))
 
 
 def cut_arrays(
@@ -106,6 +123,8 @@ def cut_arrays(
         points=of_element,
         response=response_table(natural_frequency, damping, of_element, longest),
         longest=longest,
+        fastest=fastest,
+        stiffening=_stiffening(modes, pieces),
         longest_angle=LONGEST_ANGLE,
         edge_place=place,
         edge_weight=weight,

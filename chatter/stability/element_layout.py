@@ -17,7 +17,12 @@ from numpy.typing import NDArray
 
 from chatter.kernels import KERNEL
 from chatter.stability.spindle_turn import angle_at, time_at
-from cutting.edge_pieces import engaged_span, first_and_last_turn
+from cutting.edge_pieces import (
+    engaged_span,
+    first_and_last_turn,
+    part_below,
+    share_of_height,
+)
 
 #: borders closer than this share of the period are the same
 _SAME = 1e-10
@@ -42,12 +47,6 @@ class ElementLayout(NamedTuple):
 
 
 @njit(**KERNEL)
-def part_below(pieces, piece, depth):
-    """Part of a piece, from its low end, that lies below the depth; not above 1."""
-    return min(1.0, (depth - pieces.bottom[piece]) / pieces.thickness[piece])
-
-
-@njit(**KERNEL)
 def is_engaged(pieces, depth, spindle):
     """Tell whether any edge is in the cut at a spindle angle."""
     for piece in range(pieces.bottom.shape[0]):
@@ -69,18 +68,21 @@ def _border_angles(cut, depth):
     angles = np.empty(4 * pieces.bottom.shape[0] + 1)
     singular = np.zeros(angles.shape[0], dtype=np.int64)
     count = 0
+    lowest = pieces.bottom.min()
     for piece in range(pieces.bottom.shape[0]):
         top = part_below(pieces, piece, depth)
         if top <= 0.0:
             continue
         for end in range(2):
-            # the tip of an edge, and the top of the cut
-            if (end == 0 and pieces.bottom[piece] > 0.0) or (
+            # the lowest place of an edge that cuts, and the top of the cut
+            if (end == 0 and pieces.bottom[piece] > lowest) or (
                 end == 1 and depth > pieces.bottom[piece] + pieces.thickness[piece] * (1.0 + 1e-12)
             ):
                 continue
             s = top if end == 1 else 0.0
-            place = pieces.angle[piece, 0] + s * (pieces.angle[piece, 1] - pieces.angle[piece, 0])
+            height = share_of_height(pieces, piece, s)
+            turned = pieces.angle[piece, 1] - pieces.angle[piece, 0]
+            place = pieces.angle[piece, 0] + height * turned
             for side in range(2):
                 arc = pieces.entry if side == 0 else pieces.exit
                 at = arc[piece, 0] + s * (arc[piece, 1] - arc[piece, 0])
@@ -158,12 +160,13 @@ def element_layout(cut, turn, depth):
     pieces_of = np.empty(intervals, dtype=np.int64)
     engaged = np.empty(intervals, dtype=np.int64)
     total = 0
+    waves = math.sqrt(1.0 + cut.stiffening * depth / cut.fastest**2)
     for i in range(intervals):
         span = times[i + 1] - times[i]
         turned = angle_at(turn, times[i + 1]) - angle_at(turn, times[i])
         middle = angle_at(turn, 0.5 * (times[i] + times[i + 1]))
         engaged[i] = 1 if is_engaged(cut.pieces, depth, middle) else 0
-        need = max(span / cut.longest, turned / cut.longest_angle)
+        need = max(span * waves / cut.longest, turned / cut.longest_angle)
         pieces_of[i] = max(1, math.ceil(need - 1e-9)) if engaged[i] == 1 else 1
         total += pieces_of[i] + (2 * _LEVELS if engaged[i] == 1 else 0)
     start, length = np.empty(total), np.empty(total)
@@ -244,9 +247,7 @@ def element_before(layout, time):
     place = (local - layout.cut_start[low]) / layout.cut_length[low]
     if place > 1.0:
         beyond = local - layout.cut_start[low] - layout.cut_length[low]
-        following = (
-            layout.cut_start[low + 1] if low + 1 < cuts else first + layout.period
-        ) - local
+        following = (layout.cut_start[low + 1] if low + 1 < cuts else first + layout.period) - local
         if following < beyond:
             if low + 1 < cuts:
                 return low + 1 + turn * cuts, 0.0

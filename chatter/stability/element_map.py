@@ -22,11 +22,17 @@ from chatter.stability.element_layout import (
     ElementLayout,
     element_before,
     element_layout,
-    part_below,
 )
 from chatter.stability.element_response import mode_response
 from chatter.stability.spindle_turn import angle_at, speed_at, spindle_turn, time_at
-from cutting.edge_pieces import coupling_at, engaged_span, first_and_last_turn
+from cutting.edge_pieces import (
+    coupling_at,
+    engaged_span,
+    first_and_last_turn,
+    part_below,
+    radius_at,
+    share_of_height,
+)
 
 #: points closer than this share of an element are the same
 _SAME_POINT = 1e-7
@@ -271,7 +277,9 @@ def _couple(cut, layout, turn, depth, speed_factor, time, scale, sources, count,
                             groups[group, i, j] += part[i, j]
                 else:
                     delay = pieces.delay[piece, 0]
-                    delay += place * (pieces.delay[piece, 1] - pieces.delay[piece, 0])
+                    delay += share_of_height(pieces, piece, place) * (
+                        pieces.delay[piece, 1] - pieces.delay[piece, 0]
+                    )
                     earlier = time_at(turn, spindle - delay)
                     sources, count = _note_source(
                         cut, layout, sources, first_source, count, earlier, part, scale
@@ -283,22 +291,6 @@ def _couple(cut, layout, turn, depth, speed_factor, time, scale, sources, count,
                 cut, layout, sources, first_source, count, earlier, groups[group], scale
             )
     return sources, count
-
-
-@njit(**KERNEL)
-def _speed_of_edge(cut, depth):
-    """Radius of the edge at the top of the cut, m, where process damping takes its speed."""
-    pieces = cut.pieces
-    radius = pieces.radius[0, 1]
-    highest = -1.0
-    for piece in range(pieces.bottom.shape[0]):
-        top = part_below(pieces, piece, depth)
-        if top > 0.0 and pieces.bottom[piece] > highest:
-            highest = pieces.bottom[piece]
-            radius = pieces.radius[piece, 0] + top * (
-                pieces.radius[piece, 1] - pieces.radius[piece, 0]
-            )
-    return radius
 
 
 @njit(**KERNEL)
@@ -356,7 +348,7 @@ def build_element_map(cut, speed, depth):
         np.empty((cut.pieces.group_delay.shape[0], rank, rank)),
         np.empty(cut.pieces.group_delay.shape[0], dtype=np.int64),
     )
-    radius = _speed_of_edge(cut, depth)
+    radius = radius_at(cut.pieces, depth)
     output = np.zeros((rank, size))
     for m in range(modes):
         for k in range(rank):
@@ -396,7 +388,9 @@ def build_element_map(cut, speed, depth):
             for entry in range(before, count):
                 if sources.element[entry] == e:
                     # the earlier motion lies within this very element
-                    _own_source(sources.block[entry], i, of_force[s], of_state[s], output, matrix, couple)
+                    _own_source(
+                        sources.block[entry], i, of_force[s], of_state[s], output, matrix, couple
+                    )
                     sources.block[entry] = 0.0
                     sources.element[entry] = e - 1
                     sources.point[entry] = 0

@@ -61,9 +61,7 @@ def _responses(x: NDArray[np.float64], ratio: float, points: ElementPoints) -> N
     nodes = points.place[1:]
     count = nodes.size
     damped = math.sqrt(1.0 - ratio * ratio)
-    inside, weight = np.polynomial.legendre.leggauss(
-        count + 10 + math.ceil(0.6 * float(np.max(x)))
-    )
+    inside, weight = np.polynomial.legendre.leggauss(count + 10 + math.ceil(0.6 * float(np.max(x))))
     inside, weight = 0.5 * (inside + 1.0), 0.5 * weight
     out = np.zeros((x.size, 2 * count + 2, count + 2))
     ends = np.append(nodes, 1.0)

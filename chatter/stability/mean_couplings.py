@@ -8,8 +8,7 @@ import numpy as np
 from numba import njit
 
 from chatter.kernels import DRIVER
-from chatter.stability.element_layout import part_below
-from cutting.edge_pieces import coupling_at
+from cutting.edge_pieces import coupling_at, part_below, share_of_height
 
 #: delays that differ by less than this are taken together, rad
 _SAME_DELAY = 2e-3
@@ -47,7 +46,8 @@ def mean_couplings(cut, depth):
         shares = min(64, 1 + int(varies / _SAME_DELAY))
         for share in range(shares):
             place = top * (share + 0.5) / shares
-            delay = pieces.delay[piece, 0] + place * (
+            height = share_of_height(pieces, piece, place)
+            delay = pieces.delay[piece, 0] + height * (
                 pieces.delay[piece, 1] - pieces.delay[piece, 0]
             )
             own = -1
@@ -62,7 +62,8 @@ def mean_couplings(cut, depth):
                 pieces.entry[piece, 1] - pieces.entry[piece, 0]
             )
             leave = pieces.exit[piece, 0] + place * (pieces.exit[piece, 1] - pieces.exit[piece, 0])
-            at = pieces.angle[piece, 0] + place * (pieces.angle[piece, 1] - pieces.angle[piece, 0])
+            turned = pieces.angle[piece, 1] - pieces.angle[piece, 0]
+            at = pieces.angle[piece, 0] + height * turned
             weight = pieces.length[piece] * top / shares
             for q in range(16):
                 x, w = cut.edge_place[16, q], cut.edge_weight[16, q]

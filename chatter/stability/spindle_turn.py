@@ -63,9 +63,7 @@ def spindle_turn(variation, speed, pattern):
             break
     patterns = int(max(1.0, np.round(best * a_cycle)))
     frequency = best * speed / (patterns * pattern)
-    return SpindleTurn(
-        speed, variation.amplitude, frequency, variation.triangle, patterns, best
-    )
+    return SpindleTurn(speed, variation.amplitude, frequency, variation.triangle, patterns, best)
 
 
 @njit(**KERNEL)
