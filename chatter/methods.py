@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from chatter.case import Case
 from chatter.errors import InputError
 from chatter.model import MillingModel
-from chatter.stability import collocation, semi_discretization
+from chatter.stability import collocation, multi_frequency, semi_discretization
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.multiplier import Multiplier
+from chatter.stability.step_schemes import FullDiscretization, SecondOrder, ZerothOrder
 from chatter.stability.sweep import Progress
 from chatter.stability.zero_order import ZeroOrderLimit, zero_order_limit
 from chatter.stability.zero_order_delays import limits_of_delays
@@ -36,6 +37,21 @@ def by_semi_discretization(
     return semi_discretization.limit_curve(model.arrays, speeds, depths, steps, progress)
 
 
+def _by_scheme(scheme: semi_discretization.Scheme) -> LimitMethod:
+    def limits(
+        model: MillingModel,
+        speeds: NDArray[np.float64],
+        depths: NDArray[np.float64],
+        steps: int | None,
+        progress: Progress,
+    ) -> LimitCurve:
+        return semi_discretization.limit_curve(
+            model.arrays, speeds, depths, steps, progress, scheme
+        )
+
+    return limits
+
+
 def by_collocation(
     model: MillingModel,
     speeds: NDArray[np.float64],
@@ -45,6 +61,27 @@ def by_collocation(
 ) -> LimitCurve:
     """Limits by collocation on elements, of any tool."""
     return collocation.limit_curve(model.cut(float(depths[-1])), speeds, depths, progress)
+
+
+def by_multi_frequency(
+    model: MillingModel,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    steps: int | None,  # noqa: ARG001  (every method has the same signature)
+    progress: Progress,
+) -> LimitCurve:
+    """Limits by the multi-frequency solution, from the FRFs themselves."""
+    if model.case.cut.speed_variation is not None:
+        raise InputError(
+            f"{model.case.name}: cut.speed_variation: the multi-frequency solution takes a "
+            'constant speed; "collocation" takes one that varies'
+        )
+    lines, receptance = model.receptance
+    response = multi_frequency.FrequencyResponse(
+        2.0 * np.pi * lines, np.ascontiguousarray(receptance)
+    )
+    cut = model.cut(float(depths[-1]))
+    return multi_frequency.limit_curve(cut, response, speeds, depths, progress)
 
 
 def by_zero_order(
@@ -88,6 +125,10 @@ def by_time(
 METHODS: dict[str, LimitMethod] = {
     "collocation": by_collocation,
     "semi-discretization": by_semi_discretization,
+    "semi-discretization-0": _by_scheme(ZerothOrder()),
+    "semi-discretization-2": _by_scheme(SecondOrder()),
+    "full-discretization": _by_scheme(FullDiscretization()),
+    "multi-frequency": by_multi_frequency,
     "zero-order": by_zero_order,
     "time": by_time,
 }

@@ -27,8 +27,10 @@ from cutting.tool import Cutter, corner_height
 _TURN = 2.0 * math.pi
 #: a corner turns by this much within a piece, and its arc changes by it, rad
 _PIECE_TURN = math.radians(2.0)
-#: an edge trails by this much within a piece where every piece has passes of its own, rad
+#: an edge trails, or a cone widens, by this much within a piece, rad; less where runout makes the
+#: arcs change from piece to piece
 _PIECE_LAG = 0.03
+_PIECE_LAG_OF_PASSES = 0.006
 _PIECES_A_WAVE = 24
 #: arcs shorter than this are none, rad
 _SHORTEST_ARC = 1e-9
@@ -144,7 +146,8 @@ def _borders_of_straight(cutter: Cutter, deepest: float, own_passes: bool) -> li
     if cutter.edge_angle < 0.5 * math.pi - 1e-9:
         # the radius, and with it the arc, changes along a cone
         rate = 1.0 / math.tan(cutter.edge_angle) / cutter.radius
-        heights += _even_heights(_PIECE_LAG / max(rate, slope), deepest)
+        turn = _PIECE_LAG_OF_PASSES if own_passes else _PIECE_LAG
+        heights += _even_heights(turn / max(rate, slope), deepest)
     return heights
 
 

@@ -29,7 +29,9 @@ Json = Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")
 Method = Annotated[
     str | None,
     typer.Option(
-        "--method", help="auto (default), collocation, semi-discretization, zero-order or time."
+        "--method",
+        help="auto (default), collocation, semi-discretization (also -0 and -2), "
+        "full-discretization, multi-frequency, zero-order or time.",
     ),
 ]
 

@@ -9,7 +9,7 @@ from chatter.kernels import DRIVER
 from chatter.stability.element_layout import element_layout
 from chatter.stability.element_map import build_element_map, force_over_period
 from chatter.stability.multipliers import dominant_multiplier
-from chatter.stability.period_map import advance_step, build_period_map
+from chatter.stability.period_map import advance_step, build_period_map, period_map_by
 from chatter.stability.spindle_turn import spindle_turn
 
 
@@ -36,6 +36,18 @@ def multipliers_at(arrays, speeds, depths, steps, refinement):
     for i in range(speeds.shape[0]):
         # free motion is one exact step
         period = build_period_map(arrays, speeds[i], depths[i], steps[i], refinement, np.int64(1))
+        out[i], _, _ = dominant_multiplier(period)
+    return out
+
+
+@njit(**DRIVER)
+def multipliers_by(scheme, arrays, speeds, depths, steps, refinement):
+    """Dominant multipliers of n points by another scheme; otherwise as `multipliers_at`."""
+    out = np.empty(speeds.shape[0], dtype=np.complex128)
+    for i in range(speeds.shape[0]):
+        period = period_map_by(
+            scheme, arrays, speeds[i], depths[i], steps[i], refinement, np.int64(1)
+        )
         out[i], _, _ = dominant_multiplier(period)
     return out
 

@@ -20,6 +20,12 @@ from chatter.stability.limit_search import PointMethod, limit_curve_by
 from chatter.stability.multiplier import Multiplier
 from chatter.stability.multipliers import dominant_multiplier
 from chatter.stability.period_map import build_period_map
+from chatter.stability.step_schemes import (
+    FirstOrder,
+    FullDiscretization,
+    SecondOrder,
+    ZerothOrder,
+)
 from chatter.stability.sweep import Progress, no_progress, sweep
 
 #: steps per period of the highest relevant mode; the extrapolated error is then near 1e-4
@@ -30,6 +36,9 @@ _CHATTER_ABOVE_NATURAL = 1.2
 #: modes whose resonance peak is below this share of the highest do not set the resolution
 _RELEVANT_PEAK = 0.01
 _MOST_STEPS = 200_000
+Scheme = ZerothOrder | FirstOrder | SecondOrder | FullDiscretization
+FIRST_ORDER = FirstOrder()
+
 #: refinements of the steps: plain, or nested ones from which the value is extrapolated
 _PLAIN = (1,)
 _EXTRAPOLATED = (1, 2)
@@ -74,6 +83,7 @@ def multipliers(
     depths: NDArray[np.float64],
     steps: int | None = None,
     progress: Progress = no_progress,
+    scheme: Scheme = FIRST_ORDER,
 ) -> NDArray[np.complex128]:
     """Dominant multiplier over one tooth period at every point.
 
@@ -87,6 +97,8 @@ def multipliers(
         the natural frequencies, with extrapolation.
     progress : callable, optional
         Called with (done, total).
+    scheme : NamedTuple, optional
+        Of `step_schemes`.
 
     Returns
     -------
@@ -94,7 +106,7 @@ def multipliers(
         Imaginary part >= 0.
     """
     count, refinements = _resolution(arrays, speeds, steps)
-    return _at_points(arrays, speeds, depths, count, refinements, progress)
+    return _at_points(arrays, speeds, depths, count, refinements, progress, scheme)
 
 
 def converged_multiplier(
@@ -161,6 +173,7 @@ def limit_curve(
     depths: NDArray[np.float64],
     steps: int | None = None,
     progress: Progress = no_progress,
+    scheme: Scheme = FIRST_ORDER,
 ) -> LimitCurve:
     """Limits of stability at every spindle speed.
 
@@ -186,12 +199,12 @@ def limit_curve(
     def refined(
         index: NDArray[np.int64], depth: NDArray[np.float64], report: Progress
     ) -> NDArray[np.complex128]:
-        return _at_points(arrays, speeds[index], depth, count[index], refinements, report)
+        return _at_points(arrays, speeds[index], depth, count[index], refinements, report, scheme)
 
     def plain(
         index: NDArray[np.int64], depth: NDArray[np.float64], report: Progress
     ) -> NDArray[np.complex128]:
-        return _at_points(arrays, speeds[index], depth, count[index], _PLAIN, report)
+        return _at_points(arrays, speeds[index], depth, count[index], _PLAIN, report, scheme)
 
     def heard(index: int, depth: float) -> float:
         return chatter_frequency(arrays, float(speeds[index]), depth)
@@ -207,6 +220,7 @@ def _at_points(
     steps: NDArray[np.int64],
     refinements: tuple[int, ...],
     progress: Progress = no_progress,
+    scheme: Scheme = FIRST_ORDER,
 ) -> NDArray[np.complex128]:
     """Dominant multipliers (n,) at n points, in parallel threads.
 
@@ -217,7 +231,10 @@ def _at_points(
 
     def chunk(index: NDArray[np.int64]) -> NDArray[np.complex128]:
         points = speeds[index], depths[index], steps[index]
-        values = [drivers.multipliers_at(arrays, *points, r) for r in refinements]
+        if scheme is FIRST_ORDER:
+            values = [drivers.multipliers_at(arrays, *points, r) for r in refinements]
+        else:
+            values = [drivers.multipliers_by(scheme, arrays, *points, r) for r in refinements]
         return values[0] if len(values) == 1 else _extrapolated(*values, refinements)
 
     return np.concatenate(sweep(chunk, len(speeds), progress))

@@ -188,7 +188,8 @@ class _Cut:
                 s = low + (high - low) * x
                 chip, ahead, phi, kappa = self.chips(tooth, s, spindle)
                 size = (high - low) * weight
-                slope = cut.exponent * (chip[which] / cut.reference_chip) ** (cut.exponent - 1.0)
+                ratio = np.maximum(chip[which], 1e-14) / cut.reference_chip
+                slope = cut.exponent * ratio ** (cut.exponent - 1.0)
                 for i in range(s.size):
                     normal, push = _directions(phi[i], kappa[i], cut.coefficients)
                     matrix = size[i] * slope[i] * np.outer(push, normal)
