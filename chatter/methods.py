@@ -198,7 +198,7 @@ def operating_multiplier(model: MillingModel, method: str, steps: int | None) ->
 
 
 def operating_frequency(model: MillingModel) -> float:
-    """Frequency (Hz) of the motion that grows fastest, or dies out slowest, at the operating point."""
+    """Frequency (Hz) of the motion that grows fastest, or dies out slowest, as the case cuts."""
     cut = model.case.cut
     return collocation.chatter_frequency(
         model.cut(cut.axial_depth), cut.spindle_speed, cut.axial_depth

@@ -63,7 +63,7 @@ class StabilityCheck:
 
     @property
     def spectral_radius(self) -> float:
-        """Magnitude of the dominant multiplier over one period: between alike teeth, else a turn."""
+        """Magnitude of the dominant multiplier over one period: from tooth to like tooth."""
         return abs(self.multiplier.value)
 
     @property

@@ -10,6 +10,7 @@ surface, every pass has its own arc.
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import NamedTuple
 
@@ -25,6 +26,8 @@ from cutting.regeneration import earlier_passes
 from cutting.tool import Cutter, corner_height
 
 _TURN = 2.0 * math.pi
+#: a call would count the references to every array of the table
+_INLINED = {"error_model": "numpy", "forceinline": True}
 #: a corner turns by this much within a piece, and its arc changes by it, rad
 _PIECE_TURN = math.radians(2.0)
 #: an edge trails, or a cone widens, by this much within a piece, rad; less where runout makes the
@@ -99,7 +102,7 @@ def _line(
         angles = _corner_angles(cutter, mode, radial_depth)
         height = list(corner * (1.0 - np.cos(angles)))
         radius = list(cutter.radius - corner + corner * np.sin(angles))
-        immersion = list(zip(angles[:-1], angles[1:], strict=True))
+        immersion = list(itertools.pairwise(angles))
         length = list(corner * np.diff(angles))
     top = corner_height(cutter)
     if deepest > top:
@@ -170,7 +173,7 @@ def _passes(
     marks = np.concatenate([turns, math.pi - turns, [entry, leave]])
     marks = np.unique(marks[(marks >= entry) & (marks <= leave)])
     arcs: list[tuple[int, float, float]] = []
-    for low, high in zip(marks[:-1], marks[1:], strict=True):
+    for low, high in itertools.pairwise(marks):
         if high - low < _SHORTEST_ARC:
             continue
         chip = rise * math.sin(0.5 * (low + high)) - inset
@@ -330,7 +333,8 @@ def _as_arrays(
         bottom=columns[0], thickness=columns[1], length=columns[2], angle=columns[3],
         entry=columns[4], exit=columns[5], delay=delay, immersion=columns[7], radius=columns[8],
         group=group, group_delay=np.array(groups), cutting=columns[9], feed=columns[10],
-        inset=columns[11], corner=columns[12], exponent=exponent, reference=reference, damping=damping,
+        inset=columns[11], corner=columns[12], exponent=exponent, reference=reference,
+        damping=damping,
         outline=np.array([cutter.radius, cutter.corner_radius, cutter.edge_angle]),
     )  # fmt: skip
 
@@ -363,7 +367,7 @@ def period_angle(cutter: Cutter) -> float:
     return _TURN
 
 
-@register_jitable
+@register_jitable(**_INLINED)
 def part_below(pieces, piece, depth):
     """Part of a piece, from its low end and along its length, that lies below a depth (m)."""
     share = (depth - pieces.bottom[piece]) / pieces.thickness[piece]
@@ -376,7 +380,7 @@ def part_below(pieces, piece, depth):
     return (math.acos(1.0 - depth / corner) - low) / (high - low)
 
 
-@register_jitable
+@register_jitable(**_INLINED)
 def radius_at(pieces, height):
     """Radius of the edge at a height above the tip, m."""
     radius, corner, angle = pieces.outline[0], pieces.outline[1], pieces.outline[2]
@@ -386,7 +390,7 @@ def radius_at(pieces, height):
     return radius - corner * (1.0 - math.sin(angle)) + (height - top) / math.tan(angle)
 
 
-@register_jitable
+@register_jitable(**_INLINED)
 def share_of_height(pieces, piece, place):
     """Height of a place along a piece above its low end, as a share of the piece's."""
     corner = pieces.corner[piece]
@@ -397,7 +401,7 @@ def share_of_height(pieces, piece, place):
     return (height - pieces.bottom[piece]) / pieces.thickness[piece]
 
 
-@register_jitable
+@register_jitable(**_INLINED)
 def engaged_span(pieces, piece, top, spindle, turn):
     """Part of a piece that is in the cut at a spindle angle.
 
@@ -437,19 +441,19 @@ def engaged_span(pieces, piece, top, spindle, turn):
     return low, high
 
 
-@register_jitable
+@register_jitable(**_INLINED)
 def first_and_last_turn(pieces, piece, top, spindle):
     """Turns by which a piece may have to be turned back to lie in its arc."""
     a = spindle + pieces.angle[piece, 0]
     b = a + top * (pieces.angle[piece, 1] - pieces.angle[piece, 0])
     entry = min(pieces.entry[piece, 0], pieces.entry[piece, 1])
     leave = max(pieces.exit[piece, 0], pieces.exit[piece, 1])
-    first = int(math.ceil((min(a, b) - leave) / _TURN - 1e-12))
-    last = int(math.floor((max(a, b) - entry) / _TURN + 1e-12))
+    first = math.ceil((min(a, b) - leave) / _TURN - 1e-12)
+    last = math.floor((max(a, b) - entry) / _TURN + 1e-12)
     return first, last
 
 
-@register_jitable
+@register_jitable(**_INLINED)
 def coupling_at(pieces, piece, place, spindle, weight, speed_factor, basis, stiffness, dashpot):
     """Add the coupling of a point of the edge to displacement and velocity.
 

@@ -135,7 +135,7 @@ def dominant_force(cut, speed, depth):
     """
     period = build_element_map(cut, speed, depth)
     value, vector, _ = dominant_multiplier(period)
-    cuts, values, size = period.feedback.shape
+    cuts, values, _ = period.feedback.shape
     rank = cut.shape.shape[1]
     points = values // rank
     force = np.empty((cuts * points, rank), dtype=np.complex128)

@@ -17,7 +17,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from chatter.kernels import KERNEL
+from chatter.kernels import KERNEL, SUMMING_KERNEL
 from chatter.stability.element_layout import (
     ElementLayout,
     element_before,
@@ -69,7 +69,7 @@ class _Sources(NamedTuple):
     block: NDArray[np.float64]
 
 
-@njit(**KERNEL)
+@njit(**SUMMING_KERNEL)
 def invert(a, inverse):
     """Set `inverse` to the inverse of a (n, n), which is overwritten; partial pivoting."""
     n = a.shape[0]
@@ -254,8 +254,8 @@ def _couple(cut, layout, turn, depth, speed_factor, time, scale, sources, count,
                 x, share = cut.edge_place[order, q], cut.edge_weight[order, q]
                 if pieces.exponent != 0.0 and order > 1:
                     # towards both ends, where the chip may vanish
-                    share *= 6.0 * x * (1.0 - x)
-                    x = x * x * (3.0 - 2.0 * x)
+                    share *= 30.0 * (x * (1.0 - x)) ** 2
+                    x = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
                 place = low + x * (high - low)
                 weight = share * (high - low) * pieces.length[piece]
                 coupling_at(
@@ -293,7 +293,7 @@ def _couple(cut, layout, turn, depth, speed_factor, time, scale, sources, count,
     return sources, count
 
 
-@njit(**KERNEL)
+@njit(**SUMMING_KERNEL)
 def build_element_map(cut, speed, depth):
     """Assemble the elements of one period.
 
@@ -432,7 +432,7 @@ def _own_source(block, i, of_force, of_state, output, matrix, couple):
 
 @njit(**KERNEL)
 def element_scratch(period):
-    """Scratch arrays of `apply_element_map`: motion of all elements, force, delayed force, state."""
+    """Scratch of `apply_element_map`: motion of all elements, force, delayed force, state."""
     cuts, values, size = period.feedback.shape
     rank = period.output.shape[0]
     return (
@@ -443,7 +443,7 @@ def element_scratch(period):
     )
 
 
-@njit(**KERNEL)
+@njit(**SUMMING_KERNEL)
 def _advance(period, m, scratch):
     """Advance state and motion over one element; leaves the force on it in the scratch."""
     motion, force, delayed, state = scratch

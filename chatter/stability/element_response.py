@@ -121,7 +121,7 @@ def response_table(
 
 @njit(**KERNEL)
 def mode_response(table, mode, x, out):
-    """Set out (rows, p + 2) to the response of a mode at omega h = x; rows may be the first ones."""
+    """Set out to the first rows of the response of a mode at omega h = x, (rows, p + 2)."""
     coefficient = table.coefficient[mode]
     rows, columns = out.shape
     t = 2.0 * x / table.furthest[mode] - 1.0

@@ -333,9 +333,7 @@ def limit_curve(
 
         return np.array([v for part in sweep(some, len(index), points_a_chunk=4) for v in part])
 
-    crossings = find_crossings(
-        net.reshape(len(speeds), -1), depths, growth, _DEPTH_TOLERANCE
-    )
+    crossings = find_crossings(net.reshape(len(speeds), -1), depths, growth, _DEPTH_TOLERANCE)
     first = np.array([found[0] if found.size else np.inf for found in crossings])
     frequency, kind = np.full(len(speeds), np.nan), ["none"] * len(speeds)
     for i in np.flatnonzero(np.isfinite(first)):

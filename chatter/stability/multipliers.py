@@ -7,15 +7,15 @@ import math
 import numpy as np
 from numba import njit
 
-from chatter.kernels import KERNEL
+from chatter.kernels import KERNEL, SUMMING_KERNEL
 from chatter.stability.hessenberg import hessenberg_eigenvalues, hessenberg_vector
 from chatter.stability.maps import apply_map, dimension_of, scratch_of
 
 #: residual of the dominant eigenpair, relative to its magnitude, at which the iteration stops
 _TOLERANCE = 1e-8
 #: dimension of the Krylov space beyond the state at the first look, and how it grows
-_FIRST_LOOK = 8
-_GROWTH = 1.4
+_FIRST_LOOK = 5
+_GROWTH = 1.3
 _LARGEST_SPACE = 240
 
 
@@ -48,7 +48,7 @@ def _dominant_pair(hessenberg):
     return value, hessenberg_vector(hessenberg, value)
 
 
-@njit(**KERNEL)
+@njit(**SUMMING_KERNEL)
 def dominant_multiplier(period):
     """Multiplier of largest magnitude and its vector.
 

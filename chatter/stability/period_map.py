@@ -17,7 +17,7 @@ from numba import njit, types
 from numba.extending import overload
 from numpy.typing import NDArray
 
-from chatter.kernels import KERNEL
+from chatter.kernels import KERNEL, SUMMING_KERNEL
 from chatter.stability.step_schemes import (
     FirstOrder,
     FullDiscretization,
@@ -280,8 +280,8 @@ def thirds_of(scheme, steps):
 @overload(thirds_of)
 def _thirds_of(scheme, steps):  # noqa: ARG001
     if isinstance(scheme, types.BaseNamedTuple) and scheme.instance_class is SecondOrder:
-        return lambda scheme, steps: steps
-    return lambda scheme, steps: 0
+        return lambda scheme, steps: steps  # noqa: ARG005
+    return lambda scheme, steps: 0  # noqa: ARG005
 
 
 @njit(**KERNEL)
@@ -315,9 +315,7 @@ def _interval_steps(arrays, borders, lag, steps, refinement, free_steps):
 @njit(**KERNEL)
 def build_period_map(arrays, speed, depth, steps, refinement, free_steps):
     """Assemble the steps of one tooth period by first-order semi-discretization; see below."""
-    return period_map_by(
-        FirstOrder(0.0), arrays, speed, depth, steps, refinement, free_steps
-    )
+    return period_map_by(FirstOrder(0.0), arrays, speed, depth, steps, refinement, free_steps)
 
 
 @njit(**KERNEL)
@@ -432,7 +430,7 @@ def _record_motion(output, state, motion):
         motion[k] = total
 
 
-@njit(**KERNEL)
+@njit(**SUMMING_KERNEL)
 def advance_step(period, step, vector, state, following):
     """Advance the state over one step; vector holds the motion of the last period after 2n."""
     _, size, rank = period.from_left.shape

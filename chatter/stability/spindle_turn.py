@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from chatter.kernels import KERNEL
+from chatter.kernels import INLINED_KERNEL, KERNEL
 
 #: the variation may be taken that much faster or slower, as a share, to fit into a period
 _TUNING = 2e-3
@@ -66,7 +66,7 @@ def spindle_turn(variation, speed, pattern):
     return SpindleTurn(speed, variation.amplitude, frequency, variation.triangle, patterns, best)
 
 
-@njit(**KERNEL)
+@njit(**INLINED_KERNEL)
 def angle_at(turn, time):
     """Angle turned since time zero, rad."""
     if turn.amplitude == 0.0:
@@ -84,7 +84,7 @@ def angle_at(turn, time):
     return turn.speed * (time + turn.amplitude / turn.frequency * swing)
 
 
-@njit(**KERNEL)
+@njit(**INLINED_KERNEL)
 def speed_at(turn, time):
     """Spindle speed, rad/s."""
     if turn.amplitude == 0.0:

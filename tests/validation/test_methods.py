@@ -188,7 +188,7 @@ def test_runout_without_effect_and_with():
     even = tool_922(1, 0.1, "up")
     small = tool_922(1, 0.1, "up", runout={"offset": 1e-10, "angle": 0.0})
     a, b = (abs(collocation.multipliers(m.cut(1e-3), speed, depth)[0]) for m in (even, small))
-    # the chip vanishes at the entry of an up-milling cut, so that some of the arc is another tooth's
+    # at the entry the chip vanishes, so that some of the arc is another tooth's
     assert b == pytest.approx(a**2, rel=1e-4)
     one = tool_922(1, 0.1, "up", runout={"offset": 1e-3, "angle": 0.0})
     # one tooth left: a cut with a single tooth, whose period is a turn

@@ -183,8 +183,8 @@ class _Cut:
                 if self.grid.size == 2:
                     x, weight = np.array([0.5]), np.array([1.0])
                 elif cut.exponent < 1.0:
-                    weight = weight * 6.0 * x * (1.0 - x)
-                    x = x * x * (3.0 - 2.0 * x)
+                    weight = weight * 30.0 * (x * (1.0 - x)) ** 2
+                    x = x**3 * (10.0 - 15.0 * x + 6.0 * x * x)
                 s = low + (high - low) * x
                 chip, ahead, phi, kappa = self.chips(tooth, s, spindle)
                 size = (high - low) * weight
@@ -266,7 +266,7 @@ class _Spindle:
     def angle(self, time):
         if not self.variation:
             return self.speed * time
-        whole, cycle = divmod(self.rate * time, 1.0)
+        cycle = (self.rate * time) % 1.0
         if self.variation[3]:
             if cycle < 0.25:
                 swing = 2.0 * cycle**2
