@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 
 from chatter.stability import drivers
 from chatter.stability.cut_arrays import RESOLUTION, CutArrays
+from chatter.stability.following import followed_crossings
 from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.limit_search import PointMethod, limit_curve_by
+from chatter.stability.limit_search import PointMethod, growth, limit_curve_by
 from chatter.stability.multiplier import Multiplier
 from chatter.stability.sweep import Progress, no_progress, sweep
 
@@ -104,6 +105,37 @@ def chatter_frequency(cut: CutArrays, speed: float, depth: float) -> float:
     modal = (spectrum @ cut.force_gain.T) / (s[:, None] ** 2 + 2.0 * zeta * w * s[:, None] + w**2)
     amplitude = np.linalg.norm(modal @ cut.shape, axis=1)
     return float(abs(s[np.argmax(amplitude)].imag)) / (2.0 * np.pi)
+
+
+def followed_limits(
+    cut: CutArrays,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    tolerance: float = 5e-3,
+) -> list[NDArray[np.float64]]:
+    """Limits at every speed by following the boundary, for a diagram that follows a slider.
+
+    Parameters
+    ----------
+    cut : CutArrays
+        At any resolution: 6 points an element do for a picture.
+    speeds : (n,) array of float
+        rad/s, ascending.
+    depths : (m,) array of float
+        Coarse net, m.
+    tolerance : float
+        Of a limit, relative to its depth.
+
+    Returns
+    -------
+    list of n arrays
+        m; all changes of stability, lost at even places; see `following` for what may be missed.
+    """
+
+    def at(points: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
+        return growth(multipliers(cut, speeds[points], depth))
+
+    return followed_crossings(len(speeds), depths, at, tolerance)
 
 
 def limit_curve(
