@@ -475,7 +475,8 @@ def coupling_at(pieces, piece, place, spindle, weight, speed_factor, basis, stif
         N/m and N s/m: the force on the tool is -stiffness u - dashpot u'. Overwritten.
     """
     turned = pieces.angle[piece, 1] - pieces.angle[piece, 0]
-    phi = spindle + pieces.angle[piece, 0] + share_of_height(pieces, piece, place) * turned
+    height = share_of_height(pieces, piece, place)
+    phi = spindle + pieces.angle[piece, 0] + height * turned
     kappa = pieces.immersion[piece, 0]
     bend = pieces.immersion[piece, 1] - kappa
     s, c = math.sin(phi), math.cos(phi)
@@ -484,7 +485,10 @@ def coupling_at(pieces, piece, place, spindle, weight, speed_factor, basis, stif
         sk, ck = math.sin(kappa + place * bend), math.cos(kappa + place * bend)
     size = weight
     if pieces.exponent != 0.0:
-        chip = pieces.feed[piece] * s - pieces.inset[piece]
+        # flutes of different helix leave each other more or less of the feed from height to height
+        first, last = pieces.delay[piece, 0], pieces.delay[piece, 1]
+        feed = pieces.feed[piece] * (first + height * (last - first)) / (0.5 * (first + last))
+        chip = feed * s - pieces.inset[piece]
         chip = max(chip, 1e-9 * pieces.reference)
         size *= math.exp(pieces.exponent * math.log(chip / pieces.reference))
     kt, kr, ka = pieces.cutting[piece, 0], pieces.cutting[piece, 1], pieces.cutting[piece, 2]

@@ -9,6 +9,7 @@ from reference.general_cut import GeneralCut, spectral_radius
 
 from chatter.case import Case
 from chatter.model import milling_model
+from chatter.stability import sweep
 from chatter.stability.collocation import converged_multiplier, multipliers
 from cutting.edge_pieces import period_angle
 
@@ -85,6 +86,18 @@ def test_spectral_radius_of_random_cases_of_any_tool():
         radius = over_the_period_of_the_reference(model, cut, abs(found.value))
         errors.append(abs(radius - expected) / max(1.0, expected))
     assert max(errors) < 1e-4
+
+
+def test_the_same_bytes_whatever_the_number_of_threads(monkeypatch):
+    cut, _ = next((cut, r) for cut, r in CASES if len(set(cut.helix)) > 1 and not cut.variation)
+    arrays = milling_model(Case.from_dict(case_dict(cut))).cut(cut.depth)
+    speeds = np.linspace(0.8, 1.2, 97) * cut.speed
+    depths = np.full(speeds.size, cut.depth)
+    found = []
+    for workers in (1, 2, 5):
+        monkeypatch.setattr(sweep, "worker_count", lambda workers=workers: workers)
+        found.append(multipliers(arrays, speeds, depths).tobytes())
+    assert len(set(found)) == 1
 
 
 def test_spectral_convergence():
