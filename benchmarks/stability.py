@@ -6,18 +6,23 @@ matrix exponentials by scipy, all eigenvalues by numpy. It is timed on a sample 
 
 import math
 import time
+from functools import partial
 
 import numpy as np
 from scipy.linalg import expm
 
 from chatter.case import Case
 from chatter.model import milling_model
+from chatter.stability import collocation
 from chatter.stability.semi_discretization import limit_curve, multipliers
 from chatter.stability.sweep import worker_count
 
 RPM = math.pi / 30.0
 SPEEDS, DEPTHS, STEPS = 200, 100, 40
 SAMPLE = 60
+#: speeds from and to in rpm and their number, deepest depth and number of depths
+TWO_MODES = (5000, 25000, 401, 10e-3, 201)
+FOUR_MODES = (2000, 10000, 201, 8e-3, 101)
 
 
 def two_degrees_of_freedom(immersion):
@@ -76,7 +81,107 @@ def plain_spectral_radius(speed, depth, immersion, steps=STEPS):
     return np.abs(np.linalg.eigvals(transition)).max()
 
 
+def altintas_engin_budak(helix_deg):
+    """Four teeth at 70 and 110 degrees, four modes (Altintas, Engin and Budak 1999)."""
+
+    def mode(frequency, damping, mass, direction):
+        return {
+            "frequency": frequency, "damping": damping, "mass": mass, "direction": direction,
+        }  # fmt: skip
+
+    x, y = [1, 0, 0], [0, 1, 0]
+    modes = [
+        mode(441.64, 0.028722, 11.125, x),
+        mode(563.6, 0.055801, 1.4986, x),
+        mode(778.56, 0.058996, 13.063, x),
+        mode(516.21, 0.025004, 1.199, y),
+    ]
+    return Case.from_dict(
+        {
+            "tool": {
+                "teeth": 4,
+                "diameter": "19.05 mm",
+                "helix": math.radians(helix_deg),
+                "pitch": [math.radians(angle) for angle in (70, 110, 70, 110)],
+            },
+            "material": {"Ktc": "697 MPa", "Krc": "255.8 MPa"},
+            "cut": {
+                "mode": "down",
+                "spindle_speed": "5000 rpm",
+                "feed_per_tooth": "0.1 mm",
+                "axial_depth": "1 mm",
+                "radial_depth": 0.5 * 19.05e-3,
+            },
+            "structure": {"mode": modes},
+        }
+    )
+
+
+def timed(function):
+    """Return what a function gives, its wall time and its processor time, warm."""
+    function()
+    wall, processor = time.perf_counter(), time.process_time()
+    result = function()
+    return result, time.perf_counter() - wall, time.process_time() - processor
+
+
+def collocation_grids():
+    """Multipliers on the grids of published codes, by collocation."""
+    grids = [
+        ("2 modes, immersion 0.10", two_degrees_of_freedom(0.1), TWO_MODES, "178 s, RTX 3090"),
+        ("2 modes, immersion 0.05", two_degrees_of_freedom(0.05), TWO_MODES, "168 s, RTX 3090"),
+        ("4 modes, 70/110 deg", altintas_engin_budak(0.0), FOUR_MODES, "none"),
+        ("the same, helix 30 deg", altintas_engin_budak(30.0), FOUR_MODES, "265 s, MATLAB"),
+    ]
+    for name, case, (low, high, columns, deepest, rows), published in grids:
+        model = milling_model(case)
+        speeds = np.linspace(low, high, columns) * RPM
+        depths = np.linspace(0.0, deepest, rows + 1)[1:]
+        s, d = (part.ravel() for part in np.meshgrid(speeds, depths))
+        picked = np.random.default_rng(2).choice(s.size, 300, replace=False)
+        exact = np.abs(collocation.multipliers(model.cut(deepest, 12, 0.6), s[picked], d[picked]))
+        for points in (6, 8):
+            cut = model.cut(deepest, points, 1.0)
+            found, wall, processor = timed(partial(collocation.multipliers, cut, s, d))
+            error = np.abs(np.abs(found[picked]) - exact) / np.maximum(1.0, exact)
+            print(
+                f"{name}, {columns} x {rows}, {points} points an element: {wall:6.2f} s wall, "
+                f"{processor:6.2f} s processor, {s.size / processor:8.0f} points/s and core; "
+                f"error of |mu| {np.median(error):.0e} median, {error.max():.0e} at most; "
+                f"published {published}"
+            )
+
+
+def limit_curves():
+    """A limit curve of 400 speeds to 0.5 %, two modes a direction."""
+    model = milling_model(two_degrees_of_freedom(0.5))
+    speeds = np.linspace(5000, 25000, 400) * RPM
+    depths = np.linspace(0.0, 2e-3, 41)[1:]
+    cut = model.cut(2e-3)
+    full, wall, processor = timed(lambda: collocation.limit_curve(cut, speeds, depths))
+    print(f"limits at 400 speeds, full net: {wall:6.3f} s wall, {processor:6.3f} s processor")
+    quick = model.cut(2e-3, 6, 1.0)
+    coarse = depths[1::2]
+    found, wall, processor = timed(lambda: collocation.followed_limits(quick, speeds, coarse))
+    first = np.array([limits[0] if limits.size else np.inf for limits in found])
+    both = np.isfinite(first) & np.isfinite(full.critical_depth)
+    off = np.abs(first[both] / full.critical_depth[both] - 1.0)
+    missed = sum(len(a) != len(b) for a, b in zip(found, full.crossings, strict=True))
+    print(
+        f"the same followed to 0.5 %: {wall:6.3f} s wall, {processor:6.3f} s processor (wanted "
+        f"0.033 s wall); off by {off.max():.1e} at most, crossings missed at {missed} speeds"
+    )
+
+
 def main():
+    collocation_grids()
+    limit_curves()
+    print()
+    semi_discretization_grids()
+
+
+def semi_discretization_grids():
+    """Grids and limits by first-order semi-discretization against the textbook's."""
     print(f"{worker_count()} threads; {SPEEDS} x {DEPTHS} points, {STEPS} steps a tooth period")
     speeds = np.linspace(5000, 25000, SPEEDS) * RPM
     for immersion in (0.05, 0.1, 0.5):

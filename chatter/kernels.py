@@ -64,6 +64,10 @@ CACHE_FOLDER = _set_cache_folder()
 
 #: functions called from drivers
 KERNEL = {"cache": True, "error_model": "numpy"}
+#: the same where the call itself would cost: a table that is passed on has all its arrays counted
+INLINED_KERNEL = {**KERNEL, "forceinline": True}
+#: sums may be taken in lanes: always in the same order on one machine, whatever the threads
+SUMMING_KERNEL = {**KERNEL, "fastmath": {"reassoc", "contract", "nsz"}}
 #: loops over points, called from Python, in several threads at once
 DRIVER = {"cache": True, "error_model": "numpy", "nogil": True}
 

@@ -15,7 +15,7 @@ from chatter.methods import (
     GRIDS,
     LimitMethod,
     chosen_method,
-    radius_by_semi_discretization,
+    radius_by_collocation,
     resolution,
     zero_order_of,
 )
@@ -44,7 +44,8 @@ class StabilityGrid:
     axial_depth : (m,) array of float
         m.
     spectral_radius : (m, n) array of float
-        Over one tooth period; above 1 is chatter.
+        Over one period of the cut: from tooth to tooth where they are alike, else a turn or what
+        part of it repeats, or that of the speed variation; above 1 is chatter.
     """
 
     spindle_speed: NDArray[np.float64]
@@ -219,8 +220,7 @@ def lobes(
     ----------
     case : Case
     method : str, optional
-        One of `chatter.methods.METHODS`; by default what the case says, else
-        semi-discretization.
+        One of `chatter.methods.METHODS`, or "auto"; by default what the case says, else "auto".
     grid : bool
         Also the spectral radius on the whole grid of speeds and depths.
     progress : callable, optional
@@ -280,6 +280,6 @@ def stability_grid(
 ) -> StabilityGrid:
     """Spectral radius on every pair of speed and depth."""
     speed, depth = (part.ravel() for part in np.meshgrid(speeds, depths))
-    radius_at = GRIDS.get(method, radius_by_semi_discretization)
+    radius_at = GRIDS.get(method, radius_by_collocation)
     radius = radius_at(model, speed, depth, resolution(case), progress)
     return StabilityGrid(speeds, depths, radius.reshape(len(depths), len(speeds)))

@@ -13,10 +13,13 @@ from numpy.typing import NDArray
 from chatter.case import Case
 from chatter.errors import InputError
 from chatter.model import MillingModel
+from chatter.stability import collocation, multi_frequency, semi_discretization
 from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.semi_discretization import limit_curve, multipliers
+from chatter.stability.multiplier import Multiplier
+from chatter.stability.step_schemes import FullDiscretization, SecondOrder, ZerothOrder
 from chatter.stability.sweep import Progress
 from chatter.stability.zero_order import ZeroOrderLimit, zero_order_limit
+from chatter.stability.zero_order_delays import limits_of_delays
 
 LimitMethod = Callable[
     [MillingModel, NDArray[np.float64], NDArray[np.float64], "int | None", Progress], LimitCurve
@@ -31,7 +34,54 @@ def by_semi_discretization(
     progress: Progress,
 ) -> LimitCurve:
     """Limits by first-order semi-discretization of the modal model."""
-    return limit_curve(model.arrays, speeds, depths, steps, progress)
+    return semi_discretization.limit_curve(model.arrays, speeds, depths, steps, progress)
+
+
+def _by_scheme(scheme: semi_discretization.Scheme) -> LimitMethod:
+    def limits(
+        model: MillingModel,
+        speeds: NDArray[np.float64],
+        depths: NDArray[np.float64],
+        steps: int | None,
+        progress: Progress,
+    ) -> LimitCurve:
+        return semi_discretization.limit_curve(
+            model.arrays, speeds, depths, steps, progress, scheme
+        )
+
+    return limits
+
+
+def by_collocation(
+    model: MillingModel,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    steps: int | None,  # noqa: ARG001  (every method has the same signature)
+    progress: Progress,
+) -> LimitCurve:
+    """Limits by collocation on elements, of any tool."""
+    return collocation.limit_curve(model.cut(float(depths[-1])), speeds, depths, progress)
+
+
+def by_multi_frequency(
+    model: MillingModel,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    steps: int | None,  # noqa: ARG001  (every method has the same signature)
+    progress: Progress,
+) -> LimitCurve:
+    """Limits by the multi-frequency solution, from the FRFs themselves."""
+    if model.case.cut.speed_variation is not None:
+        raise InputError(
+            f"{model.case.name}: cut.speed_variation: the multi-frequency solution takes a "
+            'constant speed; "collocation" takes one that varies'
+        )
+    lines, receptance = model.receptance
+    response = multi_frequency.FrequencyResponse(
+        2.0 * np.pi * lines, np.ascontiguousarray(receptance)
+    )
+    cut = model.cut(float(depths[-1]))
+    return multi_frequency.limit_curve(cut, response, speeds, depths, progress)
 
 
 def by_zero_order(
@@ -73,10 +123,17 @@ def by_time(
 
 #: name on the command line and in case files -> method
 METHODS: dict[str, LimitMethod] = {
+    "collocation": by_collocation,
     "semi-discretization": by_semi_discretization,
+    "semi-discretization-0": _by_scheme(ZerothOrder()),
+    "semi-discretization-2": _by_scheme(SecondOrder()),
+    "full-discretization": _by_scheme(FullDiscretization()),
+    "multi-frequency": by_multi_frequency,
     "zero-order": by_zero_order,
     "time": by_time,
 }
+#: chooses among them
+AUTO = "auto"
 
 
 def radius_by_semi_discretization(
@@ -84,10 +141,22 @@ def radius_by_semi_discretization(
     speeds: NDArray[np.float64],
     depths: NDArray[np.float64],
     steps: int | None,
-    progress: Progress,  # noqa: ARG001
+    progress: Progress,
 ) -> NDArray[np.float64]:
     """Spectral radius (n,) at n points by first-order semi-discretization."""
-    return np.abs(multipliers(model.arrays, speeds, depths, steps))
+    return np.abs(semi_discretization.multipliers(model.arrays, speeds, depths, steps, progress))
+
+
+def radius_by_collocation(
+    model: MillingModel,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    steps: int | None,  # noqa: ARG001
+    progress: Progress,
+) -> NDArray[np.float64]:
+    """Spectral radius (n,) at n points by collocation."""
+    cut = model.cut(float(np.max(depths)))
+    return np.abs(collocation.multipliers(cut, speeds, depths, progress))
 
 
 def radius_by_time(
@@ -104,29 +173,72 @@ def radius_by_time(
     return np.array([growth.radius for growth in found])
 
 
-#: methods that give the spectral radius on a grid; the others leave it to semi-discretization
-GRIDS = {"time": radius_by_time}
+#: methods that give the spectral radius on a grid; the others leave it to collocation
+GRIDS = {"time": radius_by_time, "semi-discretization": radius_by_semi_discretization}
 
 
-DEFAULT_METHOD = "semi-discretization"
+def operating_multiplier(model: MillingModel, method: str, steps: int | None) -> Multiplier:
+    """Dominant multiplier at the operating point of a case, with an estimate of its error.
+
+    By semi-discretization where that is the method, else by collocation.
+    """
+    cut = model.case.cut
+    speed, depth = cut.spindle_speed, cut.axial_depth
+    if method != "semi-discretization":
+        return collocation.converged_multiplier(
+            lambda points, waves: model.cut(depth, points, waves), speed, depth
+        )
+    if steps is None:
+        return semi_discretization.converged_multiplier(model.arrays, speed, depth)
+    points = np.array([speed]), np.array([depth])
+    coarse, fine = (
+        semi_discretization.multipliers(model.arrays, *points, n)[0] for n in (steps, 2 * steps)
+    )
+    return Multiplier(complex(coarse), steps, float(abs(abs(coarse) - abs(fine)) * 4.0 / 3.0))
+
+
+def operating_frequency(model: MillingModel) -> float:
+    """Frequency (Hz) of the motion that grows fastest, or dies out slowest, as the case cuts."""
+    cut = model.case.cut
+    return collocation.chatter_frequency(
+        model.cut(cut.axial_depth), cut.spindle_speed, cut.axial_depth
+    )
 
 
 def zero_order_of(model: MillingModel, speeds: NDArray[np.float64]) -> ZeroOrderLimit:
-    """Zeroth-order limits of a model at given speeds (rad/s)."""
-    return zero_order_limit(*model.receptance, model.mean_directional, model.teeth, speeds)
+    """Zeroth-order limits of a model at given speeds (rad/s).
+
+    For teeth that are not alike the couplings are those at the depth of the case.
+    """
+    delays, means = model.mean_couplings
+    total = means.sum(axis=0)
+    if model.is_uniform:
+        return zero_order_limit(*model.receptance, total, model.teeth, speeds)
+    # of evenly spaced teeth with the same mean: the scale of the lowest limit
+    even = zero_order_limit(*model.receptance, total, model.teeth, speeds)
+    depth, frequency = limits_of_delays(*model.receptance, delays, means, speeds)
+    return even._replace(
+        critical_depth=depth,
+        chatter_frequency=frequency,
+        lowest_depth=min(even.lowest_depth, float(depth.min())),
+    )
 
 
 def chosen_method(case: Case, method: str | None) -> tuple[str, LimitMethod]:
-    """Name and function of the method: as asked for, else as the case says, else the default.
+    """Name and function of the method: as asked for, else as the case says, else the best.
+
+    ``"auto"`` takes collocation, and semi-discretization where the case fixes its steps.
 
     Raises
     ------
     InputError
         If there is no such method.
     """
-    name = method or (case.lobes.method if case.lobes else None) or DEFAULT_METHOD
+    name = method or (case.lobes.method if case.lobes else None) or AUTO
+    if name == AUTO:
+        name = "collocation" if resolution(case) is None else "semi-discretization"
     if name not in METHODS:
-        known = ", ".join(f'"{key}"' for key in METHODS)
+        known = ", ".join(f'"{key}"' for key in (AUTO, *METHODS))
         raise InputError(f'method "{name}" is not known; there are {known}')
     return name, METHODS[name]
 

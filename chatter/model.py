@@ -12,12 +12,25 @@ from numpy.typing import NDArray
 from chatter.case import Case
 from chatter.errors import InputError
 from chatter.plausibility import check_plausible
-from chatter.simulation.cutter import force_law, helix_angles
+from chatter.simulation.cutter import cutter_of, force_law, helix_angles, ploughing_of
+from chatter.simulation.setup import refuse_teeth_off_the_tool
 from chatter.stability.arrays import MillingArrays
+from chatter.stability.cut_arrays import RESOLUTION, CutArrays, cut_arrays
+from chatter.stability.mean_couplings import mean_couplings
+from chatter.stability.spindle_turn import SpeedVariation
 from chatter.structure import Structure, structure_of
 from cutting.directional import DirectionalTable, directional_table, mean_over_turn
+from cutting.edge_pieces import (
+    crossing_heights,
+    edge_pieces,
+    period_angle,
+    small_vibration_coefficient,
+)
 from cutting.engagement import engagement
+from cutting.force_law import ForceLaw
+from cutting.ploughing import Ploughing
 from cutting.process_damping import ViscousProcessDamping
+from cutting.tool import Cutter
 
 #: directions of motion weaker than this, relative to the strongest, do not count
 _RANK_TOLERANCE = 1e-9
@@ -34,12 +47,10 @@ class MillingModel:
     structure : Structure
     basis : (3, r) array of float
         Orthonormal columns that span the motion of the tool point.
-    table : DirectionalTable
-    teeth : int
-    lag_per_depth : float
-        tan(helix)/R, rad/m.
-    radius : float
-        m.
+    cutter : Cutter
+    laws : tuple of ForceLaw
+        One for each tooth.
+    flank : ViscousProcessDamping, Ploughing or None
     notes : tuple of str
         Assumptions and limits that the user should know of.
     """
@@ -47,33 +58,119 @@ class MillingModel:
     case: Case
     structure: Structure
     basis: NDArray[np.float64]
-    table: DirectionalTable
-    teeth: int
-    lag_per_depth: float
-    radius: float
+    cutter: Cutter
+    laws: tuple[ForceLaw, ...]
+    flank: ViscousProcessDamping | Ploughing | None
     notes: tuple[str, ...]
 
     @property
+    def teeth(self) -> int:
+        """Number of teeth."""
+        return self.cutter.teeth
+
+    @property
+    def lag_per_depth(self) -> float:
+        """tan(helix)/R of the first tooth, rad/m."""
+        return abs(math.tan(self.cutter.helix[0])) / self.cutter.radius
+
+    @cached_property
+    def table(self) -> DirectionalTable:
+        """Directional matrix of an upright edge over the engaged arc."""
+        case = self.case
+        arc = engagement(case.cut.mode, case.width_of_cut, case.tool.diameter)
+        return directional_table(
+            arc, self.laws[0], case.cut.feed_per_tooth, self.basis, viscous(self.flank)
+        )
+
+    @cached_property
+    def mean_couplings(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Delays (g,), rad, and mean directional matrices (g, r, r), N/m^2, over a turn."""
+        if self.is_uniform:
+            return np.array([2.0 * np.pi / self.teeth]), mean_over_turn(self.table, self.teeth)[:1]
+        depth = self.case.cut.axial_depth
+        cut = self.cut(depth)
+        delays, means = mean_couplings(cut, depth)
+        return delays, means / depth
+
+    @property
     def mean_directional(self) -> NDArray[np.float64]:
-        """Mean directional matrix over a revolution (r, r), N/m^2."""
-        return mean_over_turn(self.table, self.teeth)[0]
+        """Mean directional matrix over a turn (r, r), N/m^2, of all delays together."""
+        return self.mean_couplings[1].sum(axis=0)
+
+    @property
+    def is_uniform(self) -> bool:
+        """True where all teeth are alike, evenly spaced, upright, and the speed is constant."""
+        cutter = self.cutter
+        return (
+            np.allclose(cutter.pitch, 2.0 * np.pi / cutter.teeth, rtol=0.0, atol=1e-9)
+            and len(set(cutter.helix)) == 1
+            and cutter.corner_radius == 0.0
+            and cutter.edge_angle >= 0.5 * math.pi - 1e-9
+            and np.ptp(cutter.radial_offsets) == 0.0
+            and cutter.serration is None
+            and self.case.cut.speed_variation is None
+        )
+
+    @cached_property
+    def _modes(self) -> tuple[NDArray[np.float64], ...]:
+        modes = self.structure.modes
+        shape = np.ascontiguousarray(np.array([mode.direction for mode in modes]) @ self.basis)
+        mass = np.array([mode.mass for mode in modes])
+        return (
+            np.array([mode.natural_frequency for mode in modes]),
+            np.array([mode.damping for mode in modes]),
+            shape,
+            np.ascontiguousarray(shape / mass[:, None]),
+        )
 
     @cached_property
     def arrays(self) -> MillingArrays:
-        """What semi-discretization sees; fits modes where the structure is measured."""
-        modes = self.structure.modes
-        shape = np.array([mode.direction for mode in modes]) @ self.basis
-        mass = np.array([mode.mass for mode in modes])
+        """What semi-discretization sees; fits modes where the structure is measured.
+
+        Raises
+        ------
+        InputError
+            If the teeth are not all alike.
+        """
+        if not self.is_uniform:
+            raise InputError(
+                f"{self.case.name}: tool: this method takes teeth that are all alike, evenly "
+                'spaced and upright, at a constant speed; "collocation" takes any tool'
+            )
+        frequency, damping, shape, gain = self._modes
         return MillingArrays(
-            natural_frequency=np.array([mode.natural_frequency for mode in modes]),
-            damping=np.array([mode.damping for mode in modes]),
-            shape=np.ascontiguousarray(shape),
-            force_gain=np.ascontiguousarray(shape / mass[:, None]),
+            natural_frequency=frequency,
+            damping=damping,
+            shape=shape,
+            force_gain=gain,
             table=self.table,
             tooth_pitch=2.0 * np.pi / self.teeth,
             lag_per_depth=self.lag_per_depth,
-            radius=self.radius,
+            radius=self.cutter.radius,
         )
+
+    def cut(
+        self, deepest: float, points: int = RESOLUTION[0], waves: float = RESOLUTION[1]
+    ) -> CutArrays:
+        """What collocation sees of it, down to a depth (m), at a resolution of the elements."""
+        case = self.case
+        pieces = edge_pieces(
+            self.cutter,
+            list(self.laws),
+            case.cut.mode,
+            case.width_of_cut,
+            case.cut.feed_per_tooth * self.teeth,
+            deepest,
+            self.flank,
+        )
+        varied = case.cut.speed_variation
+        variation = SpeedVariation(0.0, 1.0, 0)
+        if varied is not None:
+            variation = SpeedVariation(
+                varied.amplitude, varied.frequency, int(varied.shape == "triangle")
+            )
+        period = period_angle(self.cutter)
+        return cut_arrays(self._modes, self.basis, pieces, period, variation, points, waves)
 
     @cached_property
     def receptance(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
@@ -85,95 +182,82 @@ class MillingModel:
         return lines, np.einsum("ai,nab,bj->nij", self.basis, full, self.basis)
 
 
+def viscous(flank: ViscousProcessDamping | Ploughing | None) -> ViscousProcessDamping | None:
+    """Dashpot that a flank makes for small vibration (see `cutting.edge_pieces`)."""
+    if isinstance(flank, Ploughing):
+        return ViscousProcessDamping(small_vibration_coefficient(flank), flank.friction)
+    return flank
+
+
 def milling_model(case: Case) -> MillingModel:
     """Compile a case for the stability methods.
 
     Raises
     ------
     InputError
-        If a section is missing, or the case holds what no stability method can treat yet.
+        If a section is missing, or the case holds what no stability method can treat.
     """
     case.require("tool", "material", "cut", "structure")
     check_plausible(case)
-    _refuse_unsupported(case)
+    refuse_teeth_off_the_tool(case)
     structure = structure_of(case)
-    basis = _motion_basis(structure.directions)
-    damping = _process_damping(case)
-    arc = engagement(case.cut.mode, case.width_of_cut, case.tool.diameter)
-    table = directional_table(
-        arc, force_law(case, helix_angles(case)[0]), case.cut.feed_per_tooth, basis, damping
-    )
-    if not np.any(table.first_integral[0, -1]):
-        raise InputError(
-            f"{case.name}: structure: the modes move along the tool axis alone; with a 90 degree "
-            "cutting edge that motion does not change the chip, so there is no stability limit"
-        )
+    cutter = cutter_of(case)
     notes = list(structure.notes)
-    if damping is not None:
+    flank = _flank(case)
+    if flank is not None:
         notes.append("the zeroth-order solution leaves process damping out")
-    if case.process_damping is not None and case.process_damping.indentation_force is not None:
+    if isinstance(flank, Ploughing):
         notes.append(
-            "ploughing (process_damping.indentation_force) acts in the time domain alone; the "
-            "other methods leave it out"
+            "ploughing is taken for small vibration, as a dashpot; chatter simulate has it in full"
         )
     if case.contact is not None:
         notes.append("the contact of tool and work acts in the time domain alone")
     if case.structure is not None and any(mode.friction for mode in case.structure.mode):
         notes.append("the friction of modes acts in the time domain alone")
-    radius = 0.5 * case.tool.diameter
-    return MillingModel(
+    model = MillingModel(
         case=case,
         structure=structure,
-        basis=basis,
-        table=table,
-        teeth=case.tool.teeth,
-        lag_per_depth=abs(math.tan(helix_angles(case)[0])) / radius,
-        radius=radius,
+        basis=_motion_basis(structure.directions),
+        cutter=cutter,
+        laws=tuple(force_law(case, helix) for helix in helix_angles(case)),
+        flank=flank,
         notes=tuple(notes),
+    )
+    _refuse_crossing_flutes(case, cutter)
+    if not np.any(np.abs(model.mean_couplings[1]) > 0.0):
+        raise InputError(_no_limit(case, cutter))
+    return model
+
+
+def _no_limit(case: Case, cutter: Cutter) -> str:
+    if cutter.corner_radius > 0.0 or cutter.edge_angle < 0.5 * math.pi - 1e-9:
+        return (
+            f"{case.name}: cut.radial_depth: down to an axial depth of "
+            f"{case.cut.axial_depth * 1e3:g} mm the edge does not reach the work, or the modes "
+            "move along it; there is no stability limit"
+        )
+    return (
+        f"{case.name}: structure: the modes move along the tool axis alone; with a 90 degree "
+        "cutting edge that motion does not change the chip, so there is no stability limit"
     )
 
 
-def _refuse_unsupported(case: Case) -> None:
-    problems = []
-    if case.tool.kind not in ("end mill", "inserted"):
-        problems.append(
-            f'{case.name}: tool.kind: stability of a "{case.tool.kind}" tool is not available '
-            'yet; "end mill" and "inserted" (90 degree) are'
+def _refuse_crossing_flutes(case: Case, cutter: Cutter) -> None:
+    heights = crossing_heights(cutter, case.cut.axial_depth)
+    if heights:
+        raise InputError(
+            f"{case.name}: tool.helix: flutes of these angles run into each other "
+            f"{min(heights) * 1e3:.3g} mm above the tip"
         )
-    if case.tool.pitch is not None and not np.allclose(
-        case.tool.pitch, 2.0 * np.pi / case.tool.teeth, rtol=0.0, atol=1e-9
-    ):
-        problems.append(
-            f"{case.name}: tool.pitch: stability of unequal pitch is not available yet; "
-            "remove the key for equal pitch"
-        )
-    if len(set(helix_angles(case))) > 1:
-        problems.append(
-            f"{case.name}: tool.helix: stability of flutes with different helix is not "
-            "available yet; give one angle"
-        )
-    if case.tool.cutting_edge_angle - case.tool.taper_angle < 0.5 * math.pi - 1e-9:
-        problems.append(
-            f"{case.name}: tool: stability of edges that do not stand at 90 deg "
-            "is not available yet; chatter simulate takes them"
-        )
-    if case.tool.serration is not None:
-        problems.append(
-            f"{case.name}: tool.serration: stability of serrated edges is not available yet; "
-            "chatter simulate takes them"
-        )
-    if case.cut.speed_variation is not None:
-        problems.append(
-            f"{case.name}: cut.speed_variation: stability under a varying speed is not available "
-            "yet; chatter simulate takes it"
-        )
-    if problems:
-        raise InputError(problems)
 
 
-def _process_damping(case: Case) -> ViscousProcessDamping | None:
+def _flank(case: Case) -> ViscousProcessDamping | Ploughing | None:
     section = case.process_damping
-    if section is None or not section.coefficient:
+    if section is None:
+        return None
+    if section.indentation_force is not None:
+        return ploughing_of(case)
+    if not section.coefficient:
         return None
     return ViscousProcessDamping(section.coefficient, section.friction)
 

@@ -9,18 +9,18 @@ from pathlib import Path
 import numpy as np
 
 from chatter.case import Case
-from chatter.methods import chosen_method, resolution, zero_order_of
-from chatter.model import MillingModel, milling_model
+from chatter.methods import (
+    chosen_method,
+    operating_frequency,
+    operating_multiplier,
+    resolution,
+    zero_order_of,
+)
+from chatter.model import milling_model
 from chatter.result_files import as_json, finite_or_none, write_results
 from chatter.search_range import deepest_depth
 from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.semi_discretization import (
-    Multiplier,
-    bifurcation_kind,
-    chatter_frequency,
-    converged_multiplier,
-    multipliers,
-)
+from chatter.stability.multiplier import Multiplier, bifurcation_kind
 from chatter.stability.sweep import no_progress
 
 _RPM = 30.0 / math.pi
@@ -40,7 +40,7 @@ class StabilityCheck:
     method : str
         That gave the limit depth.
     multiplier : Multiplier
-        Dominant multiplier at the operating point, by semi-discretization.
+        Dominant multiplier at the operating point.
     chatter_frequency : float
         Hz, of the motion that grows; nan where the cut is stable.
     limit : LimitCurve
@@ -63,7 +63,7 @@ class StabilityCheck:
 
     @property
     def spectral_radius(self) -> float:
-        """Magnitude of the dominant multiplier over one tooth period."""
+        """Magnitude of the dominant multiplier over one period: from tooth to like tooth."""
         return abs(self.multiplier.value)
 
     @property
@@ -117,8 +117,8 @@ def check(case: Case, method: str | None = None) -> StabilityCheck:
     ----------
     case : Case
     method : str, optional
-        Gives the limit depth: one of `chatter.methods.METHODS`. The spectral radius is always
-        that of semi-discretization.
+        Gives the limit depth: one of `chatter.methods.METHODS`, or "auto". The spectral radius is
+        that of semi-discretization where that is the method, else of collocation.
 
     Returns
     -------
@@ -132,10 +132,10 @@ def check(case: Case, method: str | None = None) -> StabilityCheck:
     name, limits_of = chosen_method(case, method)
     model = milling_model(case)
     speed, depth = case.cut.spindle_speed, case.cut.axial_depth
-    point = _multiplier(case, model, speed, depth)
+    point = operating_multiplier(model, name, resolution(case))
     heard = np.nan
     if abs(point.value) >= 1.0:
-        heard = chatter_frequency(model.arrays, speed, depth)
+        heard = operating_frequency(model)
     speeds = np.array([speed])
     zero_order = zero_order_of(model, speeds)
     deepest = max(deepest_depth(case, zero_order), 1.02 * depth)
@@ -152,12 +152,3 @@ def check(case: Case, method: str | None = None) -> StabilityCheck:
         zero_order_depth=float(zero_order.critical_depth[0]),
         notes=model.notes,
     )
-
-
-def _multiplier(case: Case, model: MillingModel, speed: float, depth: float) -> Multiplier:
-    steps = resolution(case)
-    if steps is None:
-        return converged_multiplier(model.arrays, speed, depth)
-    points = np.array([speed]), np.array([depth])
-    coarse, fine = (multipliers(model.arrays, *points, n)[0] for n in (steps, 2 * steps))
-    return Multiplier(complex(coarse), steps, float(abs(abs(coarse) - abs(fine)) * 4.0 / 3.0))

@@ -268,7 +268,20 @@ class Lobes(Section):
 
     speeds: SpeedRange | None = None
     depths: DepthRange | None = None
-    method: Literal["semi-discretization", "zero-order", "time"] | None = None
+    method: (
+        Literal[
+            "auto",
+            "collocation",
+            "semi-discretization",
+            "semi-discretization-0",
+            "semi-discretization-2",
+            "full-discretization",
+            "multi-frequency",
+            "zero-order",
+            "time",
+        ]
+        | None
+    ) = None
     steps: whole_number(4, 20_000, "steps a tooth period") | None = Field(
         None, description="fixes the steps a tooth period; by default they are chosen"
     )

@@ -28,7 +28,11 @@ OutputFolder = Annotated[
 Json = Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")]
 Method = Annotated[
     str | None,
-    typer.Option("--method", help="semi-discretization (default), zero-order or time."),
+    typer.Option(
+        "--method",
+        help="auto (default), collocation, semi-discretization (also -0 and -2), "
+        "full-discretization, multi-frequency, zero-order or time.",
+    ),
 ]
 
 

@@ -16,7 +16,7 @@ from chatter.explain.measurement import Measurement, Run
 from chatter.explain.milling import structural_paths
 from chatter.explain.tolerance import tolerated
 from chatter.model import milling_model
-from chatter.stability.semi_discretization import multipliers
+from chatter.stability.collocation import multipliers
 
 #: scatter of a limit depth from test to test, as a share, and tests judged wrongly for no reason
 _SCATTER, _WRONG = 0.06, 0.02
@@ -25,8 +25,6 @@ _STEP = 0.04
 #: margins beyond this count as this
 _FAR = 3.0
 _PARTS = 6
-#: of semi-discretization, a tooth period
-_STEPS = 60
 
 
 class Stability:
@@ -124,9 +122,9 @@ def stability_margins(
     for speed in groups:
         chosen = slice(None) if speed is None else speeds == speed
         own = case if speed is None else case.patch({"cut.spindle_speed": float(speed)})
-        arrays = milling_model(own).arrays
-        at = multipliers(arrays, speeds[chosen], depths[chosen], _STEPS)
-        above = multipliers(arrays, speeds[chosen], depths[chosen] * (1.0 + _STEP), _STEPS)
+        cut = milling_model(own).cut((1.0 + _STEP) * float(depths[chosen].max()))
+        at = multipliers(cut, speeds[chosen], depths[chosen])
+        above = multipliers(cut, speeds[chosen], depths[chosen] * (1.0 + _STEP))
         growth[chosen] = np.log(np.maximum(np.abs(at), 1e-12))
         slope[chosen] = (np.log(np.maximum(np.abs(above), 1e-12)) - growth[chosen]) / np.log1p(
             _STEP

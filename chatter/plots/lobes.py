@@ -84,7 +84,12 @@ def draw_limit(axes: Axes, diagram: LobeDiagram) -> None:
 
 
 _METHOD_LABEL = {
+    "collocation": "limit, collocation",
     "semi-discretization": "limit, semi-discretization",
+    "semi-discretization-0": "limit, semi-discretization of order 0",
+    "semi-discretization-2": "limit, semi-discretization of order 2",
+    "full-discretization": "limit, full discretization",
+    "multi-frequency": "limit, multi-frequency",
     "zero-order": "limit, zeroth-order",
     "time": "limit, time domain",
 }

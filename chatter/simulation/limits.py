@@ -11,7 +11,7 @@ from chatter.case import Case
 from chatter.simulation.growth import Growth, growth_of
 from chatter.stability.crossings import find_crossings
 from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.semi_discretization import bifurcation_kind
+from chatter.stability.multiplier import bifurcation_kind
 from chatter.stability.sweep import Progress, no_progress, sweep
 from dynamics.modal import Mode
 

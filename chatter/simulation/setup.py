@@ -111,7 +111,7 @@ def check_case(case: Case) -> None:
     """Refuse a case that lacks what a simulation needs, or whose numbers cannot be meant."""
     case.require("tool", "material", "cut")
     check_plausible(case)
-    _refuse_teeth_off_the_tool(case)
+    refuse_teeth_off_the_tool(case)
 
 
 def compiled(
@@ -178,7 +178,7 @@ def shortest_arc(case: Case, cutter: Cutter) -> float:
     return max(leave - entry + lag, 1e-3)
 
 
-def _refuse_teeth_off_the_tool(case: Case) -> None:
+def refuse_teeth_off_the_tool(case: Case) -> None:
     """Refuse runout and setting errors that would move a tooth by a good part of the radius."""
     tool = case.tool
     most = _FURTHEST * 0.5 * tool.diameter

@@ -7,20 +7,20 @@ import math
 import numpy as np
 from numba import njit
 
-from chatter.kernels import KERNEL
+from chatter.kernels import KERNEL, SUMMING_KERNEL
 from chatter.stability.hessenberg import hessenberg_eigenvalues, hessenberg_vector
-from chatter.stability.period_map import apply_period_map
+from chatter.stability.maps import apply_map, dimension_of, scratch_of
 
 #: residual of the dominant eigenpair, relative to its magnitude, at which the iteration stops
 _TOLERANCE = 1e-8
 #: dimension of the Krylov space beyond the state at the first look, and how it grows
-_FIRST_LOOK = 8
-_GROWTH = 1.4
+_FIRST_LOOK = 5
+_GROWTH = 1.3
 _LARGEST_SPACE = 240
 
 
 @njit(**KERNEL)
-def _start_vector(period, out, state, following):
+def _start_vector(period, out, scratch):
     """A fixed pseudo-random vector, smoothed by one pass through the map."""
     start = np.empty(out.shape[0])
     seed = 12345
@@ -28,11 +28,12 @@ def _start_vector(period, out, state, following):
         seed = (1103515245 * seed + 12345) % 2147483648
         start[i] = seed / 1073741824.0 - 1.0
     scale = 0.0
-    for i in range(state.shape[0]):
+    size = period.output.shape[1]
+    for i in range(size):
         scale += abs(period.output[0, i])
     # motion is smaller than the state by the size of the output matrix
-    start[state.shape[0] :] *= scale / state.shape[0]
-    apply_period_map(period, start, out, state, following)
+    start[size:] *= scale / size
+    apply_map(period, start, out, scratch)
 
 
 @njit(**KERNEL)
@@ -47,30 +48,31 @@ def _dominant_pair(hessenberg):
     return value, hessenberg_vector(hessenberg, value)
 
 
-@njit(**KERNEL)
+@njit(**SUMMING_KERNEL)
 def dominant_multiplier(period):
     """Multiplier of largest magnitude and its vector.
 
     Parameters
     ----------
-    period : PeriodMap
+    period : PeriodMap, ElementMap
+        Any map that `maps` knows.
 
     Returns
     -------
     multiplier : complex
         Imaginary part >= 0.
-    vector : (2n + nodes r,) array of complex
-        State and delayed motion.
+    vector : array of complex
+        State and earlier motion.
     residual : float
         Norm of the eigenpair's residual over the multiplier's magnitude.
     """
-    _, size, rank = period.from_left.shape
-    dimension = size + period.nodes * rank
-    state, following = np.empty(size), np.empty(size)
+    size = period.output.shape[1]
+    dimension = dimension_of(period)
+    scratch = scratch_of(period)
     largest = min(dimension, _LARGEST_SPACE)
     basis = np.empty((largest + 1, dimension))
     hessenberg = np.zeros((largest + 1, largest))
-    _start_vector(period, basis[0], state, following)
+    _start_vector(period, basis[0], scratch)
     # delayed motion enters the inner product with the weight of the state
     norm = math.sqrt((basis[0] ** 2).sum())
     multiplier = complex(0.0, 0.0)
@@ -83,7 +85,7 @@ def dominant_multiplier(period):
     coordinates = np.ones(1, dtype=np.complex128)
     used = 0
     for k in range(largest):
-        apply_period_map(period, basis[k], basis[k + 1], state, following)
+        apply_map(period, basis[k], basis[k + 1], scratch)
         before = math.sqrt((basis[k + 1] ** 2).sum())
         for _ in range(2):
             for j in range(k + 1):

@@ -13,10 +13,19 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
+from numba import njit, types
+from numba.extending import overload
 from numpy.typing import NDArray
 
-from chatter.kernels import KERNEL
+from chatter.kernels import KERNEL, SUMMING_KERNEL
+from chatter.stability.step_schemes import (
+    FirstOrder,
+    FullDiscretization,
+    SecondOrder,
+    ZerothOrder,
+    fully_discretized,
+    semi_discretized,
+)
 from cutting.directional import mean_coupling
 
 #: intervals shorter than this share of a tooth period are joined to their neighbour
@@ -38,6 +47,8 @@ class PeriodMap(NamedTuple):
     duration: NDArray[np.float64]  # s, (steps,)
     output: NDArray[np.float64]  # motion of the tool point from the state, (r, 2n)
     nodes: int
+    further: NDArray[np.int64]  # third node of a parabola (steps,); empty where there is none
+    from_further: NDArray[np.float64]  # (steps, 2n, r)
 
 
 @njit(**KERNEL)
@@ -210,6 +221,85 @@ def _cutting_step(arrays, stiffness, dashpot, duration, transition, from_left, f
 
 
 @njit(**KERNEL)
+def _set_responses(transition, from_left, from_right, found, at_left, at_right):
+    transition[:, :] = found
+    from_left[:, :] = at_left
+    from_right[:, :] = at_right
+
+
+@njit(**KERNEL)
+def _zeroth_order(arrays, stiffness, dashpot, duration, transition, left, right, work):  # noqa: ARG001
+    found, constant, _, _ = semi_discretized(arrays, stiffness, dashpot, duration)
+    _set_responses(transition, left, right, found, 0.5 * constant, 0.5 * constant)
+
+
+@njit(**KERNEL)
+def _full(arrays, stiffness, dashpot, duration, transition, left, right, work):  # noqa: ARG001
+    found, at_left, at_right = fully_discretized(arrays, stiffness, dashpot, duration)
+    _set_responses(transition, left, right, found, at_left, at_right)
+
+
+@njit(**KERNEL)
+def _linear_and_square(arrays, stiffness, dashpot, duration, transition, left, right, work):
+    found, constant, ramp, square = semi_discretized(arrays, stiffness, dashpot, duration)
+    _set_responses(transition, left, right, found, constant - ramp, ramp)
+    # what a parabola that vanishes at both ends, (s/h)^2 - s/h, adds
+    work[4][:, : ramp.shape[1]] = square - ramp
+
+
+_STEPS = {
+    ZerothOrder: _zeroth_order,
+    FirstOrder: _cutting_step,
+    SecondOrder: _linear_and_square,
+    FullDiscretization: _full,
+}
+
+
+def take_step(scheme, arrays, stiffness, dashpot, duration, transition, left, right, work):
+    """Discretize a step by the scheme."""
+    _STEPS[type(scheme)](arrays, stiffness, dashpot, duration, transition, left, right, work)
+
+
+@overload(take_step)
+def _take_step(scheme, arrays, stiffness, dashpot, duration, transition, left, right, work):  # noqa: ARG001
+    if not isinstance(scheme, types.BaseNamedTuple) or scheme.instance_class not in _STEPS:
+        return None
+    step = _STEPS[scheme.instance_class]
+
+    def stepped(scheme, arrays, stiffness, dashpot, duration, transition, left, right, work):  # noqa: ARG001
+        step(arrays, stiffness, dashpot, duration, transition, left, right, work)
+
+    return stepped
+
+
+def thirds_of(scheme, steps):
+    """Number of steps that refer to a third node."""
+    return steps if isinstance(scheme, SecondOrder) else 0
+
+
+@overload(thirds_of)
+def _thirds_of(scheme, steps):  # noqa: ARG001
+    if isinstance(scheme, types.BaseNamedTuple) and scheme.instance_class is SecondOrder:
+        return lambda scheme, steps: steps  # noqa: ARG005
+    return lambda scheme, steps: 0  # noqa: ARG005
+
+
+@njit(**KERNEL)
+def _bend(excess, from_left, from_right, from_further, before):
+    """Turn the line over a step into a parabola through a node a step further on, or before.
+
+    `excess` (2n, r) is what (s/h)^2 - s/h makes; the parabola adds half the second difference.
+    """
+    from_further[:, :] = 0.5 * excess
+    if before:
+        from_left[:, :] -= excess
+        from_right[:, :] += 0.5 * excess
+    else:
+        from_left[:, :] += 0.5 * excess
+        from_right[:, :] -= excess
+
+
+@njit(**KERNEL)
 def _interval_steps(arrays, borders, lag, steps, refinement, free_steps):
     """Number of steps of each interval, negative where no tooth cuts."""
     counts = np.empty(borders.shape[0] - 1, dtype=np.int64)
@@ -224,10 +314,17 @@ def _interval_steps(arrays, borders, lag, steps, refinement, free_steps):
 
 @njit(**KERNEL)
 def build_period_map(arrays, speed, depth, steps, refinement, free_steps):
+    """Assemble the steps of one tooth period by first-order semi-discretization; see below."""
+    return period_map_by(FirstOrder(0.0), arrays, speed, depth, steps, refinement, free_steps)
+
+
+@njit(**KERNEL)
+def period_map_by(scheme, arrays, speed, depth, steps, refinement, free_steps):
     """Assemble the steps of one tooth period.
 
     Parameters
     ----------
+    scheme : ZerothOrder, FirstOrder, SecondOrder or FullDiscretization
     arrays : MillingArrays
     speed : float
         Spindle speed, rad/s.
@@ -254,6 +351,9 @@ def build_period_map(arrays, speed, depth, steps, refinement, free_steps):
     from_left = np.zeros((total, size, rank))
     from_right = np.zeros((total, size, rank))
     left = np.full(total, -1, dtype=np.int64)
+    thirds = thirds_of(scheme, total)
+    further = np.zeros(thirds, dtype=np.int64)
+    from_further = np.zeros((thirds, size, rank))
     duration = np.empty(total)
     work = (
         np.empty((size, size + rank)),
@@ -285,7 +385,8 @@ def build_period_map(arrays, speed, depth, steps, refinement, free_steps):
                 stiffness[:, :] = depth * mean[0]
                 if couplings > 1:
                     dashpot[:, :] = depth / cutting_speed * mean[1]
-                _cutting_step(
+                take_step(
+                    scheme,
                     arrays,
                     stiffness,
                     dashpot,
@@ -296,13 +397,26 @@ def build_period_map(arrays, speed, depth, steps, refinement, free_steps):
                     work,
                 )
                 left[step] = nodes - 1
+                if thirds > 0 and count > 1:
+                    # the last step of an interval has no node beyond it of the same length
+                    before = k == count - 1
+                    further[step] = nodes - 2 if before else nodes + 1
+                    _bend(
+                        work[4][:, :rank],
+                        from_left[step],
+                        from_right[step],
+                        from_further[step],
+                        before,
+                    )
                 nodes += 1
             step += 1
     output = np.zeros((rank, size))
     for i in range(modes):
         for k in range(rank):
             output[k, 2 * i] = arrays.shape[i, k] / arrays.natural_frequency[i]
-    return PeriodMap(transition, from_left, from_right, left, duration, output, nodes)
+    return PeriodMap(
+        transition, from_left, from_right, left, duration, output, nodes, further, from_further
+    )
 
 
 @njit(**KERNEL)
@@ -316,7 +430,7 @@ def _record_motion(output, state, motion):
         motion[k] = total
 
 
-@njit(**KERNEL)
+@njit(**SUMMING_KERNEL)
 def advance_step(period, step, vector, state, following):
     """Advance the state over one step; vector holds the motion of the last period after 2n."""
     _, size, rank = period.from_left.shape
@@ -333,11 +447,23 @@ def advance_step(period, step, vector, state, following):
                     period.from_left[step, i, k] * vector[base + k]
                     + period.from_right[step, i, k] * vector[base + rank + k]
                 )
+        if period.further.shape[0] > 0:
+            third = size + period.further[step] * rank
+            for i in range(size):
+                for k in range(rank):
+                    following[i] += period.from_further[step, i, k] * vector[third + k]
     state[:] = following
 
 
 @njit(**KERNEL)
-def apply_period_map(period, vector, out, state, following):
+def period_scratch(period):
+    """Scratch arrays of `apply_period_map`."""
+    size = period.from_left.shape[1]
+    return np.empty(size), np.empty(size)
+
+
+@njit(**KERNEL)
+def apply_period_map(period, vector, out, scratch):
     """Set out to the image of the vector after one tooth period.
 
     Parameters
@@ -345,9 +471,9 @@ def apply_period_map(period, vector, out, state, following):
     period : PeriodMap
     vector, out : (2n + nodes r,) array of float
         State, then the motion at the nodes during the last period.
-    state, following : (2n,) array of float
-        Scratch.
+    scratch : tuple of two (2n,) arrays of float
     """
+    state, following = scratch
     steps, size, rank = period.from_left.shape
     state[:] = vector[:size]
     for s in range(steps):

@@ -8,7 +8,6 @@ order from two to four.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +15,17 @@ from numpy.typing import NDArray
 from chatter.errors import RunError
 from chatter.stability import drivers
 from chatter.stability.arrays import MillingArrays
-from chatter.stability.crossings import find_crossings, growth_on_net
 from chatter.stability.limit_curve import LimitCurve
+from chatter.stability.limit_search import PointMethod, limit_curve_by
+from chatter.stability.multiplier import Multiplier
 from chatter.stability.multipliers import dominant_multiplier
 from chatter.stability.period_map import build_period_map
+from chatter.stability.step_schemes import (
+    FirstOrder,
+    FullDiscretization,
+    SecondOrder,
+    ZerothOrder,
+)
 from chatter.stability.sweep import Progress, no_progress, sweep
 
 #: steps per period of the highest relevant mode; the extrapolated error is then near 1e-4
@@ -30,22 +36,14 @@ _CHATTER_ABOVE_NATURAL = 1.2
 #: modes whose resonance peak is below this share of the highest do not set the resolution
 _RELEVANT_PEAK = 0.01
 _MOST_STEPS = 200_000
-#: |Im| below this share of |mu| is a real multiplier
-_REAL_SHARE = 1e-6
+Scheme = ZerothOrder | FirstOrder | SecondOrder | FullDiscretization
+FIRST_ORDER = FirstOrder()
 
 #: refinements of the steps: plain, or nested ones from which the value is extrapolated
 _PLAIN = (1,)
 _EXTRAPOLATED = (1, 2)
 #: a correction beyond this share means that two multipliers have changed places
 _LARGEST_CORRECTION = 0.2
-
-
-class Multiplier(NamedTuple):
-    """Dominant Floquet multiplier over one tooth period."""
-
-    value: complex
-    steps: int  # steps a tooth period of the finest resolution
-    error: float  # estimated error of |value|
 
 
 def highest_relevant_frequency(arrays: MillingArrays) -> float:
@@ -85,6 +83,7 @@ def multipliers(
     depths: NDArray[np.float64],
     steps: int | None = None,
     progress: Progress = no_progress,
+    scheme: Scheme = FIRST_ORDER,
 ) -> NDArray[np.complex128]:
     """Dominant multiplier over one tooth period at every point.
 
@@ -98,6 +97,8 @@ def multipliers(
         the natural frequencies, with extrapolation.
     progress : callable, optional
         Called with (done, total).
+    scheme : NamedTuple, optional
+        Of `step_schemes`.
 
     Returns
     -------
@@ -105,7 +106,7 @@ def multipliers(
         Imaginary part >= 0.
     """
     count, refinements = _resolution(arrays, speeds, steps)
-    return _at_points(arrays, speeds, depths, count, refinements, progress)
+    return _at_points(arrays, speeds, depths, count, refinements, progress, scheme)
 
 
 def converged_multiplier(
@@ -140,12 +141,6 @@ def converged_multiplier(
     return Multiplier(value, 2 * int(steps[0]), float(error))
 
 
-def bifurcation_kind(multiplier: complex) -> str:
-    """``"flip"`` where the multiplier is real and negative, else ``"hopf"``."""
-    is_real = abs(multiplier.imag) <= _REAL_SHARE * abs(multiplier)
-    return "flip" if is_real and multiplier.real < 0.0 else "hopf"
-
-
 def chatter_frequency(arrays: MillingArrays, speed: float, depth: float) -> float:
     """Frequency (Hz) at which the motion of the dominant multiplier is largest.
 
@@ -178,6 +173,7 @@ def limit_curve(
     depths: NDArray[np.float64],
     steps: int | None = None,
     progress: Progress = no_progress,
+    scheme: Scheme = FIRST_ORDER,
 ) -> LimitCurve:
     """Limits of stability at every spindle speed.
 
@@ -200,37 +196,21 @@ def limit_curve(
     """
     count, refinements = _resolution(arrays, speeds, steps)
 
-    def refined(index: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
-        return _growth(_at_points(arrays, speeds[index], depth, count[index], refinements))
+    def refined(
+        index: NDArray[np.int64], depth: NDArray[np.float64], report: Progress
+    ) -> NDArray[np.complex128]:
+        return _at_points(arrays, speeds[index], depth, count[index], refinements, report, scheme)
 
-    def plain(index: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
-        points = speeds[index], depth, count[index]
-        return _growth(_at_points(arrays, *points, _PLAIN, progress))
+    def plain(
+        index: NDArray[np.int64], depth: NDArray[np.float64], report: Progress
+    ) -> NDArray[np.complex128]:
+        return _at_points(arrays, speeds[index], depth, count[index], _PLAIN, report, scheme)
 
-    net = growth_on_net(len(speeds), depths, plain, refined if len(refinements) > 1 else plain)
-    crossings = find_crossings(net, depths, refined)
-    found = np.array([i for i, depth in enumerate(crossings) if depth.size], dtype=np.int64)
-    first = np.full(len(speeds), np.inf)
-    first[found] = [crossings[i][0] for i in found]
-    frequency = np.full(len(speeds), np.nan)
-    kind = ["none"] * len(speeds)
-    at_limit = _at_points(arrays, speeds[found], first[found], count[found], refinements)
-    heard = sweep(
-        lambda chunk: [
-            chatter_frequency(arrays, speeds[i], first[i]) for i in found[chunk].tolist()
-        ],
-        len(found),
-        points_a_chunk=8,
-    )
-    frequency[found] = [value for part in heard for value in part]
-    for i, value in zip(found.tolist(), at_limit, strict=True):
-        kind[i] = bifurcation_kind(complex(value))
-    return LimitCurve(speeds, first, frequency, tuple(kind), tuple(crossings), count)
+    def heard(index: int, depth: float) -> float:
+        return chatter_frequency(arrays, float(speeds[index]), depth)
 
-
-def _growth(values: NDArray[np.complex128]) -> NDArray[np.float64]:
-    """Logarithm of the spectral radius: positive is unstable."""
-    return np.log(np.maximum(np.abs(values), 1e-30))
+    method = PointMethod(plain, refined if len(refinements) > 1 else plain, heard)
+    return limit_curve_by(method, speeds, depths, count, progress)
 
 
 def _at_points(
@@ -240,6 +220,7 @@ def _at_points(
     steps: NDArray[np.int64],
     refinements: tuple[int, ...],
     progress: Progress = no_progress,
+    scheme: Scheme = FIRST_ORDER,
 ) -> NDArray[np.complex128]:
     """Dominant multipliers (n,) at n points, in parallel threads.
 
@@ -250,7 +231,10 @@ def _at_points(
 
     def chunk(index: NDArray[np.int64]) -> NDArray[np.complex128]:
         points = speeds[index], depths[index], steps[index]
-        values = [drivers.multipliers_at(arrays, *points, r) for r in refinements]
+        if scheme is FIRST_ORDER:
+            values = [drivers.multipliers_at(arrays, *points, r) for r in refinements]
+        else:
+            values = [drivers.multipliers_by(scheme, arrays, *points, r) for r in refinements]
         return values[0] if len(values) == 1 else _extrapolated(*values, refinements)
 
     return np.concatenate(sweep(chunk, len(speeds), progress))

@@ -11,7 +11,7 @@ import pytest
 from chatter.case import Case, load, loads
 from chatter.case.sections import FRICTION_LAWS, Friction, Lobes
 from chatter.errors import InputError
-from chatter.methods import METHODS
+from chatter.methods import AUTO, METHODS
 from cutting.material_table import MATERIALS
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -304,4 +304,4 @@ def test_friction_laws_name_their_keys():
 
 def test_methods_of_the_case_file_are_those_there_are():
     annotation = Lobes.model_fields["method"].annotation
-    assert set(get_args(get_args(annotation)[0])) == set(METHODS)
+    assert set(get_args(get_args(annotation)[0])) == {AUTO, *METHODS}

@@ -36,5 +36,7 @@ def test_chattering_cut():
     )
     assert shallow.stable
     assert not deep.stable
-    lines = chatter.check(case.patch({"cut.axial_depth": f"{1.02e3 * limit} mm"}))
+    # runout raises the limit by a few per cent: the frequency is that without it
+    beyond = {"tool.runout": None, "cut.axial_depth": f"{1.02e3 * limit} mm"}
+    lines = chatter.check(case.patch(beyond))
     assert deep.chatter_frequency == pytest.approx(lines.chatter_frequency, rel=0.02)

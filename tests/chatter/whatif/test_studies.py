@@ -136,15 +136,15 @@ def test_a_study_that_was_stopped_computes_only_the_rest(case, tmp_path, monkeyp
 
 
 def test_points_without_a_result_do_not_spoil_the_others(case, tmp_path):
-    # unequal pitch has no lobes yet
-    pitches = [["180 deg", "180 deg"], ["170 deg", "190 deg"]]
-    study = whatif(case, {"tool.pitch": pitches}, "critical depth", folder=tmp_path)
+    # flutes that run into each other within the depth of cut
+    angles = [["30 deg", "30 deg"], ["0 deg", "89 deg"]]
+    study = whatif(case, {"tool.helix": angles}, "critical depth", folder=tmp_path)
     assert study.values()[0] > 0.0
     assert study.values()[1] is None
-    assert "no result at tool.pitch" in study.sentences[-1]
+    assert "no result at tool.helix" in study.sentences[-1]
     study.save(tmp_path)
-    with pytest.raises(InputError, match="unequal pitch"):
-        whatif(case, {"tool.pitch": pitches[1:]}, "critical depth")
+    with pytest.raises(InputError, match="run into each other"):
+        whatif(case, {"tool.helix": angles[1:]}, "critical depth")
 
 
 def test_forces_of_a_rigid_tool_are_proportional_to_the_depth(case):

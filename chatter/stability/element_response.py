@@ -1,0 +1,136 @@
+"""What a mode makes, over a time element, of its state at the start and of the force on it.
+
+On an element of length h the force is the polynomial through its values at p Gauss points; the
+response of a mode to that, and to its state, is exact. In natural units (omega x, v, and force per
+mass over omega) it depends on omega h and the damping ratio alone, and is tabulated over omega h as
+a Chebyshev series once a mode, so that any element costs a short sum.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from chatter.kernels import KERNEL
+
+
+class ElementPoints(NamedTuple):
+    """Points of an element on [0, 1]: its start, then p Gauss points."""
+
+    place: NDArray[np.float64]  # (p+1,)
+    weight: NDArray[np.float64]  # of the Gauss quadrature (p,)
+    barycentric: NDArray[np.float64]  # weights of the polynomial through all points (p+1,)
+
+
+class ResponseTable(NamedTuple):
+    """Chebyshev coefficients of the response of n modes over omega h.
+
+    Rows: omega x at the points, omega x and v at the end, v at the points; columns: omega x and v
+    at the start, then force per mass and omega at the points.
+    """
+
+    coefficient: NDArray[np.float64]  # (n, K, 2p + 2, p + 2)
+    furthest: NDArray[np.float64]  # omega h up to which the series holds (n,)
+
+
+def element_points(count: int) -> ElementPoints:
+    """Return the start and `count` Gauss points of an element."""
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    place = np.concatenate([[0.0], 0.5 * (nodes + 1.0)])
+    difference = 4.0 * (place[:, None] - place[None, :])
+    np.fill_diagonal(difference, 1.0)
+    return ElementPoints(place, 0.5 * weights, 1.0 / np.prod(difference, axis=1))
+
+
+def _through_gauss_points(nodes: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray:
+    """Lagrange polynomials (len(at), p) through the Gauss points alone."""
+    values = np.ones((at.size, nodes.size))
+    for j in range(nodes.size):
+        for k in range(nodes.size):
+            if k != j:
+                values[:, j] *= (at - nodes[k]) / (nodes[j] - nodes[k])
+    return values
+
+
+def _responses(x: NDArray[np.float64], ratio: float, points: ElementPoints) -> NDArray[np.float64]:
+    """Response (len(x), 2p + 2, p + 2) of one mode at omega h = x."""
+    nodes = points.place[1:]
+    count = nodes.size
+    damped = math.sqrt(1.0 - ratio * ratio)
+    inside, weight = np.polynomial.legendre.leggauss(count + 10 + math.ceil(0.6 * float(np.max(x))))
+    inside, weight = 0.5 * (inside + 1.0), 0.5 * weight
+    out = np.zeros((x.size, 2 * count + 2, count + 2))
+    ends = np.append(nodes, 1.0)
+    rows = np.append(np.arange(count), count)
+    velocity_rows = np.append(count + 2 + np.arange(count), count + 1)
+    for end, row, velocity_row in zip(ends, rows, velocity_rows, strict=True):
+        decay = np.exp(-ratio * x * end)
+        c, s = np.cos(damped * x * end), np.sin(damped * x * end)
+        out[:, row, 0] = decay * (c + ratio / damped * s)
+        out[:, row, 1] = decay * s / damped
+        out[:, velocity_row, 0] = -decay * s / damped
+        out[:, velocity_row, 1] = decay * (c - ratio / damped * s)
+        # what is left at `end` of a push at each place before it
+        before = end * inside
+        span = x[:, None] * (end - before)[None, :]
+        fading = np.exp(-ratio * span)
+        shape = _through_gauss_points(nodes, before) * (end * weight)[:, None]
+        place = fading * np.sin(damped * span) / damped
+        speed = fading * (np.cos(damped * span) - ratio / damped * np.sin(damped * span))
+        out[:, row, 2:] = x[:, None] * (place @ shape)
+        out[:, velocity_row, 2:] = x[:, None] * (speed @ shape)
+    return out
+
+
+def response_table(
+    natural_frequency: NDArray[np.float64],
+    damping: NDArray[np.float64],
+    points: ElementPoints,
+    longest: float,
+) -> ResponseTable:
+    """Tabulate the response of every mode for elements up to a length.
+
+    Parameters
+    ----------
+    natural_frequency, damping : (n,) array of float
+        rad/s and ratio.
+    points : ElementPoints
+    longest : float
+        s.
+
+    Returns
+    -------
+    ResponseTable
+    """
+    furthest = np.maximum(natural_frequency * longest, 1e-3)
+    terms = 16 + math.ceil(0.62 * float(furthest.max()))
+    # Chebyshev points of the first kind; the series follows from the cosine sums
+    angle = math.pi * (np.arange(terms) + 0.5) / terms
+    cosines = np.cos(np.outer(np.arange(terms), angle)) * (2.0 / terms)
+    cosines[0] *= 0.5
+    tables = []
+    for reach, ratio in zip(furthest, damping, strict=True):
+        values = _responses(0.5 * reach * (1.0 + np.cos(angle)), float(ratio), points)
+        tables.append(np.tensordot(cosines, values, axes=1))
+    return ResponseTable(np.ascontiguousarray(np.stack(tables)), furthest)
+
+
+@njit(**KERNEL)
+def mode_response(table, mode, x, out):
+    """Set out to the first rows of the response of a mode at omega h = x, (rows, p + 2)."""
+    coefficient = table.coefficient[mode]
+    rows, columns = out.shape
+    t = 2.0 * x / table.furthest[mode] - 1.0
+    before, now = 1.0, t
+    for i in range(rows):
+        for j in range(columns):
+            out[i, j] = coefficient[0, i, j] + t * coefficient[1, i, j]
+    for k in range(2, coefficient.shape[0]):
+        before, now = now, 2.0 * t * now - before
+        for i in range(rows):
+            for j in range(columns):
+                out[i, j] += now * coefficient[k, i, j]

@@ -1,0 +1,104 @@
+"""Following the boundary of stability over speed and depth, at a stated tolerance.
+
+Multi-dimensional bisection (Bachrathy and Stepan 2012, Period. Polytech. Mech. Eng. 56) of the sign
+of growth: a coarse net over all speeds and depths, then speeds halfway between, where only the
+depths are looked at around which the columns on either side change sign or differ. What is left is
+one bracket a crossing at every speed, refined to the tolerance. An island is missed if it fits
+between the columns and rows of the coarse net.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.stability.crossings import find_crossings
+
+#: growth at points: (indices of speeds, depths) -> (n,)
+Growth = Callable[[NDArray[np.int64], NDArray[np.float64]], NDArray[np.float64]]
+
+
+def followed_crossings(
+    speed_count: int,
+    depths: NDArray[np.float64],
+    growth: Growth,
+    tolerance: float = 5e-3,
+    stride: int = 8,
+) -> list[NDArray[np.float64]]:
+    """Depths of all changes of stability at each speed.
+
+    Parameters
+    ----------
+    speed_count : int
+        Speeds, numbered in the order of their size.
+    depths : (m,) array of float
+        Coarse net, m, ascending, > 0.
+    growth : callable
+        Logarithm of the spectral radius.
+    tolerance : float
+        Of a limit, relative to its depth.
+    stride : int
+        Every so many speeds make the coarse net; a power of two.
+
+    Returns
+    -------
+    list of arrays
+        m, ascending; stability is lost at even places and regained at odd ones.
+    """
+    values = np.full((speed_count, depths.size), np.nan)
+    columns = np.unique(np.append(np.arange(0, speed_count, stride), speed_count - 1))
+    _look_at(values, columns, np.ones((columns.size, depths.size), dtype=bool), depths, growth)
+    while stride > 1:
+        stride //= 2
+        between = np.setdiff1d(np.arange(0, speed_count, stride), columns)
+        before = columns[np.searchsorted(columns, between) - 1]
+        after = columns[np.searchsorted(columns, between)]
+        wanted = _beside_changes(values[before]) | _beside_changes(values[after])
+        wanted |= (values[before] > 0.0) != (values[after] > 0.0)
+        # where both sides agree and nothing changes nearby the sign is taken over
+        values[between] = values[before]
+        _look_at(values, between, wanted, depths, growth)
+        _widen(values, between, wanted, depths, growth)
+        columns = np.sort(np.append(columns, between))
+    return find_crossings(values, depths, growth, tolerance)
+
+
+def _look_at(
+    values: NDArray[np.float64],
+    columns: NDArray[np.int64],
+    wanted: NDArray[np.bool_],
+    depths: NDArray[np.float64],
+    growth: Growth,
+) -> None:
+    """Fill in the growth at the wanted places of some columns."""
+    row, place = np.nonzero(wanted)
+    if row.size:
+        values[columns[row], place] = growth(columns[row], depths[place])
+
+
+def _beside_changes(values: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Depths on both sides of a change of sign; before the first depth all is stable."""
+    unstable = values > 0.0
+    before = np.concatenate([np.zeros((len(values), 1), dtype=bool), unstable[:, :-1]], axis=1)
+    changes = unstable != before
+    below = np.concatenate([changes[:, 1:], np.zeros((len(values), 1), dtype=bool)], axis=1)
+    return changes | below
+
+
+def _widen(
+    values: NDArray[np.float64],
+    columns: NDArray[np.int64],
+    seen: NDArray[np.bool_],
+    depths: NDArray[np.float64],
+    growth: Growth,
+) -> None:
+    """Look beside every change of sign in which one of the two places was only taken over."""
+    seen = seen.copy()
+    while True:
+        wanted = _beside_changes(values[columns]) & ~seen
+        if not wanted.any():
+            return
+        _look_at(values, columns, wanted, depths, growth)
+        seen |= wanted

@@ -1,0 +1,79 @@
+"""From multipliers at points to limits over spindle speed, whatever the method."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.stability.crossings import find_crossings, growth_on_net
+from chatter.stability.limit_curve import LimitCurve
+from chatter.stability.multiplier import bifurcation_kind
+from chatter.stability.sweep import Progress, no_progress, sweep
+
+#: multipliers at points: (indices of speeds, depths, progress) -> (n,) complex
+AtPoints = Callable[..., NDArray[np.complex128]]
+
+
+class PointMethod(NamedTuple):
+    """What the search asks of a method."""
+
+    plain: AtPoints  # on the net
+    refined: AtPoints  # where it matters; the same function where there is but one
+    frequency: Callable[[int, float], float]  # chatter frequency, Hz, at a speed and a depth
+
+
+def growth(values: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """Logarithm of the spectral radius: positive is unstable."""
+    return np.log(np.maximum(np.abs(values), 1e-30))
+
+
+def limit_curve_by(
+    method: PointMethod,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    steps: NDArray[np.int64],
+    progress: Progress = no_progress,
+) -> LimitCurve:
+    """Limits of stability at every spindle speed.
+
+    Parameters
+    ----------
+    method : PointMethod
+    speeds : (n,) array of float
+        rad/s.
+    depths : (m,) array of float
+        m, ascending, > 0: net on which changes of stability are looked for; an unstable or
+        stable stretch that fits between two of its depths is not seen.
+    steps : (n,) array of int
+        Resolution, to be told.
+    progress : callable, optional
+        Called with (done, total) points of the net.
+    """
+
+    def plain(index: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
+        return growth(method.plain(index, depth, progress))
+
+    def refined(index: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
+        return growth(method.refined(index, depth, no_progress))
+
+    same = method.refined is method.plain
+    net = growth_on_net(len(speeds), depths, plain, plain if same else refined)
+    crossings = find_crossings(net, depths, refined)
+    found = np.array([i for i, depth in enumerate(crossings) if depth.size], dtype=np.int64)
+    first = np.full(len(speeds), np.inf)
+    first[found] = [crossings[i][0] for i in found]
+    frequency = np.full(len(speeds), np.nan)
+    kind = ["none"] * len(speeds)
+    at_limit = method.refined(found, first[found], no_progress)
+    heard = sweep(
+        lambda chunk: [method.frequency(int(i), float(first[i])) for i in found[chunk]],
+        len(found),
+        points_a_chunk=8,
+    )
+    frequency[found] = [value for part in heard for value in part]
+    for i, value in zip(found.tolist(), at_limit, strict=True):
+        kind[i] = bifurcation_kind(complex(value))
+    return LimitCurve(speeds, first, frequency, tuple(kind), tuple(crossings), steps)

@@ -1,0 +1,356 @@
+"""Multi-frequency solution in the frequency domain, straight from FRFs, by the argument principle.
+
+Motion that grows as exp(s t) times a function of the period holds the frequencies s + i l W, W that
+of the period. With the receptance G and the Fourier coefficients H_k of the directional matrix the
+cut closes the loop between them (Budak and Altintas 1998; Merdol and Altintas 2004),
+
+    det A(s) = 0,   A_lm = delta_lm I + G(s + i l W) sum_g H_g,l-m (1 - exp(-(s + i m W) tau_g)).
+
+A cut is stable where no root lies right of the imaginary axis; how many do is the number of turns
+that det A(i w) makes as w runs over one W, since G has no poles there. A verdict needs no root. One
+harmonic alone is the zeroth-order solution; the harmonics kept reach beyond the highest resonance.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from chatter.kernels import DRIVER, KERNEL
+from chatter.stability.crossings import find_crossings
+from chatter.stability.cut_arrays import CutArrays
+from chatter.stability.limit_curve import LimitCurve
+from chatter.stability.sweep import Progress, no_progress, sweep
+from cutting.edge_pieces import coupling_at, part_below, radius_at, share_of_height
+
+#: harmonics reach this far beyond the highest resonance
+_REACH = 4.0
+_FEWEST, _MOST = 3, 60
+#: largest turn of the determinant from one frequency to the next, rad, and the finest step
+_LARGEST_TURN = 0.7
+_FEWEST_LINES = 24
+_FINEST = 1e-7
+#: a limit is found when its bracket is this small, relative to the depth
+_DEPTH_TOLERANCE = 1e-4
+_SAME_DELAY = 4e-3
+
+
+class FrequencyResponse(NamedTuple):
+    """Relative receptance in r directions over frequency."""
+
+    omega: NDArray[np.float64]  # rad/s (m,)
+    receptance: NDArray[np.complex128]  # m/N (m, r, r)
+
+
+class Harmonics(NamedTuple):
+    """Fourier coefficients of the couplings at one depth, orders -K .. K."""
+
+    delay: NDArray[np.float64]  # rad (g,)
+    stiffness: NDArray[np.complex128]  # N/m (g, 2K + 1, r, r)
+    dashpot: NDArray[np.complex128]  # N s/m times the spindle speed (2K + 1, r, r)
+
+
+@njit(**DRIVER)
+def harmonics_at(cut, depth, orders):
+    """Fourier coefficients of the couplings over a period of the tool, orders -K .. K.
+
+    Parameters
+    ----------
+    cut : CutArrays
+    depth : float
+        m.
+    orders : int
+        K.
+
+    Returns
+    -------
+    Harmonics
+    """
+    pieces = cut.pieces
+    rank = cut.shape.shape[1]
+    capacity = 48 * pieces.bottom.shape[0] + 1
+    delays = np.zeros(capacity)
+    stiffness = np.zeros((capacity, 2 * orders + 1, rank, rank), dtype=np.complex128)
+    dashpot = np.zeros((2 * orders + 1, rank, rank), dtype=np.complex128)
+    part, part_dashpot = np.empty((rank, rank)), np.empty((rank, rank))
+    speed_factor = 1.0 / radius_at(pieces, depth) if pieces.damping[1] > 0.0 else 0.0
+    base = 2.0 * math.pi / cut.period_angle
+    used = 0
+    for piece in range(pieces.bottom.shape[0]):
+        top = part_below(pieces, piece, depth)
+        if top <= 0.0:
+            continue
+        varies = abs(pieces.delay[piece, 1] - pieces.delay[piece, 0])
+        turned = pieces.angle[piece, 1] - pieces.angle[piece, 0]
+        # parts along the edge, each of one delay, that the highest order resolves
+        parts = 1 + int(varies / _SAME_DELAY) + int(abs(turned) * top * orders * base / 6.0)
+        parts = min(parts, 48)
+        for share in range(parts):
+            place = top * (share + 0.5) / parts
+            height = share_of_height(pieces, piece, place)
+            delay = pieces.delay[piece, 0] + height * (
+                pieces.delay[piece, 1] - pieces.delay[piece, 0]
+            )
+            own = -1
+            for g in range(used):
+                if abs(delays[g] - delay) < 1e-9:
+                    own = g
+            if own < 0:
+                own = used
+                delays[own] = delay
+                used += 1
+            for along in range(6):
+                place = top * (share + cut.edge_place[6, along]) / parts
+                height = share_of_height(pieces, piece, place)
+                length = pieces.length[piece] * top / parts * cut.edge_weight[6, along]
+                entry = pieces.entry[piece, 0] + place * (
+                    pieces.entry[piece, 1] - pieces.entry[piece, 0]
+                )
+                leave = pieces.exit[piece, 0] + place * (
+                    pieces.exit[piece, 1] - pieces.exit[piece, 0]
+                )
+                at = pieces.angle[piece, 0] + height * turned
+                spans = 1 + int((leave - entry) * orders * base / 8.0)
+                for span in range(spans):
+                    for q in range(12):
+                        x = (span + cut.edge_place[12, q]) / spans
+                        spindle = entry + x * (leave - entry) - at
+                        weight = cut.edge_weight[12, q] / spans * (leave - entry)
+                        weight *= length / (2.0 * math.pi)
+                        coupling_at(
+                            pieces, piece, place, spindle, weight, speed_factor, cut.basis,
+                            part, part_dashpot,
+                        )  # fmt: skip
+                        turn = np.exp(-1j * base * spindle)
+                        wave = np.exp(1j * base * spindle * orders)
+                        for k in range(2 * orders + 1):
+                            for i in range(rank):
+                                for j in range(rank):
+                                    stiffness[own, k, i, j] += wave * part[i, j]
+                                    if speed_factor > 0.0:
+                                        dashpot[k, i, j] += wave * part_dashpot[i, j]
+                            wave *= turn
+    return Harmonics(delays[:used], stiffness[:used], dashpot)
+
+
+@njit(**KERNEL)
+def _receptance_at(response, omega, out):
+    """Set out (r, r) to the receptance at a frequency, negative ones too."""
+    lines = response.omega
+    w = abs(omega)
+    last = lines.shape[0] - 1
+    if w <= lines[0]:
+        low, t = 0, 0.0
+    elif w >= lines[last]:
+        low, t = last - 1, 1.0
+    else:
+        low = np.searchsorted(lines, w, side="right") - 1
+        t = (w - lines[low]) / (lines[low + 1] - lines[low])
+    # above what was measured the masses alone are left
+    fade = (lines[last] / w) ** 2 if w > lines[last] else 1.0
+    rank = out.shape[0]
+    for i in range(rank):
+        for j in range(rank):
+            a, b = response.receptance[low, i, j], response.receptance[low + 1, i, j]
+            value = fade * (a + t * (b - a))
+            out[i, j] = value if omega >= 0.0 else value.conjugate()
+
+
+@njit(**KERNEL)
+def _loop(response, harmonics, speed, base, omega, count, matrix):
+    """Set matrix ((2 count + 2) r)^2 to A(i omega); harmonics -count - 1 .. count."""
+    rank = response.receptance.shape[1]
+    orders = (harmonics.dashpot.shape[0] - 1) // 2
+    receptance = np.empty((rank, rank), dtype=np.complex128)
+    coupling = np.empty((rank, rank), dtype=np.complex128)
+    size = 2 * count + 2
+    matrix[:, :] = 0.0
+    for m in range(size):
+        w = omega + (m - count - 1) * base
+        for l in range(size):  # noqa: E741
+            k = l - m + orders
+            coupling[:, :] = harmonics.dashpot[k] * (1j * w / speed)
+            for g in range(harmonics.delay.shape[0]):
+                factor = 1.0 - np.exp(-1j * w * harmonics.delay[g] / speed)
+                coupling += factor * harmonics.stiffness[g, k]
+            for i in range(rank):
+                for j in range(rank):
+                    matrix[l * rank + i, m * rank + j] = coupling[i, j]
+    for l in range(size):  # noqa: E741
+        _receptance_at(response, omega + (l - count - 1) * base, receptance)
+        for column in range(size * rank):
+            for i in range(rank):
+                coupling[i, 0] = matrix[l * rank + i, column]
+            for i in range(rank):
+                total = complex(0.0, 0.0)
+                for j in range(rank):
+                    total += receptance[i, j] * coupling[j, 0]
+                matrix[l * rank + i, column] = total
+    for i in range(size * rank):
+        matrix[i, i] += 1.0
+
+
+@njit(**DRIVER)
+def unstable_roots(response, harmonics, speed, base, count):
+    """Number of unstable multipliers.
+
+    Parameters
+    ----------
+    response : FrequencyResponse
+    harmonics : Harmonics
+        Orders up to 2 count + 1.
+    speed : float
+        Spindle speed, rad/s.
+    base : float
+        Frequency of the period, rad/s.
+    count : int
+        Harmonics on either side.
+    """
+    rank = response.receptance.shape[1]
+    size = (2 * count + 2) * rank
+    matrix = np.empty((size, size), dtype=np.complex128)
+    _loop(response, harmonics, speed, base, 0.0, count, matrix)
+    value = np.linalg.det(matrix)
+    turned, at, step = 0.0, 0.0, 0.5 * base / _FEWEST_LINES
+    end = 0.5 * base
+    while at < end * (1.0 - 1e-12):
+        following = min(end, at + step)
+        _loop(response, harmonics, speed, base, following, count, matrix)
+        ahead = np.linalg.det(matrix)
+        change = np.angle(ahead / value)
+        if abs(change) > _LARGEST_TURN and step > _FINEST * base:
+            step *= 0.4
+            continue
+        turned += change
+        value, at = ahead, following
+        if abs(change) < 0.3 * _LARGEST_TURN:
+            step = min(2.0 * step, 0.5 * base / _FEWEST_LINES)
+    return -int(np.round(turned / math.pi))
+
+
+@njit(**DRIVER)
+def heard_frequency(response, harmonics, speed, base, count, lines):
+    """Frequency of the strongest part of the motion that is nearest to a root, and its place.
+
+    Returns
+    -------
+    (float, float)
+        rad/s, and the least frequency of it as a share of `base`, 0 .. 0.5.
+    """
+    rank = response.receptance.shape[1]
+    size = (2 * count + 2) * rank
+    matrix = np.empty((size, size), dtype=np.complex128)
+    best, place = np.inf, 0.0
+    low, high = 0.0, 0.5 * base
+    for level in range(4):
+        step = (high - low) / lines
+        for i in range(lines + 1):
+            _loop(response, harmonics, speed, base, low + i * step, count, matrix)
+            value = abs(np.linalg.det(matrix))
+            if value < best:
+                best, place = value, low + i * step
+        low, high = max(0.0, place - step), min(0.5 * base, place + step)
+        if level < 3:
+            best = np.inf
+    _loop(response, harmonics, speed, base, place, count, matrix)
+    vector = np.ones(size, dtype=np.complex128)
+    for i in range(size):
+        matrix[i, i] += 1e-12
+    for _ in range(3):
+        vector = np.linalg.solve(matrix, vector)
+        vector /= np.sqrt((np.abs(vector) ** 2).sum())
+    strongest, frequency = -1.0, 0.0
+    for l in range(2 * count + 2):  # noqa: E741
+        strength = 0.0
+        for i in range(rank):
+            strength += abs(vector[l * rank + i]) ** 2
+        if strength > strongest:
+            strongest, frequency = strength, abs(place + (l - count - 1) * base)
+    return frequency, place / base
+
+
+def harmonic_counts(
+    highest: float, period_angle: float, speeds: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    """Harmonics on either side (n,) that reach beyond the highest resonance (rad/s)."""
+    base = 2.0 * np.pi / period_angle * np.asarray(speeds)
+    return np.clip(np.ceil(_REACH * highest / base), _FEWEST, _MOST).astype(np.int64)
+
+
+def limit_curve(
+    cut: CutArrays,
+    response: FrequencyResponse,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    progress: Progress = no_progress,
+) -> LimitCurve:
+    """Limits of stability at every spindle speed.
+
+    Parameters
+    ----------
+    cut : CutArrays
+        Whose speed does not vary; of its modes only the highest frequency is looked at.
+    response : FrequencyResponse
+    speeds : (n,) array of float
+        rad/s.
+    depths : (m,) array of float
+        Net, m.
+    progress : callable, optional
+        Called with (done, total) points of the net.
+    """
+    counts = harmonic_counts(cut.fastest, cut.period_angle, speeds)
+    orders = 2 * int(counts.max()) + 1
+    base = 2.0 * np.pi / cut.period_angle * speeds
+    at_net = [harmonics_at(cut, float(depth), orders) for depth in depths]
+
+    def verdict(speed: int, harmonics: Harmonics) -> float:
+        # the coefficients of the orders that this speed needs
+        return 1.0 if _roots(speed, harmonics) > 0 else -1.0
+
+    def _roots(speed: int, harmonics: Harmonics) -> int:
+        count = int(counts[speed])
+        return unstable_roots(
+            response, _up_to(harmonics, 2 * count + 1), speeds[speed], base[speed], count
+        )
+
+    def chunk(index: NDArray[np.int64]) -> list[float]:
+        return [verdict(int(i) // len(depths), at_net[int(i) % len(depths)]) for i in index]
+
+    total = len(speeds) * len(depths)
+    net = np.array([v for part in sweep(chunk, total, progress) for v in part])
+
+    def growth(index: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
+        def some(places: NDArray[np.int64]) -> list[float]:
+            return [
+                -1.0 if depth[p] == 0.0
+                else verdict(int(index[p]), harmonics_at(cut, float(depth[p]), orders))
+                for p in places
+            ]  # fmt: skip
+
+        return np.array([v for part in sweep(some, len(index), points_a_chunk=4) for v in part])
+
+    crossings = find_crossings(net.reshape(len(speeds), -1), depths, growth, _DEPTH_TOLERANCE)
+    first = np.array([found[0] if found.size else np.inf for found in crossings])
+    frequency, kind = np.full(len(speeds), np.nan), ["none"] * len(speeds)
+    for i in np.flatnonzero(np.isfinite(first)):
+        count = int(counts[i])
+        harmonics = _up_to(harmonics_at(cut, float(first[i]), orders), 2 * count + 1)
+        omega, place = heard_frequency(response, harmonics, speeds[i], base[i], count, 40)
+        frequency[i] = omega / (2.0 * np.pi)
+        kind[i] = "flip" if place > 0.5 - 1e-3 else "hopf"
+    return LimitCurve(speeds, first, frequency, tuple(kind), tuple(crossings), counts)
+
+
+def _up_to(harmonics: Harmonics, orders: int) -> Harmonics:
+    """Coefficients of orders -K .. K alone."""
+    middle = (harmonics.dashpot.shape[0] - 1) // 2
+    kept = slice(middle - orders, middle + orders + 1)
+    return Harmonics(
+        harmonics.delay,
+        np.ascontiguousarray(harmonics.stiffness[:, kept]),
+        np.ascontiguousarray(harmonics.dashpot[kept]),
+    )

@@ -1,0 +1,116 @@
+"""How the spindle turns over a period of the cut: evenly, or with a varying speed."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from chatter.kernels import INLINED_KERNEL, KERNEL
+
+#: the variation may be taken that much faster or slower, as a share, to fit into a period
+_TUNING = 2e-3
+_MOST_CYCLES = 12
+
+
+class SpeedVariation(NamedTuple):
+    """Periodic variation of the spindle speed around its mean."""
+
+    amplitude: float  # share of the mean; 0 for none
+    frequency: float  # Hz
+    triangle: int  # 1 for a triangle, 0 for a sine
+
+
+class SpindleTurn(NamedTuple):
+    """Turn of the spindle at one mean speed."""
+
+    speed: float  # mean, rad/s
+    amplitude: float
+    frequency: float  # Hz, made to fit the period
+    triangle: int
+    patterns: int  # periods of the tool in a period of the cut
+    cycles: int  # of the variation in a period of the cut
+
+
+@njit(**KERNEL)
+def spindle_turn(variation, speed, pattern):
+    """Fit a whole number of variations into a whole number of tool periods.
+
+    Parameters
+    ----------
+    variation : SpeedVariation
+    speed : float
+        rad/s.
+    pattern : float
+        Angle after which the tool looks the same again, rad.
+
+    Returns
+    -------
+    SpindleTurn
+    """
+    if variation.amplitude == 0.0:
+        return SpindleTurn(speed, 0.0, 1.0, 0, 1, 1)
+    a_cycle = speed / (variation.frequency * pattern)
+    best, best_error = 1, np.inf
+    for cycles in range(1, _MOST_CYCLES + 1):
+        whole = max(1.0, np.round(cycles * a_cycle))
+        error = abs(whole / (cycles * a_cycle) - 1.0)
+        if error < 0.5 * best_error:
+            best, best_error = cycles, error
+        if best_error < _TUNING:
+            break
+    patterns = int(max(1.0, np.round(best * a_cycle)))
+    frequency = best * speed / (patterns * pattern)
+    return SpindleTurn(speed, variation.amplitude, frequency, variation.triangle, patterns, best)
+
+
+@njit(**INLINED_KERNEL)
+def angle_at(turn, time):
+    """Angle turned since time zero, rad."""
+    if turn.amplitude == 0.0:
+        return turn.speed * time
+    cycle = turn.frequency * time
+    cycle -= math.floor(cycle)
+    if turn.triangle == 0:
+        swing = (1.0 - math.cos(2.0 * math.pi * cycle)) / (2.0 * math.pi)
+    elif cycle < 0.25:
+        swing = 2.0 * cycle * cycle
+    elif cycle < 0.75:
+        swing = 0.25 - 2.0 * (cycle - 0.5) ** 2
+    else:
+        swing = 2.0 * (1.0 - cycle) ** 2
+    return turn.speed * (time + turn.amplitude / turn.frequency * swing)
+
+
+@njit(**INLINED_KERNEL)
+def speed_at(turn, time):
+    """Spindle speed, rad/s."""
+    if turn.amplitude == 0.0:
+        return turn.speed
+    cycle = turn.frequency * time
+    cycle -= math.floor(cycle)
+    if turn.triangle == 0:
+        wave = math.sin(2.0 * math.pi * cycle)
+    elif cycle < 0.25:
+        wave = 4.0 * cycle
+    elif cycle < 0.75:
+        wave = 2.0 - 4.0 * cycle
+    else:
+        wave = 4.0 * cycle - 4.0
+    return turn.speed * (1.0 + turn.amplitude * wave)
+
+
+@njit(**KERNEL)
+def time_at(turn, angle):
+    """Time at which the spindle has turned by an angle, s."""
+    time = angle / turn.speed
+    if turn.amplitude == 0.0:
+        return time
+    for _ in range(60):
+        step = (angle_at(turn, time) - angle) / speed_at(turn, time)
+        time -= step
+        if abs(step) * turn.speed < 1e-15 * max(1.0, abs(angle)):
+            break
+    return time

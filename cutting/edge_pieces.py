@@ -1,0 +1,508 @@
+"""Edges of a tool as pieces along their length, for the linear analysis of stability.
+
+A piece belongs to one tooth and cuts, between an entry and an exit angle, the surface that one
+certain earlier pass has left. Along it place on the tool and delay vary linearly with the height,
+and the arc with the length.
+An upright edge in a tool of one helix is one piece from the tip to any height; corners are cut
+into pieces by their curvature; where runout, setting errors or serration decide which pass left the
+surface, every pass has its own arc.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba.extending import register_jitable
+from numpy.typing import NDArray
+
+from cutting.engagement import MillingMode, slice_engagement
+from cutting.force_law import ExponentialLaw, ForceLaw
+from cutting.ploughing import Ploughing
+from cutting.process_damping import ViscousProcessDamping
+from cutting.regeneration import earlier_passes
+from cutting.tool import Cutter, corner_height
+
+_TURN = 2.0 * math.pi
+#: a call would count the references to every array of the table
+_INLINED = {"error_model": "numpy", "forceinline": True}
+#: a corner turns by this much within a piece, and its arc changes by it, rad
+_PIECE_TURN = math.radians(2.0)
+#: an edge trails, or a cone widens, by this much within a piece, rad; less where runout makes the
+#: arcs change from piece to piece
+_PIECE_LAG = 0.03
+_PIECE_LAG_OF_PASSES = 0.006
+_PIECES_A_WAVE = 24
+#: arcs shorter than this are none, rad
+_SHORTEST_ARC = 1e-9
+
+
+class EdgePieces(NamedTuple):
+    """Pieces of all edges; the last axis of a pair holds the value at the low and the high end."""
+
+    bottom: NDArray[np.float64]  # height of the low end above the tip, m (P,)
+    thickness: NDArray[np.float64]  # along the axis, m (P,)
+    length: NDArray[np.float64]  # of edge, m (P,)
+    angle: NDArray[np.float64]  # place on the tool, rad (P, 2)
+    entry: NDArray[np.float64]  # rad (P, 2)
+    exit: NDArray[np.float64]  # rad (P, 2)
+    delay: NDArray[np.float64]  # angle since the pass that left the surface, rad (P, 2)
+    immersion: NDArray[np.float64]  # axial immersion angle, rad (P, 2)
+    radius: NDArray[np.float64]  # m (P, 2)
+    corner: NDArray[np.float64]  # radius of the corner that the piece lies on, m; 0 for none (P,)
+    group: NDArray[np.int64]  # pieces of equal, constant delay; -1 where it varies (P,)
+    group_delay: NDArray[np.float64]  # rad (G,)
+    cutting: NDArray[np.float64]  # slope at the reference chip: tangential .. axial, N/m^2 (P, 3)
+    feed: NDArray[np.float64]  # chip = feed sin(phi) - inset, m (P,)
+    inset: NDArray[np.float64]  # m (P,)
+    exponent: float  # of the slope: slope = cutting (chip/reference)^exponent, 0 for a linear law
+    reference: float  # m
+    outline: NDArray[np.float64]  # radius at the tip's cylinder, corner radius, edge angle (3,)
+    damping: NDArray[
+        np.float64
+    ]  # force per edge length, rate and 1/V: tangential, radial, N/m (2,)
+
+
+class _Line(NamedTuple):
+    """Profile of the edge at piece borders: heights, radii, immersion angles, lengths between."""
+
+    height: NDArray[np.float64]  # (L+1,)
+    radius: NDArray[np.float64]  # (L+1,)
+    immersion: NDArray[np.float64]  # at both ends of every piece (L, 2)
+    length: NDArray[np.float64]  # (L,)
+
+
+def _corner_angles(cutter: Cutter, mode: MillingMode, radial_depth: float) -> NDArray[np.float64]:
+    """Immersion angles of the piece borders within the corner, rad."""
+    count = max(1, math.ceil(cutter.edge_angle / _PIECE_TURN))
+    angles = np.linspace(0.0, cutter.edge_angle, count + 1)
+    reach = cutter.radius - radial_depth
+    if mode != "slot" and abs(reach) < cutter.radius:
+        # where the edge first meets the stock its arc grows steeply: borders even in the arc
+        arcs = np.arange(0.0, math.pi, _PIECE_TURN)
+        with np.errstate(divide="ignore"):
+            radius = reach / np.cos(arcs)
+        sine = (radius - cutter.radius + cutter.corner_radius) / cutter.corner_radius
+        inside = (sine > 0.0) & (sine < math.sin(cutter.edge_angle)) & (radius > 0.0)
+        angles = np.append(angles, np.arcsin(sine[inside]))
+    angles = np.sort(angles)
+    return angles[np.append(True, np.diff(angles) > 1e-6)]
+
+
+def _line(
+    cutter: Cutter, deepest: float, mode: MillingMode, radial_depth: float, heights: list[float]
+) -> _Line:
+    corner = cutter.corner_radius
+    height, radius = [0.0], [cutter.radius - corner]
+    immersion: list[tuple[float, float]] = []
+    length: list[float] = []
+    if corner > 0.0:
+        angles = _corner_angles(cutter, mode, radial_depth)
+        height = list(corner * (1.0 - np.cos(angles)))
+        radius = list(cutter.radius - corner + corner * np.sin(angles))
+        immersion = list(itertools.pairwise(angles))
+        length = list(corner * np.diff(angles))
+    top = corner_height(cutter)
+    if deepest > top:
+        slope = 1.0 / math.tan(cutter.edge_angle) if cutter.edge_angle < 0.5 * math.pi else 0.0
+        start = radius[-1]
+        for place in sorted({h for h in heights if top < h < deepest} | {deepest}):
+            length.append((place - height[-1]) / math.sin(cutter.edge_angle))
+            height.append(place)
+            radius.append(start + slope * (place - top))
+            immersion.append((cutter.edge_angle, cutter.edge_angle))
+    return _Line(np.array(height), np.array(radius), np.array(immersion), np.array(length))
+
+
+def _even_heights(spacing: float, deepest: float) -> list[float]:
+    return list(spacing * np.arange(1, math.ceil(deepest / spacing)))
+
+
+def crossing_heights(cutter: Cutter, deepest: float) -> list[float]:
+    """Heights at which two flutes lie on the same side of the axis: their order changes."""
+    slope = np.tan(np.asarray(cutter.helix)) / cutter.radius
+    angle = cutter.tooth_angles
+    heights = []
+    for i in range(cutter.teeth):
+        for j in range(i):
+            rate = slope[i] - slope[j]
+            if abs(rate) * deepest < 1e-9:
+                continue
+            gap = angle[i] - angle[j]
+            for turn in range(-4, 5):
+                height = (gap + _TURN * turn) / rate
+                if 0.0 < height < deepest:
+                    heights.append(height)
+    return heights
+
+
+def _borders_of_straight(cutter: Cutter, deepest: float, own_passes: bool) -> list[float]:
+    heights = crossing_heights(cutter, deepest)
+    several = len(set(cutter.helix)) > 1
+    slope = max(abs(math.tan(helix)) for helix in cutter.helix) / cutter.radius
+    if cutter.serration is not None:
+        heights += _even_heights(cutter.serration.wavelength / _PIECES_A_WAVE, deepest)
+    elif own_passes and several:
+        heights += _even_heights(_PIECE_LAG / slope, deepest)
+    if cutter.edge_angle < 0.5 * math.pi - 1e-9:
+        # the radius, and with it the arc, changes along a cone
+        rate = 1.0 / math.tan(cutter.edge_angle) / cutter.radius
+        turn = _PIECE_LAG_OF_PASSES if own_passes else _PIECE_LAG
+        heights += _even_heights(turn / max(rate, slope), deepest)
+    return heights
+
+
+def _passes(
+    rise: NDArray[np.float64], inset: NDArray[np.float64], entry: float, leave: float
+) -> list[tuple[int, float, float]]:
+    """Arcs (pass, entry, exit) in which each earlier pass is the one that left the surface.
+
+    The chip against pass k is rise[k] sin(phi) - inset[k]; the thinnest counts, and below zero
+    there is none.
+    """
+    sines = [0.0, 1.0]
+    for k in range(rise.size):
+        if rise[k] > 0.0:
+            sines.append(inset[k] / rise[k])
+        for m in range(k):
+            if rise[k] != rise[m]:
+                sines.append((inset[k] - inset[m]) / (rise[k] - rise[m]))
+    turns = np.arcsin([s for s in sines if 0.0 <= s <= 1.0])
+    marks = np.concatenate([turns, math.pi - turns, [entry, leave]])
+    marks = np.unique(marks[(marks >= entry) & (marks <= leave)])
+    arcs: list[tuple[int, float, float]] = []
+    for low, high in itertools.pairwise(marks):
+        if high - low < _SHORTEST_ARC:
+            continue
+        chip = rise * math.sin(0.5 * (low + high)) - inset
+        k = int(np.argmin(chip))
+        if chip[k] <= 0.0:
+            continue
+        if arcs and arcs[-1][0] == k and low - arcs[-1][2] < _SHORTEST_ARC:
+            arcs[-1] = (k, arcs[-1][1], high)
+        else:
+            arcs.append((k, low, high))
+    return arcs
+
+
+def _arcs_of_passes(
+    rise: NDArray[np.float64], inset: NDArray[np.float64], arcs: NDArray[np.float64]
+) -> list[tuple[int, tuple[float, float], tuple[float, float]]]:
+    """Arcs (pass, entries, exits) at both ends of a piece from those at ends and middle.
+
+    Rows of `rise`, `inset` and `arcs` are the low end, the high end and the middle. Where the ends
+    do not see the same passes, the arcs are those of the middle all along.
+    """
+    low, high, middle = (_passes(rise[i], inset[i], *arcs[i]) for i in range(3))
+    if [k for k, _, _ in low] != [k for k, _, _ in high] or len(low) != len(middle):
+        return [(k, (first, first), (last, last)) for k, first, last in middle]
+    return [(a[0], (a[1], b[1]), (a[2], b[2])) for a, b in zip(low, high, strict=True)]
+
+
+def edge_pieces(
+    cutter: Cutter,
+    laws: list[ForceLaw],
+    mode: MillingMode,
+    radial_depth: float,
+    feed_per_turn: float,
+    deepest: float,
+    flank: ViscousProcessDamping | Ploughing | None = None,
+) -> EdgePieces:
+    """Cut the edges of a tool into pieces from the tip to a height.
+
+    Parameters
+    ----------
+    cutter : Cutter
+    laws : list of ForceLaw
+        One for each tooth.
+    mode : {"up", "down", "slot"}
+    radial_depth, feed_per_turn, deepest : float
+        m.
+    flank : ViscousProcessDamping or Ploughing, optional
+        Ploughing is taken for small vibration; see `small_vibration_coefficient`.
+
+    Returns
+    -------
+    EdgePieces
+    """
+    wave = cutter.serration is not None
+    own_passes = wave or np.ptp(cutter.radial_offsets) > 0.0 or np.ptp(cutter.axial_offsets) > 0.0
+    heights = _borders_of_straight(cutter, deepest, own_passes)
+    line = _line(cutter, deepest, mode, radial_depth, heights)
+    lag = np.tan(np.asarray(cutter.helix)) / cutter.radius
+    rows: list[tuple] = []
+    entry, leave = slice_engagement(
+        mode, radial_depth, cutter.radius, np.maximum(line.radius, 1e-12)
+    )
+    for piece in range(line.length.size):
+        ends = slice(piece, piece + 2)
+        middle = 0.5 * (line.height[piece] + line.height[piece + 1])
+        angle = cutter.tooth_angles[:, None] - np.outer(lag, [*line.height[ends], middle])
+        kappa = line.immersion[piece]
+        arc = _arc_of_piece(entry[ends], leave[ends])
+        if arc is None:
+            continue
+        waves = np.zeros((cutter.teeth, 3))
+        if wave:
+            heights_of = np.array([*line.height[ends], middle])
+            waves = np.array(
+                [
+                    cutter.serration.radius_change(heights_of, tooth, cutter.teeth)
+                    for tooth in range(cutter.teeth)
+                ]
+            )
+        turned = np.array([*kappa, 0.5 * (kappa[0] + kappa[1])])
+        radial, axial = cutter.radial_offsets[:, None] + waves, cutter.axial_offsets[:, None]
+        offset = radial * np.sin(turned) + axial * np.cos(turned)
+        earlier, ahead = earlier_passes(angle[:, 2:])
+        arcs = np.stack([*arc.T, arc.mean(axis=1)])
+        for tooth in range(cutter.teeth):
+            order, alpha = earlier[tooth, 0], ahead[tooth, 0]
+            rise = np.sin(turned)[:, None] * feed_per_turn * alpha / _TURN
+            inset = (offset[order] - offset[tooth]).T
+            found = [(0, arc[0], arc[1])]
+            if own_passes:
+                found = _arcs_of_passes(rise, inset, arcs)
+            for k, first, last in found:
+                other = order[k]
+                gap = alpha[k] + (angle[other] - angle[tooth]) - (angle[other, 2] - angle[tooth, 2])
+                rows.append(
+                    (
+                        line.height[piece], line.height[piece + 1] - line.height[piece],
+                        line.length[piece], angle[tooth, :2], first, last,
+                        gap[:2], kappa, line.radius[ends], _reference_slope(laws[tooth]),
+                        rise[2, k], inset[2, k],
+                        cutter.corner_radius if kappa[0] < kappa[1] else 0.0,
+                    )
+                )  # fmt: skip
+    return _as_arrays(rows, cutter, laws[0], flank)
+
+
+def _arc_of_piece(
+    entry: NDArray[np.float64], leave: NDArray[np.float64]
+) -> NDArray[np.float64] | None:
+    """Entry and exit at both ends (2, 2); where one end is out of the stock its arc is a point."""
+    cuts = entry < leave
+    if not cuts.any():
+        return None
+    if not cuts.all():
+        inside = int(np.argmax(cuts))
+        # down-milling ends at pi, up-milling starts at 0: the arc shrinks towards that side
+        place = leave[inside] if leave[inside] > math.pi - 1e-12 else entry[inside]
+        entry, leave = np.where(cuts, entry, place), np.where(cuts, leave, place)
+    return np.stack([entry, leave])
+
+
+def _reference_slope(law: ForceLaw) -> NDArray[np.float64]:
+    if isinstance(law, ExponentialLaw):
+        return law.exponent * np.asarray(law.cutting)
+    return np.asarray(law.cutting)
+
+
+def _as_arrays(
+    rows: list[tuple],
+    cutter: Cutter,
+    law: ForceLaw,
+    flank: ViscousProcessDamping | Ploughing | None,
+) -> EdgePieces:
+    count = len(rows)
+    columns = [np.array(column, dtype=np.float64) for column in zip(*rows, strict=True)]
+    if count == 0:
+        columns = [np.zeros((0, 2))] * 13
+    delay = columns[6]
+    constant = np.abs(delay[:, 0] - delay[:, 1]) < 1e-12 if count else np.zeros(0, dtype=bool)
+    groups: list[float] = []
+    group = np.full(count, -1, dtype=np.int64)
+    for place in np.flatnonzero(constant):
+        value = 0.5 * (delay[place, 0] + delay[place, 1])
+        near = [i for i, other in enumerate(groups) if abs(other - value) < 1e-10]
+        if not near:
+            groups.append(value)
+        group[place] = near[0] if near else len(groups) - 1
+    exponent, reference = 0.0, 1.0
+    if isinstance(law, ExponentialLaw) and law.exponent < 1.0:
+        exponent, reference = law.exponent - 1.0, law.reference_chip_thickness
+    damping = np.zeros(2)
+    if isinstance(flank, ViscousProcessDamping):
+        damping = flank.coefficient * np.array([flank.friction, 1.0])
+    elif isinstance(flank, Ploughing):
+        damping = small_vibration_coefficient(flank) * np.array([flank.friction, 1.0])
+    return EdgePieces(
+        bottom=columns[0], thickness=columns[1], length=columns[2], angle=columns[3],
+        entry=columns[4], exit=columns[5], delay=delay, immersion=columns[7], radius=columns[8],
+        group=group, group_delay=np.array(groups), cutting=columns[9], feed=columns[10],
+        inset=columns[11], corner=columns[12], exponent=exponent, reference=reference,
+        damping=damping,
+        outline=np.array([cutter.radius, cutter.corner_radius, cutter.edge_angle]),
+    )  # fmt: skip
+
+
+def small_vibration_coefficient(law: Ploughing) -> float:
+    """C of the dashpot, N/m, that a ploughing flank is for small vibration: K l^2/2.
+
+    The land in contact, of length l, is pressed into the wave behind the edge: at a distance s the
+    wave lies r(t) - r(t - s/V) = s r'/V lower, and the displaced volume a width is the sum of that.
+    """
+    return 0.5 * law.indentation_force * law.contact_length**2
+
+
+def period_angle(cutter: Cutter) -> float:
+    """Angle after which the tool looks the same again, rad: a turn over a whole number."""
+    angle, offset = cutter.tooth_angles, cutter.radial_offsets
+    for parts in range(cutter.teeth, 1, -1):
+        if cutter.teeth % parts:
+            continue
+        step = cutter.teeth // parts
+        turned = np.mod(np.roll(angle, -step) - angle, _TURN)
+        alike = (
+            np.allclose(turned, _TURN / parts, rtol=0.0, atol=1e-9)
+            and np.allclose(np.roll(offset, -step), offset, rtol=0.0, atol=1e-12)
+            and np.allclose(np.roll(cutter.axial_offsets, -step), cutter.axial_offsets, atol=1e-12)
+            and np.allclose(np.roll(cutter.helix, -step), cutter.helix, rtol=0.0, atol=1e-12)
+        )
+        if alike and cutter.serration is None:
+            return _TURN / parts
+    return _TURN
+
+
+@register_jitable(**_INLINED)
+def part_below(pieces, piece, depth):
+    """Part of a piece, from its low end and along its length, that lies below a depth (m)."""
+    share = (depth - pieces.bottom[piece]) / pieces.thickness[piece]
+    if share >= 1.0:
+        return 1.0
+    corner = pieces.corner[piece]
+    if corner == 0.0 or share <= 0.0:
+        return share
+    low, high = pieces.immersion[piece, 0], pieces.immersion[piece, 1]
+    return (math.acos(1.0 - depth / corner) - low) / (high - low)
+
+
+@register_jitable(**_INLINED)
+def radius_at(pieces, height):
+    """Radius of the edge at a height above the tip, m."""
+    radius, corner, angle = pieces.outline[0], pieces.outline[1], pieces.outline[2]
+    top = corner * (1.0 - math.cos(angle))
+    if height < top:
+        return radius - corner + corner * math.sin(math.acos(1.0 - height / corner))
+    return radius - corner * (1.0 - math.sin(angle)) + (height - top) / math.tan(angle)
+
+
+@register_jitable(**_INLINED)
+def share_of_height(pieces, piece, place):
+    """Height of a place along a piece above its low end, as a share of the piece's."""
+    corner = pieces.corner[piece]
+    if corner == 0.0:
+        return place
+    low, high = pieces.immersion[piece, 0], pieces.immersion[piece, 1]
+    height = corner * (1.0 - math.cos(low + place * (high - low)))
+    return (height - pieces.bottom[piece]) / pieces.thickness[piece]
+
+
+@register_jitable(**_INLINED)
+def engaged_span(pieces, piece, top, spindle, turn):
+    """Part of a piece that is in the cut at a spindle angle.
+
+    Parameters
+    ----------
+    pieces : EdgePieces
+    piece : int
+    top : float
+        Part of the piece, from its low end, that lies below the depth of cut.
+    spindle : float
+        Spindle angle, rad.
+    turn : int
+        Turns that are taken off the place of the edge.
+
+    Returns
+    -------
+    (float, float)
+        As parts of the piece; the first above the second where nothing is in the cut.
+    """
+    start = spindle + pieces.angle[piece, 0] - _TURN * turn
+    turned = pieces.angle[piece, 1] - pieces.angle[piece, 0]
+    low, high = 0.0, top
+    entry, leave = pieces.entry[piece, 0], pieces.exit[piece, 0]
+    for side in range(2):
+        # value + rate s >= 0 inside
+        if side == 0:
+            value, rate = start - entry, turned - (pieces.entry[piece, 1] - entry)
+        else:
+            value, rate = leave - start, (pieces.exit[piece, 1] - leave) - turned
+        if rate == 0.0:
+            if value <= 0.0:
+                return 1.0, 0.0
+        elif rate > 0.0:
+            low = max(low, -value / rate)
+        else:
+            high = min(high, -value / rate)
+    return low, high
+
+
+@register_jitable(**_INLINED)
+def first_and_last_turn(pieces, piece, top, spindle):
+    """Turns by which a piece may have to be turned back to lie in its arc."""
+    a = spindle + pieces.angle[piece, 0]
+    b = a + top * (pieces.angle[piece, 1] - pieces.angle[piece, 0])
+    entry = min(pieces.entry[piece, 0], pieces.entry[piece, 1])
+    leave = max(pieces.exit[piece, 0], pieces.exit[piece, 1])
+    first = math.ceil((min(a, b) - leave) / _TURN - 1e-12)
+    last = math.floor((max(a, b) - entry) / _TURN + 1e-12)
+    return first, last
+
+
+@register_jitable(**_INLINED)
+def coupling_at(pieces, piece, place, spindle, weight, speed_factor, basis, stiffness, dashpot):
+    """Add the coupling of a point of the edge to displacement and velocity.
+
+    Parameters
+    ----------
+    pieces : EdgePieces
+    piece : int
+    place : float
+        Of the point, as a part of the piece.
+    spindle : float
+        rad.
+    weight : float
+        Length of edge that the point stands for, m.
+    speed_factor : float
+        One over the cutting speed, s/m; 0 leaves the dashpot alone.
+    basis : (3, r) array of float
+        Directions of motion.
+    stiffness, dashpot : (r, r) array of float
+        N/m and N s/m: the force on the tool is -stiffness u - dashpot u'. Overwritten.
+    """
+    turned = pieces.angle[piece, 1] - pieces.angle[piece, 0]
+    height = share_of_height(pieces, piece, place)
+    phi = spindle + pieces.angle[piece, 0] + height * turned
+    kappa = pieces.immersion[piece, 0]
+    bend = pieces.immersion[piece, 1] - kappa
+    s, c = math.sin(phi), math.cos(phi)
+    sk, ck = 1.0, 0.0
+    if bend != 0.0 or abs(kappa - 0.5 * math.pi) > 1e-12:
+        sk, ck = math.sin(kappa + place * bend), math.cos(kappa + place * bend)
+    size = weight
+    if pieces.exponent != 0.0:
+        # flutes of different helix leave each other more or less of the feed from height to height
+        first, last = pieces.delay[piece, 0], pieces.delay[piece, 1]
+        feed = pieces.feed[piece] * (first + height * (last - first)) / (0.5 * (first + last))
+        chip = feed * s - pieces.inset[piece]
+        chip = max(chip, 1e-9 * pieces.reference)
+        size *= math.exp(pieces.exponent * math.log(chip / pieces.reference))
+    kt, kr, ka = pieces.cutting[piece, 0], pieces.cutting[piece, 1], pieces.cutting[piece, 2]
+    for coupling in range(2):
+        if coupling == 1:
+            if speed_factor == 0.0:
+                break
+            size = weight * speed_factor
+            kt, kr, ka = pieces.damping[0], pieces.damping[1], 0.0
+        plane = ka * ck - kr * sk
+        fx, fy, fz = plane * s - kt * c, plane * c + kt * s, kr * ck + ka * sk
+        out = stiffness if coupling == 0 else dashpot
+        for j in range(basis.shape[1]):
+            chip_change = sk * (s * basis[0, j] + c * basis[1, j]) - ck * basis[2, j]
+            for i in range(basis.shape[1]):
+                push = fx * basis[0, i] + fy * basis[1, i] + fz * basis[2, i]
+                out[i, j] = -size * push * chip_change

@@ -1,0 +1,116 @@
+"""Collocation against random cases of any tool, solved by the independent reference."""
+
+import math
+
+import numpy as np
+import pytest
+from reference.general_cases import case_dict, load
+from reference.general_cut import GeneralCut, spectral_radius
+
+from chatter.case import Case
+from chatter.model import milling_model
+from chatter.stability import sweep
+from chatter.stability.collocation import converged_multiplier, multipliers
+from cutting.edge_pieces import period_angle
+
+CASES = load()
+RPM = math.pi / 30.0
+X = ((922.0, 0.011, 0.03993, (1.0, 0.0, 0.0)),)
+
+
+def over_the_period_of_the_reference(model, cut, radius):
+    """The reference counts from turn to turn, the product from tooth to like tooth."""
+    repeats = 1 if cut.variation else round(2.0 * math.pi / period_angle(model.cutter))
+    return radius**repeats
+
+
+def test_the_store_is_what_the_reference_gives():
+    plain = [
+        (cut, stored)
+        for cut, stored in CASES
+        if not cut.corner_radius and not any(cut.helix) and not cut.variation
+    ]
+    for cut, stored in plain[:3]:
+        assert spectral_radius(cut, nodes=8) == pytest.approx(stored, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("cut", "periods", "expected"),
+    [
+        # BENCHMARKS.md 2.2, 4 and 3.3: even teeth, unequal pitch, flutes of different helix
+        (
+            GeneralCut(
+                16e-3, (math.pi,) * 2, (0.0,) * 2, "up", 1.6e-3, (6e8, 2e8, 0.0), X,
+                10000 * RPM, 2e-3,
+            ),
+            2, pytest.approx(1.1773892490, rel=1e-8),
+        ),
+        (
+            GeneralCut(
+                16e-3, (math.pi,) * 2, (math.radians(30.0), math.radians(45.0)), "down", 0.8e-3,
+                (6e8, 2e8, 0.0), X, 15000 * RPM, 3e-3,
+            ),
+            1, pytest.approx(0.4701, rel=1e-2),
+        ),
+    ],
+)  # fmt: skip
+def test_the_reference_meets_published_values(cut, periods, expected):
+    assert spectral_radius(cut) ** (1.0 / periods) == expected
+
+
+def test_the_cases_are_varied():
+    cuts = [cut for cut, _ in CASES]
+    radii = np.array([radius for _, radius in CASES])
+    assert len(cuts) >= 40
+    assert np.sum(radii > 1.0) > 8
+    assert np.sum(radii < 1.0) > 8
+    assert sum(np.ptp(cut.pitch) > 0.0 for cut in cuts) > 10
+    assert sum(len(set(cut.helix)) > 1 for cut in cuts) > 5
+    assert sum(cut.corner_radius > 0.0 for cut in cuts) > 4
+    assert sum(cut.edge_angle < 1.57 for cut in cuts) > 4
+    assert sum(bool(cut.offsets) for cut in cuts) > 10
+    assert sum(cut.exponent < 1.0 for cut in cuts) > 5
+    assert sum(cut.process_damping > 0.0 for cut in cuts) > 5
+    assert sum(cut.variation is not None for cut in cuts) > 2
+
+
+def test_spectral_radius_of_random_cases_of_any_tool():
+    errors = []
+    for cut, expected in CASES:
+        model = milling_model(Case.from_dict(case_dict(cut)))
+        found = converged_multiplier(
+            lambda points, waves, model=model, depth=cut.depth: model.cut(depth, points, waves),
+            cut.speed,
+            cut.depth,
+        )
+        radius = over_the_period_of_the_reference(model, cut, abs(found.value))
+        errors.append(abs(radius - expected) / max(1.0, expected))
+    assert max(errors) < 1e-4
+
+
+def test_the_same_bytes_whatever_the_number_of_threads(monkeypatch):
+    cut, _ = next((cut, r) for cut, r in CASES if len(set(cut.helix)) > 1 and not cut.variation)
+    arrays = milling_model(Case.from_dict(case_dict(cut))).cut(cut.depth)
+    speeds = np.linspace(0.8, 1.2, 97) * cut.speed
+    depths = np.full(speeds.size, cut.depth)
+    found = []
+    for workers in (1, 2, 5):
+        monkeypatch.setattr(sweep, "worker_count", lambda workers=workers: workers)
+        found.append(multipliers(arrays, speeds, depths).tobytes())
+    assert len(set(found)) == 1
+
+
+def test_spectral_convergence():
+    """The logarithm of the error falls in proportion to the number of points."""
+    cut = GeneralCut(
+        16e-3, (math.pi,) * 2, (0.0,) * 2, "down", 8e-3, (6e8, 2e8, 0.0), X, 5000 * RPM, 1e-3
+    )
+    model = milling_model(Case.from_dict(case_dict(cut)))
+    point = np.array([cut.speed]), np.array([cut.depth])
+    orders = (4, 6, 8, 10, 12)
+    radii = [abs(multipliers(model.cut(cut.depth, p, 1.0), *point)[0]) for p in orders]
+    exact = spectral_radius(cut, nodes=14, waves=0.4) ** 0.5
+    errors = np.abs(np.array(radii) - exact)
+    # every two points more bring a factor of ten and more, down to rounding
+    assert np.all((errors[1:] < 0.1 * errors[:-1]) | (errors[1:] < 1e-9))
+    assert errors[-1] < 1e-9
