@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hmac
 import json
+import os
 import secrets
 from collections.abc import Callable
 from http import HTTPStatus
@@ -66,8 +67,8 @@ class LiveServer(ThreadingHTTPServer):
 
     daemon_threads = True
     block_on_close = False
-    # another process must not be able to take over the port of a page that is shown
-    allow_reuse_address = False
+    # elsewhere it would let another process take over the port of a page that is shown
+    allow_reuse_address = os.name == "posix"
 
     def __init__(self, live: LiveCase, port: int = 0) -> None:
         try:

@@ -152,7 +152,7 @@ el("lobes").addEventListener("mousemove", event => {
   const heard = diagram.chatter_frequency_Hz[i];
   tip.textContent = `${speed.toFixed(0)} rpm, ${depth.toPrecision(3)} mm: ${unstable ? "chatter" : "stable"}\n`
     + (crossings.length ? `limit ${crossings[0].toPrecision(4)} mm` : "no limit found")
-    + (heard === null ? "" : `\nchatter frequency ${heard.toFixed(1)} Hz (${diagram.bifurcation[i]})`);
+    + (heard === null ? "" : `\nchatter frequency ${heard.toFixed(1)} Hz (${diagram.bifurcation[i].replace("hopf", "Hopf")})`);
   const left = event.offsetX > plot.width - 250;
   tip.style.left = left ? "" : `${event.offsetX + 14}px`;
   tip.style.right = left ? `${plot.width - event.offsetX + 14}px` : "";
@@ -189,6 +189,7 @@ el("lobes").addEventListener("click", async event => {
     text.textContent = error.message;
   }
   redraw();
+  el("simulation").scrollIntoView({ block: "nearest", behavior: "smooth" });
   document.body.dataset.simulated = title.textContent;
 });
 
