@@ -11,6 +11,7 @@ from chatter.cli.errors import reports_errors
 from chatter.cli.options import (
     Assignments,
     CaseFile,
+    Cluster,
     Json,
     Method,
     OutputFolder,
@@ -25,6 +26,7 @@ from chatter.cli.report import (
     print_written,
     progress_bar,
 )
+from chatter.errors import InputError
 
 
 @reports_errors
@@ -35,6 +37,7 @@ def lobes(
     grid: Annotated[
         bool, typer.Option("--grid", help="Also write the spectral radius on the whole grid.")
     ] = False,
+    cluster: Cluster = None,
     live: Annotated[
         bool, typer.Option("--live", help="Show a page in the browser that follows sliders.")
     ] = False,
@@ -50,12 +53,15 @@ def lobes(
     if live:
         _serve(description, method, port, no_browser)
         return
+    if cluster is not None and not grid:
+        raise InputError("--cluster computes the grid of a diagram; give --grid with it")
     from chatter.lobe_diagram import lobes as run_lobes
 
     announce_compilation()
+    folder = output_folder(out, case.stem)
     with progress_bar("stability limits") as progress:
-        diagram = run_lobes(description, method, grid, progress)
-    written = diagram.save(output_folder(out, case.stem))
+        diagram = run_lobes(description, method, grid, progress, cluster, folder)
+    written = diagram.save(folder)
     if json:
         print_json(diagram.summary())
     else:
