@@ -28,6 +28,9 @@ _TASK_SECONDS = 3.0
 #: s
 _PATIENCE_FOR_SCHEDULER, _PATIENCE_FOR_WORKERS = 10.0, 60.0
 _TASKS_A_WORKER = 2
+#: run by workers at their start: Ctrl-C goes to every process of a terminal, and the one that
+#: started them ends them
+_DEAF_TO_CTRL_C = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 _ADDRESS = re.compile(r"(tcp|tls|ws|wss)://[^\s/:]+(:\d+)")
 _ADDRESS_V6 = re.compile(r"(tcp|tls|ws|wss)://\[[0-9a-fA-F:.]+\](:\d+)")
 
@@ -231,6 +234,7 @@ def _local_client() -> Iterator[Client]:
             host="127.0.0.1",
             dashboard_address=None,
             silence_logs=logging.CRITICAL,
+            preload=_DEAF_TO_CTRL_C,
         ) as cluster,
         Client(cluster) as client,
     ):

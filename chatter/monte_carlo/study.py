@@ -215,7 +215,9 @@ def _quantiles(limits: Array, levels: Sequence[float]) -> Array:
     low, high = ordered[below], ordered[above]
     between = np.full(low.shape, np.inf)
     known = np.isfinite(high)
-    between[known] = (low + share * np.where(known, high - low, 0.0))[known]
+    between[known] = (low + share * np.subtract(high, low, out=np.zeros_like(low), where=known))[
+        known
+    ]
     return np.where(share == 0.0, low, between)
 
 

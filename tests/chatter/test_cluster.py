@@ -27,9 +27,6 @@ cloudpickle = pytest.importorskip("cloudpickle")
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 CASE = EXAMPLES / "two-degrees-of-freedom" / "case.toml"
-#: distributed warns of ports in use, of its own loops
-pytestmark = pytest.mark.filterwarnings("default")
-
 cloudpickle.register_pickle_by_value(sys.modules[__name__])
 
 
