@@ -10,7 +10,8 @@ import math
 import re
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from concurrent.futures import CancelledError
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from chatter.errors import InputError, RunError
@@ -109,9 +110,13 @@ class OnDask:
                 found, seconds = _result_of(future)
                 cost.add(len(mine), seconds)
                 yield from zip(mine, found, strict=True)
+        except (CancelledError, OSError) as error:
+            raise _lost(error) from None
         finally:
-            if places:
-                self._client.cancel(list(places))
+            # a client that is closed has taken its tasks along
+            if places and self._client.status == "running":
+                with suppress(OSError):
+                    self._client.cancel(list(places))
 
     def _workers(self) -> int:
         return sum(self._client.nthreads().values())
@@ -151,6 +156,8 @@ def _task(function: Callable, items: list, version: str) -> tuple[list, float, l
             found = [function(item) for item in items]
         except InputError as error:
             return [], 0.0, list(error.messages)
+        except OSError as error:
+            return [], 0.0, [f"on a worker: {error.filename or 'a file'}: {error.strerror}"]
     return found, time.perf_counter() - started, []
 
 
@@ -162,8 +169,6 @@ def _version() -> str:
 
 
 def _result_of(future: Any) -> tuple[list, float]:
-    from concurrent.futures import CancelledError
-
     from distributed import KilledWorker
 
     try:
@@ -173,12 +178,13 @@ def _result_of(future: Any) -> tuple[list, float]:
             "a task has lost its worker again and again, most likely for want of memory; "
             "what was finished is kept"
         ) from None
-    except (CancelledError, OSError) as error:
-        text = f"the cluster is lost ({type(error).__name__}); what was finished is kept"
-        raise RunError(text) from None
     if problems:
         raise InputError(problems)
     return found, seconds
+
+
+def _lost(error: BaseException) -> RunError:
+    return RunError(f"the cluster is lost ({type(error).__name__}); what was finished is kept")
 
 
 @contextmanager
@@ -243,8 +249,13 @@ def _local_client() -> Iterator[Client]:
 
 @contextmanager
 def _client_of(address: str) -> Iterator[Client]:
+    import logging
+
     from distributed import Client
 
+    # a lost connection is told in a sentence; each of its loggers has a level of its own
+    for name in [name for name in logging.root.manager.loggerDict if name.startswith("distrib")]:
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         client = Client(address, timeout=_PATIENCE_FOR_SCHEDULER)
     except (OSError, TimeoutError, ValueError):

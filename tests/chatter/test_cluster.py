@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import signal
 import socket
@@ -216,6 +217,36 @@ def test_a_missing_distributed_is_told(monkeypatch):
 
 def test_cluster_by_address(client, here, tmp_path):
     assert run_whatif(tmp_path, client.scheduler.address) == here["whatif"]
+
+
+def compute_until_killed(address, scheduler):
+    with computing_on(address) as computing:
+        for place, _ in computing.results(time.sleep, [0.1] * 100):
+            if place == 2:
+                scheduler.kill()
+
+
+def test_a_lost_scheduler_is_told(tmp_path):
+    told = tmp_path / "scheduler.json"
+    started = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1"]
+    started += ["--port", "0", "--no-dashboard", "--scheduler-file", str(told)]
+    silent = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    scheduler, workers = subprocess.Popen(started, **silent), None
+    try:
+        until = time.monotonic() + 60.0
+        while not (told.is_file() and told.read_text().strip().endswith("}")):
+            assert time.monotonic() < until
+            time.sleep(0.05)
+        address = json.loads(told.read_text())["address"]
+        worker = [sys.executable, "-m", "distributed.cli.dask_worker", address]
+        workers = subprocess.Popen([*worker, "--nthreads", "1", "--no-dashboard"], **silent)
+        with pytest.raises(RunError, match="cluster is lost"):
+            compute_until_killed(address, scheduler)
+    finally:
+        for process in (workers, scheduler):
+            if process is not None:
+                process.terminate()
+                process.wait(20.0)
 
 
 COMMAND = [sys.executable, "-c", "from chatter.cli import main; main()"]
