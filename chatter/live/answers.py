@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from chatter.case import Case
 from chatter.errors import InputError
+from chatter.live.followed import followed_limits
 from chatter.live.parameters import (
     Parameter,
     case_parameters,
@@ -25,7 +26,7 @@ from chatter.stability.sweep import Progress
 
 _RPM = 30.0 / math.pi
 #: stage -> speeds, depths of the net
-STAGES = {"coarse": (60, 20), "fine": (200, 50)}
+STAGES = {"coarse": (120, 24), "fine": (200, 50)}
 _POINTS_SHOWN = 700
 
 
@@ -107,11 +108,13 @@ class LiveCase:
         steps = resolution(case)
         speeds = np.linspace(*span, speed_count)
         depths = np.linspace(0.0, deepest, depth_count + 1)[1:]
-        curve = self._limits_of(model, speeds, depths, steps, progress)
+        follows = stage == "coarse" and self.method == "collocation"
+        limits_of = followed_limits if follows else self._limits_of
+        curve = limits_of(model, speeds, depths, steps, progress)
         cut = case.cut
         to_operating = np.linspace(0.0, 1.02 * max(cut.axial_depth, deepest), depth_count + 1)[1:]
         at = np.array([cut.spindle_speed])
-        operating = self._limits_of(model, at, to_operating, steps, progress)
+        operating = limits_of(model, at, to_operating, steps, progress)
         below = int((operating.crossings[0] < cut.axial_depth).sum())
         lowest = int(np.argmin(curve.critical_depth))
         return {

@@ -149,7 +149,9 @@ el("lobes").addEventListener("mousemove", event => {
   if (tip.hidden) return;
   const speed = plot.valueX(event.offsetX), depth = plot.valueY(event.offsetY), i = nearest(speed);
   const crossings = diagram.crossings_mm[i], unstable = crossings.filter(c => c < depth).length % 2 === 1;
-  const heard = diagram.chatter_frequency_Hz[i];
+  // a coarse diagram knows it at every third speed
+  const near = [0, -1, 1, -2, 2].map(k => diagram.chatter_frequency_Hz[i + k]);
+  const heard = crossings.length ? near.find(value => value !== null && value !== undefined) ?? null : null;
   tip.textContent = `${speed.toFixed(0)} rpm, ${depth.toPrecision(3)} mm: ${unstable ? "chatter" : "stable"}\n`
     + (crossings.length ? `limit ${crossings[0].toPrecision(4)} mm` : "no limit found")
     + (heard === null ? "" : `\nchatter frequency ${heard.toFixed(1)} Hz (${diagram.bifurcation[i].replace("hopf", "Hopf")})`);
@@ -180,7 +182,8 @@ el("lobes").addEventListener("click", async event => {
     title.className = told.verdict;
     const heard = told.chatter_frequency_Hz === null ? "" : ` at ${told.chatter_frequency_Hz.toFixed(1)} Hz`;
     title.textContent = `Simulated: ${told.verdict}${heard}, at ${told.spindle_speed_rpm.toFixed(0)} rpm and ${told.axial_depth_mm.toPrecision(3)} mm`;
-    text.textContent = `${told.reason}. Peak force ${told.peak_resultant_N.toPrecision(3)} N, mean power ${told.mean_power_W.toPrecision(3)} W. `
+    const reason = told.reason.charAt(0).toUpperCase() + told.reason.slice(1);
+    text.textContent = `${reason}. Peak force ${told.peak_resultant_N.toPrecision(3)} N, mean power ${told.mean_power_W.toPrecision(3)} W. `
       + `Band: range of the motion; dots: once a turn. ${told.seconds.toFixed(2)} s.`;
   } catch (error) {
     if (simulated !== mine || error.superseded) return;

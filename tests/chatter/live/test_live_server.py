@@ -241,3 +241,27 @@ def test_every_slider_of_every_example_may_be_moved(path):
         for value in (one.low, one.value, one.high):
             # in steps of the slider, numbers are whole where they must be
             case.patch({one.path: one.text(round(value) if one.whole else value)})
+
+
+def test_coarse_diagram_follows_the_boundary_that_the_fine_one_finds():
+    live = LiveCase(chatter.load(CASE), "collocation")
+    # one lobe, so that both have the same number of limits at every speed
+    values = {"lobes.speeds.from": 15000.0, "lobes.speeds.to": 18000.0, "lobes.depths.to": 3.0}
+    coarse, fine = (live.diagram(values, stage, lambda *_: None) for stage in ("coarse", "fine"))
+    speeds = coarse["spindle_speed_rpm"]
+    limits = [depths[0] for depths in fine["crossings_mm"] if depths]
+    wanted = np.interp(
+        speeds,
+        [s for s, d in zip(fine["spindle_speed_rpm"], fine["crossings_mm"], strict=True) if d],
+        limits,
+    )
+    compared = [
+        depths[0] / limit
+        for depths, limit in zip(coarse["crossings_mm"], wanted, strict=True)
+        if depths
+    ]
+    assert len(compared) > 60
+    assert max(abs(ratio - 1.0) for ratio in compared) < 0.01
+    assert coarse["operating"]["stable"] == fine["operating"]["stable"]
+    heard = [value for value in coarse["chatter_frequency_Hz"] if value is not None]
+    assert all(900.0 < value < 1100.0 for value in heard)
