@@ -50,6 +50,10 @@ def lobes(
 ) -> None:
     """Compute the stability lobe diagram of a case."""
     description = patched_case(case, assignments)
+    if live and (grid or json or out or cluster):
+        raise InputError("--live shows a page and writes no files; leave --grid, --json, --out out")
+    if not live and (port or no_browser):
+        raise InputError("--port and --no-browser belong to --live; give it with them")
     if live:
         _serve(description, method, port, no_browser)
         return

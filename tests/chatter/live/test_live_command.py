@@ -12,6 +12,9 @@ import urllib.request
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
+
+from chatter.cli import app
 
 CASE = Path(__file__).resolve().parents[3] / "examples" / "two-degrees-of-freedom" / "case.toml"
 COMMAND = [sys.executable, "-c", "from chatter.cli import main; main()", "lobes", str(CASE)]
@@ -40,6 +43,13 @@ def test_serves_until_ctrl_c():
     assert "Traceback" not in errors
     with pytest.raises(urllib.error.URLError):
         urllib.request.urlopen(url, timeout=5)
+
+
+@pytest.mark.parametrize("options", [["--live", "--grid"], ["--live", "--json"], ["--port", "1"]])
+def test_options_that_do_not_go_together_are_told(options):
+    found = CliRunner().invoke(app, ["lobes", str(CASE), *options])
+    assert found.exit_code == 2
+    assert "--live" in found.output
 
 
 def test_the_page_is_imported_only_when_asked_for():
