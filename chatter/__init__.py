@@ -27,6 +27,9 @@ findings           table of published against obtained
 modal_test         `modes`: measured FRFs or hammer records to modal parameters
 result_files       files that results write
 example_cases      `examples`: list, copy and run the shipped examples
+live               `lobes --live`: a page in the browser that follows sliders
+cluster            where studies are computed: here, or on a Dask cluster
+grid_blocks        the grid of a diagram on a cluster
 plots              pictures
 cli                the command line
 ================== ===================================================================

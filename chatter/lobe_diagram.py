@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.case import Case
+from chatter.cluster import Computing
+from chatter.grid_blocks import radius_in_blocks
 from chatter.methods import (
     GRIDS,
     LimitMethod,
@@ -213,6 +215,8 @@ def lobes(
     method: str | None = None,
     grid: bool = False,
     progress: Progress = no_progress,
+    cluster: str | Computing | None = None,
+    folder: str | Path | None = None,
 ) -> LobeDiagram:
     """Compute the stability lobe diagram of a case.
 
@@ -225,6 +229,10 @@ def lobes(
         Also the spectral radius on the whole grid of speeds and depths.
     progress : callable, optional
         Called with (done, total) speeds.
+    cluster : str or Computing, optional
+        Where the grid is computed, as for `chatter.cluster.computing_on`; here by default.
+    folder : path, optional
+        On a cluster, keeps finished blocks of the grid in points.jsonl there.
 
     Returns
     -------
@@ -242,6 +250,12 @@ def lobes(
     deepest = deepest_depth(case, zero_order)
     depths = axial_depths(case, deepest)
     limits = limits_of(model, speeds, depths, resolution(case), progress)
+    computed = None
+    if grid and cluster is not None:
+        radius = radius_in_blocks(case, speeds, depths, name, cluster, folder, progress)
+        computed = StabilityGrid(speeds, depths, radius)
+    elif grid:
+        computed = stability_grid(case, model, speeds, depths, name, progress)
     return LobeDiagram(
         case=case,
         method=name,
@@ -251,7 +265,7 @@ def lobes(
         pockets=find_pockets(speeds, limits.critical_depth, deepest, removal_area(case)),
         operating=operating_limit(case, model, limits_of, deepest),
         natural_frequencies=tuple(mode.frequency for mode in model.structure.modes),
-        grid=stability_grid(case, model, speeds, depths, name, progress) if grid else None,
+        grid=computed,
         notes=model.notes,
     )
 

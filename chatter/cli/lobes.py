@@ -6,10 +6,12 @@ from typing import Annotated
 
 import typer
 
+from chatter.case import Case
 from chatter.cli.errors import reports_errors
 from chatter.cli.options import (
     Assignments,
     CaseFile,
+    Cluster,
     Json,
     Method,
     OutputFolder,
@@ -24,6 +26,7 @@ from chatter.cli.report import (
     print_written,
     progress_bar,
 )
+from chatter.errors import InputError
 
 
 @reports_errors
@@ -34,23 +37,64 @@ def lobes(
     grid: Annotated[
         bool, typer.Option("--grid", help="Also write the spectral radius on the whole grid.")
     ] = False,
+    cluster: Cluster = None,
+    live: Annotated[
+        bool, typer.Option("--live", help="Show a page in the browser that follows sliders.")
+    ] = False,
+    port: Annotated[int, typer.Option("--port", help="Of --live; by default a free one.")] = 0,
+    no_browser: Annotated[
+        bool, typer.Option("--no-browser", help="With --live, open no browser.")
+    ] = False,
     out: OutputFolder = None,
     json: Json = False,
 ) -> None:
     """Compute the stability lobe diagram of a case."""
     description = patched_case(case, assignments)
+    if live and (grid or json or out or cluster):
+        raise InputError("--live shows a page and writes no files; leave --grid, --json, --out out")
+    if not live and (port or no_browser):
+        raise InputError("--port and --no-browser belong to --live; give it with them")
+    if live:
+        _serve(description, method, port, no_browser)
+        return
+    if cluster is not None and not grid:
+        raise InputError("--cluster computes the grid of a diagram; give --grid with it")
     from chatter.lobe_diagram import lobes as run_lobes
 
     announce_compilation()
+    folder = output_folder(out, case.stem)
     with progress_bar("stability limits") as progress:
-        diagram = run_lobes(description, method, grid, progress)
-    written = diagram.save(output_folder(out, case.stem))
+        diagram = run_lobes(description, method, grid, progress, cluster, folder)
+    written = diagram.save(folder)
     if json:
         print_json(diagram.summary())
     else:
         _print_pockets(diagram.summary())
     print_notes(diagram.notes)
     print_written(written)
+
+
+def _serve(description: Case, method: str | None, port: int, no_browser: bool) -> None:
+    """Serve the page until Ctrl-C."""
+    from chatter.live.answers import LiveCase
+    from chatter.live.server import LiveServer
+    from chatter.stability.sweep import no_progress
+
+    announce_compilation()
+    page = LiveCase(description, method)
+    page.diagram({}, "coarse", no_progress)
+    server = LiveServer(page, port)
+    typer.echo(f"{server.url}  (Ctrl-C ends)")
+    if not no_browser:
+        import webbrowser
+
+        webbrowser.open(server.url)
+    try:
+        server.serve_forever(poll_interval=0.2)
+    except KeyboardInterrupt:
+        typer.echo("ended")
+    finally:
+        server.end()
 
 
 def _print_pockets(summary: dict) -> None:

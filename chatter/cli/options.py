@@ -26,6 +26,14 @@ OutputFolder = Annotated[
     Path | None, typer.Option("--out", metavar="DIR", help="Folder for what is written.")
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")]
+Cluster = Annotated[
+    str | None,
+    typer.Option(
+        "--cluster",
+        metavar="ADDRESS",
+        help='Dask cluster to compute on: "local" or tcp://host:port of a scheduler.',
+    ),
+]
 Method = Annotated[
     str | None,
     typer.Option(

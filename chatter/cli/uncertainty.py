@@ -10,6 +10,7 @@ from chatter.cli.errors import reports_errors
 from chatter.cli.options import (
     Assignments,
     CaseFile,
+    Cluster,
     Json,
     Method,
     OutputFolder,
@@ -33,6 +34,7 @@ def uncertainty(
     speeds: Annotated[int, typer.Option("--speeds", help="Speeds of the band.")] = 31,
     assignments: Assignments = None,
     method: Method = None,
+    cluster: Cluster = None,
     out: OutputFolder = None,
     json: Json = False,
 ) -> None:
@@ -52,6 +54,7 @@ def uncertainty(
             folder=folder,
             progress=progress,
             resumed=_say_resumed,
+            cluster=cluster,
         )
     written = found.save(folder)
     if json:

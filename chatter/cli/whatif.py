@@ -9,7 +9,7 @@ import typer
 
 from chatter.case import parse_assignments
 from chatter.cli.errors import reports_errors
-from chatter.cli.options import Assignments, Json, Method, OutputFolder, output_folder
+from chatter.cli.options import Assignments, Cluster, Json, Method, OutputFolder, output_folder
 from chatter.cli.report import (
     MESSAGES,
     announce_compilation,
@@ -59,6 +59,7 @@ def whatif(
     ] = None,
     assignments: Assignments = None,
     method: Method = None,
+    cluster: Cluster = None,
     out: OutputFolder = None,
     json: Json = False,
 ) -> None:
@@ -96,6 +97,7 @@ def whatif(
                 folder=folder,
                 progress=progress,
                 resumed=_say_resumed,
+                cluster=cluster,
             ),
         )
     _tell(found, folder, json)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.case import Case
+from chatter.cluster import Computing, computing_on
 from chatter.errors import InputError
 from chatter.monte_carlo.confidence import wilson_interval
 from chatter.monte_carlo.parameters import UncertainParameter, correlation_of, parameters_of
@@ -213,7 +215,9 @@ def _quantiles(limits: Array, levels: Sequence[float]) -> Array:
     low, high = ordered[below], ordered[above]
     between = np.full(low.shape, np.inf)
     known = np.isfinite(high)
-    between[known] = (low + share * np.where(known, high - low, 0.0))[known]
+    between[known] = (low + share * np.subtract(high, low, out=np.zeros_like(low), where=known))[
+        known
+    ]
     return np.where(share == 0.0, low, between)
 
 
@@ -227,6 +231,7 @@ def uncertainty(
     folder: str | Path | None = None,
     progress: Progress = no_progress,
     resumed: Callable[[int, int], None] | None = None,
+    cluster: str | Computing | None = None,
 ) -> Uncertainty:
     """Propagate the standard deviations of a case, and of its machine, to its limits.
 
@@ -247,6 +252,8 @@ def uncertainty(
         Called with (done, total) samples.
     resumed : callable, optional
         Called once with (finished before, total) samples.
+    cluster : str or Computing, optional
+        Where samples are computed, as for `chatter.cluster.computing_on`; here by default.
 
     Returns
     -------
@@ -264,7 +271,7 @@ def uncertainty(
     correlation = correlation_of(case, parameters)
     net = shared_net(case, speeds)
     values = samples(parameters, count, seed, correlation)
-    found = _all_limits(case, parameters, values, net, method, folder, progress, resumed)
+    found = _all_limits(case, parameters, values, net, method, folder, progress, resumed, cluster)
     return Uncertainty(
         case=case,
         parameters=parameters,
@@ -287,6 +294,7 @@ def _all_limits(
     folder: str | Path | None,
     progress: Progress,
     resumed: Callable[[int, int], None] | None,
+    cluster: str | Computing | None,
 ) -> list[SampleLimits]:
     """Limits of every sample, those finished before read from the folder."""
     store = FinishedPoints(folder)
@@ -295,22 +303,32 @@ def _all_limits(
     before = sum(key in store for key in keys)
     if before and resumed is not None:
         resumed(before, len(keys))
+    missing = [place for place, key in enumerate(keys) if key not in store]
+    paths = tuple(one.path for one in parameters)
+    limits_of_sample = partial(_one_sample, case, paths, net, method)
+    progress(before, len(keys))
     try:
-        for done, (key, row) in enumerate(zip(keys, values, strict=True)):
-            progress(done, len(keys))
-            if key in store:
-                continue
-            patch = {one.path: float(value) for one, value in zip(parameters, row, strict=True)}
-            store.add(key, _one_sample(case, patch, net, method, done + 1))
+        with computing_on(cluster if missing else None) as computing:
+            wanted = [(place + 1, values[place].tolist()) for place in missing]
+            found = computing.results(limits_of_sample, wanted)
+            for done, (place, record) in enumerate(found, start=before + 1):
+                store.add(keys[missing[place]], record)
+                progress(done, len(keys))
     except KeyboardInterrupt:
         raise store.interrupted(keys, "samples") from None
-    progress(len(keys), len(keys))
     return [SampleLimits.from_record(store[key]) for key in keys]
 
 
 def _one_sample(
-    case: Case, patch: dict[str, float], net: Net, method: str | None, number: int
+    case: Case,
+    paths: tuple[str, ...],
+    net: Net,
+    method: str | None,
+    sample: tuple[int, list[float]],
 ) -> dict:
+    """Record of a sample, given by its number and its values."""
+    number, values = sample
+    patch = dict(zip(paths, values, strict=True))
     try:
         return sample_limits(patched(case, patch), net, method).record()
     except InputError as error:

@@ -160,8 +160,7 @@ def _heat_map(study: WhatIf) -> Figure:
     figure = style.new_figure(min(12.0, 4.0 + 0.62 * shape[1] + 1.2), 2.6 + 0.5 * shape[0])
     axes = figure.subplots()
     axes.set_facecolor("#FFFFFF")
-    colours = mpl.colormaps["viridis"].copy()
-    colours.set_bad("#FFFFFF")
+    colours = mpl.colormaps["viridis"].with_extremes(bad="#FFFFFF")
     image = axes.imshow(
         np.ma.masked_invalid(values), origin="lower", aspect="auto", cmap=colours,
         interpolation="nearest",

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from typing import TypeVar
 
 import numpy as np
@@ -23,8 +25,24 @@ def no_progress(done: int, total: int) -> None:
     """Report nothing."""
 
 
+#: of a thread that other tasks run beside
+_alone = threading.local()
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Let sweeps of this thread use one thread: what surrounds it keeps the others busy."""
+    _alone.wanted = True
+    try:
+        yield
+    finally:
+        _alone.wanted = False
+
+
 def worker_count() -> int:
     """Threads to use: the processors this process may run on."""
+    if getattr(_alone, "wanted", False):
+        return 1
     if hasattr(os, "sched_getaffinity"):
         return max(1, len(os.sched_getaffinity(0)))
     return max(1, os.cpu_count() or 1)

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from chatter.cluster import Computing, computing_on
 from chatter.errors import InputError, RunError
 from chatter.stability.sweep import Progress, no_progress
 from chatter.what_if.design import DesignPoint
 from chatter.what_if.finished import FinishedPoints, key_of
-from chatter.what_if.measures import Curve, Measure, Outcome
+from chatter.what_if.measures import Curve, Measure, Outcome, measure_of
 from chatter.what_if.subject import fingerprint, patched
 
 if TYPE_CHECKING:
@@ -34,6 +36,7 @@ def outcomes_of(
     folder: str | Path | None = None,
     progress: Progress = no_progress,
     resumed: Resumed = no_report,
+    cluster: str | Computing | None = None,
 ) -> list[Outcome]:
     """Outcome of every point; those that the folder holds already are not computed again.
 
@@ -49,6 +52,8 @@ def outcomes_of(
     folder : path, optional
         Where finished points are kept.
     progress, resumed : callable, optional
+    cluster : str or Computing, optional
+        Where points are computed, as for `chatter.cluster.computing_on`.
 
     Raises
     ------
@@ -64,36 +69,43 @@ def outcomes_of(
     before = sum(key in store for key in keys)
     if before:
         resumed(before, len(points))
-    errors: list[InputError | RunError] = []
+    # two points of the same input are computed once
+    missing = list(
+        {key: each for key, each in zip(keys, subjects, strict=True) if key not in store}.items()
+    )
+    errors: dict[str, tuple[str, ...]] = {}
+    done = len(points) - len(missing)
+    progress(done, len(points))
     try:
-        for done, (key, each) in enumerate(zip(keys, subjects, strict=True)):
-            progress(done, len(points))
-            if key in store:
-                continue
-            outcome = _outcome(measure, each, method, only, errors)
-            # what failed is not kept on disk: it is tried again
-            keep = store.remember if outcome.failure else store.add
-            keep(key, asdict(outcome))
+        with computing_on(cluster if missing else None) as computing:
+            evaluate = partial(_outcome, measure.name, method, only)
+            wanted = [each for _, each in missing]
+            for place, (outcome, wrong) in computing.results(evaluate, wanted):
+                key = missing[place][0]
+                # what failed is not kept on disk: it is tried again
+                keep = store.remember if outcome["failure"] else store.add
+                keep(key, outcome)
+                errors.update({key: wrong} if wrong else {})
+                done += 1
+                progress(done, len(points))
     except KeyboardInterrupt:
         raise store.interrupted(keys, "points") from None
-    progress(len(points), len(points))
-    if errors and all(store[key]["failure"] for key in keys):
-        raise errors[0]
+    if all(store[key]["failure"] for key in keys):
+        first = next(key for key in keys if store[key]["failure"])
+        raise InputError(errors[first]) if errors.get(first) else RunError(store[first]["failure"])
     return [_read(store[key]) for key in keys]
 
 
 def _outcome(
-    measure: Measure,
-    subject: Subject,
-    method: str | None,
-    only: tuple[str, ...],
-    errors: list[InputError | RunError],
-) -> Outcome:
+    measure: str, method: str | None, only: tuple[str, ...], subject: Subject
+) -> tuple[dict, tuple[str, ...]]:
+    """Record of a point, and what is wrong with its input."""
     try:
-        return measure.evaluate(subject, method, only)
-    except (InputError, RunError) as error:
-        errors.append(error)
-        return Outcome(failure=str(error))
+        return asdict(measure_of(measure, subject).evaluate(subject, method, only)), ()
+    except InputError as error:
+        return asdict(Outcome(failure=str(error))), error.messages
+    except RunError as error:
+        return asdict(Outcome(failure=str(error))), ()
 
 
 def _read(record: dict) -> Outcome:

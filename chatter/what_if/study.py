@@ -9,6 +9,7 @@ from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from chatter.cluster import Computing
 from chatter.errors import InputError
 from chatter.result_files import as_json, write_results
 from chatter.stability.sweep import Progress, no_progress
@@ -140,6 +141,7 @@ def whatif(
     folder: str | Path | None = None,
     progress: Progress = no_progress,
     resumed: Resumed = no_report,
+    cluster: str | Computing | None = None,
 ) -> WhatIf:
     """Ask what would change if values of a case or machine were others.
 
@@ -169,6 +171,8 @@ def whatif(
         Called with (done, total) points.
     resumed : callable, optional
         Called once with (finished before, total) points.
+    cluster : str or Computing, optional
+        Where points are computed, as for `chatter.cluster.computing_on`; here by default.
 
     Returns
     -------
@@ -189,7 +193,9 @@ def whatif(
         known = ", ".join(measure.quantities)
         raise InputError(f'--quantity "{shown}" is not known; {measure.name} has {known}')
     points = points_of(variations, layout)
-    outcomes = outcomes_of(subject, points, measure, method, tuple(only), folder, progress, resumed)
+    outcomes = outcomes_of(
+        subject, points, measure, method, tuple(only), folder, progress, resumed, cluster
+    )
     return WhatIf(subject, variations, layout, measure, shown, points, tuple(outcomes))
 
 

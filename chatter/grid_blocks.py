@@ -1,0 +1,86 @@
+"""The grid of a stability diagram in blocks of speeds, here or on a cluster, kept as they end."""
+
+from __future__ import annotations
+
+from functools import lru_cache, partial
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.case import Case
+from chatter.cluster import Computing, computing_on
+from chatter.methods import GRIDS, radius_by_collocation, resolution
+from chatter.model import MillingModel, milling_model
+from chatter.stability.sweep import Progress, no_progress
+from chatter.what_if.finished import FinishedPoints, key_of
+from chatter.what_if.subject import fingerprint
+
+_SPEEDS_A_BLOCK = 4
+
+
+def radius_in_blocks(
+    case: Case,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    method: str,
+    cluster: str | Computing | None = None,
+    folder: str | Path | None = None,
+    progress: Progress = no_progress,
+) -> NDArray[np.float64]:
+    """Spectral radius (depths, speeds) on every pair of speed and depth.
+
+    Parameters
+    ----------
+    case : Case
+    speeds, depths : array of float
+        rad/s, m.
+    method : str
+        Key of `chatter.methods.METHODS`.
+    cluster : str or Computing, optional
+        As for `chatter.cluster.computing_on`.
+    folder : path, optional
+        Keeps finished blocks in points.jsonl there, and reuses those of the same input.
+    progress : callable
+        Called with (done, total) blocks.
+
+    Raises
+    ------
+    RunError
+        If it is interrupted; finished blocks are in the folder.
+    """
+    store = FinishedPoints(folder)
+    blocks = [
+        np.arange(first, min(first + _SPEEDS_A_BLOCK, len(speeds)))
+        for first in range(0, len(speeds), _SPEEDS_A_BLOCK)
+    ]
+    base = key_of("grid", fingerprint(case), method, repr(depths.tolist()))
+    keys = [key_of(base, repr(speeds[block].tolist())) for block in blocks]
+    missing = [place for place, key in enumerate(keys) if key not in store]
+    radius_at = partial(_radius_of_speeds, case, depths, method)
+    done = len(keys) - len(missing)
+    try:
+        with computing_on(cluster) as computing:
+            wanted = [speeds[blocks[place]] for place in missing]
+            for place, found in computing.results(radius_at, wanted):
+                store.add(keys[missing[place]], found)
+                done += 1
+                progress(done, len(keys))
+    except KeyboardInterrupt:
+        raise store.interrupted(keys, "blocks of the grid") from None
+    return np.concatenate([np.array(store[key], dtype=np.float64) for key in keys], axis=1)
+
+
+@lru_cache(maxsize=2)
+def _model_of(case: Case) -> MillingModel:
+    return milling_model(case)
+
+
+def _radius_of_speeds(
+    case: Case, depths: NDArray[np.float64], method: str, speeds: NDArray[np.float64]
+) -> list[list[float]]:
+    """Spectral radius of a block, as JSON knows it."""
+    speed, depth = (part.ravel() for part in np.meshgrid(speeds, depths))
+    radius_at = GRIDS.get(method, radius_by_collocation)
+    radius = radius_at(_model_of(case), speed, depth, resolution(case), no_progress)
+    return radius.reshape(len(depths), len(speeds)).tolist()
