@@ -63,6 +63,8 @@ def print_checks(checks: list[dict[str, str]]) -> None:
 
 
 def _print(summary: dict) -> None:
+    from chatter.explain.separation import told_apart
+
     typer.echo(f"verdict: {summary['verdict']}")
     print_checks(summary["checks"])
     for effect in summary["effects"]:
@@ -79,6 +81,8 @@ def _print(summary: dict) -> None:
         print_table(title, ["parameter", "value", "unit", "95 % interval"], rows)
         if effect["confounded_with"]:
             typer.echo(f"cannot be told from: {', '.join(effect['confounded_with'])}")
+        for name, trial in effect["told_apart_by"].items():
+            typer.echo(f"  {told_apart(name, trial)}")
     error = summary["error"]
     rows = [[key, f"{value:.4g}"] for key, value in error.items() if isinstance(value, float)]
     print_table("error, rms over signal", ["", ""], rows)

@@ -16,6 +16,7 @@ fitting         least squares with priors
 noise           noise floor of signals
 problem         a measurement as a least-squares problem
 search          candidates fitted on some runs, judged on others
+separation      measurements that would tell apart what fits alike
 signature       where the residual lives
 explanation     verdict, effects, errors; files
 report          report.html

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,6 +21,7 @@ from chatter.explain.kinds import kind_of
 from chatter.explain.measurement import Measurement
 from chatter.explain.problem import NUMERICS
 from chatter.explain.search import Candidate, Search, Stage, search
+from chatter.explain.separation import separation
 from chatter.explain.signals import SignalFinding, checked
 from chatter.explain.signature import Signatures, signatures_of
 from chatter.explain.unusable import Unusable
@@ -158,11 +159,27 @@ class Explanation:
                 "name": stage.best.effect.name,
                 "parameters": parameters_of(self.found.final, stage.best.effect),
                 "probability": round(probability(stage.tried, stage.best), 4),
-                "confounded_with": _confounded(stage),
+                "confounded_with": [one.effect.name for one in _confounded(stage)],
+                "told_apart_by": self._told_apart(stage),
                 "says": stage.best.effect.says,
             }
             for stage in self.found.accepted
         ]
+
+    def _told_apart(self, stage: Stage) -> dict[str, Any]:
+        """Confounded effect -> measurement that would tell it from the one named, if any would."""
+        others = tuple(e for e in self.found.problem.effects if e is not stage.best.effect)
+        problem = self.found.problem
+        cases = {
+            one.effect.name: replace(problem, effects=(*others, one.effect)).case(one.fit.by_name)
+            for one in (stage.best, *_confounded(stage))
+        }
+        named = cases.pop(stage.best.effect.name)
+        measurement, kind = self.found.measurement, self.found.kind
+        return {
+            name: separation(measurement, kind, problem.noise, named, case)
+            for name, case in cases.items()
+        }
 
     def _candidates(self) -> list[dict[str, Any]]:
         stage = self.found.first
@@ -247,12 +264,12 @@ def probability(tried: tuple[Candidate, ...], of: Candidate) -> float:
     return weights[of.effect.name] / sum(weights.values())
 
 
-def _confounded(stage: Stage) -> list[str]:
+def _confounded(stage: Stage) -> list[Candidate]:
     """Candidates no more intricate than the best that gain nearly as much."""
     gain = stage.unseen - stage.best.unseen
     intricate = len(stage.best.fit.parameters)
     return [
-        other.effect.name
+        other
         for other in stage.tried[1:]
         if stage.unseen - other.unseen > (1.0 - _ALIKE) * gain
         and len(other.fit.parameters) <= intricate

@@ -15,6 +15,7 @@ from chatter.explain.report.page import (
     table_of,
 )
 from chatter.explain.residual.finding import Finding
+from chatter.explain.separation import told_apart
 from chatter.explain.signature import Signature
 
 if TYPE_CHECKING:
@@ -156,6 +157,10 @@ def _effects(explanation: Explanation, summary: dict[str, Any], _: Figure) -> st
             paragraph(
                 f"Probability {effect['probability']:.3g} among those tried"
                 + (f"; the data cannot tell it from {alike}." if alike else ".")
+            ),
+            *(
+                paragraph(html.escape(told_apart(name, trial)).capitalize() + ".")
+                for name, trial in effect["told_apart_by"].items()
             ),
             table_of(["parameter", "value", "95 % interval"], rows),
         ]
