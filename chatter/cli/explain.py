@@ -83,6 +83,9 @@ def _print(summary: dict) -> None:
             typer.echo(f"cannot be told from: {', '.join(effect['confounded_with'])}")
         for name, trial in effect["told_apart_by"].items():
             typer.echo(f"  {told_apart(name, trial)}")
+    helping = [one["name"] for one in summary.get("partial", ())]
+    if helping:
+        typer.echo(f"helps, and is not enough: {', '.join(helping)}")
     error = summary["error"]
     rows = [[key, f"{value:.4g}"] for key, value in error.items() if isinstance(value, float)]
     print_table("error, rms over signal", ["", ""], rows)

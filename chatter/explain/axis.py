@@ -34,7 +34,9 @@ _BESIDE, _DEGREE = 40, 3
 #: standard deviations of the noise from which the motor runs ahead
 _AHEAD = 12.0
 #: samples kept on either side for which a doubt holds, and at the ends, and the least weight
-_NEARBY, _ENDS, _LEAST_CERTAIN = 1, 3, 0.02
+_NEARBY, _ENDS, _LEAST_CERTAIN = 1, 8, 0.02
+#: share of a dry friction that is in doubt while an axis creeps
+_CREEP_DOUBT = 0.1
 #: share of the force to which it can be followed along a motion that was measured
 _FOLLOWED = 0.01
 #: signals at the samples kept
@@ -215,7 +217,8 @@ def _certainty(prepared: Mapping[str, NDArray], rubbing: AxisForce) -> NDArray[n
     """Weight of the samples kept: 1, or less where the force hangs on how the motion is smoothed.
 
     At a reversal a dry friction jumps within less than the motion is resolved to. How far off its
-    force may be is seen from a motion smoothed less.
+    force may be is seen from a motion smoothed less. Of an axis that creeps, the speed says little
+    about a friction without presliding.
     """
     step, begun = float(prepared["motion step"][0]), float(prepared["motion begun"][0])
     forces = [
@@ -223,6 +226,11 @@ def _certainty(prepared: Mapping[str, NDArray], rubbing: AxisForce) -> NDArray[n
         for cut_off in (_MOTION_CUT_OFF, _FINER_CUT_OFF)
     ]
     doubt = scipy.ndimage.maximum_filter1d(np.abs(forces[1] - forces[0]), 2 * _NEARBY + 1)
+    if rubbing.presliding_stiffness is None:
+        creeps = np.abs(prepared["motion velocity"]) < _NEAR_REST
+        doubt += (
+            _CREEP_DOUBT * rubbing.coulomb * np.clip(_kept(creeps.astype(np.float64)), 0.0, 1.0)
+        )
     certainty = 1.0 / np.hypot(1.0, doubt / max(float(prepared["noise"][0]), 1e-12))
     certainty[:_ENDS] = certainty[-_ENDS:] = _LEAST_CERTAIN
     return np.maximum(certainty, _LEAST_CERTAIN) * prepared["usable when kept"]

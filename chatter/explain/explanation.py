@@ -168,13 +168,17 @@ class Explanation:
 
     def _told_apart(self, stage: Stage) -> dict[str, Any]:
         """Confounded effect -> measurement that would tell it from the one named, if any would."""
-        others = tuple(e for e in self.found.problem.effects if e is not stage.best.effect)
         problem = self.found.problem
-        cases = {
-            one.effect.name: replace(problem, effects=(*others, one.effect)).case(one.fit.by_name)
-            for one in (stage.best, *_confounded(stage))
-        }
-        named = cases.pop(stage.best.effect.name)
+        others = tuple(e for e in problem.effects if e is not stage.best.effect)
+
+        def case_with(one: Candidate) -> Case:
+            trial = replace(problem, effects=(*others, one.effect))
+            # what was tried may have been beside effects that were dropped since
+            found = {**self.found.final.by_name, **one.fit.by_name}
+            return trial.case({p.name: found.get(p.name, p.start) for p in trial.parameters()})
+
+        cases = {one.effect.name: case_with(one) for one in _confounded(stage)}
+        named = case_with(stage.best)
         measurement, kind = self.found.measurement, self.found.kind
         return {
             name: separation(measurement, kind, problem.noise, named, case)
