@@ -70,13 +70,17 @@ def _draw_limits(axes: Axes, diagram: PathLimits) -> None:
         edge = [d[place] * 1e3 if len(d) > place else math.nan for d in diagram.crossings]
         axes.plot(x, edge, ".", markersize=3.5, color=style.BLUE, zorder=1.5)
     first = np.where(np.isfinite(diagram.critical_depth), diagram.critical_depth * 1e3, math.nan)
+    # where stretches come or go the limit jumps: no line across
+    jumps = np.flatnonzero(np.diff([len(found) for found in diagram.crossings])) + 1
+    across, first = np.insert(x, jumps, x[jumps]), np.insert(first, jumps, math.nan)
+    kinds = np.insert(np.array(diagram.bifurcation, dtype="U8"), jumps, "none")
     label = f"limit, {diagram.method.replace('-', ' ')}"
-    axes.plot(x, first, color=style.BLUE, linewidth=1.6, label=label)
-    flip = np.array(diagram.bifurcation) == "flip"
+    axes.plot(across, first, ".-", color=style.BLUE, linewidth=1.6, markersize=3.5, label=label)
+    flip = kinds == "flip"
     if flip.any():
         flips = np.where(flip, first, math.nan)
         axes.plot(
-            x, flips, ".-", color=style.RED, linewidth=2.0, markersize=4, label="limit by flip"
+            across, flips, ".-", color=style.RED, linewidth=2.0, markersize=4, label="limit by flip"
         )
     _mark_case(axes, diagram.standing, diagram.case.cut.axial_depth * 1e3, (x[0], x[-1]))
     _name_sides(axes)
