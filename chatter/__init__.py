@@ -16,6 +16,7 @@ model              compile a case to flat arrays
 stability          kernels: one module a method, one sweep
 methods            the methods behind one call
 lobe_diagram       `lobes`: limits over speed, pockets, files
+path_diagram       `lobes --x`, `--y`: limits and maps over any path of the case
 stability_check    `check`: verdict on the operating point
 simulation         `simulate`: the cut in the time domain
 what_if            `whatif`: what would change if values were others
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
     from chatter.machine_file import load_machine as load_machine
     from chatter.modal_test import modes as modes
     from chatter.monte_carlo.study import uncertainty as uncertainty
+    from chatter.path_diagram import lobes_over as lobes_over
     from chatter.simulation.bifurcation import bifurcation as bifurcation
     from chatter.simulation.simulate import simulate as simulate
     from chatter.stability_check import check as check
@@ -72,6 +74,7 @@ _PUBLIC = {
     "load": "chatter.case",
     "load_machine": "chatter.machine_file",
     "lobes": "chatter.lobe_diagram",
+    "lobes_over": "chatter.path_diagram",
     "modes": "chatter.modal_test",
     "move": "chatter.virtual_machine.from_file",
     "schema": "chatter.case",

@@ -11,6 +11,11 @@ from chatter.case import Case
 from chatter.stability.zero_order import ZeroOrderLimit
 
 _SPEED_COUNT = 400
+#: depths looked at for the limit at one speed, and the share of the lowest zeroth-order limit
+#: between them
+_DEPTHS_AT_ONE_SPEED = 200
+_SHARE_OF_LOWEST_LIMIT = 0.25
+_MOST_DEPTHS = 1000
 _DEPTH_COUNT = 100
 #: depths looked at, in units of the lowest zeroth-order limit
 _DEEPEST_IN_LOWEST_LIMITS = 6.0
@@ -45,4 +50,12 @@ def axial_depths(case: Case, deepest: float) -> NDArray[np.float64]:
     """Depths of the net and the grid, m, ascending, > 0."""
     wanted = case.lobes.depths if case.lobes else None
     count = wanted.count if wanted is not None else _DEPTH_COUNT
+    return np.linspace(0.0, deepest, count + 1)[1:]
+
+
+def depths_at_one_speed(case: Case, zero_order: ZeroOrderLimit) -> NDArray[np.float64]:
+    """Depths of the net for the limit at the operating speed, m, beyond the operating depth."""
+    deepest = max(deepest_depth(case, zero_order), 1.02 * case.cut.axial_depth)
+    spacing = min(deepest / _DEPTHS_AT_ONE_SPEED, _SHARE_OF_LOWEST_LIMIT * zero_order.lowest_depth)
+    count = min(_MOST_DEPTHS, math.ceil(deepest / spacing))
     return np.linspace(0.0, deepest, count + 1)[1:]

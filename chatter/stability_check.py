@@ -18,16 +18,12 @@ from chatter.methods import (
 )
 from chatter.model import milling_model
 from chatter.result_files import as_json, finite_or_none, write_results
-from chatter.search_range import deepest_depth
+from chatter.search_range import depths_at_one_speed
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.multiplier import Multiplier, bifurcation_kind
 from chatter.stability.sweep import no_progress
 
 _RPM = 30.0 / math.pi
-#: depths looked at for the limit, and the share of the lowest zeroth-order limit between them
-_DEPTH_COUNT = 200
-_SHARE_OF_LOWEST_LIMIT = 0.25
-_MOST_DEPTHS = 1000
 
 
 @dataclass(frozen=True)
@@ -131,24 +127,20 @@ def check(case: Case, method: str | None = None) -> StabilityCheck:
     """
     name, limits_of = chosen_method(case, method)
     model = milling_model(case)
-    speed, depth = case.cut.spindle_speed, case.cut.axial_depth
     point = operating_multiplier(model, name, resolution(case))
     heard = np.nan
     if abs(point.value) >= 1.0:
         heard = operating_frequency(model)
-    speeds = np.array([speed])
+    speeds = np.array([case.cut.spindle_speed])
     zero_order = zero_order_of(model, speeds)
-    deepest = max(deepest_depth(case, zero_order), 1.02 * depth)
-    spacing = min(deepest / _DEPTH_COUNT, _SHARE_OF_LOWEST_LIMIT * zero_order.lowest_depth)
-    count = min(_MOST_DEPTHS, math.ceil(deepest / spacing))
-    depths = np.linspace(0.0, deepest, count + 1)[1:]
+    depths = depths_at_one_speed(case, zero_order)
     return StabilityCheck(
         case=case,
         method=name,
         multiplier=point,
         chatter_frequency=heard,
         limit=limits_of(model, speeds, depths, resolution(case), no_progress),
-        searched_to=deepest,
+        searched_to=float(depths[-1]),
         zero_order_depth=float(zero_order.critical_depth[0]),
         notes=model.notes,
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -21,6 +22,7 @@ from chatter.cli.options import (
 from chatter.cli.report import (
     announce_compilation,
     print_json,
+    print_line,
     print_notes,
     print_table,
     print_written,
@@ -34,6 +36,22 @@ def lobes(
     case: CaseFile,
     assignments: Assignments = None,
     method: Method = None,
+    x: Annotated[
+        str | None,
+        typer.Option(
+            "--x",
+            metavar="PATH=FROM..TO[:COUNT]",
+            help='Limit depth over any value, such as cut.radial_depth="0.5 mm..10 mm:40".',
+        ),
+    ] = None,
+    y: Annotated[
+        str | None,
+        typer.Option(
+            "--y",
+            metavar="PATH=FROM..TO[:COUNT]",
+            help="Map of the spectral radius over this and --x, else over spindle speed.",
+        ),
+    ] = None,
     grid: Annotated[
         bool, typer.Option("--grid", help="Also write the spectral radius on the whole grid.")
     ] = False,
@@ -50,6 +68,13 @@ def lobes(
 ) -> None:
     """Compute the stability lobe diagram of a case."""
     description = patched_case(case, assignments)
+    if x or y:
+        if live or grid or cluster or port or no_browser:
+            raise InputError(
+                "--x and --y draw a diagram of their own; leave --live, --grid, --cluster out"
+            )
+        _over_paths(description, x, y, method, output_folder(out, case.stem), json)
+        return
     if live and (grid or json or out or cluster):
         raise InputError("--live shows a page and writes no files; leave --grid, --json, --out out")
     if not live and (port or no_browser):
@@ -70,6 +95,25 @@ def lobes(
         print_json(diagram.summary())
     else:
         _print_pockets(diagram.summary())
+    print_notes(diagram.notes)
+    print_written(written)
+
+
+def _over_paths(
+    case: Case, x: str | None, y: str | None, method: str | None, folder: Path, json: bool
+) -> None:
+    """Compute, write and tell a diagram over other paths than the spindle speed."""
+    from chatter.path_diagram import lobes_over
+
+    announce_compilation()
+    with progress_bar("stability") as progress:
+        diagram = lobes_over(case, x, y, method, progress)
+    written = diagram.save(folder)
+    if json:
+        print_json(diagram.summary())
+    else:
+        for line in diagram.told():
+            print_line(line)
     print_notes(diagram.notes)
     print_written(written)
 

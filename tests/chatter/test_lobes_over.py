@@ -1,0 +1,244 @@
+"""Limits and maps over any path of a case: against checks and limits over speed, and refusals."""
+
+import csv
+import json
+import math
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import chatter
+from chatter import Case, InputError
+from chatter.cli import app
+
+RPM = math.pi / 30.0
+MODE = {"frequency": "922 Hz", "damping": 0.011, "mass": "0.03993 kg"}
+
+
+def two_degrees_of_freedom(**cut):
+    """Tool of Insperger and Stepan (2004), alike along the feed and across it."""
+    return Case.from_dict(
+        {
+            "title": "922 Hz",
+            "tool": {"teeth": 2, "diameter": "16 mm"},
+            "material": {"Ktc": "600 MPa", "Krc": "200 MPa"},
+            "cut": {
+                "mode": "up",
+                "spindle_speed": "20000 rpm",
+                "feed_per_tooth": "0.1 mm",
+                "axial_depth": "2.5 mm",
+                "radial_depth": "0.8 mm",
+                **cut,
+            },
+            "structure": {
+                "mode": [{**MODE, "direction": [1, 0, 0]}, {**MODE, "direction": [0, 1, 0]}]
+            },
+            "lobes": {
+                "speeds": {"from": "15000 rpm", "to": "20000 rpm", "count": 6},
+                "depths": {"to": "10 mm", "count": 60},
+            },
+        }
+    )
+
+
+@pytest.fixture(scope="module")
+def over_radial_depth():
+    return chatter.lobes_over(two_degrees_of_freedom(), "cut.radial_depth=0.8 mm..4 mm:3")
+
+
+def test_limits_over_radial_depth_are_those_of_checks(over_radial_depth):
+    found = over_radial_depth
+    assert found.x == pytest.approx([0.8, 2.4, 4.0])
+    assert found.axis.unit == "mm"
+    for place, depth in enumerate(("0.8 mm", "2.4 mm", "4 mm")):
+        checked = chatter.check(two_degrees_of_freedom(radial_depth=depth))
+        assert found.critical_depth[place] == pytest.approx(checked.critical_depth, rel=1e-9)
+        assert found.bifurcation[place] == checked.limit.bifurcation[0]
+        assert found.crossings[place] == pytest.approx(checked.limit.crossings[0], rel=1e-9)
+    # BENCHMARKS.md 2.3: 3.250386 mm by flip at 20 000 rpm; a flip is heard at half the tooth
+    # frequency, or an odd multiple of it
+    assert found.critical_depth[0] == pytest.approx(3.250386e-3, rel=2e-4)
+    assert found.bifurcation[0] == "flip"
+    half = 2 * 20000 / 60.0 / 2.0
+    assert (found.chatter_frequency[0] / half) % 2.0 == pytest.approx(1.0, abs=1e-6)
+
+
+def test_limits_over_speed_are_those_of_the_diagram():
+    case = two_degrees_of_freedom()
+    found = chatter.lobes_over(case, "cut.spindle_speed=15000 rpm..20000 rpm:6")
+    diagram = chatter.lobes(case)
+    assert found.x * RPM == pytest.approx(diagram.limits.spindle_speed)
+    assert found.critical_depth == pytest.approx(diagram.limits.critical_depth, rel=1e-6)
+    assert found.bifurcation == diagram.limits.bifurcation
+
+
+def test_limits_scale_with_the_material_and_the_modes():
+    case = two_degrees_of_freedom()
+    values = [300e6, 600e6, 1200e6]
+    # forces k times as high leave a limit of 1/k
+    limits = []
+    for value in values:
+        patched = case.patch({"material.Krc": value / 3.0})
+        found = chatter.lobes_over(patched, ("material.Ktc", [value, 2.0 * value]))
+        limits.append(found.critical_depth[0])
+    assert np.array(limits) * values == pytest.approx(limits[0] * values[0], rel=1e-5)
+    # up and down milling of a full slot are the same cut
+    slot = "cut.feed_per_tooth=0.05 mm..0.2 mm:3"
+    limits = [
+        chatter.lobes_over(two_degrees_of_freedom(mode=mode, radial_depth="16 mm"), slot)
+        for mode in ("up", "down")
+    ]
+    assert limits[0].critical_depth == pytest.approx(limits[1].critical_depth, rel=1e-6)
+    # with a linear force law the feed does not matter
+    assert np.ptp(limits[0].critical_depth) <= 1e-6 * limits[0].critical_depth[0]
+
+
+def test_boundary_of_a_map_over_speed_and_depth_is_the_limit():
+    case = two_degrees_of_freedom()
+    mapped = chatter.lobes_over(case, y="cut.axial_depth=0.5 mm..5 mm:46")
+    limits = chatter.lobes(case).limits
+    assert mapped.x * RPM == pytest.approx(limits.spindle_speed)
+    assert mapped.spectral_radius.shape == (46, 6)
+    for boundary, crossings in zip(mapped.boundary, limits.crossings, strict=True):
+        inside = crossings[(crossings > 0.5e-3) & (crossings < 5e-3)]
+        assert len(boundary) == len(inside)
+        # as fine as the map: 0.1 mm apart
+        assert boundary * 1e-3 == pytest.approx(inside, abs=0.02e-3)
+
+
+def test_a_map_does_not_depend_on_which_path_goes_across():
+    case = two_degrees_of_freedom()
+    depth, speed = "cut.axial_depth=1 mm..4 mm:4", "cut.spindle_speed=15000 rpm..20000 rpm:3"
+    width = "cut.radial_depth=0.8 mm..3 mm:3"
+    for first, second in (
+        (depth, speed),
+        (width, depth),
+        (width, "structure.mode[0].damping=0.01..0.02:2"),
+    ):
+        one, other = (
+            chatter.lobes_over(case, first, second),
+            chatter.lobes_over(case, second, first),
+        )
+        assert one.spectral_radius == pytest.approx(other.spectral_radius.T, rel=1e-9)
+    mapped = chatter.lobes_over(case, width, depth)
+    checked = chatter.check(case.patch({"cut.radial_depth": "3 mm", "cut.axial_depth": "4 mm"}))
+    assert mapped.spectral_radius[-1, -1] == pytest.approx(checked.spectral_radius, rel=1e-4)
+
+
+def test_modes_that_depend_on_speed_are_taken_at_each_speed():
+    case = two_degrees_of_freedom().patch({"structure.mode[0].frequency_slope": -5e-5})
+    mapped = chatter.lobes_over(
+        case, "cut.spindle_speed=15000 rpm..20000 rpm:2", "cut.radial_depth=0.8 mm..2 mm:2"
+    )
+    for place, speed in enumerate(("15000 rpm", "20000 rpm")):
+        checked = chatter.check(case.patch({"cut.spindle_speed": speed}))
+        assert mapped.spectral_radius[0, place] == pytest.approx(checked.spectral_radius, rel=1e-4)
+    standing = chatter.check(two_degrees_of_freedom())
+    assert abs(mapped.spectral_radius[0, 1] - standing.spectral_radius) > 1e-3
+
+
+def test_closed_islands_leave_several_stable_intervals():
+    # Zatarain et al. (2006): a helix closes the flip lobes into islands
+    case = two_degrees_of_freedom(radial_depth="0.4 mm").patch(
+        {
+            "tool.helix": "45 deg",
+            "structure.mode": [{**MODE, "direction": [1, 0, 0]}],
+            "lobes.depths": {"to": "40 mm", "count": 200},
+        }
+    )
+    found = chatter.lobes_over(case, "cut.spindle_speed=17000 rpm..21000 rpm:9")
+    several = [crossings for crossings in found.crossings if len(crossings) > 1]
+    assert several
+    assert found.summary()["values_with_several_stable_intervals"] == len(several)
+    assert found.plot().axes
+
+
+def write_case(folder):
+    path = folder / "case.toml"
+    path.write_text(
+        """
+title = "922 Hz"
+tool = { teeth = 2, diameter = "16 mm" }
+material = { Ktc = "600 MPa", Krc = "200 MPa" }
+
+[cut]
+mode = "up"
+spindle_speed = "20000 rpm"
+feed_per_tooth = "0.1 mm"
+axial_depth = "2.5 mm"
+radial_depth = "0.8 mm"
+
+[[structure.mode]]
+frequency = "922 Hz"
+damping = 0.011
+mass = "0.03993 kg"
+direction = [1, 0, 0]
+""",
+        encoding="utf-8",
+    )
+    return str(path)
+
+
+def test_files_of_the_command(tmp_path):
+    case, out = write_case(tmp_path), tmp_path / "out"
+    width = 'cut.radial_depth="0.5 mm".."2 mm":3'
+    done = CliRunner().invoke(app, ["lobes", case, "--x", width, "--out", str(out)])
+    assert done.exit_code == 0, done.output
+    with (out / "lobes.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["cut.radial_depth [mm]"]) for row in rows] == [0.5, 1.25, 2.0]
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["x"]["path"] == "cut.radial_depth"
+    assert summary["x"]["value_of_the_case"] == pytest.approx(0.8)
+    assert (out / "lobes.png").stat().st_size > 10_000
+    speed = "cut.spindle_speed=15000 rpm..20000 rpm:3"
+    done = CliRunner().invoke(
+        app, ["lobes", case, "--x", speed, "--y", width, "--out", str(out), "--json"]
+    )
+    assert done.exit_code == 0, done.output
+    with (out / "lobes.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0]) == ["cut.spindle_speed [rpm]", "cut.radial_depth [mm]", "spectral_radius"]
+    assert len(rows) == 9
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (["--x", "cut.nothing=1 mm..2 mm"], "no such quantity"),
+        (["--x", "title=1..2"], "no such quantity"),
+        (["--x", "cut.mode=up..down"], "no such quantity"),
+        (["--x", "cut.radial_depth=1 mm..1 mm"], "range is empty"),
+        (["--x", "cut.radial_depth=1 mm..2 mm:1"], "count of 1"),
+        (["--x", "cut.radial_depth=1 mm..2 mm:1e9"], "--x cut.radial_depth"),
+        (["--x", "cut.radial_depth=1 mm"], "FROM..TO"),
+        (["--x", "cut.radial_depth=1 kg..2 kg"], "--x cut.radial_depth"),
+        (["--x", "cut.radial_depth=1 mm.."], "--x cut.radial_depth"),
+        (["--x", "cut.radial_depth=1 mm..20 mm:3"], "radial_depth"),
+        (["--x", "cut.axial_depth=1 mm..2 mm"], "axial depth itself"),
+        (["--y", "cut.spindle_speed=9000 rpm..12000 rpm"], "two paths"),
+        (["--x", "machine.body[0].mass=1 kg..2 kg"], "no machine"),
+        (["--x", "cut.radial_depth=1 mm..2 mm", "--grid"], "--grid"),
+        (["--x", "cut.radial_depth=1 mm..2 mm", "--live"], "--live"),
+        (["--y", "cut.radial_depth=1 mm..2 mm", "--cluster", "local"], "--cluster"),
+    ],
+)
+def test_refusals(tmp_path, options, told):
+    out = tmp_path / "out"
+    done = CliRunner().invoke(app, ["lobes", write_case(tmp_path), *options, "--out", str(out)])
+    assert done.exit_code == 2, done.output
+    assert told in done.output
+    assert done.output.count("chatter: ") == 1
+    assert "--vary" not in done.output
+    assert not out.exists()
+
+
+def test_refusals_in_python():
+    case = two_degrees_of_freedom()
+    with pytest.raises(InputError, match="a path is wanted"):
+        chatter.lobes_over(case)
+    with pytest.raises(InputError, match="range is empty"):
+        chatter.lobes_over(case, ("cut.radial_depth", ["1 mm", "1 mm"]))
+    with pytest.raises(InputError, match="no values"):
+        chatter.lobes_over(case, ("cut.radial_depth", []))
