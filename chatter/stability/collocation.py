@@ -6,7 +6,6 @@ of the spindle speed, and converges spectrally.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 import numpy as np
@@ -22,8 +21,8 @@ from chatter.stability.sweep import Progress, no_progress, sweep
 
 #: resolutions of a single point, one after the other until two agree
 FINER = ((10, 1.0), (12, 0.8), (12, 0.5), (12, 0.3), (12, 0.15))
-#: harmonics looked at for the chatter frequency, beyond the highest mode by this factor
-_HIGHEST = 2.0
+#: points handed to a thread at once: many enough to fill the lanes of the kernels
+_POINTS_A_CHUNK = 64
 
 #: a cut at a resolution: (points, waves) -> CutArrays
 CutAt = Callable[[int, float], CutArrays]
@@ -52,12 +51,33 @@ def multipliers(
     """
     if len(speeds) == 0:
         return np.empty(0, dtype=np.complex128)
+    return _solved(cut, speeds, depths, np.zeros(len(speeds), dtype=np.bool_), progress)[0]
+
+
+def _solved(
+    cut: CutArrays,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    listened: NDArray[np.bool_],
+    progress: Progress = no_progress,
+) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+    """Multipliers, and chatter frequencies (Hz) of the points listened to, nan elsewhere."""
+    # points of one depth share much work, at neighbouring speeds most of it
+    _, row, shared = np.unique(depths, return_inverse=True, return_counts=True)
+    level = np.where(shared[row] > 1, depths, 0.0)
+    order = np.lexsort((speeds, level))
     parts = sweep(
-        lambda index: drivers.element_multipliers(cut, speeds[index], depths[index]),
+        lambda index: drivers.element_multipliers(
+            cut, speeds[order[index]], depths[order[index]], listened[order[index]]
+        ),
         len(speeds),
         progress,
+        _POINTS_A_CHUNK,
     )
-    return np.concatenate(parts)
+    multiplier, frequency = np.empty(len(speeds), dtype=np.complex128), np.empty(len(speeds))
+    multiplier[order] = np.concatenate([part[0] for part in parts])
+    frequency[order] = np.concatenate([part[1] for part in parts])
+    return multiplier, frequency
 
 
 def converged_multiplier(
@@ -84,27 +104,22 @@ def converged_multiplier(
         value = better
         if error <= tolerance * max(1.0, abs(value)):
             break
-    steps = int(drivers.points_a_period(cut, speed, depth))
+    steps = int(drivers.points_of_periods(cut, point[0], depth)[0])
     return Multiplier(value, steps, float(error))
 
 
-def chatter_frequency(cut: CutArrays, speed: float, depth: float) -> float:
-    """Frequency (Hz) at which the motion of the dominant multiplier is largest.
+def chatter_frequencies(
+    cut: CutArrays, speeds: NDArray[np.float64], depths: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Frequency (Hz) at which the motion of the dominant multiplier is largest, at n points."""
+    if len(speeds) == 0:
+        return np.empty(0)
+    return _solved(cut, speeds, depths, np.ones(len(speeds), dtype=np.bool_))[1]
 
-    The force of the dominant motion, taken apart into exp((sigma + i omega_l) t) over the period,
-    drives the structure at each omega_l; the frequency with the largest displacement is heard.
-    """
-    value, time, weight, force, period = drivers.dominant_force(cut, speed, depth)
-    base = np.log(complex(value) if value != 0.0 else 1e-300) / period
-    highest = _HIGHEST * float(cut.natural_frequency.max())
-    line = 2.0 * np.pi / period
-    harmonic = np.arange(-math.ceil(highest / line) - 1, math.ceil(highest / line) + 2)
-    s = base + 1j * line * harmonic
-    spectrum = np.exp(-np.outer(s, time)) @ (weight[:, None] * force)
-    w, zeta = cut.natural_frequency, cut.damping
-    modal = (spectrum @ cut.force_gain.T) / (s[:, None] ** 2 + 2.0 * zeta * w * s[:, None] + w**2)
-    amplitude = np.linalg.norm(modal @ cut.shape, axis=1)
-    return float(abs(s[np.argmax(amplitude)].imag)) / (2.0 * np.pi)
+
+def chatter_frequency(cut: CutArrays, speed: float, depth: float) -> float:
+    """The same (Hz) at one point."""
+    return float(chatter_frequencies(cut, np.array([speed]), np.array([depth]))[0])
 
 
 def followed_limits(

@@ -34,16 +34,29 @@ _RATIO = 0.16
 
 
 class ElementLayout(NamedTuple):
-    """M elements of a period, of which E lie in the cut."""
+    """M elements of a period, of which E lie in the cut; places and lengths in mean angle turned.
 
-    start: NDArray[np.float64]  # s (M,)
+    Mean angle is time times the mean spindle speed.
+    """
+
+    start: NDArray[np.float64]  # rad (M,)
     cut: NDArray[np.int64]  # number among the elements in the cut, -1 for free motion (M,)
     shape: NDArray[np.int64]  # number of the length (M,)
-    length: NDArray[np.float64]  # distinct lengths, s (S,)
+    length: NDArray[np.float64]  # distinct lengths, rad (S,)
     length_cuts: NDArray[np.int64]  # 1 where an element in the cut has the length (S,)
-    cut_start: NDArray[np.float64]  # start of the elements in the cut, s (E,)
-    cut_length: NDArray[np.float64]  # s (E,)
-    period: float  # s
+    cut_start: NDArray[np.float64]  # start of the elements in the cut, rad (E,)
+    cut_length: NDArray[np.float64]  # rad (E,)
+    period: float  # rad
+
+
+class PeriodBorders(NamedTuple):
+    """I intervals of a period between the borders of elements that the cut itself sets."""
+
+    place: NDArray[np.float64]  # mean angle, rad (I + 1,)
+    singular: NDArray[np.int64]  # 1 where a chip vanishes and its slope is infinite (I + 1,)
+    engaged: NDArray[np.int64]  # 1 in the cut (I,)
+    turned: NDArray[np.float64]  # angle turned in the interval, rad (I,)
+    period: float  # mean angle, rad
 
 
 @njit(**KERNEL)
@@ -111,71 +124,91 @@ def _border_angles(cut, depth):
 
 
 @njit(**KERNEL)
-def _period_borders(cut, turn, borders, flags):
-    """Border times over the whole period, ascending, and their flags."""
-    count = borders.shape[0]
-    corners = 2 * turn.cycles if turn.triangle == 1 and turn.amplitude > 0.0 else 0
-    times = np.empty(turn.patterns * count + corners + 1)
-    marks = np.zeros(times.shape[0], dtype=np.int64)
-    n = 0
-    for pattern in range(turn.patterns):
-        for i in range(count):
-            times[n] = time_at(turn, borders[i] + pattern * cut.period_angle)
-            marks[n] = flags[i]
-            n += 1
-    period = turn.patterns * cut.period_angle / turn.speed
-    for i in range(corners):
-        time = (0.25 + 0.5 * i) / turn.frequency
-        time -= period * math.floor((time - times[0]) / period)
-        near = np.abs(times[:n] - time).min()
-        if near > _SAME * period and times[0] + period - time > _SAME * period:
-            times[n] = time
-            n += 1
-    order = np.argsort(times[:n])
-    out, out_marks = np.empty(n + 1), np.zeros(n + 1, dtype=np.int64)
-    for k in range(n):
-        out[k], out_marks[k] = times[order[k]], marks[order[k]]
-    out[n], out_marks[n] = out[0] + period, out_marks[0]
-    return out, out_marks, period
-
-
-@njit(**KERNEL)
-def element_layout(cut, turn, depth):
-    """Cut a period into elements.
+def period_borders(cut, turn, depth):
+    """Borders over the whole period at which a tip or a top of an edge enters or leaves.
 
     Parameters
     ----------
     cut : CutArrays
     turn : SpindleTurn
+        In mean angle.
     depth : float
         Axial depth, m.
 
     Returns
     -------
-    ElementLayout
+    PeriodBorders
     """
     borders, flags = _border_angles(cut, depth)
-    times, marks, period = _period_borders(cut, turn, borders, flags)
-    intervals = times.shape[0] - 1
-    pieces_of = np.empty(intervals, dtype=np.int64)
-    engaged = np.empty(intervals, dtype=np.int64)
-    total = 0
+    count = borders.shape[0]
+    corners = 2 * turn.cycles if turn.triangle == 1 and turn.amplitude > 0.0 else 0
+    places = np.empty(turn.patterns * count + corners + 1)
+    marks = np.zeros(places.shape[0], dtype=np.int64)
+    n = 0
+    for pattern in range(turn.patterns):
+        for i in range(count):
+            places[n] = time_at(turn, borders[i] + pattern * cut.period_angle)
+            marks[n] = flags[i]
+            n += 1
+    period = turn.patterns * cut.period_angle
+    for i in range(corners):
+        place = (0.25 + 0.5 * i) / turn.frequency
+        place -= period * math.floor((place - places[0]) / period)
+        near = np.abs(places[:n] - place).min()
+        if near > _SAME * period and places[0] + period - place > _SAME * period:
+            places[n] = place
+            n += 1
+    order = np.argsort(places[:n])
+    out, out_marks = np.empty(n + 1), np.zeros(n + 1, dtype=np.int64)
+    for k in range(n):
+        out[k], out_marks[k] = places[order[k]], marks[order[k]]
+    out[n], out_marks[n] = out[0] + period, out_marks[0]
+    engaged, turned = np.empty(n, dtype=np.int64), np.empty(n)
+    for k in range(n):
+        turned[k] = angle_at(turn, out[k + 1]) - angle_at(turn, out[k])
+        middle = angle_at(turn, 0.5 * (out[k] + out[k + 1]))
+        engaged[k] = 1 if is_engaged(cut.pieces, depth, middle) else 0
+    return PeriodBorders(out, out_marks, engaged, turned, period)
+
+
+@njit(**KERNEL)
+def element_counts(cut, borders, speed, depth):
+    """Elements (I,) that each interval needs at a mean speed (rad/s)."""
+    counts = np.empty(borders.engaged.shape[0], dtype=np.int64)
     waves = math.sqrt(1.0 + cut.stiffening * depth / cut.fastest**2)
+    for i in range(counts.shape[0]):
+        span = (borders.place[i + 1] - borders.place[i]) / speed
+        need = max(span * waves / cut.longest, borders.turned[i] / cut.longest_angle)
+        counts[i] = max(1, math.ceil(need - 1e-9)) if borders.engaged[i] == 1 else 1
+    return counts
+
+
+@njit(**KERNEL)
+def element_layout(borders, counts):
+    """Cut a period into elements.
+
+    Parameters
+    ----------
+    borders : PeriodBorders
+    counts : (I,) array of int
+        Elements of each interval.
+
+    Returns
+    -------
+    ElementLayout
+    """
+    place, marks, engaged = borders.place, borders.singular, borders.engaged
+    intervals = counts.shape[0]
+    total = 0
     for i in range(intervals):
-        span = times[i + 1] - times[i]
-        turned = angle_at(turn, times[i + 1]) - angle_at(turn, times[i])
-        middle = angle_at(turn, 0.5 * (times[i] + times[i + 1]))
-        engaged[i] = 1 if is_engaged(cut.pieces, depth, middle) else 0
-        need = max(span * waves / cut.longest, turned / cut.longest_angle)
-        pieces_of[i] = max(1, math.ceil(need - 1e-9)) if engaged[i] == 1 else 1
-        total += pieces_of[i] + (2 * _LEVELS if engaged[i] == 1 else 0)
+        total += counts[i] + (2 * _LEVELS if engaged[i] == 1 else 0)
     start, length = np.empty(total), np.empty(total)
     number = np.full(total, -1, dtype=np.int64)
     m, cuts = 0, 0
     for i in range(intervals):
-        step = (times[i + 1] - times[i]) / pieces_of[i]
-        for k in range(pieces_of[i]):
-            low, high = times[i] + k * step, times[i] + (k + 1) * step
+        step = (place[i + 1] - place[i]) / counts[i]
+        for k in range(counts[i]):
+            low, high = place[i] + k * step, place[i] + (k + 1) * step
             if engaged[i] == 1 and k == 0 and marks[i] == 1:
                 at = low
                 for level in range(_LEVELS, 0, -1):
@@ -184,7 +217,7 @@ def element_layout(cut, turn, depth):
                     at += length[m]
                     m, cuts = m + 1, cuts + 1
                 low = at
-            graded = engaged[i] == 1 and k == pieces_of[i] - 1 and marks[i + 1] == 1
+            graded = engaged[i] == 1 and k == counts[i] - 1 and marks[i + 1] == 1
             end = high - step * _RATIO if graded else high
             start[m], length[m] = low, end - low
             if engaged[i] == 1:
@@ -197,7 +230,7 @@ def element_layout(cut, turn, depth):
                     start[m], number[m], length[m] = end, cuts, at - end
                     end = at
                     m, cuts = m + 1, cuts + 1
-    return _with_shapes(start[:m], length[:m], number[:m], cuts, period)
+    return _with_shapes(start[:m], length[:m], number[:m], cuts, borders.period)
 
 
 @njit(**KERNEL)
@@ -228,15 +261,15 @@ def _with_shapes(start, length, number, cuts, period):
 
 
 @njit(**KERNEL)
-def element_before(layout, time):
-    """Element in the cut that holds a time, counted on from period to period, and the place in it.
+def element_before(layout, angle):
+    """Element in the cut that holds a mean angle, counted on over the periods, and the place in it.
 
     Between two elements in the cut, by rounding, the end of the nearer one.
     """
     cuts = layout.cut_start.shape[0]
     first = layout.cut_start[0]
-    turn = math.floor((time - first) / layout.period + _SAME)
-    local = time - turn * layout.period
+    turn = math.floor((angle - first) / layout.period + _SAME)
+    local = angle - turn * layout.period
     low, high = 0, cuts
     while high - low > 1:
         middle = (low + high) // 2
