@@ -7,35 +7,35 @@ import math
 import numpy as np
 from numba import njit
 
-from chatter.kernels import KERNEL
+from chatter.kernels import INNER_KERNEL, SINGLE_KERNEL
 from chatter.lanes import LANES
-from chatter.stability.element_map import force_over_period
+from chatter.stability.element_map import apply_element_map, element_scratch
 
 #: harmonics looked at, up to this factor beyond the highest mode
 _HIGHEST = 2.0
 
 
-@njit(**KERNEL)
-def _amplitude(cut, s, force):
+@njit(**SINGLE_KERNEL)
+def _amplitude(structure, s, force):
     """Displacement of the tool point under a force exp(s t), squared."""
-    modes, rank = cut.shape.shape
+    modes, rank = structure.shape.shape
     motion = np.zeros(rank, dtype=np.complex128)
     for m in range(modes):
-        w, zeta = cut.natural_frequency[m], cut.damping[m]
+        w, zeta = structure.natural_frequency[m], structure.damping[m]
         push = complex(0.0, 0.0)
         for k in range(rank):
-            push += cut.force_gain[m, k] * force[k]
+            push += structure.force_gain[m, k] * force[k]
         push /= s * s + 2.0 * zeta * w * s + w * w
         for k in range(rank):
-            motion[k] += cut.shape[m, k] * push
+            motion[k] += structure.shape[m, k] * push
     total = 0.0
     for k in range(rank):
         total += motion[k].real ** 2 + motion[k].imag ** 2
     return total
 
 
-@njit(**KERNEL)
-def _loudest(cut, value, time, weighted, period):
+@njit(**SINGLE_KERNEL)
+def _loudest(structure, value, time, weighted, period):
     """Frequency (Hz) at which a motion is largest whose force at n times is weighted (n, r).
 
     The force is taken apart into exp((sigma + i omega_l) t) over the period, and drives the
@@ -43,7 +43,7 @@ def _loudest(cut, value, time, weighted, period):
     """
     base = np.log(value if value != 0.0 else complex(1e-300, 0.0)) / period
     line = 2.0 * math.pi / period
-    order = math.ceil(_HIGHEST * cut.natural_frequency.max() / line) + 1
+    order = math.ceil(_HIGHEST * structure.natural_frequency.max() / line) + 1
     step = np.exp(complex(0.0, -line) * time)
     now = np.exp(-(base - complex(0.0, order * line)) * time)
     force = np.empty(weighted.shape[1], dtype=np.complex128)
@@ -55,53 +55,61 @@ def _loudest(cut, value, time, weighted, period):
                 force[k] += now[i] * weighted[i, k]
             now[i] *= step[i]
         s = base + complex(0.0, harmonic * line)
-        amplitude = _amplitude(cut, s, force)
+        amplitude = _amplitude(structure, s, force)
         if amplitude > best:
             best, loudest = amplitude, abs(s.imag)
     return loudest / (2.0 * math.pi)
 
 
-@njit(**KERNEL)
-def heard_frequencies(cut, plans, members, speeds, period, found, out):
+@njit(**INNER_KERNEL)
+def _vectors(found):
+    """Real and imaginary part of the dominant vector of every lane (2, D, 8)."""
+    vectors = np.zeros((2, found.basis.shape[1], LANES))
+    for lane in range(LANES):
+        for j in range(found.used[lane]):
+            c = found.coordinates[lane, j]
+            for i in range(found.basis.shape[1]):
+                vectors[0, i, lane] += c.real * found.basis[j, i, lane]
+                vectors[1, i, lane] += c.imag * found.basis[j, i, lane]
+    return vectors
+
+
+@njit(**SINGLE_KERNEL)
+def heard_frequencies(structure, points, numbers, members, speeds, period, found, out):
     """Set out (8,) to the chatter frequency (Hz) of the dominant motion of every lane.
 
     Parameters
     ----------
-    cut : CutArrays
-    plans : list of CutPlan
+    structure : Structure
+    points : ElementPoints
+    numbers : list of arrays of float
+        Of all plans.
     members : (8,) array of int
         Plan of every lane.
-    speeds : (8,) array of float
+    speeds : (1, 8) array of float
         rad/s.
     period : ElementMap
     found : DominantPairs
     out : (8,) array of float
     """
-    cuts, values, _, _ = period.couple.shape
-    rank = period.output.shape[0]
-    points = values // rank
-    dimension = found.basis.shape[1]
-    vectors = np.zeros((2, dimension, LANES))
+    cuts = period.couple.shape[0]
+    rank, count = period.output.shape[0], points.weight.shape[0]
+    vectors, image = _vectors(found), np.empty((found.basis.shape[1], LANES))
+    real, imaginary = element_scratch(period), element_scratch(period)
+    apply_element_map(period, vectors[0], image, real)
+    apply_element_map(period, vectors[1], image, imaginary)
+    time = np.empty(cuts * count)
+    weighted = np.empty((cuts * count, rank), dtype=np.complex128)
+    first = 1 + period.free.shape[0]
     for lane in range(LANES):
-        for j in range(found.used[lane]):
-            c = found.coordinates[lane, j]
-            for i in range(dimension):
-                vectors[0, i, lane] += c.real * found.basis[j, i, lane]
-                vectors[1, i, lane] += c.imag * found.basis[j, i, lane]
-    force = np.zeros((2, cuts, values, LANES))
-    force_over_period(period, vectors[0], force[0])
-    force_over_period(period, vectors[1], force[1])
-    time = np.empty(cuts * points)
-    weighted = np.empty((cuts * points, rank), dtype=np.complex128)
-    for lane in range(LANES):
-        layout, speed = plans[members[lane]].layout, speeds[lane]
+        of_plan, speed = numbers[members[lane]], speeds[0, lane]
         for e in range(cuts):
-            length = layout.cut_length[e]
-            for i in range(points):
-                row = e * points + i
-                time[row] = (layout.cut_start[e] + length * cut.points.place[i + 1]) / speed
-                weight = length / speed * cut.points.weight[i]
+            start, length = of_plan[first + e] / speed, of_plan[first + cuts + e] / speed
+            for i in range(count):
+                row = e * count + i
+                time[row] = start + length * points.place[i + 1]
                 for k in range(rank):
                     at = i * rank + k
-                    weighted[row, k] = weight * complex(force[0, e, at, lane], force[1, e, at, lane])
-        out[lane] = _loudest(cut, found.value[lane], time, weighted, layout.period / speed)
+                    force = complex(real.force[e, at, lane], imaginary.force[e, at, lane])
+                    weighted[row, k] = length * points.weight[i] * force
+        out[lane] = _loudest(structure, found.value[lane], time, weighted, of_plan[0] / speed)

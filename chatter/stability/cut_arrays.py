@@ -29,6 +29,15 @@ LONGEST_ANGLE = 0.9
 _MOST_EDGE_POINTS = 16
 
 
+class Resolution(NamedTuple):
+    """How long an element may be."""
+
+    longest: float  # s
+    fastest: float  # vibration that elements resolve, with no cut, rad/s
+    stiffening: float  # by which its square grows with depth, rad^2/s^2/m
+    longest_angle: float  # rad
+
+
 class CutArrays(NamedTuple):
     """A milling cut with speed and depth left open; n modes, r directions of motion."""
 
@@ -42,10 +51,7 @@ class CutArrays(NamedTuple):
     variation: SpeedVariation
     points: ElementPoints
     response: ResponseTable
-    longest: float  # element, s
-    fastest: float  # vibration that elements resolve, with no cut, rad/s
-    stiffening: float  # by which its square grows with depth, rad^2/s^2/m
-    longest_angle: float  # element, rad
+    resolution: Resolution
     edge_place: NDArray[np.float64]  # Gauss points on [0, 1], row q for q of them (17, 16)
     edge_weight: NDArray[np.float64]  # (17, 16)
 
@@ -122,10 +128,7 @@ def cut_arrays(
         variation=variation,
         points=of_element,
         response=response_table(natural_frequency, damping, of_element, longest),
-        longest=longest,
-        fastest=fastest,
-        stiffening=_stiffening(modes, pieces),
-        longest_angle=LONGEST_ANGLE,
+        resolution=Resolution(longest, fastest, _stiffening(modes, pieces), LONGEST_ANGLE),
         edge_place=place,
         edge_weight=weight,
     )

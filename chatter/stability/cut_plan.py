@@ -1,7 +1,9 @@
 """What the cut couples over one period: elements, stiffness, dashpots, and the earlier motion.
 
 All places are mean angles (time times the mean speed): at a constant speed the plan depends on the
-speed only through the number of elements, so that neighbouring speeds share it.
+speed only through the number of elements, so that neighbouring speeds share it. A plan is packed
+into whole numbers that tell its structure and real ones that fill it: plans of the same structure
+go side by side into the lanes of one map.
 """
 
 from __future__ import annotations
@@ -13,12 +15,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from chatter.kernels import KERNEL
+from chatter.kernels import INNER_KERNEL, SINGLE_KERNEL
 from chatter.stability.element_layout import (
-    ElementLayout,
     element_before,
     element_counts,
     element_layout,
+    empty_borders,
     period_borders,
 )
 from chatter.stability.spindle_turn import (
@@ -41,115 +43,136 @@ from cutting.edge_pieces import (
 _SAME_POINT = 1e-7
 #: the order of a quadrature along the edge follows the speed in steps of this power of two
 _SPEED_STEP = 0.5
+#: whole numbers before the lists of a structure
+_HEADER = 5
 
 
-class CutPlan(NamedTuple):
-    """M elements, E of them in the cut, p points on each, r directions of motion.
+class PlanStructure(NamedTuple):
+    """Structure of a plan: M elements, E of them in the cut, S distinct lengths, p points each."""
 
-    A source is a block (r, (p + 1) r) that takes the motion at the points of an earlier element to
-    the force at one point, or, with `point` >= 0, the motion at that point alone.
-    """
-
-    layout: ElementLayout
-    stiffness: NDArray[np.float64]  # N/m (E p, r, r)
-    dashpot: NDArray[np.float64]  # times the mean speed, N/m (E p, r, r)
+    cut: NDArray[np.int64]  # number of each element among those in the cut, or -1 (M,)
+    shape: NDArray[np.int64]  # number of the length of each element (M,)
+    length_cuts: NDArray[np.int64]  # 1 where an element in the cut has the length (S,)
     first_source: NDArray[np.int64]  # of each point (E p + 1,)
     source: NDArray[np.int64]  # element, counted from the period's first; negative before it
-    point: NDArray[np.int64]
-    block: NDArray[np.float64]  # N/m (sources, r, (p + 1) r)
+    point: NDArray[np.int64]  # the only one that a source needs of its element, or -1
     memory: int  # elements before the period that are looked back to
 
 
 class _Sources(NamedTuple):
+    """Blocks that take the motion at the points of an earlier element to the force at a point."""
+
     element: NDArray[np.int64]
     point: NDArray[np.int64]
-    block: NDArray[np.float64]
+    block: NDArray[np.float64]  # N/m (sources, r, (p + 1) r)
 
 
-@njit(**KERNEL)
+class _EdgeRule(NamedTuple):
+    """Quadrature along the edge."""
+
+    place: NDArray[np.float64]
+    weight: NDArray[np.float64]
+    longest: float  # element, s
+    speed: float  # for which it is made, rad/s
+
+
+@njit(**INNER_KERNEL)
 def resolution_speed(speed):
     """Speed, at most the given one, for which the edges are resolved; rad/s."""
     return 2.0 ** (_SPEED_STEP * math.floor(math.log2(speed) / _SPEED_STEP))
 
 
-@njit(**KERNEL)
-def _edge_points(cut, piece, span, speed):
+@njit(**INNER_KERNEL)
+def _edge_points(rule, pieces, piece, span, turning):
     """Order of the quadrature along a part of a piece."""
-    pieces = cut.pieces
     turned = abs(pieces.angle[piece, 1] - pieces.angle[piece, 0]) * span
     bend = abs(pieces.immersion[piece, 1] - pieces.immersion[piece, 0]) * span
     if turned + bend < 1e-9 and pieces.group[piece] >= 0:
         return 1
     if pieces.exponent != 0.0:
         return 16
-    shift = abs(pieces.delay[piece, 1] - pieces.delay[piece, 0]) * span / speed
-    waves = shift / cut.longest
+    shift = abs(pieces.delay[piece, 1] - pieces.delay[piece, 0]) * span
+    waves = shift / (rule.speed * turning * rule.longest)
     return min(16, 2 + math.ceil(2.5 * (turned + bend) + 5.0 * waves))
 
 
-@njit(**KERNEL)
-def _grown(sources, count):
-    """Room for more sources."""
-    capacity = sources.element.shape[0]
-    if count < capacity:
-        return sources
-    element = np.empty(2 * capacity, dtype=np.int64)
-    point = np.empty(2 * capacity, dtype=np.int64)
-    block = np.empty((2 * capacity, *sources.block.shape[1:]))
-    element[:capacity] = sources.element
-    point[:capacity] = sources.point
-    block[:capacity] = sources.block
+@njit(**INNER_KERNEL)
+def _grown(sources):
+    """Twice the room for sources."""
+    count, rank, width = sources.block.shape
+    element, point = np.empty(2 * count, dtype=np.int64), np.empty(2 * count, dtype=np.int64)
+    block = np.empty((2 * count, rank, width))
+    for i in range(count):
+        element[i], point[i] = sources.element[i], sources.point[i]
+        for k in range(rank):
+            for j in range(width):
+                block[i, k, j] = sources.block[i, k, j]
     return _Sources(element, point, block)
 
 
-@njit(**KERNEL)
-def _note_source(cut, layout, sources, first, count, angle, stiffness):
-    """Add the coupling to the motion at an earlier place; returns the sources and their number."""
-    element, place = element_before(layout, angle)
-    points = cut.points.place.shape[0]
-    rank = stiffness.shape[0]
-    near = -1
-    for q in range(points):
-        if abs(place - cut.points.place[q]) < _SAME_POINT:
-            near = q
-    found = -1
-    for entry in range(first, count):
-        if sources.element[entry] == element and sources.point[entry] == near:
-            found = entry
-            break
-    if found < 0:
-        sources = _grown(sources, count)
-        found = count
-        count += 1
-        sources.element[found], sources.point[found] = element, near
-        sources.block[found] = 0.0
+@njit(**SINGLE_KERNEL)
+def _add_source(points, sources, found, place, stiffness):
+    """Add the coupling to the motion at a place in an element to a source."""
     block = sources.block[found]
-    if near >= 0:
-        for i in range(rank):
-            for j in range(rank):
-                block[i, near * rank + j] += stiffness[i, j]
-        return sources, count
-    total = 0.0
-    for q in range(points):
-        total += cut.points.barycentric[q] / (place - cut.points.place[q])
-    for q in range(points):
-        share = cut.points.barycentric[q] / (place - cut.points.place[q]) / total
-        for i in range(rank):
-            for j in range(rank):
-                block[i, q * rank + j] += share * stiffness[i, j]
-    return sources, count
+    rank, count = stiffness.shape[0], points.place.shape[0]
+    near, total = -1, 0.0
+    for q in range(count):
+        distance = place - points.place[q]
+        if abs(distance) < _SAME_POINT:
+            near = q
+        else:
+            total += points.barycentric[q] / distance
+    for q in range(count):
+        share = 1.0 if near == q else 0.0
+        if near < 0:
+            share = points.barycentric[q] / (place - points.place[q]) / total
+        if share != 0.0:
+            for i in range(rank):
+                for j in range(rank):
+                    block[i, q * rank + j] += share * stiffness[i, j]
+    # -2: nothing there as yet
+    known = sources.point[found]
+    sources.point[found] = near if known in (-2, near) else -1
 
 
-@njit(**KERNEL)
-def _couple(cut, layout, turn, depth, speed, angle, sources, count, stiffness, dashpot, work):
+@njit(**SINGLE_KERNEL)
+def _source_of(element, sources, first, count):
+    """Place of the source of an element among those from `first` on, an empty one if none is."""
+    for entry in range(first, count):
+        if sources.element[entry] == element:
+            return entry
+    sources.element[count], sources.point[count] = element, -2
+    block = sources.block[count]
+    for k in range(block.shape[0]):
+        for j in range(block.shape[1]):
+            block[k, j] = 0.0
+    return count
+
+
+@njit(**INNER_KERNEL)
+def _note(points, layout, turn, sources, first, count, angle, stiffness):
+    """Add the coupling to the motion at an earlier spindle angle; returns sources and number."""
+    element, place = element_before(layout, time_at(turn, angle))
+    if count == sources.element.shape[0]:
+        sources = _grown(sources)
+    found = _source_of(element, sources, first, count)
+    _add_source(points, sources, found, place, stiffness)
+    return sources, max(count, found + 1)
+
+
+@njit(**INNER_KERNEL)
+def _couple(
+    pieces, rule, basis, points, layout, turn, depth, angle, sources, count, stiffness, dashpot,
+    groups, used,
+):  # fmt: skip
     """Couplings at one mean angle: fill stiffness and dashpot and append the sources."""
-    pieces = cut.pieces
-    part, part_dashpot, groups, used = work
     rank = stiffness.shape[0]
-    stiffness[:, :] = 0.0
-    dashpot[:, :] = 0.0
-    groups[:, :, :] = 0.0
-    used[:] = 0
+    part, part_dashpot = np.empty((rank, rank)), np.empty((rank, rank))
+    _clear(stiffness)
+    _clear(dashpot)
+    for group in range(used.shape[0]):
+        used[group] = 0
+        _clear(groups[group])
     first_source = count
     spindle, turning = angle_at(turn, angle), speed_at(turn, angle)
     damped = pieces.damping[1] > 0.0
@@ -165,9 +188,9 @@ def _couple(cut, layout, turn, depth, speed, angle, sources, count, stiffness, d
             straight = pieces.angle[piece, 0] == pieces.angle[piece, 1]
             if low >= high and not (straight and low <= high):
                 continue
-            order = _edge_points(cut, piece, high - low, speed * turning)
+            order = _edge_points(rule, pieces, piece, high - low, turning)
             for q in range(order):
-                x, share = cut.edge_place[order, q], cut.edge_weight[order, q]
+                x, share = rule.place[order, q], rule.weight[order, q]
                 if pieces.exponent != 0.0 and order > 1:
                     # towards both ends, where the chip may vanish
                     share *= 30.0 * (x * (1.0 - x)) ** 2
@@ -175,39 +198,49 @@ def _couple(cut, layout, turn, depth, speed, angle, sources, count, stiffness, d
                 place = low + x * (high - low)
                 weight = share * (high - low) * pieces.length[piece]
                 coupling_at(
-                    pieces, piece, place, spindle, weight, speed_factor, cut.basis,
-                    part, part_dashpot,
-                )  # fmt: skip
-                for i in range(rank):
-                    for j in range(rank):
-                        stiffness[i, j] += part[i, j]
-                        if damped:
-                            dashpot[i, j] += part_dashpot[i, j]
-                        if group >= 0:
-                            groups[group, i, j] += part[i, j]
+                    pieces, piece, place, spindle, weight, speed_factor, basis, part, part_dashpot
+                )
+                _add(part, stiffness)
+                if damped:
+                    _add(part_dashpot, dashpot)
                 if group >= 0:
                     used[group] = 1
+                    _add(part, groups[group])
                     continue
                 delay = pieces.delay[piece, 0]
                 delay += share_of_height(pieces, piece, place) * (
                     pieces.delay[piece, 1] - pieces.delay[piece, 0]
                 )
-                earlier = time_at(turn, spindle - delay)
-                sources, count = _note_source(
-                    cut, layout, sources, first_source, count, earlier, part
+                sources, count = _note(
+                    points, layout, turn, sources, first_source, count, spindle - delay, part
                 )
     for group in range(used.shape[0]):
         if used[group] == 1:
-            earlier = time_at(turn, spindle - pieces.group_delay[group])
-            sources, count = _note_source(
-                cut, layout, sources, first_source, count, earlier, groups[group]
+            angle = spindle - pieces.group_delay[group]
+            sources, count = _note(
+                points, layout, turn, sources, first_source, count, angle, groups[group]
             )
     return sources, count
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
+def _clear(a):
+    for i in range(a.shape[0]):
+        for j in range(a.shape[1]):
+            a[i, j] = 0.0
+
+
+@njit(**INNER_KERNEL)
+def _add(a, b):
+    """Add a to b."""
+    for i in range(a.shape[0]):
+        for j in range(a.shape[1]):
+            b[i, j] += a[i, j]
+
+
+@njit(**SINGLE_KERNEL)
 def cut_plan(cut, turn, layout, speed, depth):
-    """Couplings at the points of all elements of a period.
+    """Couplings at the points of all elements of a period, packed.
 
     Parameters
     ----------
@@ -222,68 +255,113 @@ def cut_plan(cut, turn, layout, speed, depth):
 
     Returns
     -------
-    CutPlan
+    structure : (i,) array of int
+        See `structure_of_plan`.
+    numbers : (n,) array of float
+        See `numbers_of_plan`.
     """
-    rank = cut.shape.shape[1]
-    points, cuts = cut.points.weight.shape[0], layout.cut_start.shape[0]
+    points, pieces = cut.points, cut.pieces
+    rank, count_a_element = cut.basis.shape[1], points.weight.shape[0]
+    cuts = layout.cut_start.shape[0]
+    rows = cuts * count_a_element
     sources = _Sources(
-        np.empty(cuts * points + 8, dtype=np.int64),
-        np.empty(cuts * points + 8, dtype=np.int64),
-        np.empty((cuts * points + 8, rank, (points + 1) * rank)),
+        np.empty(rows + 8, dtype=np.int64),
+        np.empty(rows + 8, dtype=np.int64),
+        np.empty((rows + 8, rank, (count_a_element + 1) * rank)),
     )
-    stiffness, dashpot = np.empty((cuts * points, rank, rank)), np.empty((cuts * points, rank, rank))
-    groups = cut.pieces.group_delay.shape[0]
-    work = (
-        np.empty((rank, rank)),
-        np.zeros((rank, rank)),
-        np.empty((groups, rank, rank)),
-        np.empty(groups, dtype=np.int64),
-    )
-    first_source = np.zeros(cuts * points + 1, dtype=np.int64)
+    stiffness, dashpot = np.empty((rows, rank, rank)), np.empty((rows, rank, rank))
+    groups = np.empty((pieces.group_delay.shape[0], rank, rank))
+    used = np.empty(groups.shape[0], dtype=np.int64)
+    rule = _EdgeRule(cut.edge_place, cut.edge_weight, cut.resolution.longest, speed)
+    first_source = np.zeros(rows + 1, dtype=np.int64)
     count = 0
     for e in range(cuts):
-        for i in range(points):
-            row = e * points + i
-            angle = layout.cut_start[e] + cut.points.place[i + 1] * layout.cut_length[e]
+        for i in range(count_a_element):
+            row = e * count_a_element + i
+            angle = layout.cut_start[e] + points.place[i + 1] * layout.cut_length[e]
             sources, count = _couple(
-                cut, layout, turn, depth, speed, angle, sources, count,
-                stiffness[row], dashpot[row], work,
+                pieces, rule, cut.basis, points, layout, turn, depth, angle, sources, count,
+                stiffness[row], dashpot[row], groups, used,
             )  # fmt: skip
             first_source[row + 1] = count
+    return (
+        _packed_structure(layout, first_source, sources, count),
+        _packed_numbers(layout, stiffness, dashpot, sources.block[:count]),
+    )
+
+
+@njit(**INNER_KERNEL)
+def _put(part, out, at):
+    """Copy an array of one axis into another from a place on; returns the next place."""
+    for i in range(part.shape[0]):
+        out[at + i] = part[i]
+    return at + part.shape[0]
+
+
+@njit(**SINGLE_KERNEL)
+def _packed_structure(layout, first_source, sources, count):
+    elements, lengths = layout.cut.shape[0], layout.length_cuts.shape[0]
+    out = np.empty(
+        _HEADER + 2 * elements + lengths + first_source.shape[0] + 2 * count, dtype=np.int64
+    )
+    out[0], out[1], out[2] = elements, lengths, layout.cut_start.shape[0]
     memory = 0
     for entry in range(count):
         memory = max(memory, -sources.element[entry])
-    return CutPlan(
-        layout, stiffness, dashpot, first_source, sources.element[:count], sources.point[:count],
-        sources.block[:count], memory,
-    )  # fmt: skip
+    out[3], out[4] = count, memory
+    at = _put(layout.cut, out, _HEADER)
+    at = _put(layout.shape, out, at)
+    at = _put(layout.length_cuts, out, at)
+    at = _put(first_source, out, at)
+    at = _put(sources.element[:count], out, at)
+    _put(sources.point[:count], out, at)
+    return out
 
 
-@njit(**KERNEL)
-def _same(a, b):
-    """Tell whether two arrays of whole numbers are the same."""
-    if a.shape[0] != b.shape[0]:
-        return False
-    for i in range(a.shape[0]):
-        if a[i] != b[i]:
-            return False
-    return True
+@njit(**SINGLE_KERNEL)
+def _packed_numbers(layout, stiffness, dashpot, block):
+    out = np.empty(
+        1 + layout.length.shape[0] + 2 * layout.cut_start.shape[0] + 2 * stiffness.size + block.size
+    )
+    out[0] = layout.period
+    at = _put(layout.length, out, 1)
+    at = _put(layout.cut_start, out, at)
+    at = _put(layout.cut_length, out, at)
+    at = _put(stiffness.reshape(stiffness.size), out, at)
+    at = _put(dashpot.reshape(stiffness.size), out, at)
+    _put(block.reshape(block.size), out, at)
+    return out
 
 
-@njit(**KERNEL)
-def alike(one, other):
-    """Tell whether two plans differ in nothing but numbers: lanes of one map may hold them."""
-    return (
-        _same(one.layout.cut, other.layout.cut)
-        and _same(one.layout.shape, other.layout.shape)
-        and _same(one.layout.length_cuts, other.layout.length_cuts)
-        and _same(one.first_source, other.first_source)
-        and _same(one.source, other.source)
-        and _same(one.point, other.point)
+@njit(**INNER_KERNEL)
+def structure_of_plan(packed):
+    """Unpack the structure of a plan.
+
+    Returns
+    -------
+    PlanStructure
+    """
+    elements, lengths, count = packed[0], packed[1], packed[3]
+    points = packed.shape[0] - _HEADER - 2 * elements - lengths - 2 * count
+    a = _HEADER + elements
+    b = a + elements
+    c = b + lengths
+    d = c + points
+    e = d + count
+    return PlanStructure(
+        packed[_HEADER:a], packed[a:b], packed[b:c], packed[c:d], packed[d:e], packed[e:], packed[4]
     )
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
+def alike(one, other):
+    """Tell whether two packed structures are the same: lanes of one map may hold both plans."""
+    if one.shape[0] != other.shape[0]:
+        return False
+    return np.all(one == other)
+
+
+@njit(**SINGLE_KERNEL)
 def plans_of(cut, speeds, depths):
     """Plans of n points; neighbours of equal depth and equal elements share one.
 
@@ -295,26 +373,28 @@ def plans_of(cut, speeds, depths):
 
     Returns
     -------
-    plans : list of CutPlan
+    structures : list of arrays of int
+    numbers : list of arrays of float
     of_point : (n,) array of int
-        Place in the list.
+        Place in the lists.
     """
-    of_point = np.zeros(speeds.shape[0], dtype=np.int64)
-    turn = in_mean_angle(spindle_turn(cut.variation, speeds[0], cut.period_angle))
-    borders = period_borders(cut, turn, depths[0])
-    counts = element_counts(cut, borders, speeds[0], depths[0])
-    speed = resolution_speed(speeds[0])
-    plans = [cut_plan(cut, turn, element_layout(borders, counts), speed, depths[0])]
+    of_point = np.empty(speeds.shape[0], dtype=np.int64)
+    structures = [np.empty(0, dtype=np.int64) for _ in range(0)]
+    numbers = [np.empty(0) for _ in range(0)]
     constant = cut.variation.amplitude == 0.0
-    for i in range(1, speeds.shape[0]):
-        beside = constant and depths[i] == depths[i - 1]
+    counts, speed, borders = np.empty(0, dtype=np.int64), 0.0, empty_borders()
+    for i in range(speeds.shape[0]):
+        turn = in_mean_angle(spindle_turn(cut.variation, speeds[i], cut.period_angle))
+        beside = constant and i > 0 and depths[i] == depths[i - 1]
         if not beside:
-            turn = in_mean_angle(spindle_turn(cut.variation, speeds[i], cut.period_angle))
-            borders = period_borders(cut, turn, depths[i])
-        needed = element_counts(cut, borders, speeds[i], depths[i])
-        same = beside and speed == resolution_speed(speeds[i]) and _same(needed, counts)
-        if not same:
-            counts, speed = needed, resolution_speed(speeds[i])
-            plans.append(cut_plan(cut, turn, element_layout(borders, counts), speed, depths[i]))
-        of_point[i] = len(plans) - 1
-    return plans, of_point
+            borders = period_borders(cut.pieces, cut.period_angle, turn, depths[i])
+        needed = element_counts(cut.resolution, borders, speeds[i], depths[i])
+        resolved = resolution_speed(speeds[i])
+        if not (beside and speed == resolved and alike(needed, counts)):
+            counts, speed = needed, resolved
+            layout = element_layout(borders, counts)
+            structure, filled = cut_plan(cut, turn, layout, speed, depths[i])
+            structures.append(structure)
+            numbers.append(filled)
+        of_point[i] = len(structures) - 1
+    return structures, numbers, of_point

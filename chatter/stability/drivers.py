@@ -10,7 +10,7 @@ from chatter.lanes import LANES
 from chatter.stability.chatter_frequency import heard_frequencies
 from chatter.stability.cut_plan import alike, plans_of
 from chatter.stability.element_layout import element_counts, element_layout, period_borders
-from chatter.stability.element_map import build_element_map
+from chatter.stability.element_map import Structure, build_element_map
 from chatter.stability.lane_multipliers import dominant_pairs
 from chatter.stability.multipliers import dominant_multiplier
 from chatter.stability.period_map import advance_step, build_period_map, period_map_by
@@ -108,10 +108,12 @@ def element_multipliers(cut, speeds, depths, listened):
     n = speeds.shape[0]
     multiplier = np.empty(n, dtype=np.complex128)
     frequency = np.full(n, np.nan)
-    plans, of_point = plans_of(cut, speeds, depths)
+    structures, numbers, of_point = plans_of(cut, speeds, depths)
+    structure = Structure(cut.natural_frequency, cut.damping, cut.shape, cut.force_gain)
+    damped = cut.pieces.damping[1] > 0.0
     done = np.zeros(n, dtype=np.bool_)
     lanes, members = np.empty(LANES, dtype=np.int64), np.empty(LANES, dtype=np.int64)
-    lane_speeds, heard = np.empty(LANES), np.empty(LANES)
+    lane_speeds, heard = np.empty((1, LANES)), np.empty(LANES)
     for first in range(n):
         if done[first]:
             continue
@@ -119,20 +121,26 @@ def element_multipliers(cut, speeds, depths, listened):
         for i in range(first, n):
             if count == LANES:
                 break
-            together = of_point[i] == of_point[first]
-            if not done[i] and (together or alike(plans[of_point[i]], plans[of_point[first]])):
+            one, other = of_point[i], of_point[first]
+            if not done[i] and (one == other or alike(structures[one], structures[other])):
                 lanes[count] = i
                 done[i] = True
                 count += 1
-        lanes[count:] = first
         wanted = False
         for lane in range(LANES):
-            members[lane], lane_speeds[lane] = of_point[lanes[lane]], speeds[lanes[lane]]
-            wanted |= listened[lanes[lane]]
-        period = build_element_map(cut, plans, members, lane_speeds)
+            # lanes that are left over do what the first does
+            point = lanes[lane] if lane < count else first
+            members[lane], lane_speeds[0, lane] = of_point[point], speeds[point]
+            wanted |= listened[point]
+        period = build_element_map(
+            structure, cut.response, damped, structures[of_point[first]], numbers, members,
+            lane_speeds,
+        )  # fmt: skip
         found = dominant_pairs(period)
         if wanted:
-            heard_frequencies(cut, plans, members, lane_speeds, period, found, heard)
+            heard_frequencies(
+                structure, cut.points, numbers, members, lane_speeds, period, found, heard
+            )
         for lane in range(count):
             multiplier[lanes[lane]] = found.value[lane]
             if listened[lanes[lane]]:
@@ -146,7 +154,7 @@ def points_of_periods(cut, speeds, depth):
     out = np.empty(speeds.shape[0], dtype=np.int64)
     for i in range(speeds.shape[0]):
         turn = in_mean_angle(spindle_turn(cut.variation, speeds[i], cut.period_angle))
-        borders = period_borders(cut, turn, depth)
-        layout = element_layout(borders, element_counts(cut, borders, speeds[i], depth))
+        borders = period_borders(cut.pieces, cut.period_angle, turn, depth)
+        layout = element_layout(borders, element_counts(cut.resolution, borders, speeds[i], depth))
         out[i] = layout.cut_start.shape[0] * cut.points.weight.shape[0]
     return out

@@ -18,8 +18,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from chatter.kernels import KERNEL
+from chatter.kernels import INNER_KERNEL, SINGLE_KERNEL
 from chatter.lanes import LANES, load, spread, store
+from chatter.stability.cut_plan import PlanStructure, structure_of_plan
 from chatter.stability.element_response import free_response, mode_response
 
 
@@ -29,40 +30,50 @@ class ElementMap(NamedTuple):
     The state holds (omega x, v) of every mode; the last axis of real arrays holds the lanes.
     """
 
-    cut: NDArray[np.int64]  # number of each element among those in the cut, or -1 (M,)
-    shape: NDArray[np.int64]  # number of the length of each element (M,)
+    plan: PlanStructure
     free: NDArray[np.float64]  # of each mode over a length (S, n, 2, 2, 8)
     motion_of_state: NDArray[np.float64]  # (S, q, 2n, 8)
     motion_of_force: NDArray[np.float64]  # (S, q, q, 8)
     state_of_force: NDArray[np.float64]  # (S, 2n, q, 8)
-    lower: NDArray[np.float64]  # factors of the matrix that the force solves (E, q, q, 8)
+    factors: NDArray[np.float64]  # of the matrix that the force solves (E, q, q, 8)
     couple: NDArray[np.float64]  # force from the state, negative (E, q, 2n, 8)
-    first_source: NDArray[np.int64]  # of each point (E p + 1,)
-    source: NDArray[np.int64]  # as in `CutPlan`
-    point: NDArray[np.int64]
-    block: NDArray[np.float64]  # (sources, r, (p + 1) r, 8)
+    block: NDArray[np.float64]  # of the sources (sources, r, (p + 1) r, 8)
     output: NDArray[np.float64]  # motion of the tool point from the state, scaled (r, 2n)
-    memory: int  # elements before the period that are looked back to
+
+
+class Structure(NamedTuple):
+    """Modes as the map sees them."""
+
+    natural_frequency: NDArray[np.float64]  # rad/s (n,)
+    damping: NDArray[np.float64]  # (n,)
+    shape: NDArray[np.float64]  # (n, r)
+    force_gain: NDArray[np.float64]  # 1/kg (n, r)
 
 
 class _Rates(NamedTuple):
-    """Velocity at the Gauss points, which dashpots feel."""
+    """Velocity at the Gauss points, which dashpots feel; of no lengths where there are none."""
 
     of_state: NDArray[np.float64]  # (S, q, 2n, 8)
     of_force: NDArray[np.float64]  # (S, q, q, 8)
 
 
-@njit(**KERNEL)
-def motion_scale(cut):
-    """Factor on all motion that makes it as large as the state, 1/s."""
+@njit(**INNER_KERNEL)
+def motion_of_state(structure):
+    """Motion of the tool point from the state (r, 2n), scaled to be as large as that, and scale."""
+    modes, rank = structure.shape.shape
     largest = 1e-300
-    for m in range(cut.shape.shape[0]):
-        for k in range(cut.shape.shape[1]):
-            largest = max(largest, abs(cut.shape[m, k]) / cut.natural_frequency[m])
-    return 1.0 / largest
+    for m in range(modes):
+        for k in range(rank):
+            largest = max(largest, abs(structure.shape[m, k]) / structure.natural_frequency[m])
+    output = np.zeros((rank, 2 * modes))
+    for m in range(modes):
+        for k in range(rank):
+            reach = structure.shape[m, k] / structure.natural_frequency[m]
+            output[k, 2 * m] = reach / largest
+    return output, 1.0 / largest
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _add_response(response, row, factor, k, l, of_force):  # noqa: E741
     """Add the response to the force in direction l, seen in direction k, from a row on."""
     points = response.shape[1] - 2
@@ -73,61 +84,70 @@ def _add_response(response, row, factor, k, l, of_force):  # noqa: E741
             store(of_force, at, load(of_force, at) + factor * load(response, (row + i, 2 + j)))
 
 
-@njit(**KERNEL)
-def _mode_over_length(cut, m, scale, response, free, period, s, rates):
-    """Enter what mode m does over the element length s."""
-    rank, points = cut.shape.shape[1], cut.points.weight.shape[0]
-    w = cut.natural_frequency[m]
-    damped = rates.of_state.shape[0] > 0
-    for a in range(2):
-        for b in range(2):
-            store(free, (m, a, b), load(response, (points + a, b)))
+@njit(**SINGLE_KERNEL)
+def _mode_over_length(structure, m, scale, response, of_state, of_force, to_state):
+    """Enter what mode m does over an element: motion at the points, state at the end."""
+    rank, points = structure.shape.shape[1], response.shape[1] - 2
+    w = structure.natural_frequency[m]
     for l in range(rank):  # noqa: E741
-        gain = cut.force_gain[m, l] / w
+        gain = structure.force_gain[m, l] / w
         for j in range(points):
             for a in range(2):
                 value = gain * load(response, (points + a, 2 + j))
-                store(period.state_of_force[s], (2 * m + a, j * rank + l), value)
+                store(to_state, (2 * m + a, j * rank + l), value)
         for k in range(rank):
-            factor = cut.shape[m, k] * gain
-            if factor == 0.0:
-                continue
-            _add_response(response, 0, scale / w * factor, k, l, period.motion_of_force[s])
-            if damped:
-                _add_response(response, points + 2, factor, k, l, rates.of_force[s])
+            factor = scale / w * structure.shape[m, k] * gain
+            if factor != 0.0:
+                _add_response(response, 0, factor, k, l, of_force)
     for k in range(rank):
+        reach = scale / w * structure.shape[m, k]
         for i in range(points):
             for b in range(2):
-                at = (i * rank + k, 2 * m + b)
-                reach = scale / w * cut.shape[m, k]
-                store(period.motion_of_state[s], at, reach * load(response, (i, b)))
-                if damped:
-                    rate = cut.shape[m, k] * load(response, (points + 2 + i, b))
-                    store(rates.of_state[s], at, rate)
+                store(of_state, (i * rank + k, 2 * m + b), reach * load(response, (i, b)))
 
 
-@njit(**KERNEL)
-def _fill_lengths(cut, plans, members, speeds, scale, period, rates):
-    """Enter what all modes do over every distinct length of an element."""
-    points = cut.points.weight.shape[0]
-    layout = plans[members[0]].layout
+@njit(**SINGLE_KERNEL)
+def _rates_over_length(structure, m, response, of_state, of_force):
+    """Enter the velocity at the points that mode m makes over an element."""
+    rank, points = structure.shape.shape[1], response.shape[1] - 2
+    row = points + 2
+    for k in range(rank):
+        reach = structure.shape[m, k]
+        for l in range(rank):  # noqa: E741
+            factor = reach * structure.force_gain[m, l] / structure.natural_frequency[m]
+            if factor != 0.0:
+                _add_response(response, row, factor, k, l, of_force)
+        for i in range(points):
+            for b in range(2):
+                store(of_state, (i * rank + k, 2 * m + b), reach * load(response, (row + i, b)))
+
+
+@njit(**SINGLE_KERNEL)
+def _fill_lengths(structure, table, turns, length_cuts, scale, period, rates):
+    """Enter what all modes do over every distinct length, in lanes turns (S, 8), s."""
+    points = table.coefficient.shape[3] - 2
     rows = 2 * points + 2 if rates.of_state.shape[0] > 0 else points + 2
     response, place = np.empty((rows, points + 2, LANES)), np.empty((1, LANES))
-    period.motion_of_force[:] = 0.0
-    rates.of_force[:] = 0.0
-    for s in range(layout.length.shape[0]):
-        for m in range(cut.shape.shape[0]):
-            w = cut.natural_frequency[m]
-            for lane in range(LANES):
-                place[0, lane] = w * plans[members[lane]].layout.length[s] / speeds[lane]
-            if layout.length_cuts[s] == 0:
-                free_response(cut.damping[m], place, period.free[s, m])
+    for s in range(length_cuts.shape[0]):
+        for m in range(structure.shape.shape[0]):
+            free = period.free[s, m]
+            store(place, 0, structure.natural_frequency[m] * load(turns, s))
+            if length_cuts[s] == 0:
+                free_response(structure.damping[m], place, free)
                 continue
-            mode_response(cut.response, m, place, response)
-            _mode_over_length(cut, m, scale, response, period.free[s], period, s, rates)
+            mode_response(table.coefficient[m], table.furthest[m], place, response)
+            for a in range(2):
+                for b in range(2):
+                    store(free, (a, b), load(response, (points + a, b)))
+            _mode_over_length(
+                structure, m, scale, response, period.motion_of_state[s],
+                period.motion_of_force[s], period.state_of_force[s],
+            )  # fmt: skip
+            if rates.of_state.shape[0] > 0:
+                _rates_over_length(structure, m, response, rates.of_state[s], rates.of_force[s])
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _add_row(matrix, row, factor, other, column):
     """Add factor times a row of another matrix to a row of one."""
     for j in range(matrix.shape[1]):
@@ -135,39 +155,34 @@ def _add_row(matrix, row, factor, other, column):
         store(matrix, (row, j), value)
 
 
-@njit(**KERNEL)
-def _enter_cut(now, at, s, row, period, rates, matrix, couple):
-    """Enter the cut at one point: stiffness and dashpot now, from row `row` of the element on."""
-    stiffness, dashpot = now
-    rank = stiffness.shape[1]
+@njit(**INNER_KERNEL)
+def _enter_cut(coupling, row, of_force, of_state, matrix, couple):
+    """Enter stiffness or dashpots (r, r, 8) at the point whose values begin at a row."""
+    rank = coupling.shape[0]
     for k in range(rank):
         for l in range(rank):  # noqa: E741
-            stiff = load(stiffness, (at, k, l))
-            _add_row(matrix, row + k, stiff, period.motion_of_force[s], row + l)
-            _add_row(couple, row + k, stiff, period.motion_of_state[s], row + l)
-            if rates.of_state.shape[0] > 0:
-                rate = load(dashpot, (at, k, l))
-                _add_row(matrix, row + k, rate, rates.of_force[s], row + l)
-                _add_row(couple, row + k, rate, rates.of_state[s], row + l)
+            factor = load(coupling, (k, l))
+            _add_row(matrix, row + k, factor, of_force, row + l)
+            _add_row(couple, row + k, factor, of_state, row + l)
 
 
-@njit(**KERNEL)
-def _enter_own(block, row, s, period, matrix, couple):
+@njit(**INNER_KERNEL)
+def _enter_own(block, row, of_force, of_state, output, matrix, couple):
     """Enter a source that lies within the very element."""
     rank, width = block.shape[0], block.shape[1]
     for k in range(rank):
         for l in range(rank):  # noqa: E741
             start = load(block, (k, l))
             for j in range(couple.shape[1]):
-                value = load(couple, (row + k, j)) - start * period.output[l, j]
+                value = load(couple, (row + k, j)) - start * output[l, j]
                 store(couple, (row + k, j), value)
         for column in range(width - rank):
             weight = -1.0 * load(block, (k, rank + column))
-            _add_row(matrix, row + k, weight, period.motion_of_force[s], column)
-            _add_row(couple, row + k, weight, period.motion_of_state[s], column)
+            _add_row(matrix, row + k, weight, of_force, column)
+            _add_row(couple, row + k, weight, of_state, column)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _factorise(a):
     """Replace a (n, n, 8) by its factors; the diagonal of the upper one is inverted.
 
@@ -185,7 +200,7 @@ def _factorise(a):
                 store(a, (i, j), load(a, (i, j)) - factor * load(a, (k, j)))
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _solve(factors, x):
     """Replace x (n, 8) by the solution of the factorised matrix."""
     n = x.shape[0]
@@ -201,91 +216,126 @@ def _solve(factors, x):
         store(x, i, total * load(factors, (i, i)))
 
 
-@njit(**KERNEL)
-def _couplings_in_lanes(plans, members, speeds, scale):
-    """Stiffness and dashpot (E p, r, r, 8) and blocks of the sources, scaled."""
-    first = plans[members[0]]
-    stiffness, dashpot = np.empty((*first.stiffness.shape, LANES)), np.empty((*first.stiffness.shape, LANES))
-    block = np.empty((*first.block.shape, LANES))
+@njit(**INNER_KERNEL)
+def _side_by_side(numbers, members, first, count, out):
+    """Set out (count, 8) to a part of the numbers of the plans of all lanes."""
     for lane in range(LANES):
-        plan = plans[members[lane]]
-        stiffness[..., lane] = plan.stiffness / scale
-        dashpot[..., lane] = plan.dashpot / speeds[lane]
-        block[..., lane] = plan.block / scale
-    return (stiffness, dashpot), block
+        of_lane = numbers[members[lane]]
+        for i in range(count):
+            out[i, lane] = of_lane[first + i]
 
 
-@njit(**KERNEL)
-def build_element_map(cut, plans, members, speeds):
+@njit(**INNER_KERNEL)
+def _multiply_all(a, factor):
+    """Multiply all of a (n, 8) by a plain factor or by lanes."""
+    for i in range(a.shape[0]):
+        store(a, i, load(a, i) * factor)
+
+
+@njit(**SINGLE_KERNEL)
+def build_element_map(structure, table, damped, packed, numbers, members, speeds):
     """Assemble the elements of one period.
 
     Parameters
     ----------
-    cut : CutArrays
-    plans : list of CutPlan
+    structure : Structure
+    table : ResponseTable
+    damped : bool
+        Whether the cut has dashpots.
+    packed : (i,) array of int
+        Structure of the plans of all lanes.
+    numbers : list of arrays of float
+        Of all plans.
     members : (8,) array of int
-        Plan of every lane; all alike.
-    speeds : (8,) array of float
+        Plan of every lane.
+    speeds : (1, 8) array of float
         Mean spindle speed of every lane, rad/s.
 
     Returns
     -------
     ElementMap
     """
-    modes, rank = cut.shape.shape
-    points = cut.points.weight.shape[0]
+    plan = structure_of_plan(packed)
+    modes, rank = structure.shape.shape
+    points = table.coefficient.shape[3] - 2
     size, values = 2 * modes, points * rank
-    plan = plans[members[0]]
-    shapes, cuts = plan.layout.length.shape[0], plan.layout.cut_start.shape[0]
-    scale = motion_scale(cut)
-    now, block = _couplings_in_lanes(plans, members, speeds, scale)
-    output = np.zeros((rank, size))
-    for m in range(modes):
-        for k in range(rank):
-            output[k, 2 * m] = scale * cut.shape[m, k] / cut.natural_frequency[m]
+    lengths, cuts, sources = packed[1], packed[2], packed[3]
+    output, scale = motion_of_state(structure)
+    slowness = 1.0 / load(speeds, 0)
+    turns = np.empty((lengths, LANES))
+    _side_by_side(numbers, members, 1, lengths, turns)
+    _multiply_all(turns, slowness)
+    pairs = cuts * points * rank * rank
+    stiffness, dashpot = np.empty((pairs, LANES)), np.empty((pairs, LANES))
+    first = 1 + lengths + 2 * cuts
+    _side_by_side(numbers, members, first, pairs, stiffness)
+    _side_by_side(numbers, members, first + pairs, pairs, dashpot)
+    block = np.empty((sources * rank * (values + rank), LANES))
+    _side_by_side(numbers, members, first + 2 * pairs, block.shape[0], block)
+    _multiply_all(stiffness, 1.0 / scale)
+    _multiply_all(dashpot, slowness)
+    _multiply_all(block, 1.0 / scale)
     period = ElementMap(
-        plan.layout.cut, plan.layout.shape, np.empty((shapes, modes, 2, 2, LANES)),
-        np.empty((shapes, values, size, LANES)), np.empty((shapes, values, values, LANES)),
-        np.empty((shapes, size, values, LANES)), np.zeros((cuts, values, values, LANES)),
-        np.zeros((cuts, values, size, LANES)), plan.first_source, plan.source, plan.point, block,
-        output, plan.memory,
+        plan, np.empty((lengths, modes, 2, 2, LANES)), np.empty((lengths, values, size, LANES)),
+        np.zeros((lengths, values, values, LANES)), np.empty((lengths, size, values, LANES)),
+        np.zeros((cuts, values, values, LANES)), np.zeros((cuts, values, size, LANES)),
+        block.reshape((sources, rank, values + rank, LANES)), output,
     )  # fmt: skip
-    rated = shapes if cut.pieces.damping[1] > 0.0 else 0
-    rates = _Rates(
-        np.empty((rated, values, size, LANES)), np.empty((rated, values, values, LANES))
-    )
-    _fill_lengths(cut, plans, members, speeds, scale, period, rates)
-    for m in range(period.cut.shape[0]):
-        e, s = period.cut[m], period.shape[m]
-        if e < 0:
-            continue
-        matrix, couple = period.lower[e], period.couple[e]
-        for i in range(values):
-            store(matrix, (i, i), spread(1.0))
-        for i in range(points):
-            at = e * points + i
-            _enter_cut(now, at, s, i * rank, period, rates, matrix, couple)
-            for entry in range(period.first_source[at], period.first_source[at + 1]):
-                if period.source[entry] == e:
-                    _enter_own(block[entry], i * rank, s, period, matrix, couple)
-        _factorise(matrix)
+    rated = lengths if damped else 0
+    rates = _Rates(np.empty((rated, values, size, LANES)), np.zeros((rated, values, values, LANES)))
+    _fill_lengths(structure, table, turns, plan.length_cuts, scale, period, rates)
+    couplings = (cuts * points, rank, rank, LANES)
+    _enter_elements(period, rates, stiffness.reshape(couplings), dashpot.reshape(couplings))
     return period
 
 
-@njit(**KERNEL)
+@njit(**SINGLE_KERNEL)
+def _enter_elements(period, rates, stiffness, dashpot):
+    """Fill in and factorise the matrices of all elements in the cut."""
+    plan, block = period.plan, period.block
+    _, values, _, _ = period.couple.shape
+    rank = stiffness.shape[1]
+    points = values // rank
+    for m in range(plan.cut.shape[0]):
+        e, s = plan.cut[m], plan.shape[m]
+        if e < 0:
+            continue
+        matrix, couple = period.factors[e], period.couple[e]
+        of_force, of_state = period.motion_of_force[s], period.motion_of_state[s]
+        for i in range(values):
+            store(matrix, (i, i), spread(1.0))
+        for i in range(points):
+            at, row = e * points + i, i * rank
+            _enter_cut(stiffness[at], row, of_force, of_state, matrix, couple)
+            if rates.of_state.shape[0] > 0:
+                _enter_cut(dashpot[at], row, rates.of_force[s], rates.of_state[s], matrix, couple)
+            for entry in range(plan.first_source[at], plan.first_source[at + 1]):
+                if plan.source[entry] == e:
+                    _enter_own(block[entry], row, of_force, of_state, period.output, matrix, couple)
+        _factorise(matrix)
+
+
+class ElementScratch(NamedTuple):
+    """Scratch of `apply_element_map`; `force` is left with that at the points of all elements."""
+
+    motion: NDArray[np.float64]  # of all elements (memory + E, q + r, 8)
+    force: NDArray[np.float64]  # (E, q, 8)
+    state: NDArray[np.float64]  # (2n, 8)
+    following: NDArray[np.float64]  # (2n, 8)
+
+
+@njit(**INNER_KERNEL)
 def element_scratch(period):
-    """Scratch of `apply_element_map`: motion of all elements, force, state."""
+    """Return scratch for `apply_element_map`."""
     cuts, values, size, _ = period.couple.shape
-    rank = period.output.shape[0]
-    return (
-        np.zeros((period.memory + cuts, values + rank, LANES)),
-        np.empty((values, LANES)),
-        np.empty((size, LANES)),
-        np.empty((size, LANES)),
-    )
+    memory = period.plan.memory
+    return ElementScratch(
+        np.zeros((memory + cuts, values + period.output.shape[0], LANES)),
+        np.empty((cuts, values, LANES)), np.empty((size, LANES)), np.empty((size, LANES)),
+    )  # fmt: skip
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _multiply(a, x, first, out):
     """Set out, from its row `first` on, to a (n, m, 8) times x (m, 8)."""
     for i in range(a.shape[0]):
@@ -295,7 +345,7 @@ def _multiply(a, x, first, out):
         store(out, first + i, total)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _multiply_add(a, x, first, out):
     """Add a (n, m, 8) times x (m, 8) to out, from its row `first` on."""
     for i in range(a.shape[0]):
@@ -305,71 +355,67 @@ def _multiply_add(a, x, first, out):
         store(out, first + i, total)
 
 
-@njit(**KERNEL)
-def _delayed_force(period, e, motion, force):
-    """Set force to what the earlier motion asks for at the points of element e."""
-    rank, values = period.output.shape[0], force.shape[0]
-    width = values + rank
-    points = values // rank
+@njit(**INNER_KERNEL)
+def _copy(source, first, out, start, count):
+    """Copy rows (.., 8) from one place to another."""
+    for i in range(count):
+        store(out, start + i, load(source, first + i))
+
+
+@njit(**SINGLE_KERNEL)
+def _delayed_force(plan, block, e, motion, force):
+    """Set force (q, 8) to what the earlier motion asks for at the points of element e."""
+    rank, width = block.shape[1], block.shape[2]
+    points = force.shape[0] // rank
     for i in range(points):
         for k in range(rank):
             store(force, i * rank + k, spread(0.0))
-        first, last = period.first_source[e * points + i], period.first_source[e * points + i + 1]
-        for entry in range(first, last):
-            if period.source[entry] == e:
+        for entry in range(
+            plan.first_source[e * points + i], plan.first_source[e * points + i + 1]
+        ):
+            if plan.source[entry] == e:
                 continue
-            earlier = motion[period.memory + period.source[entry]]
-            q = period.point[entry]
+            earlier = motion[plan.memory + plan.source[entry]]
+            q = plan.point[entry]
             low, high = (q * rank, (q + 1) * rank) if q >= 0 else (0, width)
             for k in range(rank):
                 total = load(force, i * rank + k)
                 for j in range(low, high):
-                    total += load(period.block, (entry, k, j)) * load(earlier, j)
+                    total += load(block, (entry, k, j)) * load(earlier, j)
                 store(force, i * rank + k, total)
 
 
-@njit(**KERNEL)
-def _advance(period, m, scratch):
-    """Advance state and motion over one element; leaves the force on it in the scratch."""
-    motion, force, state, following = scratch
-    _, values, size, _ = period.couple.shape
-    rank = period.output.shape[0]
-    e, s = period.cut[m], period.shape[m]
-    for mode in range(size // 2):
-        free = period.free[s, mode]
+@njit(**INNER_KERNEL)
+def _free_motion(free, state, following):
+    """Set what follows (2n, 8) to the state after free motion, free (n, 2, 2, 8)."""
+    for mode in range(free.shape[0]):
         a, b = load(state, 2 * mode), load(state, 2 * mode + 1)
-        store(following, 2 * mode, load(free, (0, 0)) * a + load(free, (0, 1)) * b)
-        store(following, 2 * mode + 1, load(free, (1, 0)) * a + load(free, (1, 1)) * b)
-    if e >= 0:
-        own = motion[period.memory + e]
-        for k in range(rank):
-            total = spread(0.0)
-            for j in range(size):
-                total += period.output[k, j] * load(state, j)
-            store(own, k, total)
-        _delayed_force(period, e, motion, force)
-        for i in range(values):
-            total = load(force, i)
-            for j in range(size):
-                total -= load(period.couple, (e, i, j)) * load(state, j)
-            store(force, i, total)
-        _solve(period.lower[e], force)
-        _multiply(period.motion_of_state[s], state, rank, own)
-        _multiply_add(period.motion_of_force[s], force, rank, own)
-        _multiply_add(period.state_of_force[s], force, 0, following)
-    state[:, :] = following
+        for row in range(2):
+            value = load(free, (mode, row, 0)) * a + load(free, (mode, row, 1)) * b
+            store(following, 2 * mode + row, value)
 
 
-@njit(**KERNEL)
-def _start(period, vector, scratch):
-    motion, _, state, _ = scratch
-    size, width = state.shape[0], motion.shape[1]
-    state[:, :] = vector[:size]
-    for e in range(period.memory):
-        motion[e] = vector[size + e * width : size + (e + 1) * width]
+@njit(**SINGLE_KERNEL)
+def _in_cut(couple, factors, of_state, of_force, to_state, output, state, own, force, following):
+    """Advance over an element in the cut; force holds what the earlier motion asks for."""
+    rank, size = output.shape
+    for k in range(rank):
+        total = spread(0.0)
+        for j in range(size):
+            total += output[k, j] * load(state, j)
+        store(own, k, total)
+    for i in range(force.shape[0]):
+        total = load(force, i)
+        for j in range(size):
+            total -= load(couple, (i, j)) * load(state, j)
+        store(force, i, total)
+    _solve(factors, force)
+    _multiply(of_state, state, rank, own)
+    _multiply_add(of_force, force, rank, own)
+    _multiply_add(to_state, force, 0, following)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def apply_element_map(period, vector, out, scratch):
     """Set out to the image of the vector after one period.
 
@@ -378,26 +424,25 @@ def apply_element_map(period, vector, out, scratch):
     period : ElementMap
     vector, out : (2n + memory (p + 1) r, 8) array of float
         State, then the motion at the points of the last elements in the cut, scaled.
-    scratch : tuple
-        As from `element_scratch`.
+    scratch : ElementScratch
     """
-    _start(period, vector, scratch)
-    for m in range(period.cut.shape[0]):
-        _advance(period, m, scratch)
-    motion, _, state, _ = scratch
+    plan, motion, state = period.plan, scratch.motion, scratch.state
     size, width = state.shape[0], motion.shape[1]
-    cuts = period.couple.shape[0]
-    out[:size] = state
-    for e in range(period.memory):
-        out[size + e * width : size + (e + 1) * width] = motion[cuts + e]
-
-
-@njit(**KERNEL)
-def force_over_period(period, vector, force):
-    """Set force (E, q, 8) to that at the points of all elements that follows from a vector."""
-    scratch = element_scratch(period)
-    _start(period, vector, scratch)
-    for m in range(period.cut.shape[0]):
-        _advance(period, m, scratch)
-        if period.cut[m] >= 0:
-            force[period.cut[m]] = scratch[1]
+    cuts = scratch.force.shape[0]
+    _copy(vector, 0, state, 0, size)
+    for e in range(plan.memory):
+        _copy(vector, size + e * width, motion[e], 0, width)
+    for m in range(plan.cut.shape[0]):
+        e, s = plan.cut[m], plan.shape[m]
+        _free_motion(period.free[s], state, scratch.following)
+        if e >= 0:
+            _delayed_force(plan, period.block, e, motion, scratch.force[e])
+            _in_cut(
+                period.couple[e], period.factors[e], period.motion_of_state[s],
+                period.motion_of_force[s], period.state_of_force[s], period.output, state,
+                motion[plan.memory + e], scratch.force[e], scratch.following,
+            )  # fmt: skip
+        _copy(scratch.following, 0, state, 0, size)
+    _copy(state, 0, out, 0, size)
+    for e in range(plan.memory):
+        _copy(motion[cuts + e], 0, out, size + e * width, width)

@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from chatter.kernels import KERNEL
+from chatter.kernels import INNER_KERNEL
 from chatter.lanes import load, spread, store
 
 
@@ -120,19 +120,20 @@ def response_table(
     return ResponseTable(np.ascontiguousarray(np.stack(tables)), furthest)
 
 
-@njit(**KERNEL)
-def mode_response(table, mode, x, out):
+@njit(**INNER_KERNEL)
+def mode_response(coefficient, furthest, x, out):
     """Set out to the first rows of the response of a mode at omega h = x.
 
     Parameters
     ----------
-    table : ResponseTable
-    mode : int
+    coefficient : (K, 2p + 2, p + 2) array of float
+        Of the mode, in the `ResponseTable`.
+    furthest : float
+        omega h up to which it holds.
     x : (1, 8) array of float
     out : (rows, p + 2, 8) array of float
     """
-    coefficient = table.coefficient[mode]
-    t = (2.0 / table.furthest[mode]) * load(x, 0) - 1.0
+    t = (2.0 / furthest) * load(x, 0) - 1.0
     before, now = spread(1.0), t
     for i in range(out.shape[0]):
         for j in range(out.shape[1]):
@@ -144,7 +145,7 @@ def mode_response(table, mode, x, out):
                 store(out, (i, j), load(out, (i, j)) + now * coefficient[k, i, j])
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def free_response(ratio, x, out):
     """Set out (2, 2, 8) to what a mode without force makes of its state over omega h = x (1, 8)."""
     root = math.sqrt(1.0 - ratio * ratio)

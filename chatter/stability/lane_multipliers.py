@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from chatter.kernels import KERNEL
+from chatter.kernels import INNER_KERNEL, SINGLE_KERNEL
 from chatter.lanes import LANES, load, spread, store
 from chatter.stability.element_map import apply_element_map, element_scratch
 from chatter.stability.hessenberg import dominant_pair
@@ -35,22 +35,24 @@ class DominantPairs(NamedTuple):
     used: NDArray[np.int64]  # of the basis (8,)
 
 
-@njit(**KERNEL)
+@njit(**SINGLE_KERNEL)
 def _start_vectors(period, out, scratch):
     """A fixed pseudo-random vector in all lanes, smoothed by one pass through the map."""
     start = np.empty(out.shape)
     seed = 12345
+    size = period.output.shape[1]
+    scale = 0.0
+    for j in range(size):
+        scale += abs(period.output[0, j])
     for i in range(start.shape[0]):
         seed = (1103515245 * seed + 12345) % 2147483648
-        start[i] = seed / 1073741824.0 - 1.0
-    size = period.output.shape[1]
-    scale = np.abs(period.output[0]).sum()
-    # motion is smaller than the state by the size of the output matrix
-    start[size:] *= scale / size
+        # motion is smaller than the state by the size of the output matrix
+        factor = 1.0 if i < size else scale / size
+        store(start, i, spread(factor * (seed / 1073741824.0 - 1.0)))
     apply_element_map(period, start, out, scratch)
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _norms(vector, out):
     """Set out (1, 8) to the norms of vectors (D, 8)."""
     total = spread(0.0)
@@ -61,7 +63,7 @@ def _norms(vector, out):
         out[0, lane] = math.sqrt(out[0, lane])
 
 
-@njit(**KERNEL)
+@njit(**INNER_KERNEL)
 def _divide(vector, norm):
     """Divide vectors (D, 8) by their norms (1, 8); nothing stays nothing."""
     factor = np.empty((1, LANES))
@@ -72,7 +74,7 @@ def _divide(vector, norm):
         store(vector, i, load(vector, i) * by)
 
 
-@njit(**KERNEL)
+@njit(**SINGLE_KERNEL)
 def _orthogonalise(basis, k, hessenberg):
     """Take the first k + 1 vectors out of the next one, twice, and note how much of each."""
     vector = basis[k + 1]
@@ -86,7 +88,7 @@ def _orthogonalise(basis, k, hessenberg):
                 store(vector, i, load(vector, i) - overlap * load(basis, (j, i)))
 
 
-@njit(**KERNEL)
+@njit(**SINGLE_KERNEL)
 def dominant_pairs(period):
     """Multiplier of largest magnitude of every lane.
 
@@ -99,7 +101,7 @@ def dominant_pairs(period):
     DominantPairs
     """
     _, values, size, _ = period.couple.shape
-    dimension = size + period.memory * (values + period.output.shape[0])
+    dimension = size + period.plan.memory * (values + period.output.shape[0])
     scratch = element_scratch(period)
     largest = min(dimension, _LARGEST_SPACE)
     basis = np.empty((largest + 1, dimension, LANES))
@@ -119,7 +121,7 @@ def dominant_pairs(period):
         _norms(basis[k + 1], before)
         _orthogonalise(basis, k, hessenberg)
         _norms(basis[k + 1], norm)
-        hessenberg[k + 1, k] = norm[0]
+        store(hessenberg, (k + 1, k), load(norm, 0))
         regular = k + 1 in (look, largest)
         if regular:
             look = min(largest, math.ceil(look * _GROWTH))
@@ -129,7 +131,7 @@ def dominant_pairs(period):
     return found
 
 
-@njit(**KERNEL)
+@njit(**SINGLE_KERNEL)
 def _look(hessenberg, used, largest, regular, norm, before, found):
     """Take down the lanes that have converged; tell whether all have."""
     done = True
@@ -143,12 +145,16 @@ def _look(hessenberg, used, largest, regular, norm, before, found):
         if before[lane] == 0.0:
             found.used[lane] = used
             continue
-        small = hessenberg[:used, :used, lane].copy()
+        small = np.empty((used, used))
+        for i in range(used):
+            for j in range(used):
+                small[i, j] = hessenberg[i, j, lane]
         value, coordinates = dominant_pair(small)
         residual = norm[lane] * abs(coordinates[used - 1]) / max(abs(value), 1e-300)
         if residual < _TOLERANCE or invariant or used == largest:
             found.value[lane], found.used[lane] = value, used
-            found.coordinates[lane, :used] = coordinates
+            for j in range(used):
+                found.coordinates[lane, j] = coordinates[j]
         else:
             done = False
     return done
