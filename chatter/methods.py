@@ -14,6 +14,7 @@ from chatter.case import Case
 from chatter.errors import InputError
 from chatter.model import MillingModel
 from chatter.stability import collocation, multi_frequency, semi_discretization
+from chatter.stability.cut_arrays import CutArrays
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.multiplier import Multiplier
 from chatter.stability.step_schemes import FullDiscretization, SecondOrder, ZerothOrder
@@ -60,7 +61,11 @@ def by_collocation(
     progress: Progress,
 ) -> LimitCurve:
     """Limits by collocation on elements, of any tool."""
-    return collocation.limit_curve(model.cut(float(depths[-1])), speeds, depths, progress)
+
+    def cut_at(points: int, waves: float) -> CutArrays:
+        return model.cut(float(depths[-1]), points, waves)
+
+    return collocation.converged_limit_curve(cut_at, speeds, depths, progress)
 
 
 def by_multi_frequency(

@@ -15,12 +15,20 @@ from chatter.stability import drivers
 from chatter.stability.cut_arrays import RESOLUTION, CutArrays
 from chatter.stability.following import followed_crossings
 from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.limit_search import PointMethod, growth, limit_curve_by
+from chatter.stability.limit_search import growth, limits_at
 from chatter.stability.multiplier import Multiplier
 from chatter.stability.sweep import Progress, no_progress, sweep
 
 #: resolutions of a single point, one after the other until two agree
 FINER = ((10, 1.0), (12, 0.8), (12, 0.5), (12, 0.3), (12, 0.15))
+#: of a limit, relative to its depth
+DEPTH_TOLERANCE = 1e-6
+#: largest estimated error of limits, relative to their depth
+LIMIT_ERROR = 1e-3
+#: limits that are looked at again with finer elements
+_CHECKED = 16
+#: speeds from one to the next of those at which all depths are looked at
+STRIDE = 4
 #: points handed to a thread at once: many enough to fill the lanes of the kernels
 _POINTS_A_CHUNK = 64
 
@@ -49,8 +57,6 @@ def multipliers(
     (n,) array of complex
         Imaginary part >= 0.
     """
-    if len(speeds) == 0:
-        return np.empty(0, dtype=np.complex128)
     return _solved(cut, speeds, depths, np.zeros(len(speeds), dtype=np.bool_), progress)[0]
 
 
@@ -62,6 +68,8 @@ def _solved(
     progress: Progress = no_progress,
 ) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
     """Multipliers, and chatter frequencies (Hz) of the points listened to, nan elsewhere."""
+    if len(speeds) == 0:
+        return np.empty(0, dtype=np.complex128), np.empty(0)
     # points of one depth share much work, at neighbouring speeds most of it
     _, row, shared = np.unique(depths, return_inverse=True, return_counts=True)
     level = np.where(shared[row] > 1, depths, 0.0)
@@ -112,8 +120,6 @@ def chatter_frequencies(
     cut: CutArrays, speeds: NDArray[np.float64], depths: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Frequency (Hz) at which the motion of the dominant multiplier is largest, at n points."""
-    if len(speeds) == 0:
-        return np.empty(0)
     return _solved(cut, speeds, depths, np.ones(len(speeds), dtype=np.bool_))[1]
 
 
@@ -122,52 +128,93 @@ def chatter_frequency(cut: CutArrays, speed: float, depth: float) -> float:
     return float(chatter_frequencies(cut, np.array([speed]), np.array([depth]))[0])
 
 
-def followed_limits(
-    cut: CutArrays,
-    speeds: NDArray[np.float64],
-    depths: NDArray[np.float64],
-    tolerance: float = 5e-3,
-) -> list[NDArray[np.float64]]:
-    """Limits at every speed by following the boundary, for a diagram that follows a slider.
-
-    Parameters
-    ----------
-    cut : CutArrays
-        At any resolution: 6 points an element do for a picture.
-    speeds : (n,) array of float
-        rad/s, ascending.
-    depths : (m,) array of float
-        Coarse net, m.
-    tolerance : float
-        Of a limit, relative to its depth.
-
-    Returns
-    -------
-    list of n arrays
-        m; all changes of stability, lost at even places; see `following` for what may be missed.
-    """
-
-    def at(points: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
-        return growth(multipliers(cut, speeds[points], depth))
-
-    return followed_crossings(len(speeds), depths, at, tolerance)
-
-
 def limit_curve(
     cut: CutArrays,
     speeds: NDArray[np.float64],
     depths: NDArray[np.float64],
     progress: Progress = no_progress,
+    tolerance: float = DEPTH_TOLERANCE,
+    stride: int = STRIDE,
 ) -> LimitCurve:
-    """Limits of stability at every spindle speed; see `limit_search`."""
+    """Limits of stability at every spindle speed, by following the boundary.
 
-    def at(
-        points: NDArray[np.int64], depth: NDArray[np.float64], report: Progress = no_progress
-    ) -> NDArray[np.complex128]:
-        return multipliers(cut, speeds[points], depth, report)
+    Parameters
+    ----------
+    cut : CutArrays
+    speeds : (n,) array of float
+        rad/s, ascending.
+    depths : (m,) array of float
+        Net on which changes of stability are looked for, m.
+    progress : callable, optional
+        Called with (done, total) speeds.
+    tolerance : float
+        Of a limit, relative to its depth.
+    stride : int
+        All depths are looked at for every so many speeds, a power of two; see `following` for what
+        may be missed between them.
+    """
 
-    def heard(speed: int, depth: float) -> float:
-        return chatter_frequency(cut, float(speeds[speed]), depth)
+    def growth_at(points: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
+        return growth(multipliers(cut, speeds[points], depth))
 
+    def heard(
+        points: NDArray[np.int64], depth: NDArray[np.float64]
+    ) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+        return _solved(cut, speeds[points], depth, np.ones(len(points), dtype=np.bool_))
+
+    crossings = followed_crossings(len(speeds), depths, growth_at, tolerance, stride, progress)
     steps = drivers.points_of_periods(cut, speeds, float(depths[-1]))
-    return limit_curve_by(PointMethod(at, at, heard), speeds, depths, steps, progress)
+    return limits_at(heard, speeds, crossings, steps)
+
+
+def converged_limit_curve(
+    cut_at: CutAt,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    progress: Progress = no_progress,
+    tolerance: float = LIMIT_ERROR,
+) -> LimitCurve:
+    """Limits at every spindle speed, with finer elements until they are good to a tolerance.
+
+    Parameters
+    ----------
+    cut_at : callable
+        Cut at a resolution.
+    speeds, depths, progress
+        As for `limit_curve`.
+    tolerance : float
+        On the depths of the limits, relative.
+
+    Returns
+    -------
+    LimitCurve
+        With the estimated error.
+    """
+    cut = cut_at(*RESOLUTION)
+    for finer in FINER:
+        finer_cut = cut_at(*finer)
+        limits = limit_curve(cut, speeds, depths, progress)
+        error = _limit_error(limits, cut, finer_cut)
+        if error <= tolerance:
+            break
+        cut = finer_cut
+    return limits._replace(error=error)
+
+
+def _limit_error(limits: LimitCurve, cut: CutArrays, finer: CutArrays) -> float:
+    """Largest relative shift of the limit depth, of some limits, by a finer resolution."""
+    found = np.flatnonzero(np.isfinite(limits.critical_depth))
+    if found.size == 0:
+        return 0.0
+    # the slowest speeds have the most waves in a cut: none of them is left out
+    picked = found[
+        np.unique(np.geomspace(1, found.size, min(found.size, _CHECKED)).astype(int) - 1)
+    ]
+    speed, depth = limits.spindle_speed[picked], limits.critical_depth[picked]
+    step = 1e-3 * depth
+    left, right = (growth(multipliers(cut, speed, depth + s)) for s in (-step, step))
+    slope = np.maximum(np.abs(right - left) / (2.0 * step), 1e-300)
+    shift = np.abs(
+        growth(multipliers(finer, speed, depth)) - growth(multipliers(cut, speed, depth))
+    )
+    return float(np.max(shift / (slope * depth)))

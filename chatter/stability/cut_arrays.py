@@ -25,6 +25,7 @@ _CHATTER_ABOVE_NATURAL = 1.2
 RESOLUTION = (8, 1.0)
 #: an element turns the spindle by no more than this, rad
 LONGEST_ANGLE = 0.9
+_SMALLEST_RESIDUAL = 1e-9
 #: largest order of a Gauss quadrature along a piece of the edge
 _MOST_EDGE_POINTS = 16
 
@@ -36,6 +37,7 @@ class Resolution(NamedTuple):
     fastest: float  # vibration that elements resolve, with no cut, rad/s
     stiffening: float  # by which its square grows with depth, rad^2/s^2/m
     longest_angle: float  # rad
+    residual: float  # of the dominant eigenpair, relative, at which its search stops
 
 
 class CutArrays(NamedTuple):
@@ -117,6 +119,8 @@ def cut_arrays(
         nodes, weights = np.polynomial.legendre.leggauss(count)
         place[count, :count], weight[count, :count] = 0.5 * (nodes + 1.0), 0.5 * weights
     of_element = element_points(points)
+    # no better than the elements are
+    residual = max(_SMALLEST_RESIDUAL, 10.0 ** (4.0 - 1.5 * points))
     return CutArrays(
         natural_frequency=natural_frequency,
         damping=damping,
@@ -128,7 +132,9 @@ def cut_arrays(
         variation=variation,
         points=of_element,
         response=response_table(natural_frequency, damping, of_element, longest),
-        resolution=Resolution(longest, fastest, _stiffening(modes, pieces), LONGEST_ANGLE),
+        resolution=Resolution(
+            longest, fastest, _stiffening(modes, pieces), LONGEST_ANGLE, residual
+        ),
         edge_place=place,
         edge_weight=weight,
     )

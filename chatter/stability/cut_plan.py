@@ -97,24 +97,38 @@ def _edge_points(rule, pieces, piece, span, turning):
 
 
 @njit(**INNER_KERNEL)
+def _empty_sources(count, rank, width):
+    """Room for sources."""
+    whole = np.empty(count, dtype=np.int64)
+    return _Sources(whole, np.empty(count, dtype=np.int64), np.empty((count, rank, width)))
+
+
+@njit(**INNER_KERNEL)
 def _grown(sources):
     """Twice the room for sources."""
     count, rank, width = sources.block.shape
-    element, point = np.empty(2 * count, dtype=np.int64), np.empty(2 * count, dtype=np.int64)
-    block = np.empty((2 * count, rank, width))
+    larger = _empty_sources(2 * count, rank, width)
     for i in range(count):
-        element[i], point[i] = sources.element[i], sources.point[i]
+        larger.element[i], larger.point[i] = sources.element[i], sources.point[i]
         for k in range(rank):
             for j in range(width):
-                block[i, k, j] = sources.block[i, k, j]
-    return _Sources(element, point, block)
+                larger.block[i, k, j] = sources.block[i, k, j]
+    return larger
 
 
 @njit(**SINGLE_KERNEL)
-def _add_source(points, sources, found, place, stiffness):
-    """Add the coupling to the motion at a place in an element to a source."""
-    block = sources.block[found]
-    rank, count = stiffness.shape[0], points.place.shape[0]
+def _begin_source(sources, at, element):
+    """Make an empty source of an element."""
+    sources.element[at], sources.point[at] = element, -2
+    for k in range(sources.block.shape[1]):
+        for j in range(sources.block.shape[2]):
+            sources.block[at, k, j] = 0.0
+
+
+@njit(**SINGLE_KERNEL)
+def _add_source(points, sources, at, place, couplings, which):
+    """Add a coupling to the motion at a place in an element to a source."""
+    rank, count = couplings.shape[1], points.place.shape[0]
     near, total = -1, 0.0
     for q in range(count):
         distance = place - points.place[q]
@@ -129,56 +143,43 @@ def _add_source(points, sources, found, place, stiffness):
         if share != 0.0:
             for i in range(rank):
                 for j in range(rank):
-                    block[i, q * rank + j] += share * stiffness[i, j]
+                    sources.block[at, i, q * rank + j] += share * couplings[which, i, j]
     # -2: nothing there as yet
-    known = sources.point[found]
-    sources.point[found] = near if known in (-2, near) else -1
+    known = sources.point[at]
+    sources.point[at] = near if known in (-2, near) else -1
+
+
+@njit(**INNER_KERNEL)
+def _note(points, layout, angle, sources, first, count, couplings, which):
+    """Add a coupling to the motion at an earlier mean angle; returns the number of sources."""
+    element, place = element_before(layout, angle)
+    found = count
+    for entry in range(first, count):
+        if sources.element[entry] == element:
+            found = entry
+            break
+    if found == count:
+        _begin_source(sources, found, element)
+    _add_source(points, sources, found, place, couplings, which)
+    return max(count, found + 1)
 
 
 @njit(**SINGLE_KERNEL)
-def _source_of(element, sources, first, count):
-    """Place of the source of an element among those from `first` on, an empty one if none is."""
-    for entry in range(first, count):
-        if sources.element[entry] == element:
-            return entry
-    sources.element[count], sources.point[count] = element, -2
-    block = sources.block[count]
-    for k in range(block.shape[0]):
-        for j in range(block.shape[1]):
-            block[k, j] = 0.0
-    return count
-
-
-@njit(**INNER_KERNEL)
-def _note(points, layout, turn, sources, first, count, angle, stiffness):
-    """Add the coupling to the motion at an earlier spindle angle; returns sources and number."""
-    element, place = element_before(layout, time_at(turn, angle))
-    if count == sources.element.shape[0]:
-        sources = _grown(sources)
-    found = _source_of(element, sources, first, count)
-    _add_source(points, sources, found, place, stiffness)
-    return sources, max(count, found + 1)
-
-
-@njit(**INNER_KERNEL)
 def _couple(
-    pieces, rule, basis, points, layout, turn, depth, angle, sources, count, stiffness, dashpot,
-    groups, used,
+    pieces, tops, rule, basis, points, layout, turn, speed_factor, angle, sources, first_source,
+    row, stiffness, dashpot, groups, part, part_dashpot,
 ):  # fmt: skip
-    """Couplings at one mean angle: fill stiffness and dashpot and append the sources."""
-    rank = stiffness.shape[0]
-    part, part_dashpot = np.empty((rank, rank)), np.empty((rank, rank))
-    _clear(stiffness)
-    _clear(dashpot)
-    for group in range(used.shape[0]):
-        used[group] = 0
-        _clear(groups[group])
-    first_source = count
+    """Enter the couplings at one mean angle; returns the number of sources."""
+    rank = basis.shape[1]
+    used = groups.shape[0] - 1
+    for group in range(used):
+        for i in range(rank):
+            for j in range(rank):
+                groups[group, i, j] = 0.0
+    count = first_source
     spindle, turning = angle_at(turn, angle), speed_at(turn, angle)
-    damped = pieces.damping[1] > 0.0
-    speed_factor = 1.0 / (radius_at(pieces, depth) * turning) if damped else 0.0
-    for piece in range(pieces.bottom.shape[0]):
-        top = part_below(pieces, piece, depth)
+    for piece in range(tops.shape[0]):
+        top = tops[piece]
         if top <= 0.0:
             continue
         group = pieces.group[piece]
@@ -198,44 +199,36 @@ def _couple(
                 place = low + x * (high - low)
                 weight = share * (high - low) * pieces.length[piece]
                 coupling_at(
-                    pieces, piece, place, spindle, weight, speed_factor, basis, part, part_dashpot
-                )
-                _add(part, stiffness)
-                if damped:
-                    _add(part_dashpot, dashpot)
-                if group >= 0:
-                    used[group] = 1
-                    _add(part, groups[group])
-                    continue
-                delay = pieces.delay[piece, 0]
-                delay += share_of_height(pieces, piece, place) * (
-                    pieces.delay[piece, 1] - pieces.delay[piece, 0]
-                )
-                sources, count = _note(
-                    points, layout, turn, sources, first_source, count, spindle - delay, part
-                )
-    for group in range(used.shape[0]):
-        if used[group] == 1:
-            angle = spindle - pieces.group_delay[group]
-            sources, count = _note(
-                points, layout, turn, sources, first_source, count, angle, groups[group]
-            )
-    return sources, count
-
-
-@njit(**INNER_KERNEL)
-def _clear(a):
-    for i in range(a.shape[0]):
-        for j in range(a.shape[1]):
-            a[i, j] = 0.0
-
-
-@njit(**INNER_KERNEL)
-def _add(a, b):
-    """Add a to b."""
-    for i in range(a.shape[0]):
-        for j in range(a.shape[1]):
-            b[i, j] += a[i, j]
+                    pieces, piece, place, spindle, weight, speed_factor / turning, basis, part,
+                    part_dashpot,
+                )  # fmt: skip
+                # the last of the groups is that of the single point
+                into = group if group >= 0 else used
+                for i in range(rank):
+                    for j in range(rank):
+                        stiffness[row, i, j] += part[i, j]
+                        dashpot[row, i, j] += part_dashpot[i, j]
+                        groups[into, i, j] = part[i, j] + (
+                            groups[into, i, j] if group >= 0 else 0.0
+                        )
+                if group < 0:
+                    height = share_of_height(pieces, piece, place)
+                    delay = pieces.delay[piece, 0] + height * (
+                        pieces.delay[piece, 1] - pieces.delay[piece, 0]
+                    )
+                    earlier = time_at(turn, spindle - delay)
+                    count = _note(
+                        points, layout, earlier, sources, first_source, count, groups, used
+                    )
+    for group in range(used):
+        filled = False
+        for i in range(rank):
+            for j in range(rank):
+                filled |= groups[group, i, j] != 0.0
+        if filled:
+            earlier = time_at(turn, spindle - pieces.group_delay[group])
+            count = _note(points, layout, earlier, sources, first_source, count, groups, group)
+    return count
 
 
 @njit(**SINGLE_KERNEL)
@@ -258,35 +251,40 @@ def cut_plan(cut, turn, layout, speed, depth):
     structure : (i,) array of int
         See `structure_of_plan`.
     numbers : (n,) array of float
-        See `numbers_of_plan`.
+        Period, lengths (S,), starts and lengths of the elements in the cut (E,), rad; stiffness
+        (E p, r, r), dashpots (E p, r, r) times the mean speed, blocks of the sources, N/m.
     """
-    points, pieces = cut.points, cut.pieces
-    rank, count_a_element = cut.basis.shape[1], points.weight.shape[0]
+    points, pieces, basis = cut.points, cut.pieces, cut.basis
+    rank, count_a_element = basis.shape[1], points.weight.shape[0]
     cuts = layout.cut_start.shape[0]
     rows = cuts * count_a_element
-    sources = _Sources(
-        np.empty(rows + 8, dtype=np.int64),
-        np.empty(rows + 8, dtype=np.int64),
-        np.empty((rows + 8, rank, (count_a_element + 1) * rank)),
-    )
-    stiffness, dashpot = np.empty((rows, rank, rank)), np.empty((rows, rank, rank))
-    groups = np.empty((pieces.group_delay.shape[0], rank, rank))
-    used = np.empty(groups.shape[0], dtype=np.int64)
+    tops = np.empty(pieces.bottom.shape[0])
+    most = pieces.group_delay.shape[0]
+    for piece in range(tops.shape[0]):
+        tops[piece] = part_below(pieces, piece, depth)
+        if tops[piece] > 0.0 and pieces.group[piece] < 0:
+            most += 2 * cut.edge_place.shape[1]
+    sources = _empty_sources(rows + most, rank, (count_a_element + 1) * rank)
+    stiffness, dashpot = np.zeros((rows, rank, rank)), np.zeros((rows, rank, rank))
+    groups = np.empty((pieces.group_delay.shape[0] + 1, rank, rank))
+    part, part_dashpot = np.empty((rank, rank)), np.zeros((rank, rank))
     rule = _EdgeRule(cut.edge_place, cut.edge_weight, cut.resolution.longest, speed)
+    damped = pieces.damping[1] > 0.0
+    speed_factor = 1.0 / radius_at(pieces, depth) if damped else 0.0
     first_source = np.zeros(rows + 1, dtype=np.int64)
-    count = 0
-    for e in range(cuts):
-        for i in range(count_a_element):
-            row = e * count_a_element + i
-            angle = layout.cut_start[e] + points.place[i + 1] * layout.cut_length[e]
-            sources, count = _couple(
-                pieces, rule, cut.basis, points, layout, turn, depth, angle, sources, count,
-                stiffness[row], dashpot[row], groups, used,
-            )  # fmt: skip
-            first_source[row + 1] = count
+    for row in range(rows):
+        e, i = row // count_a_element, row % count_a_element
+        angle = layout.cut_start[e] + points.place[i + 1] * layout.cut_length[e]
+        count = first_source[row]
+        if count + most > sources.element.shape[0]:
+            sources = _grown(sources)
+        first_source[row + 1] = _couple(
+            pieces, tops, rule, basis, points, layout, turn, speed_factor, angle, sources, count,
+            row, stiffness, dashpot, groups, part, part_dashpot,
+        )  # fmt: skip
     return (
-        _packed_structure(layout, first_source, sources, count),
-        _packed_numbers(layout, stiffness, dashpot, sources.block[:count]),
+        _packed_structure(layout, first_source, sources),
+        _packed_numbers(layout, stiffness, dashpot, sources.block, first_source[rows]),
     )
 
 
@@ -299,7 +297,8 @@ def _put(part, out, at):
 
 
 @njit(**SINGLE_KERNEL)
-def _packed_structure(layout, first_source, sources, count):
+def _packed_structure(layout, first_source, sources):
+    count = first_source[first_source.shape[0] - 1]
     elements, lengths = layout.cut.shape[0], layout.length_cuts.shape[0]
     out = np.empty(
         _HEADER + 2 * elements + lengths + first_source.shape[0] + 2 * count, dtype=np.int64
@@ -319,9 +318,10 @@ def _packed_structure(layout, first_source, sources, count):
 
 
 @njit(**SINGLE_KERNEL)
-def _packed_numbers(layout, stiffness, dashpot, block):
+def _packed_numbers(layout, stiffness, dashpot, block, sources):
+    kept = sources * block.shape[1] * block.shape[2]
     out = np.empty(
-        1 + layout.length.shape[0] + 2 * layout.cut_start.shape[0] + 2 * stiffness.size + block.size
+        1 + layout.length.shape[0] + 2 * layout.cut_start.shape[0] + 2 * stiffness.size + kept
     )
     out[0] = layout.period
     at = _put(layout.length, out, 1)
@@ -329,7 +329,7 @@ def _packed_numbers(layout, stiffness, dashpot, block):
     at = _put(layout.cut_length, out, at)
     at = _put(stiffness.reshape(stiffness.size), out, at)
     at = _put(dashpot.reshape(stiffness.size), out, at)
-    _put(block.reshape(block.size), out, at)
+    _put(block.reshape(block.size)[:kept], out, at)
     return out
 
 

@@ -136,7 +136,7 @@ def element_multipliers(cut, speeds, depths, listened):
             structure, cut.response, damped, structures[of_point[first]], numbers, members,
             lane_speeds,
         )  # fmt: skip
-        found = dominant_pairs(period)
+        found = dominant_pairs(period, cut.resolution.residual)
         if wanted:
             heard_frequencies(
                 structure, cut.points, numbers, members, lane_speeds, period, found, heard

@@ -18,10 +18,8 @@ from chatter.lanes import LANES, load, spread, store
 from chatter.stability.element_map import apply_element_map, element_scratch
 from chatter.stability.hessenberg import dominant_pair
 
-#: residual of the dominant eigenpair, relative to its magnitude, at which the iteration stops
-_TOLERANCE = 1e-8
 #: dimension of the Krylov space beyond the state at the first look, and how it grows
-_FIRST_LOOK = 5
+_FIRST_LOOK = 3
 _GROWTH = 1.3
 _LARGEST_SPACE = 240
 
@@ -89,12 +87,14 @@ def _orthogonalise(basis, k, hessenberg):
 
 
 @njit(**SINGLE_KERNEL)
-def dominant_pairs(period):
+def dominant_pairs(period, tolerance):
     """Multiplier of largest magnitude of every lane.
 
     Parameters
     ----------
     period : ElementMap
+    tolerance : float
+        Residual of the dominant eigenpair, relative to its magnitude, at which a lane is done.
 
     Returns
     -------
@@ -125,14 +125,14 @@ def dominant_pairs(period):
         regular = k + 1 in (look, largest)
         if regular:
             look = min(largest, math.ceil(look * _GROWTH))
-        if _look(hessenberg, k + 1, largest, regular, norm[0], before[0], found):
+        if _look(hessenberg, k + 1, largest, regular, norm[0], before[0], tolerance, found):
             break
         _divide(basis[k + 1], norm)
     return found
 
 
 @njit(**SINGLE_KERNEL)
-def _look(hessenberg, used, largest, regular, norm, before, found):
+def _look(hessenberg, used, largest, regular, norm, before, tolerance, found):
     """Take down the lanes that have converged; tell whether all have."""
     done = True
     for lane in range(LANES):
@@ -151,7 +151,7 @@ def _look(hessenberg, used, largest, regular, norm, before, found):
                 small[i, j] = hessenberg[i, j, lane]
         value, coordinates = dominant_pair(small)
         residual = norm[lane] * abs(coordinates[used - 1]) / max(abs(value), 1e-300)
-        if residual < _TOLERANCE or invariant or used == largest:
+        if residual < tolerance or invariant or used == largest:
             found.value[lane], found.used[lane] = value, used
             for j in range(used):
                 found.coordinates[lane, j] = coordinates[j]
