@@ -27,7 +27,7 @@ _MOST_ITERATIONS = 60
 #: growth on the net may be off by this much
 _DOUBTFUL_GROWTH = 0.05
 #: a peak may rise above the net by this share of its height over the depths beside it
-_PEAK_REACH = 0.5
+_PEAK_REACH = 1.5
 _PEAK_STEPS = 4
 
 
@@ -76,19 +76,22 @@ def find_crossings(
     depths: NDArray[np.float64],
     growth: Growth,
     tolerance: float = _DEPTH_TOLERANCE,
+    looked_at: NDArray[np.bool_] | None = None,
 ) -> list[NDArray[np.float64]]:
     """Depths of all changes of stability at each speed.
 
     Parameters
     ----------
     net : (n, m) array of float
-        Growth at n speeds and m depths; nan where it was not looked at, as it is beside no change.
+        Growth at n speeds and m depths.
     depths : (m,) array of float
         m, ascending, > 0. At zero depth the damped structure is stable.
     growth : callable
         For the refinement.
     tolerance : float
         Of a limit, relative to its depth.
+    looked_at : (n, m) array of bool, optional
+        Where the growth of the net has the right sign alone, it is False; beside changes it is not.
 
     Returns
     -------
@@ -98,7 +101,10 @@ def find_crossings(
     edges = np.concatenate([[0.0], depths])
     at_zero = np.full((net.shape[0], 1), -np.inf)
     values = np.concatenate([at_zero, net], axis=1)
-    parts = [_on_the_net(values, edges, growth), *_between(values, edges, growth)]
+    seen = values if looked_at is None else values.copy()
+    if looked_at is not None:
+        seen[:, 1:][~looked_at] = np.nan
+    parts = [_on_the_net(values, edges, growth), *_between(seen, edges, growth)]
     brackets = _Brackets(*(np.concatenate(field) for field in zip(*parts, strict=True)))
     limit = _refine(brackets, growth, tolerance)
     return [np.sort(limit[brackets.speed == i]) for i in range(net.shape[0])]

@@ -19,7 +19,7 @@ from chatter.stability.crossings import find_crossings
 from chatter.stability.sweep import Progress, no_progress
 
 #: growth of a peak or valley that the columns beside may have above or below zero
-_NEARLY_ZERO = 0.1
+_NEARLY_ZERO = 0.2
 
 #: growth at points: (indices of speeds, depths) -> (n,)
 Growth = Callable[[NDArray[np.int64], NDArray[np.float64]], NDArray[np.float64]]
@@ -57,7 +57,9 @@ def followed_crossings(
     """
     values = np.full((speed_count, depths.size), np.nan)
     columns = np.unique(np.append(np.arange(0, speed_count, stride), speed_count - 1))
-    _look_at(values, columns, np.ones((columns.size, depths.size), dtype=bool), depths, growth)
+    looked_at = np.zeros(values.shape, dtype=bool)
+    looked_at[columns] = True
+    _look_at(values, columns, looked_at[columns], depths, growth)
     progress(len(columns), max(speed_count, len(columns) + 1))
     while stride > 1:
         stride //= 2
@@ -69,10 +71,10 @@ def followed_crossings(
         # where both sides agree and nothing changes nearby the sign is taken over
         values[between] = values[before]
         _look_at(values, between, wanted, depths, growth)
-        _widen(values, between, wanted, depths, growth)
+        looked_at[between] = _widen(values, between, wanted, depths, growth)
         columns = np.sort(np.append(columns, between))
         progress(len(columns) - 1, speed_count)
-    return find_crossings(values, depths, growth, tolerance)
+    return find_crossings(values, depths, growth, tolerance, looked_at)
 
 
 def _look_at(
@@ -98,15 +100,15 @@ def _beside_changes(values: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 
 def _worth_a_look(values: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Depths beside a change of sign, and peaks and valleys of growth that nearly reach zero."""
+    """Depths beside a change of sign, or at peaks and valleys of growth that nearly reach zero."""
     padded = np.pad(values, ((0, 0), (1, 1)), mode="edge")
     before, after = padded[:, :-2], padded[:, 2:]
     side = np.where(values > 0.0, -1.0, 1.0)
     # a doubtful place beyond the first and the last depth is none
     inner = np.arange(values.shape[1]) < values.shape[1] - 1
     peak = (side * values >= side * before) & (side * values >= side * after) & inner
-    near = peak & (np.abs(values) < _NEARLY_ZERO)
-    return _beside_changes(values) | near
+    near = np.pad(peak & (np.abs(values) < _NEARLY_ZERO), ((0, 0), (1, 1)))
+    return _beside_changes(values) | near[:, 1:-1] | near[:, :-2] | near[:, 2:]
 
 
 def _widen(
@@ -115,12 +117,12 @@ def _widen(
     seen: NDArray[np.bool_],
     depths: NDArray[np.float64],
     growth: Growth,
-) -> None:
-    """Look beside every change of sign in which one of the two places was only taken over."""
+) -> NDArray[np.bool_]:
+    """Look beside changes of sign of which one side was only taken over; returns what is seen."""
     seen = seen.copy()
     while True:
         wanted = _beside_changes(values[columns]) & ~seen
         if not wanted.any():
-            return
+            return seen
         _look_at(values, columns, wanted, depths, growth)
         seen |= wanted
