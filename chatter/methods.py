@@ -65,7 +65,9 @@ def by_collocation(
     def cut_at(points: int, waves: float) -> CutArrays:
         return model.cut(float(depths[-1]), points, waves)
 
-    return collocation.converged_limit_curve(cut_at, speeds, depths, progress)
+    lobes = model.case.lobes
+    tolerance = lobes.tolerance if lobes else collocation.LIMIT_ERROR
+    return collocation.converged_limit_curve(cut_at, speeds, depths, progress, tolerance)
 
 
 def by_multi_frequency(
