@@ -70,10 +70,7 @@ def _solved(
     """Multipliers, and chatter frequencies (Hz) of the points listened to, nan elsewhere."""
     if len(speeds) == 0:
         return np.empty(0, dtype=np.complex128), np.empty(0)
-    # points of one depth share much work, at neighbouring speeds most of it
-    _, row, shared = np.unique(depths, return_inverse=True, return_counts=True)
-    level = np.where(shared[row] > 1, depths, 0.0)
-    order = np.lexsort((speeds, level))
+    order = _neighbours_together(cut, speeds, depths)
     parts = sweep(
         lambda index: drivers.element_multipliers(
             cut, speeds[order[index]], depths[order[index]], listened[order[index]]
@@ -86,6 +83,18 @@ def _solved(
     multiplier[order] = np.concatenate([part[0] for part in parts])
     frequency[order] = np.concatenate([part[1] for part in parts])
     return multiplier, frequency
+
+
+def _neighbours_together(
+    cut: CutArrays, speeds: NDArray[np.float64], depths: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    """Order of the points in which those follow each other that can share work."""
+    if cut.variation.amplitude > 0.0:
+        # the pattern of a varying speed changes with its mean
+        return np.lexsort((depths, speeds))
+    # at one depth much is shared, at neighbouring speeds most of it
+    _, row, count = np.unique(depths, return_inverse=True, return_counts=True)
+    return np.lexsort((speeds, np.where(count[row] > 1, depths, 0.0)))
 
 
 def converged_multiplier(
