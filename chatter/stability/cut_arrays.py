@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -85,6 +86,17 @@ def _stiffening(modes: tuple[NDArray[np.float64], ...], pieces: EdgePieces) -> f
     return 0.5 * reach * float(max(share[at_tip].sum(), largest))
 
 
+@lru_cache(maxsize=1)
+def _edge_quadratures() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Places and weights of the Gauss quadratures of all orders on [0, 1], a row an order."""
+    place = np.zeros((_MOST_EDGE_POINTS + 1, _MOST_EDGE_POINTS))
+    weight = np.zeros_like(place)
+    for count in range(1, _MOST_EDGE_POINTS + 1):
+        nodes, weights = np.polynomial.legendre.leggauss(count)
+        place[count, :count], weight[count, :count] = 0.5 * (nodes + 1.0), 0.5 * weights
+    return place, weight
+
+
 def cut_arrays(
     modes: tuple[NDArray[np.float64], ...],
     basis: NDArray[np.float64],
@@ -113,11 +125,7 @@ def cut_arrays(
     natural_frequency, damping, shape, force_gain = modes
     fastest = _CHATTER_ABOVE_NATURAL * relevant_frequency(*modes)
     longest = waves * 2.0 * math.pi / fastest
-    place = np.zeros((_MOST_EDGE_POINTS + 1, _MOST_EDGE_POINTS))
-    weight = np.zeros_like(place)
-    for count in range(1, _MOST_EDGE_POINTS + 1):
-        nodes, weights = np.polynomial.legendre.leggauss(count)
-        place[count, :count], weight[count, :count] = 0.5 * (nodes + 1.0), 0.5 * weights
+    place, weight = _edge_quadratures()
     of_element = element_points(points)
     # no better than the elements are
     residual = max(_SMALLEST_RESIDUAL, 10.0 ** (4.0 - 1.5 * points))
