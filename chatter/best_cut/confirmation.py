@@ -1,0 +1,59 @@
+"""Candidates simulated in the time domain, with all that the linear search leaves out.
+
+Teeth that leave the cut, ploughing in full, contact and friction of modes act there, and the wall
+is built up of the passes of the edges.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from chatter.best_cut.candidate import Candidate, TimeCheck, case_at
+from chatter.best_cut.limits import LIMITED, Limits
+from chatter.case import Case
+from chatter.simulation.result import SimulationResult
+from chatter.simulation.setup import modes_of, set_up
+from chatter.simulation.simulate import run_setup
+
+#: a limit counts as held in the time domain up to this share above it
+TOLERANCE = 0.03
+
+
+def time_check(case: Case, limits: Limits, candidate: Candidate) -> TimeCheck:
+    """Simulate the cut of a candidate from rest, with the delayed chip.
+
+    Parameters
+    ----------
+    case : Case
+        A machine is taken by its modes at the tool point.
+    limits : Limits
+    candidate : Candidate
+    """
+    here = case_at(case, candidate.place).patch({"simulation": None, "stock": None})
+    setup = set_up(here, modes_of(here)[0])
+    result, done = run_setup(setup)
+    verdict = "chatter" if done < setup.resolution.steps else _verdict(result)
+    found = _measured(result)
+    within = [
+        abs(found[LIMITED[key]]) <= most * (1.0 + TOLERANCE)
+        for key, most in limits.most.items()
+        if math.isfinite(found[LIMITED[key]])
+    ]
+    return TimeCheck(verdict, **found, held=verdict == "stable" and all(within))
+
+
+def _verdict(result: SimulationResult) -> str:
+    return "not judged" if result.judgement is None else result.judgement.verdict
+
+
+def _measured(result: SimulationResult) -> dict[str, float]:
+    settled = result.settled
+    walls = [wall.largest_location_error for wall in result.finish.walls]
+    return {
+        "power": float(result.power[settled].mean()),
+        "torque": float(result.torque[settled].mean()),
+        "deflection": float(np.linalg.norm(result.displacement[settled], axis=1).max()),
+        "surface_error": max(walls, key=abs) if walls else math.nan,
+    }

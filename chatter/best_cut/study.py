@@ -1,0 +1,179 @@
+"""`optimum`: search, probability of the best cuts, and their confirmation in the time domain."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from chatter.best_cut.candidate import Candidate, candidate_at
+from chatter.best_cut.confirmation import time_check
+from chatter.best_cut.exclusion import exclusions
+from chatter.best_cut.limits import LIMITED, Limits, limits_of
+from chatter.best_cut.result import Optimum
+from chatter.best_cut.robustness import Samples, robust_candidate, samples_of
+from chatter.best_cut.search import (
+    LEVELS,
+    STARTS,
+    Place,
+    best_of,
+    coarse_sheets,
+    refined,
+    starts_of,
+)
+from chatter.best_cut.sheet import Sheet, at_width_and_feed, sheet_of
+from chatter.case import Case
+from chatter.errors import InputError
+from chatter.model import milling_model
+from chatter.monte_carlo.propagation import check_counts
+from chatter.stability.sweep import Progress, no_progress
+
+DEFAULT_SAMPLES, DEFAULT_SEED = 200, 1
+#: candidates that are simulated in the time domain; more where these do not hold there
+_SIMULATED = 3
+
+
+class _Work:
+    """Progress over pieces of work of about the same size."""
+
+    def __init__(self, progress: Progress, total: int) -> None:
+        self.progress, self.total, self.finished = progress, total, 0
+
+    def done(self, pieces: int = 1) -> None:
+        self.finished = min(self.finished + pieces, self.total)
+        self.progress(self.finished, self.total)
+
+
+def optimum(
+    case: Case,
+    samples: int = DEFAULT_SAMPLES,
+    seed: int = DEFAULT_SEED,
+    progress: Progress = no_progress,
+) -> Optimum:
+    """Find the speed, depth, width and feed of the highest removal rate within the limits.
+
+    Parameters
+    ----------
+    case : Case
+        `[optimum]` gives ranges and limits; values such as "1650 +- 80 MPa" are what stability
+        must be robust to.
+    samples : int
+        Of the uncertain values.
+    seed : int
+        Of the random numbers.
+    progress : callable, optional
+        Called with (done, total) pieces of work.
+
+    Returns
+    -------
+    Optimum
+        Its `best` is None where no cut keeps all limits; `why_nothing` then says what excludes
+        everything.
+
+    Raises
+    ------
+    InputError
+        If the case lacks something or asks for what cannot be computed.
+    """
+    check_counts(samples, 2, seed)
+    _refuse(case)
+    model = milling_model(case)
+    limits = limits_of(case, model)
+    drawn = samples_of(case, samples, seed)
+    pieces = limits.widths.size * limits.feeds.size
+    work = _Work(progress, pieces + STARTS * (LEVELS + 1) + _SIMULATED + 1)
+    sheets = coarse_sheets(case, limits, work.done)
+    places = [refined(case, limits, start, work.done) for start in starts_of(sheets)]
+    candidates = _candidates(case, limits, places, drawn, work)
+    candidates = _confirmed(case, limits, candidates, work)
+    result = Optimum(
+        case=case,
+        limits=limits,
+        candidates=tuple(candidates),
+        over_widths=tuple(_best_of_widths(sheets, limits)),
+        sheet=_shown_sheet(case, limits, candidates, sheets),
+        exclusions=exclusions(sheets),
+        points=sum(sheet.kept.size for sheet in sheets),
+        samples=len(drawn) if drawn else 0,
+        seed=seed,
+        notes=(*model.notes, *_notes(case, limits, drawn)),
+    )
+    work.done(work.total)
+    return result
+
+
+def _refuse(case: Case) -> None:
+    case.require("tool", "material", "cut", "structure")
+    if case.cut.speed_variation is not None:
+        raise InputError(
+            f"{case.name}: cut.speed_variation: the optimum is sought at a constant speed; "
+            "leave it out"
+        )
+
+
+def _candidates(
+    case: Case, limits: Limits, places: Sequence[Place], drawn: Samples | None, work: _Work
+) -> list[Candidate]:
+    """Candidates in round numbers, best first, robust where something is uncertain."""
+    found = [candidate_at(case, limits, place) for place in places]
+    found.sort(key=lambda one: -one.removal_rate)
+    if drawn is None:
+        return found
+    robust: list[Candidate] = []
+    for one in found:
+        candidate = robust_candidate(case, limits, one, drawn)
+        robust += [] if candidate is None else [candidate]
+        work.done()
+    return sorted(robust, key=lambda one: -one.removal_rate)
+
+
+def _confirmed(
+    case: Case, limits: Limits, candidates: Sequence[Candidate], work: _Work
+) -> list[Candidate]:
+    """Candidates with their checks in the time domain: those that hold first, best first."""
+    found = []
+    for number, candidate in enumerate(candidates):
+        if number >= _SIMULATED and any(one.time.held for one in found if one.time):
+            found.append(candidate)
+            continue
+        found.append(replace(candidate, time=time_check(case, limits, candidate)))
+        work.done()
+    return sorted(found, key=lambda one: (one.time is not None and not one.time.held))
+
+
+def _best_of_widths(sheets: Sequence[Sheet], limits: Limits) -> list[Place]:
+    """Best place of every width that has one, of the coarse net."""
+    best = []
+    for width in limits.widths:
+        places = [best_of(sheet) for sheet in sheets if np.isclose(sheet.case.width_of_cut, width)]
+        known = [place for place in places if place is not None]
+        best += [max(known, key=lambda place: place.removal_rate)] if known else []
+    return best
+
+
+def _shown_sheet(
+    case: Case, limits: Limits, candidates: Sequence[Candidate], sheets: Sequence[Sheet]
+) -> Sheet:
+    """Sheet at the width and feed of the best cut; else that with the most points left."""
+    if not candidates:
+        return max(sheets, key=lambda sheet: int(sheet.kept.sum()))
+    place = candidates[0].place
+    here = at_width_and_feed(case, place.radial_depth, place.feed_per_tooth)
+    return sheet_of(here, limits, limits.speeds, limits.depths, limits.looked_at_beyond())
+
+
+def _notes(case: Case, limits: Limits, drawn: Samples | None) -> list[str]:
+    notes = []
+    missing = [key for key in LIMITED if key not in limits.most]
+    if missing:
+        notes.append(f"no limit is given by optimum.{', optimum.'.join(missing)}")
+    if drawn is None:
+        notes.append(
+            f"nothing in the case is uncertain: stability keeps {limits.depth_margin:.3g} of the "
+            f"limit depth and {limits.speed_margin:.3g} of the speed as margins"
+        )
+    modes = case.structure.mode if case.structure else ()
+    if any(mode.frequency_slope for mode in modes):
+        notes.append("the search takes the modes at the speed of the case, not at each speed")
+    return notes
