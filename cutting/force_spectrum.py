@@ -81,7 +81,7 @@ class RigidCut:
         slices = _slices(cutter, axial_depth)
         entry, leave = slice_engagement(mode, radial_depth, cutter.radius, slices.radius)
         cuts = np.flatnonzero(entry < leave)
-        self.slices = _kept(slices, cuts)
+        self.slices = slices_at(slices, cuts)
         points = max(
             _LEAST_POINTS,
             math.ceil(_POINTS_A_CYCLE * highest * _longest(entry[cuts], leave[cuts]) / _TURN),
@@ -192,11 +192,12 @@ def _slices(cutter: Cutter, depth: float) -> EdgeSlices:
     return edge_slices(cutter, depth, (corner, straight))
 
 
-def _kept(slices: EdgeSlices, places: NDArray[np.int64]) -> EdgeSlices:
+_OF_SLICE = ("height", "thickness", "radius", "immersion", "edge_length")
+_OF_TOOTH = ("angle", "lag", "normal_offset")
+
+
+def slices_at(slices: EdgeSlices, places: NDArray[np.int64]) -> EdgeSlices:
+    """Some of the slices of an edge, by their places (k,)."""
     one = {name: getattr(slices, name)[places] for name in _OF_SLICE}
     several = {name: getattr(slices, name)[:, places] for name in _OF_TOOTH}
     return EdgeSlices(**one, **several)
-
-
-_OF_SLICE = ("height", "thickness", "radius", "immersion", "edge_length")
-_OF_TOOTH = ("angle", "lag", "normal_offset")

@@ -105,6 +105,11 @@ def case_at(case: Case, place: Place) -> Case:
     )
 
 
+def max_usage(candidate: Candidate) -> float:
+    """Largest share of a limit that a candidate uses, of those that are known."""
+    return max((value for value in candidate.usage.values() if not math.isnan(value)), default=0.0)
+
+
 def candidate_at(case: Case, limits: Limits, place: Place) -> Candidate:
     """Candidate at a place, in round numbers; a little less deep where rounding needs it."""
     exact = place

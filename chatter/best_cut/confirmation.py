@@ -1,7 +1,10 @@
 """Candidates simulated in the time domain, with all that the linear search leaves out.
 
 Teeth that leave the cut, ploughing in full, contact and friction of modes act there, and the wall
-is built up of the passes of the edges.
+is built up of the passes of the edges. The run starts from rest in the full cut, a push as large as
+the cut itself gives. Below the limit of small vibration such a push may already lead to chatter
+that stays (the bistable or unsafe zone of Dombovari, Barton, Wilson and Stepan 2011, Int. J.
+Non-Linear Mech. 46:266), which the linear limit does not know.
 """
 
 from __future__ import annotations

@@ -32,7 +32,7 @@ _DEPTHS = 60
 _HALVINGS = 4
 #: speeds looked at within the margin on either side, and speeds of the coarse net
 _SPEEDS_A_MARGIN = 2
-_LEAST_SPEEDS, _MOST_SPEEDS = 40, 400
+_LEAST_SPEEDS, _MOST_SPEEDS = 8, 400
 _COARSEST_STEP = 0.01
 
 

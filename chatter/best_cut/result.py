@@ -180,7 +180,7 @@ class Optimum:
                 f"{one.surface_error * 1e6:.7g}",
                 limit,
                 "" if one.probability is None else f"{one.probability.value:.6g}",
-                " ".join(one.active),
+                " ".join(name.replace(" ", "-") for name in one.active),
                 "" if time is None else time.verdict,
                 "" if time is None else str(time.held).lower(),
             ]

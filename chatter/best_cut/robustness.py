@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -25,10 +26,10 @@ from chatter.what_if.subject import deviations_of, patched
 
 Array = NDArray[np.float64]
 
-#: speeds and depths looked at around a candidate, then around the best of them: share to either
-#: side, and points
-_SPEEDS = ((0.04, 13), (0.006, 5))
-_DEPTHS = ((0.2, 1.1, 19), (0.94, 1.06, 9))
+#: speeds and depths looked at around a candidate, then around the best of them, then depths alone:
+#: share to either side, and points
+_SPEEDS = ((0.04, 13), (0.006, 5), (0.0, 1))
+_DEPTHS = ((0.2, 1.1, 19), (0.94, 1.06, 9), (0.99, 1.09, 21))
 CONFIDENCE = "confidence"
 #: shares of the depth that are tried where round numbers cost a sample
 _GIVEN_BACK = (1.0, 0.995, 0.99, 0.98)
@@ -142,7 +143,7 @@ def robust_candidate(
     """
     place = candidate.place
     here = at_width_and_feed(case, place.radial_depth, place.feed_per_tooth)
-    deepest = (_DEPTHS[0][1] * _DEPTHS[1][1]) * place.axial_depth * (1.0 + DEEPER)
+    deepest = math.prod(high for _, high, _ in _DEPTHS) * place.axial_depth * (1.0 + DEEPER)
     sampled = SampledCuts(here, drawn, deepest)
     for (beside, speed_count), (low, high, depth_count) in zip(_SPEEDS, _DEPTHS, strict=True):
         speeds = place.spindle_speed * np.linspace(1.0 - beside, 1.0 + beside, speed_count)
@@ -155,7 +156,35 @@ def robust_candidate(
         if found is None:
             return None
         place = place._replace(spindle_speed=found[0], axial_depth=found[1])
-    return _with_probability(case, limits, place, sampled)
+    for share in _GIVEN_BACK:
+        eased = place._replace(axial_depth=place.axial_depth * share)
+        found = _judged(candidate_at(case, limits, eased), limits, sampled)
+        if found is not None:
+            return found
+    return None
+
+
+def with_probability(
+    case: Case, limits: Limits, candidate: Candidate, drawn: Samples
+) -> Candidate | None:
+    """Candidate with its own probability of stability; None where that does not suffice."""
+    place = candidate.place
+    here = at_width_and_feed(case, place.radial_depth, place.feed_per_tooth)
+    return _judged(candidate, limits, SampledCuts(here, drawn, place.axial_depth * (1.0 + DEEPER)))
+
+
+def _judged(candidate: Candidate, limits: Limits, sampled: SampledCuts) -> Candidate | None:
+    place: Place = candidate.place
+    depths = place.axial_depth * np.array([1.0, 1.0 + DEEPER])
+    sure, deeper = sampled.probability(np.array([place.spindle_speed]), depths)[:, 0]
+    if sure < limits.confidence:
+        return None
+    count = len(sampled.drawn)
+    found = Probability(float(sure), wilson_interval(round(sure * count), count))
+    risk = (1.0 - float(sure)) / (1.0 - limits.confidence)
+    active = candidate.active + ((CONFIDENCE,) if deeper < limits.confidence else ())
+    usage = {**candidate.usage, CONFIDENCE: risk}
+    return replace(candidate, probability=found, usage=usage, active=active)
 
 
 def _inside(values: Array, net: Array) -> Array:
@@ -168,26 +197,3 @@ def _best(sheet: Sheet, sure: NDArray[np.bool_]) -> tuple[float, float] | None:
     if rate[row, column] <= 0.0:
         return None
     return float(sheet.speeds[column]), float(sheet.depths[row])
-
-
-def _with_probability(
-    case: Case, limits: Limits, place: Place, sampled: SampledCuts
-) -> Candidate | None:
-    """Candidate with its own probability, a little less deep where round numbers need it."""
-    for share in _GIVEN_BACK:
-        candidate = candidate_at(
-            case, limits, place._replace(axial_depth=place.axial_depth * share)
-        )
-        chosen = candidate.place
-        depths = chosen.axial_depth * np.array([1.0, 1.0 + DEEPER])
-        sure, deeper = sampled.probability(np.array([chosen.spindle_speed]), depths)[:, 0]
-        if sure >= limits.confidence:
-            break
-    else:
-        return None
-    count = len(sampled.drawn)
-    found = Probability(float(sure), wilson_interval(round(sure * count), count))
-    risk = (1.0 - float(sure)) / (1.0 - limits.confidence)
-    active = candidate.active + ((CONFIDENCE,) if deeper < limits.confidence else ())
-    usage = {**candidate.usage, CONFIDENCE: risk}
-    return replace(candidate, probability=found, usage=usage, active=active)

@@ -1,4 +1,4 @@
-"""Search for the highest removal rate: a coarse net over all that may be chosen, then refinement."""
+"""Search for the highest removal rate: a coarse net over all that may be chosen, refinement."""
 
 from __future__ import annotations
 

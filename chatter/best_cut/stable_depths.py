@@ -101,7 +101,6 @@ def stable_depths(cut: CutArrays, speeds: Array, depths: Array) -> StableDepths:
         Net on which changes of stability are looked for, m, ascending, > 0: a stretch that fits
         between two of its depths is not seen.
     """
-
     growth = _growth_at(cut, speeds)
     place, depth = (
         part.ravel() for part in np.meshgrid(np.arange(speeds.size), depths, indexing="ij")

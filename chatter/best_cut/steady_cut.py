@@ -1,7 +1,7 @@
 """The stable cut: periodic motion, power, torque, and where it leaves the wall.
 
-A stable cut settles into a motion u that repeats as the tool does. Its harmonics follow from those of
-the force on the rigid tool by the receptance of the modes,
+A stable cut settles into a motion u that repeats as the tool does. Its harmonics follow from those
+of the force on the rigid tool by the receptance of the modes,
 
     u_k = G(k Omega) (F_k + sum_m [sum_g K_g,k-m (1 - exp(-i m delay_g)) + i m D_k-m] u_m).
 
@@ -23,7 +23,7 @@ from chatter.model import MillingModel, viscous
 from chatter.simulation.reconstruction import WALLS
 from cutting.edge_pieces import period_angle
 from cutting.engagement import slice_engagement
-from cutting.force_spectrum import ForceSpectrum, RigidCut
+from cutting.force_spectrum import ForceSpectrum, RigidCut, slices_at
 from cutting.tool import EdgeSlices, corner_height, edge_slices
 from dynamics.modal import receptance_matrix
 
@@ -39,7 +39,11 @@ _LEAST_HARMONICS, _MOST_HARMONICS = 8, 400
 _HIGHEST_COUPLED, _MOST_COUPLED = 1.6, 120
 #: points within the period, a harmonic
 _POINTS_A_HARMONIC = 8
-_HEIGHTS = 16
+#: slices of the wall, whose middles are heights, as in simulated surfaces; every so many of them,
+#: and the last, are looked at
+_HEIGHTS, _EVERY = 40, 3
+#: points along the feed of a turn, where teeth leave arcs of their own height
+_POINTS_ALONG = 48
 #: derivatives of the motion, steps and range (rad) of the search for the furthest reach of an edge
 _DERIVATIVES, _NEWTON_STEPS, _WIDEST_SHIFT = 5, 4, 0.25
 #: points of motion at once
@@ -187,22 +191,17 @@ class SteadyModel:
                 cut.cut.mode, cut.width_of_cut, cutter.radius, slices.radius
             )
             chosen = entry < leave
-        names = ("height", "thickness", "radius", "immersion", "edge_length")
-        return EdgeSlices(
-            **{name: getattr(slices, name)[chosen] for name in names},
-            **{
-                name: getattr(slices, name)[:, chosen] for name in ("angle", "lag", "normal_offset")
-            },
-        )
+        levels = np.flatnonzero(chosen)
+        return slices_at(slices, np.unique(np.append(levels[::_EVERY], levels[-1])))
 
     def _wall(self, motion: Complex, slices: EdgeSlices, side: str) -> Array:
-        """Location error (n, L) of a wall: what the furthest reaching tooth leaves, m.
+        """Location error (n, L) of a wall: mean of the envelope of all passes, m.
 
         Notes
         -----
         An edge that passes with a speed along the wall's normal reaches furthest a little before
-        or after it points there. All passes do so alike, a feed apart: their envelope is that
-        furthest reach, the largest y(theta) + R (cos(theta - theta_0) - 1), and not y(theta_0).
+        or after it points there. All its passes do so alike, and what stands is made by that
+        furthest reach, the largest y(theta) + R (cos(theta - theta_0) - 1), and not by y(theta_0).
         """
         direction, sign = _WALL[side]
         sk, ck = np.sin(slices.immersion), np.cos(slices.immersion)
@@ -220,7 +219,39 @@ class SteadyModel:
             np.einsum("nalk,ajlk->njl", outwards, (wave * power).reshape(1, tooth, level, -1)).real
             for power in turn
         ]
-        return (_furthest(taylor, slices.radius * sk) + slices.normal_offset).max(axis=1)
+        reach = _furthest(taylor, slices.radius * sk) + slices.normal_offset
+        cut = self.model.case.cut
+        feed = cut.feed_per_tooth * tooth
+        place = feed * np.mod(passing, _TURN) / _TURN
+        if self.stride == tooth:
+            # cusps between arcs of one height have a mean of a twelfth of f^2/2R
+            return reach[:, 0] - sk * (feed / tooth) ** 2 / (24.0 * slices.radius)
+        return _mean_envelope(reach, place, feed, sk / (2.0 * slices.radius))
+
+
+def _mean_envelope(reach: Array, place: Array, feed: float, curvature: Array) -> Array:
+    """Mean along the feed (n, L) of the highest of parabolas, m.
+
+    Parameters
+    ----------
+    reach : (n, N, L) array of float
+        Top of the arc that each tooth leaves, m.
+    place : (N, L) array of float
+        Where along the feed of a turn, m.
+    feed : float
+        Of a turn, m.
+    curvature : (L,) array of float
+        Of the arcs, half of 1/R, 1/m.
+    """
+    along = (np.arange(_POINTS_ALONG) + 0.5) / _POINTS_ALONG * feed
+    highest = np.full((reach.shape[0], reach.shape[2], _POINTS_ALONG), -np.inf)
+    for tooth in range(reach.shape[1]):
+        apart = np.abs(along - place[tooth][:, None])
+        # a tooth comes by again a turn later; the nearest of its arcs is the highest
+        apart = np.minimum(apart, feed - apart)
+        arc = reach[:, tooth, :, None] - curvature[:, None] * apart**2
+        np.maximum(highest, arc, out=highest)
+    return highest.mean(axis=2)
 
 
 def _furthest(taylor: list[Array], radius: Array) -> Array:

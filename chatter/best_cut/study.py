@@ -7,12 +7,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from chatter.best_cut.candidate import Candidate, candidate_at
+from chatter.best_cut.candidate import Candidate, candidate_at, max_usage
 from chatter.best_cut.confirmation import time_check
 from chatter.best_cut.exclusion import exclusions
 from chatter.best_cut.limits import LIMITED, Limits, limits_of
 from chatter.best_cut.result import Optimum
-from chatter.best_cut.robustness import Samples, robust_candidate, samples_of
+from chatter.best_cut.robustness import (
+    Samples,
+    robust_candidate,
+    samples_of,
+    with_probability,
+)
 from chatter.best_cut.search import (
     LEVELS,
     STARTS,
@@ -32,6 +37,12 @@ from chatter.stability.sweep import Progress, no_progress
 DEFAULT_SAMPLES, DEFAULT_SEED = 200, 1
 #: candidates that are simulated in the time domain; more where these do not hold there
 _SIMULATED = 3
+#: cuts that are alike within this share are one
+_SAME = 0.02
+#: what is taken off the depth, a share of it and how often, where a limit is missed in time
+_EASING, _EASINGS = 0.03, 6
+#: named as what limits a cut that was made less deep so
+TIME_DOMAIN = "time domain"
 
 
 class _Work:
@@ -86,7 +97,7 @@ def optimum(
     sheets = coarse_sheets(case, limits, work.done)
     places = [refined(case, limits, start, work.done) for start in starts_of(sheets)]
     candidates = _candidates(case, limits, places, drawn, work)
-    candidates = _confirmed(case, limits, candidates, work)
+    candidates = _confirmed(case, limits, candidates, drawn, work)
     result = Optimum(
         case=case,
         limits=limits,
@@ -117,29 +128,62 @@ def _candidates(
 ) -> list[Candidate]:
     """Candidates in round numbers, best first, robust where something is uncertain."""
     found = [candidate_at(case, limits, place) for place in places]
-    found.sort(key=lambda one: -one.removal_rate)
-    if drawn is None:
-        return found
-    robust: list[Candidate] = []
-    for one in found:
-        candidate = robust_candidate(case, limits, one, drawn)
-        robust += [] if candidate is None else [candidate]
-        work.done()
-    return sorted(robust, key=lambda one: -one.removal_rate)
+    if drawn is not None:
+        robust = []
+        for one in found:
+            candidate = robust_candidate(case, limits, one, drawn)
+            robust += [] if candidate is None else [candidate]
+            work.done()
+        found = robust
+    return _apart(sorted(found, key=lambda one: -one.removal_rate))
+
+
+def _apart(candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Candidates without those that are nearly the same as a better one."""
+    kept: list[Candidate] = []
+    for one in candidates:
+        cut = np.array(one.place[:4])
+        if not any(np.allclose(cut, other.place[:4], rtol=_SAME) for other in kept):
+            kept.append(one)
+    return kept
 
 
 def _confirmed(
-    case: Case, limits: Limits, candidates: Sequence[Candidate], work: _Work
+    case: Case,
+    limits: Limits,
+    candidates: Sequence[Candidate],
+    drawn: Samples | None,
+    work: _Work,
 ) -> list[Candidate]:
     """Candidates with their checks in the time domain: those that hold first, best first."""
-    found = []
+    found: list[Candidate] = []
     for number, candidate in enumerate(candidates):
-        if number >= _SIMULATED and any(one.time.held for one in found if one.time):
+        if number >= _SIMULATED and any(one.time and one.time.held for one in found):
             found.append(candidate)
             continue
-        found.append(replace(candidate, time=time_check(case, limits, candidate)))
+        found.append(_held_in_time(case, limits, candidate, drawn))
         work.done()
-    return sorted(found, key=lambda one: (one.time is not None and not one.time.held))
+    return sorted(
+        found, key=lambda one: (one.time is not None and not one.time.held, -one.removal_rate)
+    )
+
+
+def _held_in_time(
+    case: Case, limits: Limits, candidate: Candidate, drawn: Samples | None
+) -> Candidate:
+    """Candidate with its check in the time domain; less deep where a limit is missed there."""
+    first = checked = replace(candidate, time=time_check(case, limits, candidate))
+    for number in range(1, _EASINGS + 1):
+        if checked.time.held:
+            return checked
+        depth = candidate.place.axial_depth * (1.0 - _EASING * number)
+        eased = candidate_at(case, limits, candidate.place._replace(axial_depth=depth))
+        if drawn is not None:
+            eased = with_probability(case, limits, eased, drawn)
+        if eased is not None and max_usage(eased) <= 1.0:
+            active = (*eased.active, TIME_DOMAIN)
+            checked = replace(eased, time=time_check(case, limits, eased), active=active)
+    return checked if checked.time.held else first
 
 
 def _best_of_widths(sheets: Sequence[Sheet], limits: Limits) -> list[Place]:

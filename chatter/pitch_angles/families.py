@@ -1,9 +1,9 @@
 """Families of pitch angles, and the rule that says which of them cancel regeneration.
 
 The wave that a tooth meets was left a pitch ago; with delays P_j/Omega the mean of its effect at
-a chatter frequency omega is in proportion to (1/N) sum_j exp(-i omega P_j/Omega). The rule sets that
-to nothing: neighbouring waves half a cycle apart where two pitches alternate (Slavicek 1965), and N
-of them evenly around the cycle where the pitch grows from tooth to tooth (Altintas, Engin and Budak
+a chatter frequency omega goes with (1/N) sum_j exp(-i omega P_j/Omega). The rule sets that to
+nothing: neighbouring waves half a cycle apart where two pitches alternate (Slavicek 1965), and N of
+them evenly around the cycle where the pitch grows from tooth to tooth (Altintas, Engin and Budak
 1999, J. Manuf. Sci. Eng. 121:173; Budak 2003, J. Manuf. Sci. Eng. 125:29).
 """
 

@@ -58,36 +58,32 @@ class PitchResult:
     goal : str
     largest_chip : float
         That was allowed, in units of the mean.
-    speeds : (n,) array of float
-        Of the search, rad/s.
     deepest : float
         Depth to which limits were looked for, m.
     standing : Design
         That of the case.
     designs : tuple of Design
-        Best first, that of the case among them.
+        Best first, that of the case among them; their limits are those at `speeds`.
     curves : tuple of FamilyCurve
+        Their limits are those at the coarser speeds of the search.
     chatter_frequency, design_speed : float
         What the rule uses: the chatter frequency of the evenly spaced tool where its limit is
         lowest, Hz, and the middle of the speeds, rad/s.
-    fine_speeds, fine_before, fine_after : (m,) arrays of float
-        rad/s, and limits of the case and of the best design there, m.
+    speeds : (m,) array of float
+        rad/s.
     notes : tuple of str
     """
 
     case: Case
     goal: str
     largest_chip: float
-    speeds: Array
     deepest: float
     standing: Design
     designs: tuple[Design, ...]
     curves: tuple[FamilyCurve, ...]
     chatter_frequency: float
     design_speed: float
-    fine_speeds: Array
-    fine_before: Array
-    fine_after: Array
+    speeds: Array
     notes: tuple[str, ...] = ()
 
     @property
@@ -117,8 +113,8 @@ class PitchResult:
             "best": self._design(self.best),
             "designs": [self._design(one) for one in self.designs],
             "lowest_limit_mm": {
-                "before": float(self.fine_before.min()) * 1e3,
-                "after": float(self.fine_after.min()) * 1e3,
+                "before": self.standing.lowest_limit * 1e3,
+                "after": self.best.lowest_limit * 1e3,
             },
             "rule": {
                 "chatter_frequency_Hz": self.chatter_frequency,
@@ -145,7 +141,7 @@ class PitchResult:
         """Sentences for the terminal."""
         low, high = self.speeds[[0, -1]] * _RPM
         angles = ", ".join(f"{angle:g}" for angle in self.best.pitch)
-        before, after = self.fine_before.min() * 1e3, self.fine_after.min() * 1e3
+        before, after = self.standing.lowest_limit * 1e3, self.best.lowest_limit * 1e3
         lines = [
             f"pitch {angles} deg: lowest limit from {low:.0f} to {high:.0f} rpm "
             f"{after:.4g} mm, with that of the case {before:.4g} mm",
@@ -192,7 +188,7 @@ class PitchResult:
     def _lobes(self) -> str:
         lines = ["spindle_speed [rpm],critical_depth_before [mm],critical_depth_after [mm]"]
         for speed, before, after in zip(
-            self.fine_speeds, self.fine_before, self.fine_after, strict=True
+            self.speeds, self.standing.limits, self.best.limits, strict=True
         ):
             lines.append(f"{speed * _RPM:.4f},{before * 1e3:.6g},{after * 1e3:.6g}")
         return "\n".join(lines) + "\n"

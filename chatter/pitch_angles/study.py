@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +16,7 @@ from chatter.methods import zero_order_of
 from chatter.model import MillingModel, milling_model
 from chatter.pitch_angles.families import families
 from chatter.pitch_angles.result import FamilyCurve, PitchResult
-from chatter.pitch_angles.search import DIFFERENCES, MOST_MOVES, Design, PitchSearch, in_grains
+from chatter.pitch_angles.search import DIFFERENCES, MOST_MOVES, Design, PitchSearch
 from chatter.search_range import deepest_depth, spindle_speeds
 from chatter.simulation.cutter import pitch_angles
 from chatter.stability import collocation
@@ -23,7 +25,7 @@ from chatter.stability.sweep import Progress, no_progress
 Array = NDArray[np.float64]
 
 _DEPTHS = 40
-#: speeds of the limits that are shown, to one of the search
+#: speeds at which the designs are ranked, to one of the search
 FINER = 5
 #: differences of the rule that are told
 _RULE_COUNT = 8
@@ -76,28 +78,35 @@ def pitch(case: Case, progress: Progress = no_progress) -> PitchResult:
         )
     start = max((one for curve in curves for one in curve.designs), key=lambda one: one.score)
     free = search.improved(start)
+    designs = _distinct([free, *(curve.best for curve in curves), standing])
+    ranked = _ranked_on(search, designs, fine)
     progress(total, total)
-    found = sorted([standing, free, *(curve.best for curve in curves)], key=lambda d: -d.score)
     return PitchResult(
         case=case,
         goal=section.goal,
         largest_chip=section.largest_chip,
-        speeds=wide,
         deepest=float(search.depths[-1]),
-        standing=standing,
-        designs=_distinct(found),
+        standing=next(one for one in ranked if one.pitch == standing.pitch),
+        designs=ranked,
         curves=tuple(curves),
         chatter_frequency=heard / (2.0 * math.pi),
         design_speed=middle,
-        fine_speeds=fine,
-        fine_before=search.limits(standing.pitch, fine),
-        fine_after=search.limits(found[0].pitch, fine),
+        speeds=fine,
         notes=model.notes,
     )
 
 
+def _ranked_on(search: PitchSearch, designs: Sequence[Design], speeds: Array) -> tuple[Design, ...]:
+    """Designs with their limits at finer speeds, best first: what fell between speeds counts."""
+    finer = []
+    for one in designs:
+        limits = search.limits(one.pitch, speeds)
+        finer.append(replace(one, limits=limits, score=search.goal(speeds, limits)))
+    return tuple(sorted(finer, key=lambda one: -one.score))
+
+
 def _speeds(case: Case, section: PitchDesign) -> tuple[Array, Array]:
-    """Speeds of the search and of the limits that are shown, rad/s."""
+    """Speeds of the search and of the ranking, rad/s."""
     if section.speeds is not None:
         first, last = section.speeds.from_, section.speeds.to
     else:
@@ -121,9 +130,6 @@ def _chatter_frequency(case: Case, search: PitchSearch, even: Design, speed: flo
     return 2.0 * math.pi * collocation.chatter_frequency(cut, speed, depth)
 
 
-def _distinct(designs: list[Design]) -> tuple[Design, ...]:
-    """Designs without those that have the angles of a better one, up to where the count starts."""
-    seen: dict[tuple[float, ...], Design] = {}
-    for one in designs:
-        seen.setdefault(in_grains(one.pitch), one)
-    return tuple(seen.values())
+def _distinct(designs: Sequence[Design]) -> list[Design]:
+    """Designs of different angles; the last of those that are alike gives the name."""
+    return list({one.pitch: one for one in designs}.values())

@@ -76,9 +76,11 @@ def draw_sheet(axes: Axes, found: Optimum) -> None:
     handles = [_handle(style.GREY, "-", "removal rate [cm³/min]")]
     for key, usage in sheet.usage.items():
         name, colour, line = _BOUNDARIES[key]
-        handles.append(_handle(colour, line, f"limit of {name}"))
         known = np.ma.masked_invalid(usage)
-        if known.count() and known.min() < 1.0 < known.max():
+        reached = bool(known.count()) and known.min() < 1.0 < known.max()
+        label = f"limit of {name}" if reached else f"limit of {name}: not met"
+        handles.append(_handle(colour, line, label))
+        if reached:
             axes.contour(
                 speed, depth, known, levels=[1.0], colors=[colour], linestyles=[line],
                 linewidths=1.6,
@@ -169,12 +171,19 @@ def draw_widths(axes: Axes, found: Optimum) -> None:
     """Draw the highest removal rate over the radial depth."""
     widths = [place.radial_depth * 1e3 for place in found.over_widths]
     rates = [place.removal_rate * _PER_MINUTE for place in found.over_widths]
-    axes.plot(widths, rates, ".-", color=style.BLUE, label="best of the coarse net")
+    axes.plot(
+        widths,
+        rates,
+        ".-",
+        color=style.BLUE,
+        label="best of the coarse net, before the last checks",
+    )
     if found.best is not None:
         place = found.best.place
         axes.plot(
             place.radial_depth * 1e3, place.removal_rate * _PER_MINUTE, "*", color=style.GREEN,
-            markeredgecolor="black", markersize=16, linestyle="none", label="best cut", clip_on=False,
+            markeredgecolor="black", markersize=16, linestyle="none", clip_on=False,
+            label="best cut",
         )  # fmt: skip
     axes.set_xlim(found.limits.widths[0] * 1e3, found.limits.widths[-1] * 1e3)
     axes.set_ylim(bottom=0.0)

@@ -39,12 +39,13 @@ def plot_pitch(found: PitchResult) -> Figure:
 
 def draw_limits(axes: Axes, found: PitchResult) -> None:
     """Draw the first limit over speed before and after; where none was found the line ends."""
-    speed = found.fine_speeds * _RPM
+    speed = found.speeds * _RPM
     curves = (
-        ("before", found.standing, found.fine_before, style.GREY),
-        ("after", found.best, found.fine_after, style.BLUE),
+        ("before", found.standing, style.GREY),
+        ("after", found.best, style.BLUE),
     )
-    for name, design, limits, colour in curves:
+    for name, design, colour in curves:
+        limits = design.limits
         angles = ", ".join(f"{angle:g}" for angle in design.pitch)
         known = np.where(limits < found.deepest, limits * 1e3, np.nan)
         axes.plot(speed, known, color=colour, linewidth=1.6, label=f"{name}: {angles} deg")
@@ -73,7 +74,7 @@ def draw_families(axes: Axes, found: PitchResult) -> None:
             axes.axvline(difference, color=colour, linewidth=1.2, linestyle=":", label=label)
     axes.axhline(
         found.best.lowest_limit * 1e3, color=style.BLUE, linewidth=1.0, linestyle="--",
-        label="best found",
+        label="best found, at the finer speeds",
     )  # fmt: skip
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("difference between neighbouring pitch angles [deg]")
