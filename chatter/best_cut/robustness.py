@@ -129,19 +129,17 @@ class SampledCuts:
         return [found for chunk in sweep(at, len(self.drawn), points_a_chunk=4) for found in chunk]
 
 
-def robust_candidate(
-    case: Case, limits: Limits, candidate: Candidate, drawn: Samples
-) -> Candidate | None:
-    """Best cut around a candidate that is stable with the wanted probability; None if none is.
+def robust_candidate(case: Case, limits: Limits, place: Place, drawn: Samples) -> Candidate | None:
+    """Best cut around a place that is stable with the wanted probability; None if none is.
 
     Parameters
     ----------
     case : Case
     limits : Limits
-    candidate : Candidate
+    place : Place
+        Its width and feed are kept.
     drawn : Samples
     """
-    place = candidate.place
     here = at_width_and_feed(case, place.radial_depth, place.feed_per_tooth)
     deepest = math.prod(high for _, high, _ in _DEPTHS) * place.axial_depth * (1.0 + DEEPER)
     sampled = SampledCuts(here, drawn, deepest)

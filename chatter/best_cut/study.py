@@ -37,6 +37,8 @@ from chatter.stability.sweep import Progress, no_progress
 DEFAULT_SAMPLES, DEFAULT_SEED = 200, 1
 #: candidates that are simulated in the time domain; more where these do not hold there
 _SIMULATED = 3
+#: steps over the width of the best robust cut
+_WIDTH_STEPS = 2
 #: cuts that are alike within this share are one
 _SAME = 0.02
 #: what is taken off the depth, a share of it and how often, where a limit is missed in time
@@ -128,14 +130,60 @@ def _candidates(
 ) -> list[Candidate]:
     """Candidates in round numbers, best first, robust where something is uncertain."""
     found = [candidate_at(case, limits, place) for place in places]
+    found.sort(key=lambda one: -one.removal_rate)
     if drawn is not None:
-        robust = []
-        for one in found:
-            candidate = robust_candidate(case, limits, one, drawn)
-            robust += [] if candidate is None else [candidate]
-            work.done()
-        found = robust
+        found = _robust(case, limits, found, drawn, work)
     return _apart(sorted(found, key=lambda one: -one.removal_rate))
+
+
+def _robust(
+    case: Case, limits: Limits, candidates: Sequence[Candidate], drawn: Samples, work: _Work
+) -> list[Candidate]:
+    """Candidates that are robust, from candidates, best first; then the best over its width."""
+    found: list[Candidate] = []
+    for one in candidates:
+        most = max((other.removal_rate for other in found), default=0.0)
+        # what is robust of it cannot be more than all of it
+        if len(found) < _SIMULATED or one.removal_rate > most:
+            robust = robust_candidate(case, limits, one.place, drawn)
+            found += [] if robust is None else [robust]
+        work.done()
+    if found and limits.widths.size > 1:
+        best = max(found, key=lambda one: one.removal_rate)
+        found += _at_other_widths(case, limits, best, drawn)
+    return found
+
+
+def _at_other_widths(
+    case: Case, limits: Limits, best: Candidate, drawn: Samples
+) -> list[Candidate]:
+    """Robust candidates beside the best one that remove more, on the way to the best width."""
+    better: list[Candidate] = []
+    step = float(limits.widths[1] - limits.widths[0]) / 3.0
+    for _ in range(_WIDTH_STEPS):
+        place = best.place
+        beside = np.clip(
+            place.radial_depth + np.array([-step, step]), limits.widths[0], limits.widths[-1]
+        )
+        tried = [
+            robust_candidate(case, limits, _at_width(place, float(width)), drawn)
+            for width in beside
+            if abs(width - place.radial_depth) > 0.1 * step
+        ]
+        known = [one for one in tried if one is not None and one.removal_rate > best.removal_rate]
+        if known:
+            best = max(known, key=lambda one: one.removal_rate)
+            better.append(best)
+        else:
+            step /= 3.0
+    return better
+
+
+def _at_width(place: Place, width: float) -> Place:
+    """Place of another width that removes as much."""
+    return place._replace(
+        radial_depth=width, axial_depth=place.axial_depth * place.radial_depth / width
+    )
 
 
 def _apart(candidates: Sequence[Candidate]) -> list[Candidate]:
