@@ -28,9 +28,10 @@ from chatter.path_axis import (
 )
 from chatter.path_results import PathLimits, StabilityMap
 from chatter.search_range import depths_at_one_speed
+from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.sweep import Progress, no_progress, one_thread, sweep
 from chatter.what_if.subject import patched
-from chatter.what_if.variation import Variation
+from chatter.what_if.variation import Value, Variation
 
 #: values of a range that gives no count: of a curve, and of each side of a map
 _CURVE_COUNT, _MAP_COUNT = 60, 40
@@ -89,7 +90,11 @@ def lobes_over(
 
 
 def _limits_over(case: Case, axis: Variation, method: str, progress: Progress) -> PathLimits:
-    cases = [patched(case, value.patch) for value in axis.values]
+    labels = [f"{axis.path} = {value.label}" for value in axis.values]
+    cases = [
+        _patched(case, [(axis, value)], label)
+        for value, label in zip(axis.values, labels, strict=True)
+    ]
 
     def limit_at(place: int) -> tuple:
         here = cases[place]
@@ -99,7 +104,9 @@ def _limits_over(case: Case, axis: Variation, method: str, progress: Progress) -
         depths = depths_at_one_speed(here, zero_order_of(model, speeds))
         return limits_of(model, speeds, depths, resolution(here), no_progress), depths, model.notes
 
-    found = _each(limit_at, len(cases), progress)
+    found, reasons = _found(_each(limit_at, len(cases), progress), case.name, labels)
+    blank = LimitCurve(np.zeros(1), np.full(1, np.inf), np.full(1, np.nan), ("none",), ([],), ())
+    found = [(blank, np.full(1, np.nan), ()) if one is None else one for one in found]
     limits = [limit for limit, _, _ in found]
     return PathLimits(
         case=case,
@@ -110,7 +117,8 @@ def _limits_over(case: Case, axis: Variation, method: str, progress: Progress) -
         bifurcation=tuple(limit.bifurcation[0] for limit in limits),
         searched_to=np.array([depths[-1] for _, depths, _ in found]),
         standing=standing_number(case, axis),
-        notes=_notes([notes for _, _, notes in found]),
+        reasons=reasons,
+        notes=_notes([told for (_, _, told), why in zip(found, reasons, strict=True) if not why]),
     )
 
 
@@ -129,12 +137,14 @@ def _map_over(
     # what the inner path makes of the case does not depend on the other one
     own = [patched(case, value.patch).cut for value in along.values] if along else []
     others = {"x": y, "y": x}.get(inner)
-    cases = [
-        patched(case, others.values[outer].patch)
-        if others
-        else patched(case, {**x.values[points[0][1]].patch, **y.values[points[0][0]].patch})
-        for outer, points in groups
-    ]
+    cases, labels = [], []
+    for _, points in groups:
+        row, column = points[0]
+        chosen = [(x, x.values[column]), (y, y.values[row])]
+        if others is not None:
+            chosen = [(axis, value) for axis, value in chosen if axis is others]
+        labels.append(" and ".join(f"{axis.path} = {value.label}" for axis, value in chosen))
+        cases.append(_patched(case, chosen, labels[-1]))
 
     def radius_of(place: int) -> tuple:
         here = cases[place]
@@ -149,16 +159,17 @@ def _map_over(
         radius_at = GRIDS.get(method, radius_by_collocation)
         return radius_at(model, speeds, depths, resolution(here), no_progress), model.notes
 
-    found = _each(radius_of, len(cases), progress)
-    radius = np.empty((len(rows), len(columns)))
-    for (_, points), (values, _) in zip(groups, found, strict=True):
-        for (j, i), value in zip(points, values, strict=True):
+    found, reasons = _found(_each(radius_of, len(cases), progress), case.name, labels)
+    radius = np.full((len(rows), len(columns)), np.nan)
+    for (_, points), one in zip(groups, found, strict=True):
+        for (j, i), value in zip(points, one[0] if one else (), strict=one is not None):
             radius[j, i] = value
-    notes = _notes([notes for _, notes in found])
+    left_out = {label: why for label, why in zip(labels, reasons, strict=True) if why}
+    notes = _notes([one[1] for one in found if one])
     if method not in ("collocation", *GRIDS):
         notes = (*notes, f"the map is by collocation; {method} gives no spectral radius")
     standing = (standing_number(case, x), standing_number(case, y))
-    return StabilityMap(case, method, x, y, radius, standing, notes)
+    return StabilityMap(case, method, x, y, radius, standing, notes, left_out)
 
 
 def _inner(case: Case, x: Variation, y: Variation) -> str:
@@ -177,14 +188,44 @@ def _inner(case: Case, x: Variation, y: Variation) -> str:
     return ""
 
 
-def _each(function: Callable[[int], Result], count: int, progress: Progress) -> list[Result]:
-    """Results of all places, in threads; each is computed in one."""
+def _patched(case: Case, chosen: Sequence[tuple[Variation, Value]], label: str) -> Case:
+    """Case at values of axes, which are named where they describe no case."""
+    patch = {path: given for _, value in chosen for path, given in value.patch.items()}
+    try:
+        return patched(case, patch)
+    except InputError as error:
+        raise InputError([f"at {label}: {text}" for text in error.messages]) from None
 
-    def at(places: NDArray[np.int64]) -> list[Result]:
+
+def _each(
+    function: Callable[[int], Result], count: int, progress: Progress
+) -> list[Result | InputError]:
+    """Results of all places, in threads, each computed in one; or why there is none."""
+
+    def result(place: int) -> Result | InputError:
+        try:
+            return function(place)
+        except InputError as error:
+            return error
+
+    def at(places: NDArray[np.int64]) -> list[Result | InputError]:
         with one_thread():
-            return [function(int(place)) for place in places]
+            return [result(int(place)) for place in places]
 
     return [result for chunk in sweep(at, count, progress, 1) for result in chunk]
+
+
+def _found(
+    results: Sequence[Result | InputError], name: str, labels: Sequence[str]
+) -> tuple[list[Result | None], tuple[str, ...]]:
+    """Results, None where there is none, and why not; refused where there is none at all."""
+    reasons = tuple(
+        " ".join(one.messages).removeprefix(f"{name}: ") if isinstance(one, InputError) else ""
+        for one in results
+    )
+    if all(reasons):
+        raise InputError(f"{name}: at {labels[0]}, and at every other value: {reasons[0]}")
+    return [None if isinstance(one, InputError) else one for one in results], reasons
 
 
 def _notes(told: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
