@@ -9,9 +9,9 @@ import numpy as np
 
 from chatter.best_cut.limits import Limits
 from chatter.best_cut.search import Place, rounded
-from chatter.best_cut.sheet import STABILITY, Sheet, at_width_and_feed, sheet_of
+from chatter.best_cut.sheet import STABILITY, Sheet, at_width_and_feed, model_at, sheet_of
 from chatter.case import Case
-from cutting.engagement import removal_rate
+from chatter.model import MillingModel
 
 #: a limit is active if it would not be held at a depth larger by this share
 DEEPER = 0.02
@@ -110,25 +110,21 @@ def max_usage(candidate: Candidate) -> float:
     return max((value for value in candidate.usage.values() if not math.isnan(value)), default=0.0)
 
 
-def candidate_at(case: Case, limits: Limits, place: Place) -> Candidate:
+def candidate_at(model: MillingModel, limits: Limits, place: Place) -> Candidate:
     """Candidate at a place, in round numbers; a little less deep where rounding needs it."""
     exact = place
     for _ in range(_MOST_TIMES):
         place = rounded(exact)
-        here = at_width_and_feed(case, place.radial_depth, place.feed_per_tooth)
+        here = model_at(model, place.radial_depth, place.feed_per_tooth)
         sheet = _point(here, limits, place)
         if sheet.feasible[0, 0]:
             break
         exact = exact._replace(axial_depth=exact.axial_depth * (1.0 - _GIVEN_BACK))
-    cut = here.cut
-    rate = removal_rate(
-        place.axial_depth, here.width_of_cut, here.tool.teeth, cut.feed_per_tooth,
-        place.spindle_speed,
-    )  # fmt: skip
+    rate = float(sheet.removal_rate[0, 0])
     return _read(sheet, limits, place._replace(removal_rate=rate))
 
 
-def _point(here: Case, limits: Limits, place: Place) -> Sheet:
+def _point(here: MillingModel, limits: Limits, place: Place) -> Sheet:
     """Sheet of the cut itself, of one a little deeper, and of deeper ones to find its limit."""
     speeds = np.array([place.spindle_speed])
     depths = place.axial_depth * np.array([1.0, 1.0 + DEEPER, *_DEEPER_STILL])

@@ -16,26 +16,29 @@ import numpy as np
 from chatter.best_cut.candidate import Candidate, TimeCheck, case_at
 from chatter.best_cut.limits import LIMITED, Limits
 from chatter.case import Case
+from chatter.model import MillingModel
 from chatter.simulation.result import SimulationResult
-from chatter.simulation.setup import modes_of, set_up
+from chatter.simulation.setup import set_up
 from chatter.simulation.simulate import run_setup
+from chatter.structure import structure_of
+from dynamics.modal import Mode
 
 #: a limit counts as held in the time domain up to this share above it
 TOLERANCE = 0.03
 
 
-def time_check(case: Case, limits: Limits, candidate: Candidate) -> TimeCheck:
+def time_check(model: MillingModel, limits: Limits, candidate: Candidate) -> TimeCheck:
     """Simulate the cut of a candidate from rest, with the delayed chip.
 
     Parameters
     ----------
-    case : Case
+    model : MillingModel
         A machine is taken by its modes at the tool point.
     limits : Limits
     candidate : Candidate
     """
-    here = case_at(case, candidate.place).patch({"simulation": None, "stock": None})
-    setup = set_up(here, modes_of(here)[0])
+    here = case_at(model.case, candidate.place).patch({"simulation": None, "stock": None})
+    setup = set_up(here, _modes(model, here))
     result, done = run_setup(setup)
     verdict = "chatter" if done < setup.resolution.steps else _verdict(result)
     found = _measured(result)
@@ -45,6 +48,12 @@ def time_check(case: Case, limits: Limits, candidate: Candidate) -> TimeCheck:
         if math.isfinite(found[LIMITED[key]])
     ]
     return TimeCheck(verdict, **found, held=verdict == "stable" and all(within))
+
+
+def _modes(model: MillingModel, here: Case) -> tuple[Mode, ...]:
+    """Modes at the speed of a cut; those of the search where they cannot depend on it."""
+    slopes = any(mode.frequency_slope for mode in here.structure.mode)
+    return structure_of(here).modes if slopes else model.structure.modes
 
 
 def _verdict(result: SimulationResult) -> str:

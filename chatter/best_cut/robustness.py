@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from chatter.best_cut.candidate import DEEPER, Candidate, Probability, candidate_at
 from chatter.best_cut.limits import Limits
 from chatter.best_cut.search import Place
-from chatter.best_cut.sheet import Sheet, at_width_and_feed, sheet_of
+from chatter.best_cut.sheet import Sheet, model_at, sheet_of
 from chatter.case import Case
 from chatter.errors import InputError
-from chatter.model import milling_model
+from chatter.model import MillingModel, milling_model
 from chatter.monte_carlo.confidence import wilson_interval
 from chatter.monte_carlo.parameters import UncertainParameter, correlation_of, parameters_of
 from chatter.monte_carlo.sampling import samples
@@ -31,6 +31,8 @@ Array = NDArray[np.float64]
 _SPEEDS = ((0.04, 13), (0.006, 5), (0.0, 1))
 _DEPTHS = ((0.2, 1.1, 19), (0.94, 1.06, 9), (0.99, 1.09, 21))
 CONFIDENCE = "confidence"
+#: beginnings of paths that the structure depends on
+_OF_STRUCTURE = ("structure", "machine", "friction", "cut.spindle_speed")
 #: shares of the depth that are tried where round numbers cost a sample
 _GIVEN_BACK = (1.0, 0.995, 0.99, 0.98)
 
@@ -82,15 +84,18 @@ class SampledCuts:
 
     Parameters
     ----------
-    case : Case
+    model : MillingModel
         At this width and feed.
     drawn : Samples
     deepest : float
         Depth down to which stability will be asked for, m.
     """
 
-    def __init__(self, case: Case, drawn: Samples, deepest: float) -> None:
-        self.case, self.drawn, self.deepest = case, drawn, deepest
+    def __init__(self, model: MillingModel, drawn: Samples, deepest: float) -> None:
+        self.case, self.drawn, self.deepest = model.case, drawn, deepest
+        # fitted or linearised anew only where it is not the same for all
+        varied = any(one.path.startswith(_OF_STRUCTURE) for one in drawn.parameters)
+        self.structure = None if varied else model.structure
         self.cuts = self._each(self._compiled)
 
     def _compiled(self, number: int) -> CutArrays:
@@ -103,7 +108,7 @@ class SampledCuts:
                 values[path] = self.case.get(path) * self.drawn.ratios(number, path)
         depth = self.deepest * self.drawn.ratios(number, "cut.axial_depth")
         try:
-            return milling_model(patched(self.case, values)).cut(depth * 1.001)
+            return milling_model(patched(self.case, values), self.structure).cut(depth * 1.001)
         except InputError as error:
             told = [f"sample {number + 1}: {text}" for text in error.messages]
             raise InputError(told) from None
@@ -129,18 +134,20 @@ class SampledCuts:
         return [found for chunk in sweep(at, len(self.drawn), points_a_chunk=4) for found in chunk]
 
 
-def robust_candidate(case: Case, limits: Limits, place: Place, drawn: Samples) -> Candidate | None:
+def robust_candidate(
+    model: MillingModel, limits: Limits, place: Place, drawn: Samples
+) -> Candidate | None:
     """Best cut around a place that is stable with the wanted probability; None if none is.
 
     Parameters
     ----------
-    case : Case
+    model : MillingModel
     limits : Limits
     place : Place
         Its width and feed are kept.
     drawn : Samples
     """
-    here = at_width_and_feed(case, place.radial_depth, place.feed_per_tooth)
+    here = model_at(model, place.radial_depth, place.feed_per_tooth)
     deepest = math.prod(high for _, high, _ in _DEPTHS) * place.axial_depth * (1.0 + DEEPER)
     sampled = SampledCuts(here, drawn, deepest)
     for (beside, speed_count), (low, high, depth_count) in zip(_SPEEDS, _DEPTHS, strict=True):
@@ -156,18 +163,18 @@ def robust_candidate(case: Case, limits: Limits, place: Place, drawn: Samples) -
         place = place._replace(spindle_speed=found[0], axial_depth=found[1])
     for share in _GIVEN_BACK:
         eased = place._replace(axial_depth=place.axial_depth * share)
-        found = _judged(candidate_at(case, limits, eased), limits, sampled)
+        found = _judged(candidate_at(model, limits, eased), limits, sampled)
         if found is not None:
             return found
     return None
 
 
 def with_probability(
-    case: Case, limits: Limits, candidate: Candidate, drawn: Samples
+    model: MillingModel, limits: Limits, candidate: Candidate, drawn: Samples
 ) -> Candidate | None:
     """Candidate with its own probability of stability; None where that does not suffice."""
     place = candidate.place
-    here = at_width_and_feed(case, place.radial_depth, place.feed_per_tooth)
+    here = model_at(model, place.radial_depth, place.feed_per_tooth)
     return _judged(candidate, limits, SampledCuts(here, drawn, place.axial_depth * (1.0 + DEEPER)))
 
 

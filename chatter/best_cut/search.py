@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.best_cut.limits import Limits
-from chatter.best_cut.sheet import Sheet, at_width_and_feed, sheet_of
-from chatter.case import Case
+from chatter.best_cut.sheet import Sheet, model_at, sheet_of
+from chatter.model import MillingModel
 
 Array = NDArray[np.float64]
 
@@ -40,13 +40,15 @@ class Place(NamedTuple):
     removal_rate: float
 
 
-def coarse_sheets(case: Case, limits: Limits, sheet_done: Callable[[], None]) -> list[Sheet]:
+def coarse_sheets(
+    model: MillingModel, limits: Limits, sheet_done: Callable[[], None]
+) -> list[Sheet]:
     """Sheets at every width and feed of the coarse net, width by width."""
     looked_at = limits.looked_at_beyond()
     sheets = []
     for width in limits.widths:
         for feed in limits.feeds:
-            here = at_width_and_feed(case, float(width), float(feed))
+            here = model_at(model, float(width), float(feed))
             sheets.append(sheet_of(here, limits, limits.speeds, limits.depths, looked_at))
             sheet_done()
     return sheets
@@ -97,7 +99,9 @@ def _near(place: Place, other: Place, far: float) -> bool:
     return in_speed and abs(place.radial_depth - other.radial_depth) <= far
 
 
-def refined(case: Case, limits: Limits, start: Place, sheet_done: Callable[[], None]) -> Place:
+def refined(
+    model: MillingModel, limits: Limits, start: Place, sheet_done: Callable[[], None]
+) -> Place:
     """Best place around a start, on nets that shrink towards it."""
     best, span = start, 1.0
     for _ in range(LEVELS):
@@ -105,7 +109,7 @@ def refined(case: Case, limits: Limits, start: Place, sheet_done: Callable[[], N
         speeds, depths, widths, feeds = _net_around(best, limits, span)
         for width in widths:
             for feed in feeds:
-                here = at_width_and_feed(case, float(width), float(feed))
+                here = model_at(model, float(width), float(feed))
                 looked_at = limits.looked_at(speeds)
                 found.append(best_of(sheet_of(here, limits, speeds, depths, looked_at)))
         sheet_done()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,8 @@ from chatter.best_cut.limits import Limits
 from chatter.best_cut.stable_depths import StableDepths, is_inside, stable_depths
 from chatter.best_cut.steady_cut import SteadyCuts, SteadyModel
 from chatter.case import Case
-from chatter.model import milling_model
+from chatter.model import MillingModel
+from cutting.removed_section import removed_section
 
 Array = NDArray[np.float64]
 
@@ -31,7 +32,7 @@ class Sheet:
 
     Parameters
     ----------
-    case : Case
+    model : MillingModel
         At this width and feed.
     speeds, depths : (n,), (m,) arrays of float
         rad/s, m.
@@ -44,7 +45,7 @@ class Sheet:
         Share of each limit of [optimum] that is used; nan where the cut is not stable.
     """
 
-    case: Case
+    model: MillingModel
     speeds: Array
     depths: Array
     stable: StableDepths
@@ -53,11 +54,16 @@ class Sheet:
     usage: dict[str, Array]
 
     @property
+    def case(self) -> Case:
+        """Case at this width and feed."""
+        return self.model.case
+
+    @property
     def removal_rate(self) -> Array:
         """Volume removed per time (m, n), m^3/s."""
-        case = self.case
-        area = case.width_of_cut * case.cut.feed_per_tooth * case.tool.teeth / _TURN
-        return area * np.outer(self.depths, self.speeds)
+        case, cutter = self.case, self.model.cutter
+        area = removed_section(cutter, case.cut.mode, case.width_of_cut, self.depths)
+        return np.outer(area, self.speeds) * case.cut.feed_per_tooth * cutter.teeth / _TURN
 
     @property
     def held(self) -> dict[str, NDArray[np.bool_]]:
@@ -78,12 +84,19 @@ def at_width_and_feed(case: Case, width: float, feed: float) -> Case:
     return case.patch({path: value for path, value in values.items() if value != case.get(path)})
 
 
-def sheet_of(case: Case, limits: Limits, speeds: Array, depths: Array, looked_at: Array) -> Sheet:
+def model_at(model: MillingModel, width: float, feed: float) -> MillingModel:
+    """Model at another radial depth and feed per tooth, m; its structure is not looked at again."""
+    return replace(model, case=at_width_and_feed(model.case, width, feed))
+
+
+def sheet_of(
+    model: MillingModel, limits: Limits, speeds: Array, depths: Array, looked_at: Array
+) -> Sheet:
     """Compute a sheet.
 
     Parameters
     ----------
-    case : Case
+    model : MillingModel
         At its width and feed.
     limits : Limits
     speeds, depths : (n,), (m,) arrays of float
@@ -91,13 +104,12 @@ def sheet_of(case: Case, limits: Limits, speeds: Array, depths: Array, looked_at
     looked_at : (p,) array of float
         Speeds at which stability is computed, with those that the margins need, ascending.
     """
-    model = milling_model(case)
     net = _net(depths, limits.depth_margin)
     stable = stable_depths(model.cut(float(net[-1])), looked_at, net)
     kept = _inside_at(stable, speeds, depths, limits.depth_margin, limits.speed_margin)
     settled = _inside_at(stable, speeds, depths, 0.0, 0.0)
     cuts = _steady(SteadyModel(model, float(speeds[0])), speeds, depths, settled)
-    return Sheet(case, speeds, depths, stable, kept, cuts, limits.usage(cuts))
+    return Sheet(model, speeds, depths, stable, kept, cuts, limits.usage(cuts))
 
 
 def _net(depths: Array, margin: float) -> Array:

@@ -27,10 +27,10 @@ from chatter.best_cut.search import (
     refined,
     starts_of,
 )
-from chatter.best_cut.sheet import Sheet, at_width_and_feed, sheet_of
+from chatter.best_cut.sheet import Sheet, model_at, sheet_of
 from chatter.case import Case
 from chatter.errors import InputError
-from chatter.model import milling_model
+from chatter.model import MillingModel, milling_model
 from chatter.monte_carlo.propagation import check_counts
 from chatter.stability.sweep import Progress, no_progress
 
@@ -96,16 +96,16 @@ def optimum(
     drawn = samples_of(case, samples, seed)
     pieces = limits.widths.size * limits.feeds.size
     work = _Work(progress, pieces + STARTS * (LEVELS + 1) + _SIMULATED + 1)
-    sheets = coarse_sheets(case, limits, work.done)
-    places = [refined(case, limits, start, work.done) for start in starts_of(sheets)]
-    candidates = _candidates(case, limits, places, drawn, work)
-    candidates = _confirmed(case, limits, candidates, drawn, work)
+    sheets = coarse_sheets(model, limits, work.done)
+    places = [refined(model, limits, start, work.done) for start in starts_of(sheets)]
+    candidates = _candidates(model, limits, places, drawn, work)
+    candidates = _confirmed(model, limits, candidates, drawn, work)
     result = Optimum(
         case=case,
         limits=limits,
         candidates=tuple(candidates),
         over_widths=tuple(_best_of_widths(sheets, limits)),
-        sheet=_shown_sheet(case, limits, candidates, sheets),
+        sheet=_shown_sheet(model, limits, candidates, sheets),
         exclusions=exclusions(sheets),
         points=sum(sheet.kept.size for sheet in sheets),
         samples=len(drawn) if drawn else 0,
@@ -126,18 +126,22 @@ def _refuse(case: Case) -> None:
 
 
 def _candidates(
-    case: Case, limits: Limits, places: Sequence[Place], drawn: Samples | None, work: _Work
+    model: MillingModel, limits: Limits, places: Sequence[Place], drawn: Samples | None, work: _Work
 ) -> list[Candidate]:
     """Candidates in round numbers, best first, robust where something is uncertain."""
-    found = [candidate_at(case, limits, place) for place in places]
+    found = [candidate_at(model, limits, place) for place in places]
     found.sort(key=lambda one: -one.removal_rate)
     if drawn is not None:
-        found = _robust(case, limits, found, drawn, work)
+        found = _robust(model, limits, found, drawn, work)
     return _apart(sorted(found, key=lambda one: -one.removal_rate))
 
 
 def _robust(
-    case: Case, limits: Limits, candidates: Sequence[Candidate], drawn: Samples, work: _Work
+    model: MillingModel,
+    limits: Limits,
+    candidates: Sequence[Candidate],
+    drawn: Samples,
+    work: _Work,
 ) -> list[Candidate]:
     """Candidates that are robust, from candidates, best first; then the best over its width."""
     found: list[Candidate] = []
@@ -145,17 +149,17 @@ def _robust(
         most = max((other.removal_rate for other in found), default=0.0)
         # what is robust of it cannot be more than all of it
         if len(found) < _SIMULATED or one.removal_rate > most:
-            robust = robust_candidate(case, limits, one.place, drawn)
+            robust = robust_candidate(model, limits, one.place, drawn)
             found += [] if robust is None else [robust]
         work.done()
     if found and limits.widths.size > 1:
         best = max(found, key=lambda one: one.removal_rate)
-        found += _at_other_widths(case, limits, best, drawn)
+        found += _at_other_widths(model, limits, best, drawn)
     return found
 
 
 def _at_other_widths(
-    case: Case, limits: Limits, best: Candidate, drawn: Samples
+    model: MillingModel, limits: Limits, best: Candidate, drawn: Samples
 ) -> list[Candidate]:
     """Robust candidates beside the best one that remove more, on the way to the best width."""
     better: list[Candidate] = []
@@ -166,7 +170,7 @@ def _at_other_widths(
             place.radial_depth + np.array([-step, step]), limits.widths[0], limits.widths[-1]
         )
         tried = [
-            robust_candidate(case, limits, _at_width(place, float(width)), drawn)
+            robust_candidate(model, limits, _at_width(place, float(width)), drawn)
             for width in beside
             if abs(width - place.radial_depth) > 0.1 * step
         ]
@@ -197,7 +201,7 @@ def _apart(candidates: Sequence[Candidate]) -> list[Candidate]:
 
 
 def _confirmed(
-    case: Case,
+    model: MillingModel,
     limits: Limits,
     candidates: Sequence[Candidate],
     drawn: Samples | None,
@@ -209,7 +213,7 @@ def _confirmed(
         if number >= _SIMULATED and any(one.time and one.time.held for one in found):
             found.append(candidate)
             continue
-        found.append(_held_in_time(case, limits, candidate, drawn))
+        found.append(_held_in_time(model, limits, candidate, drawn))
         work.done()
     return sorted(
         found, key=lambda one: (one.time is not None and not one.time.held, -one.removal_rate)
@@ -217,20 +221,20 @@ def _confirmed(
 
 
 def _held_in_time(
-    case: Case, limits: Limits, candidate: Candidate, drawn: Samples | None
+    model: MillingModel, limits: Limits, candidate: Candidate, drawn: Samples | None
 ) -> Candidate:
     """Candidate with its check in the time domain; less deep where a limit is missed there."""
-    first = checked = replace(candidate, time=time_check(case, limits, candidate))
+    first = checked = replace(candidate, time=time_check(model, limits, candidate))
     for number in range(1, _EASINGS + 1):
         if checked.time.held:
             return checked
         depth = candidate.place.axial_depth * (1.0 - _EASING * number)
-        eased = candidate_at(case, limits, candidate.place._replace(axial_depth=depth))
+        eased = candidate_at(model, limits, candidate.place._replace(axial_depth=depth))
         if drawn is not None:
-            eased = with_probability(case, limits, eased, drawn)
+            eased = with_probability(model, limits, eased, drawn)
         if eased is not None and max_usage(eased) <= 1.0:
             active = (*eased.active, TIME_DOMAIN)
-            checked = replace(eased, time=time_check(case, limits, eased), active=active)
+            checked = replace(eased, time=time_check(model, limits, eased), active=active)
     return checked if checked.time.held else first
 
 
@@ -245,13 +249,13 @@ def _best_of_widths(sheets: Sequence[Sheet], limits: Limits) -> list[Place]:
 
 
 def _shown_sheet(
-    case: Case, limits: Limits, candidates: Sequence[Candidate], sheets: Sequence[Sheet]
+    model: MillingModel, limits: Limits, candidates: Sequence[Candidate], sheets: Sequence[Sheet]
 ) -> Sheet:
     """Sheet at the width and feed of the best cut; else that with the most points left."""
     if not candidates:
         return max(sheets, key=lambda sheet: int(sheet.kept.sum()))
     place = candidates[0].place
-    here = at_width_and_feed(case, place.radial_depth, place.feed_per_tooth)
+    here = model_at(model, place.radial_depth, place.feed_per_tooth)
     return sheet_of(here, limits, limits.speeds, limits.depths, limits.looked_at_beyond())
 
 
