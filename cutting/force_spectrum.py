@@ -82,13 +82,14 @@ class RigidCut:
         entry, leave = slice_engagement(mode, radial_depth, cutter.radius, slices.radius)
         cuts = np.flatnonzero(entry < leave)
         self.slices = slices_at(slices, cuts)
+        entry, leave = entry[cuts], leave[cuts]
         points = max(
             _LEAST_POINTS,
-            math.ceil(_POINTS_A_CYCLE * highest * _longest(entry[cuts], leave[cuts]) / _TURN),
+            math.ceil(_POINTS_A_CYCLE * highest * _longest(entry, leave) / _TURN),
         )
         node, weight = _gauss(points)
-        half = 0.5 * (leave - entry)[cuts]
-        self.angle = (0.5 * (leave + entry)[cuts])[:, None] + half[:, None] * node
+        half = 0.5 * (leave - entry)
+        self.angle = (0.5 * (leave + entry))[:, None] + half[:, None] * node
         self.weight = half[:, None] * weight
         order, ahead = earlier_passes(self.slices.angle)
         offset = self.slices.normal_offset
@@ -163,7 +164,10 @@ class RigidCut:
     def _series(self, values: Array, harmonic: NDArray[np.int64]) -> Complex:
         """Coefficients (n, ...) of the sum over all edges of values (N, L, Q, ...)."""
         teeth, pieces, points = values.shape[:3]
-        flat = values.reshape(teeth, pieces, points, -1) * self.weight[:, :, None]
+        flat = (
+            values.reshape(teeth, pieces, points, math.prod(values.shape[3:]))
+            * self.weight[:, :, None]
+        )
         wave = np.exp(-1j * self.angle[:, None, :] * harmonic[:, None])
         integral = wave @ flat
         place = self.slices.angle[..., None] * harmonic

@@ -108,8 +108,12 @@ def sheet_of(
     stable = stable_depths(model.cut(float(net[-1])), looked_at, net)
     kept = _inside_at(stable, speeds, depths, limits.depth_margin, limits.speed_margin)
     settled = _inside_at(stable, speeds, depths, 0.0, 0.0)
-    cuts = _steady(SteadyModel(model, float(speeds[0])), speeds, depths, settled)
-    return Sheet(model, speeds, depths, stable, kept, cuts, limits.usage(cuts))
+    # a corner or ball may not reach the work: that is no cut
+    case = model.case
+    reached = removed_section(model.cutter, case.cut.mode, case.width_of_cut, depths) > 0.0
+    kept, settled = kept & reached[:, None], settled & reached[:, None]
+    steady = _steady(SteadyModel(model, float(speeds[0])), speeds, depths, settled)
+    return Sheet(model, speeds, depths, stable, kept, steady, limits.usage(steady))
 
 
 def _net(depths: Array, margin: float) -> Array:

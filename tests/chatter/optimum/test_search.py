@@ -209,3 +209,20 @@ def test_a_varying_speed_is_refused():
     case = end_mill({"cut.speed_variation": {"amplitude": 0.1, "frequency": "1 Hz"}})
     with pytest.raises(InputError, match=r"cut\.speed_variation"):
         chatter.optimum(case)
+
+
+def test_a_ball_removes_what_it_sweeps_and_nothing_where_it_does_not_reach():
+    widths = {"from": "0.5 mm", "to": "8 mm", "count": 3}
+    section = {
+        "speeds": {"from": "9000 rpm", "to": "9300 rpm"},
+        "depths": {"to": "1 mm", "count": 4},
+    }
+    changes = {"tool.kind": "ball", "cut.radial_depth": "8 mm"}
+    found = chatter.optimum(end_mill({**changes, "optimum": {**section, "widths": widths}}))
+    place = found.best.place
+    # at 1 mm the ball of 16 mm reaches 3.87 mm from its axis, where half of its segment is cut
+    segment = 64.0 * math.acos(7.0 / 8.0) - 7.0 * math.sqrt(15.0)
+    wanted = 0.5 * segment * 1e-6 * 0.08e-3 * 3 * place.spindle_speed / (2.0 * math.pi)
+    assert place[1:3] == pytest.approx((1e-3, 8e-3))
+    assert found.best.removal_rate == pytest.approx(wanted, rel=1e-3)
+    assert min(one.radial_depth for one in found.over_widths) > 4e-3
