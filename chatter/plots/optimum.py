@@ -120,14 +120,22 @@ def _fill(axes: Axes, found: Optimum, top: float) -> None:
         cmap=ListedColormap([style.STABLE_FILL, style.UNSTABLE_FILL]), vmin=0, vmax=1,
         shading="nearest", rasterized=True, zorder=0.4,
     )  # fmt: skip
-    if sheet.feasible.any():
+    # the net of the sheet is coarser than the limits: nothing beyond them counts as kept
+    row = _nearest(sheet.depths * 1e3, depth)
+    column = _nearest(sheet.speeds, stable.speeds)
+    kept = sheet.feasible[np.ix_(row, column)] & (passed == 0)
+    if kept.any():
         axes.pcolormesh(
-            sheet.speeds * _RPM, sheet.depths * 1e3,
-            np.ma.masked_where(~sheet.feasible, np.ones(sheet.feasible.shape)),
+            stable.speeds * _RPM, depth, np.ma.masked_where(~kept, np.ones(kept.shape)),
             cmap=ListedColormap([_KEPT_FILL]), shading="nearest", rasterized=True, zorder=0.5,
         )  # fmt: skip
     first = [found[0] * 1e3 if len(found) else np.nan for found in stable.crossings]
     axes.plot(stable.speeds * _RPM, first, color=style.BLUE, linewidth=1.2, zorder=1.5)
+
+
+def _nearest(places: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Index of the nearest of some ascending places to each wanted one."""
+    return np.abs(places[:, None] - wanted[None, :]).argmin(axis=0)
 
 
 def _levels(rate: np.ndarray) -> np.ndarray:
