@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from reference.general_cases import case_dict, load
+from reference.general_cases import STORE, case_dict, load
 from reference.general_cut import GeneralCut, spectral_radius
 
 from chatter.case import Case
@@ -14,6 +14,9 @@ from chatter.stability.collocation import converged_multiplier, multipliers
 from cutting.edge_pieces import period_angle
 
 CASES = load()
+#: drawn with another seed when the code stood; four of them showed faults of the edge pieces
+#: (corners, first contact within an edge, flutes of different helix with runout) that were mended
+UNSEEN = load(STORE.with_name("general_cases_unseen.json"))
 RPM = math.pi / 30.0
 X = ((922.0, 0.011, 0.03993, (1.0, 0.0, 0.0)),)
 
@@ -74,9 +77,10 @@ def test_the_cases_are_varied():
     assert sum(cut.variation is not None for cut in cuts) > 2
 
 
-def test_spectral_radius_of_random_cases_of_any_tool():
+@pytest.mark.parametrize("cases", [CASES, UNSEEN], ids=["seen", "unseen"])
+def test_spectral_radius_of_random_cases_of_any_tool(cases):
     errors = []
-    for cut, expected in CASES:
+    for cut, expected in cases:
         model = milling_model(Case.from_dict(case_dict(cut)))
         found = converged_multiplier(
             lambda points, waves, model=model, depth=cut.depth: model.cut(depth, points, waves),
