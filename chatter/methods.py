@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from chatter.case import Case
 from chatter.errors import InputError
 from chatter.model import MillingModel
-from chatter.stability import collocation, multi_frequency, semi_discretization
+from chatter.stability import collocation, matrix_free, multi_frequency, semi_discretization
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.multiplier import Multiplier
 from chatter.stability.step_schemes import FullDiscretization, SecondOrder, ZerothOrder
@@ -61,6 +61,17 @@ def by_collocation(
 ) -> LimitCurve:
     """Limits by collocation on elements, of any tool."""
     return collocation.limit_curve(model.cut(float(depths[-1])), speeds, depths, progress)
+
+
+def by_matrix_free(
+    model: MillingModel,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    steps: int | None,  # noqa: ARG001  (every method has the same signature)
+    progress: Progress,
+) -> LimitCurve:
+    """Limits from initial functions propagated in time, of any tool."""
+    return matrix_free.limit_curve(model.cut(float(depths[-1])), speeds, depths, progress)
 
 
 def by_multi_frequency(
@@ -128,6 +139,7 @@ METHODS: dict[str, LimitMethod] = {
     "semi-discretization-0": _by_scheme(ZerothOrder()),
     "semi-discretization-2": _by_scheme(SecondOrder()),
     "full-discretization": _by_scheme(FullDiscretization()),
+    "matrix-free": by_matrix_free,
     "multi-frequency": by_multi_frequency,
     "zero-order": by_zero_order,
     "time": by_time,
@@ -159,6 +171,18 @@ def radius_by_collocation(
     return np.abs(collocation.multipliers(cut, speeds, depths, progress))
 
 
+def radius_by_matrix_free(
+    model: MillingModel,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    steps: int | None,  # noqa: ARG001
+    progress: Progress,
+) -> NDArray[np.float64]:
+    """Spectral radius (n,) at n points from initial functions propagated in time."""
+    cut = model.cut(float(np.max(depths)))
+    return np.abs(matrix_free.multipliers(cut, speeds, depths, progress))
+
+
 def radius_by_time(
     model: MillingModel,
     speeds: NDArray[np.float64],
@@ -174,16 +198,22 @@ def radius_by_time(
 
 
 #: methods that give the spectral radius on a grid; the others leave it to collocation
-GRIDS = {"time": radius_by_time, "semi-discretization": radius_by_semi_discretization}
+GRIDS = {
+    "time": radius_by_time,
+    "semi-discretization": radius_by_semi_discretization,
+    "matrix-free": radius_by_matrix_free,
+}
 
 
 def operating_multiplier(model: MillingModel, method: str, steps: int | None) -> Multiplier:
     """Dominant multiplier at the operating point of a case, with an estimate of its error.
 
-    By semi-discretization where that is the method, else by collocation.
+    By semi-discretization or the matrix-free method where that is the method, else by collocation.
     """
     cut = model.case.cut
     speed, depth = cut.spindle_speed, cut.axial_depth
+    if method == "matrix-free":
+        return matrix_free.converged_multiplier(model.cut(depth), speed, depth)
     if method != "semi-discretization":
         return collocation.converged_multiplier(
             lambda points, waves: model.cut(depth, points, waves), speed, depth
@@ -197,10 +227,11 @@ def operating_multiplier(model: MillingModel, method: str, steps: int | None) ->
     return Multiplier(complex(coarse), steps, float(abs(abs(coarse) - abs(fine)) * 4.0 / 3.0))
 
 
-def operating_frequency(model: MillingModel) -> float:
+def operating_frequency(model: MillingModel, method: str = "collocation") -> float:
     """Frequency (Hz) of the motion that grows fastest, or dies out slowest, as the case cuts."""
     cut = model.case.cut
-    return collocation.chatter_frequency(
+    frequency_of = matrix_free if method == "matrix-free" else collocation
+    return frequency_of.chatter_frequency(
         model.cut(cut.axial_depth), cut.spindle_speed, cut.axial_depth
     )
 

@@ -114,7 +114,8 @@ def check(case: Case, method: str | None = None) -> StabilityCheck:
     case : Case
     method : str, optional
         Gives the limit depth: one of `chatter.methods.METHODS`, or "auto". The spectral radius is
-        that of semi-discretization where that is the method, else of collocation.
+        that of semi-discretization or the matrix-free method where that is the method, else of
+        collocation.
 
     Returns
     -------
@@ -130,7 +131,7 @@ def check(case: Case, method: str | None = None) -> StabilityCheck:
     point = operating_multiplier(model, name, resolution(case))
     heard = np.nan
     if abs(point.value) >= 1.0:
-        heard = operating_frequency(model)
+        heard = operating_frequency(model, name)
     speeds = np.array([case.cut.spindle_speed])
     zero_order = zero_order_of(model, speeds)
     depths = depths_at_one_speed(case, zero_order)

@@ -89,6 +89,7 @@ _METHOD_LABEL = {
     "semi-discretization-0": "limit, semi-discretization of order 0",
     "semi-discretization-2": "limit, semi-discretization of order 2",
     "full-discretization": "limit, full discretization",
+    "matrix-free": "limit, matrix-free",
     "multi-frequency": "limit, multi-frequency",
     "zero-order": "limit, zeroth-order",
     "time": "limit, time domain",

@@ -1,0 +1,415 @@
+"""Matrix-free method: multipliers of any cut from initial functions that are propagated in time.
+
+An initial function is the state of the modes and the motion over the longest delay. It is run
+through one period step by step (see `matrix_free_plan`), and the functions that follow one from
+the other span the space in which the dominant multiplier is looked for: Arnoldi iteration (Arnoldi
+1951) on the solution operator, which never is a matrix, as in the implicit subspace iteration of
+Zatarain and Dombovari 2014, Int. J. Dynam. Control 2. The steps are those of an integration in
+time, of order four; nothing is shared with collocation but the couplings of the edge.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from chatter.errors import RunError
+from chatter.kernels import DRIVER, KERNEL
+from chatter.stability.cut_arrays import CutArrays
+from chatter.stability.limit_curve import LimitCurve
+from chatter.stability.limit_search import PointMethod, limit_curve_by
+from chatter.stability.matrix_free_plan import StepPlan, step_plan
+from chatter.stability.matrix_free_steps import SteppedCut, period_steps
+from chatter.stability.multiplier import Multiplier
+from chatter.stability.spindle_turn import spindle_turn
+from chatter.stability.sweep import Progress, no_progress, sweep
+
+#: steps in a wave of the fastest vibration
+STEPS_A_WAVE = 12.0
+#: refinements of the steps: plain, or nested ones from which the value is extrapolated
+_PLAIN = (1,)
+_EXTRAPOLATED = (1, 2)
+#: of the error that is left as the steps are halved
+_ORDER = 4
+#: a correction beyond this share means that two multipliers have changed places
+_LARGEST_CORRECTION = 0.05
+_MOST_STEPS = 100_000
+#: residual of the dominant eigenpair, relative to its magnitude, at which the iteration stops
+_RESIDUAL = 1e-9
+#: functions beyond the states at the first look, growth from look to look, and the most
+_FIRST_LOOK, _GROWTH, _MOST_FUNCTIONS = 6, 1.3, 320
+#: harmonics looked at for the chatter frequency reach this far beyond the highest mode
+_HIGHEST = 2.0
+
+
+class _Dominant(NamedTuple):
+    value: complex
+    motion: NDArray[np.complex128]  # of the tool point at the nodes of a period (2 N, r)
+    time: NDArray[np.float64]  # of the nodes (2 N,)
+    period: float
+
+
+def stepped_cut(cut: CutArrays) -> SteppedCut:
+    """What the steps need of a cut."""
+    return SteppedCut(
+        cut.natural_frequency, cut.damping, cut.shape, cut.force_gain, cut.basis, cut.pieces,
+        cut.period_angle, cut.variation, cut.fastest, cut.stiffening, cut.edge_place,
+        cut.edge_weight,
+    )  # fmt: skip
+
+
+@njit(**KERNEL)
+def _propagate(plan, function, out, motion, force, free):
+    """Run an initial function through one period.
+
+    `motion` (4 N + 1, 2, r) holds the nodes of the period before and of this one; `force` (2, r)
+    and `free` (2, 2, r) are scratch.
+    """
+    steps = plan.length_of.shape[0]
+    modes, rank = plan.shape.shape
+    kept = 2 * steps
+    place = 2 * modes
+    for node in range(kept):
+        for part in range(2):
+            for k in range(rank):
+                motion[node, part, k] = function[place]
+                place += 1
+    for i in range(2 * modes):
+        out[i] = function[i]
+    _note_motion(plan, out, motion[kept])
+    for step in range(steps):
+        answer = plan.answer[plan.length_of[step]]
+        for p in range(2):
+            for k in range(rank):
+                force[p, k] = 0.0
+        if plan.engaged[step] == 1:
+            _solve_forces(plan, step, answer, out, motion, force, free)
+        _advance(plan, answer, out, motion, kept + 2 * step, force)
+    place = 2 * modes
+    for node in range(kept, 2 * kept):
+        for part in range(2):
+            for k in range(rank):
+                out[place] = motion[node, part, k]
+                place += 1
+
+
+@njit(**KERNEL)
+def _note_motion(plan, state, node):
+    modes, rank = plan.shape.shape
+    for k in range(rank):
+        node[0, k], node[1, k] = 0.0, 0.0
+    for m in range(modes):
+        for k in range(rank):
+            node[0, k] += plan.shape[m, k] * state[2 * m]
+            node[1, k] += plan.shape_rate[m, k] * state[2 * m + 1]
+
+
+@njit(**KERNEL)
+def _solve_forces(plan, step, answer, state, motion, force, free):
+    """Set `force` (2, r) to that at the two Gauss points of a step."""
+    modes, rank = plan.shape.shape
+    for p in range(2):
+        for k in range(rank):
+            free[0, p, k], free[1, p, k] = 0.0, 0.0
+    for m in range(modes):
+        x, v = state[2 * m], state[2 * m + 1]
+        for p in range(2):
+            at = answer[m, p]
+            displacement = at[0, 0] * x + at[0, 1] * v
+            velocity = at[1, 0] * x + at[1, 1] * v
+            for k in range(rank):
+                free[0, p, k] += plan.shape[m, k] * displacement
+                free[1, p, k] += plan.shape_rate[m, k] * velocity
+    from_motion, from_earlier = plan.from_motion[step], plan.from_earlier[step]
+    for row in range(2 * rank):
+        total = 0.0
+        for part in range(2):
+            for p in range(2):
+                for k in range(rank):
+                    total += from_motion[row, (2 * part + p) * rank + k] * free[part, p, k]
+        force[row // rank, row % rank] = total
+    for p in range(2):
+        for source in range(plan.first_source[2 * step + p], plan.first_source[2 * step + p + 1]):
+            low, high = motion[plan.node[source]], motion[plan.node[source] + 1]
+            weight, block = plan.weight[source], plan.block[source]
+            for j in range(rank):
+                earlier = weight[0] * low[0, j] + weight[1] * low[1, j]
+                if weight[2] != 0.0 or weight[3] != 0.0:
+                    earlier += weight[2] * high[0, j] + weight[3] * high[1, j]
+                for i in range(rank):
+                    push = block[i, j] * earlier
+                    for row in range(2 * rank):
+                        force[row // rank, row % rank] += from_earlier[row, p * rank + i] * push
+
+
+@njit(**KERNEL)
+def _advance(plan, answer, state, motion, node, force):
+    """Set the state to the end of a step and note the motion at its middle and its end."""
+    modes, rank = plan.shape.shape
+    for p in range(2):
+        for k in range(rank):
+            motion[node + 1, p, k], motion[node + 2, p, k] = 0.0, 0.0
+    for m in range(modes):
+        first, second = 0.0, 0.0
+        for k in range(rank):
+            first += plan.gain[m, k] * force[0, k]
+            second += plan.gain[m, k] * force[1, k]
+        x, v = state[2 * m], state[2 * m + 1]
+        for p in range(2, 4):
+            at = answer[m, p]
+            displacement = at[0, 0] * x + at[0, 1] * v + at[0, 2] * first + at[0, 3] * second
+            velocity = at[1, 0] * x + at[1, 1] * v + at[1, 2] * first + at[1, 3] * second
+            for k in range(rank):
+                motion[node + p - 1, 0, k] += plan.shape[m, k] * displacement
+                motion[node + p - 1, 1, k] += plan.shape_rate[m, k] * velocity
+            if p == 3:
+                state[2 * m], state[2 * m + 1] = displacement, velocity
+
+
+@njit(**KERNEL)
+def _scale_to_one(function):
+    """Divide a function by its length, which is returned."""
+    total = 0.0
+    for i in range(function.shape[0]):
+        total += function[i] * function[i]
+    length = math.sqrt(total)
+    for i in range(function.shape[0]):
+        function[i] /= max(length, 1e-300)
+    return length
+
+
+@njit(**DRIVER)
+def first_function(plan, basis):
+    """Set the first row of `basis` to a fixed function, run through one period, of length 1."""
+    steps = plan.length_of.shape[0]
+    modes, rank = plan.shape.shape
+    seed = 20261121
+    start = np.zeros(basis.shape[1])
+    for i in range(2 * modes):
+        seed = (1103515245 * seed + 12345) % 2147483648
+        start[i] = seed / 1073741824.0 - 1.0
+    motion = np.empty((4 * steps + 1, 2, rank))
+    _propagate(plan, start, basis[0], motion, np.empty((2, rank)), np.empty((2, 2, rank)))
+    _scale_to_one(basis[0])
+
+
+@njit(**DRIVER)
+def extend_space(plan, basis, hessenberg, first, last):
+    """Propagate the functions first .. last - 1 and make each image a new function of the basis.
+
+    Parameters
+    ----------
+    plan : StepPlan
+    basis : (k + 1, d) array of float
+        Orthonormal initial functions, `first` + 1 of them on entry.
+    hessenberg : (k + 1, k) array of float
+        The operator in this basis; columns first .. last - 1 are set.
+    first, last : int
+
+    Returns
+    -------
+    int
+        Functions whose image is known: less than `last` where the space closes.
+    """
+    steps = plan.length_of.shape[0]
+    rank = plan.shape.shape[1]
+    motion = np.empty((4 * steps + 1, 2, rank))
+    force, free = np.empty((2, rank)), np.empty((2, 2, rank))
+    dimension = basis.shape[1]
+    for k in range(first, last):
+        image = basis[k + 1]
+        _propagate(plan, basis[k], image, motion, force, free)
+        before = 0.0
+        for i in range(dimension):
+            before += image[i] * image[i]
+        for _ in range(2):
+            for j in range(k + 1):
+                overlap = 0.0
+                for i in range(dimension):
+                    overlap += basis[j, i] * image[i]
+                hessenberg[j, k] += overlap
+                for i in range(dimension):
+                    image[i] -= overlap * basis[j, i]
+        norm = _scale_to_one(image)
+        if norm <= 1e-14 * math.sqrt(before):
+            return k + 1
+        hessenberg[k + 1, k] = norm
+    return last
+
+
+def _dominant(plan: StepPlan) -> _Dominant:
+    """Multiplier of largest magnitude and the motion that belongs to it."""
+    modes, rank = plan.shape.shape
+    nodes = 2 * plan.length_of.size
+    dimension = 2 * modes + 2 * rank * nodes
+    most = min(dimension, _MOST_FUNCTIONS)
+    basis, hessenberg = np.zeros((most + 1, dimension)), np.zeros((most + 1, most))
+    first_function(plan, basis)
+    known, look = 0, min(most, 2 * modes + _FIRST_LOOK)
+    while True:
+        wanted = look
+        known = extend_space(plan, basis, hessenberg, known, wanted)
+        values, vectors = np.linalg.eig(hessenberg[:known, :known])
+        best = int(np.argmax(np.abs(values)))
+        value, vector = complex(values[best]), vectors[:, best]
+        residual = hessenberg[known, known - 1] * abs(vector[-1])
+        if known < wanted or known == most or residual <= _RESIDUAL * abs(value):
+            break
+        look = min(most, math.ceil(look * _GROWTH))
+    if value.imag < 0.0:
+        value, vector = value.conjugate(), vector.conj()
+    function = vector @ basis[:known]
+    motion = function[2 * modes :].reshape(nodes, 2, rank)[:, 0]
+    start, end = plan.border[:-1], plan.border[1:]
+    time = np.stack([start, 0.5 * (start + end)], axis=1).ravel()
+    return _Dominant(value, motion, time, float(end[-1] - start[0]))
+
+
+def multipliers(
+    cut: CutArrays,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    progress: Progress = no_progress,
+    refinements: tuple[int, ...] = _EXTRAPOLATED,
+) -> NDArray[np.complex128]:
+    """Dominant multiplier over one period at every point.
+
+    Parameters
+    ----------
+    cut : CutArrays
+    speeds, depths : (n,) array of float
+        rad/s and m, point by point.
+    progress : callable, optional
+        Called with (done, total).
+    refinements : tuple of int
+        Divisions of the steps; from two the error of fourth order is removed (Richardson).
+
+    Returns
+    -------
+    (n,) array of complex
+        Imaginary part >= 0.
+
+    Raises
+    ------
+    RunError
+        If a period holds too many vibrations.
+    """
+    if len(speeds) == 0:
+        return np.empty(0, dtype=np.complex128)
+    stepped = stepped_cut(cut)
+
+    def at(index: NDArray[np.int64]) -> NDArray[np.complex128]:
+        found = np.empty((len(refinements), len(index)), dtype=np.complex128)
+        for row, refinement in enumerate(refinements):
+            for column, i in enumerate(index):
+                plan = _plan(stepped, float(speeds[i]), float(depths[i]), refinement)
+                found[row, column] = _dominant(plan).value
+        return found[0] if len(refinements) == 1 else _extrapolated(found, refinements)
+
+    return np.concatenate(sweep(at, len(speeds), progress, points_a_chunk=8))
+
+
+def _plan(cut: SteppedCut, speed: float, depth: float, refinement: int) -> StepPlan:
+    waves = cut.fastest / speed
+    if waves * STEPS_A_WAVE * refinement > _MOST_STEPS:
+        raise RunError(
+            f"at {speed * 30.0 / math.pi:.4g} rpm a turn holds {waves:.3g} vibrations, more than "
+            "the matrix-free method can step through; raise the lowest spindle speed"
+        )
+    return step_plan(cut, speed, depth, STEPS_A_WAVE, refinement)
+
+
+def _extrapolated(
+    found: NDArray[np.complex128], refinements: tuple[int, ...]
+) -> NDArray[np.complex128]:
+    coarse, fine = found
+    ratio = (refinements[1] / refinements[0]) ** _ORDER
+    correction = (fine - coarse) / (ratio - 1.0)
+    correction[np.abs(correction) > _LARGEST_CORRECTION * np.abs(fine)] = 0.0
+    value = fine + correction
+    return value.real + 1j * np.abs(value.imag)
+
+
+def converged_multiplier(
+    cut: CutArrays, speed: float, depth: float, tolerance: float = 2e-5
+) -> Multiplier:
+    """Dominant multiplier at one point, its steps halved until the estimated error is small.
+
+    Parameters
+    ----------
+    cut : CutArrays
+    speed, depth : float
+        rad/s, m.
+    tolerance : float
+        On |mu|, relative to max(1, |mu|).
+    """
+    stepped = stepped_cut(cut)
+    coarse, refinement, error = None, 1, math.inf
+    while True:
+        plan = _plan(stepped, speed, depth, refinement)
+        fine = np.array([_dominant(plan).value])
+        if coarse is not None:
+            value = _extrapolated(np.array([coarse, fine]), (1, 2))[0]
+            error = abs(abs(value) - abs(fine[0]))
+            if error <= tolerance * max(1.0, abs(value)) or refinement >= 16:
+                return Multiplier(complex(value), plan.length_of.size, float(error))
+        coarse, refinement = fine, 2 * refinement
+
+
+def chatter_frequency(cut: CutArrays, speed: float, depth: float) -> float:
+    """Frequency (Hz) at which the motion of the dominant multiplier is largest.
+
+    A multiplier mu fixes (arg mu + 2 pi l)/T; the motion of the dominant function, taken apart
+    into these frequencies, tells which of them is heard.
+    """
+    found = _dominant(_plan(stepped_cut(cut), speed, depth, 1))
+    base = np.log(complex(found.value) if found.value != 0.0 else 1e-300) / found.period
+    line = 2.0 * np.pi / found.period
+    highest = _HIGHEST * float(cut.natural_frequency.max())
+    harmonic = np.arange(-math.ceil(highest / line) - 1, math.ceil(highest / line) + 2)
+    s = base + 1j * line * harmonic
+    time = np.append(found.time, found.time[0] + found.period)
+    span = np.diff(time)
+    weight = 0.5 * (span + np.roll(span, 1))
+    # the history belongs to a multiplier mu: from one period to the next it grows by it
+    wave = np.exp(-np.outer(s, found.time - found.time[0])) * weight
+    amplitude = np.linalg.norm(wave @ found.motion, axis=1)
+    return float(abs(s[np.argmax(amplitude)].imag)) / (2.0 * np.pi)
+
+
+def limit_curve(
+    cut: CutArrays,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    progress: Progress = no_progress,
+) -> LimitCurve:
+    """Limits of stability at every spindle speed; see `limit_search`."""
+
+    def plain(
+        points: NDArray[np.int64], depth: NDArray[np.float64], report: Progress
+    ) -> NDArray[np.complex128]:
+        return multipliers(cut, speeds[points], depth, report, _PLAIN)
+
+    def refined(
+        points: NDArray[np.int64], depth: NDArray[np.float64], report: Progress
+    ) -> NDArray[np.complex128]:
+        return multipliers(cut, speeds[points], depth, report, _EXTRAPOLATED)
+
+    def heard(speed: int, depth: float) -> float:
+        return chatter_frequency(cut, float(speeds[speed]), depth)
+
+    stepped, deepest = stepped_cut(cut), float(depths[-1])
+    finer = _EXTRAPOLATED[-1]
+    steps = np.array([steps_a_period(stepped, float(v), deepest, finer) for v in speeds])
+    return limit_curve_by(PointMethod(plain, refined, heard), speeds, depths, steps, progress)
+
+
+@njit(**DRIVER)
+def steps_a_period(cut, speed, depth, refinement):
+    """Steps in a period."""
+    turn = spindle_turn(cut.variation, speed, cut.period_angle)
+    return period_steps(cut, turn, depth, STEPS_A_WAVE, refinement).shape[0] - 1
