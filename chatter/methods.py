@@ -5,14 +5,18 @@ Adding a method is one function here and one entry in `METHODS`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
 from chatter.case import Case
 from chatter.errors import InputError
 from chatter.model import MillingModel
+from chatter.speed_groups import (
+    LimitMethod,
+    limits_by_group,
+    radius_by_group,
+    zero_order_by_group,
+)
 from chatter.stability import collocation, matrix_free, multi_frequency, semi_discretization
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.multiplier import Multiplier
@@ -21,11 +25,8 @@ from chatter.stability.sweep import Progress
 from chatter.stability.zero_order import ZeroOrderLimit, zero_order_limit
 from chatter.stability.zero_order_delays import limits_of_delays
 
-LimitMethod = Callable[
-    [MillingModel, NDArray[np.float64], NDArray[np.float64], "int | None", Progress], LimitCurve
-]
 
-
+@limits_by_group
 def by_semi_discretization(
     model: MillingModel,
     speeds: NDArray[np.float64],
@@ -38,6 +39,7 @@ def by_semi_discretization(
 
 
 def _by_scheme(scheme: semi_discretization.Scheme) -> LimitMethod:
+    @limits_by_group
     def limits(
         model: MillingModel,
         speeds: NDArray[np.float64],
@@ -52,6 +54,7 @@ def _by_scheme(scheme: semi_discretization.Scheme) -> LimitMethod:
     return limits
 
 
+@limits_by_group
 def by_collocation(
     model: MillingModel,
     speeds: NDArray[np.float64],
@@ -63,6 +66,7 @@ def by_collocation(
     return collocation.limit_curve(model.cut(float(depths[-1])), speeds, depths, progress)
 
 
+@limits_by_group
 def by_matrix_free(
     model: MillingModel,
     speeds: NDArray[np.float64],
@@ -74,6 +78,7 @@ def by_matrix_free(
     return matrix_free.limit_curve(model.cut(float(depths[-1])), speeds, depths, progress)
 
 
+@limits_by_group
 def by_multi_frequency(
     model: MillingModel,
     speeds: NDArray[np.float64],
@@ -95,6 +100,7 @@ def by_multi_frequency(
     return multi_frequency.limit_curve(cut, response, speeds, depths, progress)
 
 
+@limits_by_group
 def by_zero_order(
     model: MillingModel,
     speeds: NDArray[np.float64],
@@ -119,6 +125,7 @@ def by_zero_order(
     )
 
 
+@limits_by_group
 def by_time(
     model: MillingModel,
     speeds: NDArray[np.float64],
@@ -148,6 +155,7 @@ METHODS: dict[str, LimitMethod] = {
 AUTO = "auto"
 
 
+@radius_by_group
 def radius_by_semi_discretization(
     model: MillingModel,
     speeds: NDArray[np.float64],
@@ -159,6 +167,7 @@ def radius_by_semi_discretization(
     return np.abs(semi_discretization.multipliers(model.arrays, speeds, depths, steps, progress))
 
 
+@radius_by_group
 def radius_by_collocation(
     model: MillingModel,
     speeds: NDArray[np.float64],
@@ -171,6 +180,7 @@ def radius_by_collocation(
     return np.abs(collocation.multipliers(cut, speeds, depths, progress))
 
 
+@radius_by_group
 def radius_by_matrix_free(
     model: MillingModel,
     speeds: NDArray[np.float64],
@@ -183,6 +193,7 @@ def radius_by_matrix_free(
     return np.abs(matrix_free.multipliers(cut, speeds, depths, progress))
 
 
+@radius_by_group
 def radius_by_time(
     model: MillingModel,
     speeds: NDArray[np.float64],
@@ -236,6 +247,7 @@ def operating_frequency(model: MillingModel, method: str = "collocation") -> flo
     )
 
 
+@zero_order_by_group
 def zero_order_of(model: MillingModel, speeds: NDArray[np.float64]) -> ZeroOrderLimit:
     """Zeroth-order limits of a model at given speeds (rad/s).
 

@@ -163,16 +163,11 @@ def _map_over(
 
 def _inner(case: Case, x: Variation, y: Variation) -> str:
     """Axis along which one compiled case serves all points; "" where neither is so."""
-    section = case.structure
-    varies = section is not None and (
-        section.machine is not None or any(mode.frequency_slope for mode in section.mode)
-    )
-    other = {"x": y.path, "y": x.path}
-    for path in (DEPTH_PATH, *(() if varies else (SPEED_PATH,))):
+    on_machine = case.structure is not None and case.structure.machine is not None
+    # a machine is linearised at the speed of the case
+    for path in (DEPTH_PATH, *(() if on_machine else (SPEED_PATH,))):
         for name, axis in (("x", x), ("y", y)):
-            # a path into the modes may be what makes them depend on speed
-            free = path == DEPTH_PATH or not other[name].endswith("frequency_slope")
-            if axis.path == path and free:
+            if axis.path == path:
                 return name
     return ""
 
