@@ -113,6 +113,18 @@ def zero_order_by_group(method: ZeroOrderMethod) -> ZeroOrderMethod:
     return limits
 
 
+def natural_frequencies(model: MillingModel, speeds: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Natural frequencies (k, n), Hz, of k modes at n speeds (rad/s).
+
+    Of FRFs measured at several speeds those at the speed of the cut.
+    """
+    given = model.case.structure.mode
+    if given and model.depends_on_speed:
+        return np.array([[mode.frequency_at(float(speed)) for speed in speeds] for mode in given])
+    own = np.array([mode.frequency for mode in model.structure.modes])
+    return np.repeat(own[:, None], len(speeds), axis=1)
+
+
 def _in_groups(
     model: MillingModel, speeds: NDArray[np.float64], of: OfGroup, progress: Progress
 ) -> list[tuple[NDArray[np.int64], Result]]:
