@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from chatter.case import Case
 from chatter.cluster import Computing
+from chatter.forced_vibration import notes_on_steady_cut
 from chatter.grid_blocks import radius_in_blocks
 from chatter.methods import (
     GRIDS,
@@ -267,7 +268,7 @@ def lobes(
         operating=operating_limit(case, model, limits_of, deepest),
         natural_frequencies=natural_frequencies(model, speeds),
         grid=computed,
-        notes=model.notes,
+        notes=(*model.notes, *notes_on_steady_cut(model, name)),
     )
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from chatter.case import Case
+from chatter.forced_vibration import notes_on_steady_cut
 from chatter.methods import (
     chosen_method,
     operating_frequency,
@@ -143,5 +144,5 @@ def check(case: Case, method: str | None = None) -> StabilityCheck:
         limit=limits_of(model, speeds, depths, resolution(case), no_progress),
         searched_to=float(depths[-1]),
         zero_order_depth=float(zero_order.critical_depth[0]),
-        notes=model.notes,
+        notes=(*model.notes, *notes_on_steady_cut(model, name)),
     )
