@@ -75,7 +75,7 @@ def by_matrix_free(
     progress: Progress,
 ) -> LimitCurve:
     """Limits from initial functions propagated in time, of any tool."""
-    return matrix_free.limit_curve(model.cut(float(depths[-1])), speeds, depths, progress)
+    return matrix_free.limit_curve(model.stepped_cut(float(depths[-1])), speeds, depths, progress)
 
 
 @limits_by_group
@@ -189,7 +189,7 @@ def radius_by_matrix_free(
     progress: Progress,
 ) -> NDArray[np.float64]:
     """Spectral radius (n,) at n points from initial functions propagated in time."""
-    cut = model.cut(float(np.max(depths)))
+    cut = model.stepped_cut(float(np.max(depths)))
     return np.abs(matrix_free.multipliers(cut, speeds, depths, progress))
 
 
@@ -224,7 +224,7 @@ def operating_multiplier(model: MillingModel, method: str, steps: int | None) ->
     cut = model.case.cut
     speed, depth = cut.spindle_speed, cut.axial_depth
     if method == "matrix-free":
-        return matrix_free.converged_multiplier(model.cut(depth), speed, depth)
+        return matrix_free.converged_multiplier(model.stepped_cut(depth), speed, depth)
     if method != "semi-discretization":
         return collocation.converged_multiplier(
             lambda points, waves: model.cut(depth, points, waves), speed, depth
@@ -241,10 +241,10 @@ def operating_multiplier(model: MillingModel, method: str, steps: int | None) ->
 def operating_frequency(model: MillingModel, method: str = "collocation") -> float:
     """Frequency (Hz) of the motion that grows fastest, or dies out slowest, as the case cuts."""
     cut = model.case.cut
-    frequency_of = matrix_free if method == "matrix-free" else collocation
-    return frequency_of.chatter_frequency(
-        model.cut(cut.axial_depth), cut.spindle_speed, cut.axial_depth
-    )
+    point = cut.spindle_speed, cut.axial_depth
+    if method == "matrix-free":
+        return matrix_free.chatter_frequency(model.stepped_cut(cut.axial_depth), *point)
+    return collocation.chatter_frequency(model.cut(cut.axial_depth), *point)
 
 
 @zero_order_by_group
@@ -270,7 +270,8 @@ def zero_order_of(model: MillingModel, speeds: NDArray[np.float64]) -> ZeroOrder
 def chosen_method(case: Case, method: str | None) -> tuple[str, LimitMethod]:
     """Name and function of the method: as asked for, else as the case says, else the best.
 
-    ``"auto"`` takes collocation, and semi-discretization where the case fixes its steps.
+    ``"auto"`` takes collocation, semi-discretization where the case fixes its steps, and the
+    matrix-free method where tool and work have a contact, which it alone of the linear ones holds.
 
     Raises
     ------
@@ -279,7 +280,8 @@ def chosen_method(case: Case, method: str | None) -> tuple[str, LimitMethod]:
     """
     name = method or (case.lobes.method if case.lobes else None) or AUTO
     if name == AUTO:
-        name = "collocation" if resolution(case) is None else "semi-discretization"
+        name = "collocation" if case.contact is None else "matrix-free"
+        name = name if resolution(case) is None else "semi-discretization"
     if name not in METHODS:
         known = ", ".join(f'"{key}"' for key in (AUTO, *METHODS))
         raise InputError(f'method "{name}" is not known; there are {known}')

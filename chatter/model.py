@@ -16,6 +16,8 @@ from chatter.simulation.cutter import cutter_of, force_law, helix_angles, plough
 from chatter.simulation.setup import refuse_teeth_off_the_tool
 from chatter.stability.arrays import MillingArrays
 from chatter.stability.cut_arrays import RESOLUTION, CutArrays, cut_arrays
+from chatter.stability.matrix_free import stepped_cut
+from chatter.stability.matrix_free_steps import SteppedCut
 from chatter.stability.mean_couplings import mean_couplings
 from chatter.stability.spindle_turn import SpeedVariation
 from chatter.structure import Structure, depends_on_speed, structure_at, structure_of
@@ -199,6 +201,13 @@ class MillingModel:
         period = period_angle(self.cutter)
         return cut_arrays(self._modes, self.basis, pieces, period, variation, points, waves)
 
+    def stepped_cut(self, deepest: float) -> SteppedCut:
+        """What the matrix-free method sees of it, down to a depth (m), with the contact."""
+        contact = self.case.contact
+        if contact is None:
+            return stepped_cut(self.cut(deepest))
+        return stepped_cut(self.cut(deepest), (contact.stiffness, contact.damping, contact.full_at))
+
     @cached_property
     def receptance(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
         """Lines (m,) in Hz and relative receptance (m, r, r) in the directions of motion, m/N.
@@ -238,7 +247,9 @@ def milling_model(case: Case) -> MillingModel:
             "ploughing is taken for small vibration, as a dashpot; chatter simulate has it in full"
         )
     if case.contact is not None:
-        notes.append("the contact of tool and work acts in the time domain alone")
+        notes.append(
+            "the contact of tool and work is part of the matrix-free and time methods alone"
+        )
     if case.structure is not None and any(mode.friction for mode in case.structure.mode):
         notes.append("the friction of modes acts in the time domain alone")
     model = MillingModel(

@@ -53,12 +53,26 @@ class _Dominant(NamedTuple):
     period: float
 
 
-def stepped_cut(cut: CutArrays) -> SteppedCut:
-    """What the steps need of a cut."""
+def stepped_cut(
+    cut: CutArrays, contact: tuple[float, float, float] = (0.0, 0.0, 1.0)
+) -> SteppedCut:
+    """What the steps need of a cut.
+
+    Parameters
+    ----------
+    cut : CutArrays
+    contact : (float, float, float)
+        Stiffness (N/m) and damping (N s/m) of the contact of tool and work, and the engaged share
+        of the depth from which on it acts whole; see `cutting.contact`.
+    """
+    stiffness, _, full_at = contact
+    reach = np.linalg.norm(cut.shape, axis=1) * np.linalg.norm(cut.force_gain, axis=1)
+    # the stiffest that the contact can make a mode
+    fastest = math.hypot(cut.fastest, math.sqrt(stiffness * float(reach.max())))
     return SteppedCut(
         cut.natural_frequency, cut.damping, cut.shape, cut.force_gain, cut.basis, cut.pieces,
-        cut.period_angle, cut.variation, cut.fastest, cut.stiffening, cut.edge_place,
-        cut.edge_weight,
+        cut.period_angle, cut.variation, fastest, cut.stiffening,
+        np.array([*contact[:2], max(full_at, 1e-12)]), cut.edge_place, cut.edge_weight,
     )  # fmt: skip
 
 
@@ -270,7 +284,7 @@ def _dominant(plan: StepPlan) -> _Dominant:
 
 
 def multipliers(
-    cut: CutArrays,
+    cut: SteppedCut,
     speeds: NDArray[np.float64],
     depths: NDArray[np.float64],
     progress: Progress = no_progress,
@@ -280,7 +294,7 @@ def multipliers(
 
     Parameters
     ----------
-    cut : CutArrays
+    cut : SteppedCut
     speeds, depths : (n,) array of float
         rad/s and m, point by point.
     progress : callable, optional
@@ -300,13 +314,12 @@ def multipliers(
     """
     if len(speeds) == 0:
         return np.empty(0, dtype=np.complex128)
-    stepped = stepped_cut(cut)
 
     def at(index: NDArray[np.int64]) -> NDArray[np.complex128]:
         found = np.empty((len(refinements), len(index)), dtype=np.complex128)
         for row, refinement in enumerate(refinements):
             for column, i in enumerate(index):
-                plan = _plan(stepped, float(speeds[i]), float(depths[i]), refinement)
+                plan = _plan(cut, float(speeds[i]), float(depths[i]), refinement)
                 found[row, column] = _dominant(plan).value
         return found[0] if len(refinements) == 1 else _extrapolated(found, refinements)
 
@@ -335,22 +348,21 @@ def _extrapolated(
 
 
 def converged_multiplier(
-    cut: CutArrays, speed: float, depth: float, tolerance: float = 2e-5
+    cut: SteppedCut, speed: float, depth: float, tolerance: float = 2e-5
 ) -> Multiplier:
     """Dominant multiplier at one point, its steps halved until the estimated error is small.
 
     Parameters
     ----------
-    cut : CutArrays
+    cut : SteppedCut
     speed, depth : float
         rad/s, m.
     tolerance : float
         On |mu|, relative to max(1, |mu|).
     """
-    stepped = stepped_cut(cut)
     coarse, refinement, error = None, 1, math.inf
     while True:
-        plan = _plan(stepped, speed, depth, refinement)
+        plan = _plan(cut, speed, depth, refinement)
         fine = np.array([_dominant(plan).value])
         if coarse is not None:
             value = _extrapolated(np.array([coarse, fine]), (1, 2))[0]
@@ -360,13 +372,13 @@ def converged_multiplier(
         coarse, refinement = fine, 2 * refinement
 
 
-def chatter_frequency(cut: CutArrays, speed: float, depth: float) -> float:
+def chatter_frequency(cut: SteppedCut, speed: float, depth: float) -> float:
     """Frequency (Hz) at which the motion of the dominant multiplier is largest.
 
     A multiplier mu fixes (arg mu + 2 pi l)/T; the motion of the dominant function, taken apart
     into these frequencies, tells which of them is heard.
     """
-    found = _dominant(_plan(stepped_cut(cut), speed, depth, 1))
+    found = _dominant(_plan(cut, speed, depth, 1))
     base = np.log(complex(found.value) if found.value != 0.0 else 1e-300) / found.period
     line = 2.0 * np.pi / found.period
     highest = _HIGHEST * float(cut.natural_frequency.max())
@@ -382,7 +394,7 @@ def chatter_frequency(cut: CutArrays, speed: float, depth: float) -> float:
 
 
 def limit_curve(
-    cut: CutArrays,
+    cut: SteppedCut,
     speeds: NDArray[np.float64],
     depths: NDArray[np.float64],
     progress: Progress = no_progress,
@@ -402,9 +414,8 @@ def limit_curve(
     def heard(speed: int, depth: float) -> float:
         return chatter_frequency(cut, float(speeds[speed]), depth)
 
-    stepped, deepest = stepped_cut(cut), float(depths[-1])
-    finer = _EXTRAPOLATED[-1]
-    steps = np.array([steps_a_period(stepped, float(v), deepest, finer) for v in speeds])
+    deepest, finer = float(depths[-1]), _EXTRAPOLATED[-1]
+    steps = np.array([steps_a_period(cut, float(v), deepest, finer) for v in speeds])
     return limit_curve_by(PointMethod(plain, refined, heard), speeds, depths, steps, progress)
 
 

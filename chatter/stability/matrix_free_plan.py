@@ -169,6 +169,17 @@ def _points_along(cut, piece, span, speed):
 
 
 @njit(**KERNEL)
+def _add_contact(cut, share, stiffness, dashpot):
+    """Add the contact of tool and work in the plane of the cut, alike in both directions."""
+    rank = stiffness.shape[0]
+    for i in range(rank):
+        for j in range(rank):
+            plane = cut.basis[0, i] * cut.basis[0, j] + cut.basis[1, i] * cut.basis[1, j]
+            stiffness[i, j] += share * cut.contact[0] * plane
+            dashpot[i, j] += share * cut.contact[1] * plane
+
+
+@njit(**KERNEL)
 def _couple(cut, turn, depth, border, step, time, speed_factor, rate, sources, count, now, work):
     """Couplings at one time: fill `now` (stiffness, dashpot) and append the sources."""
     pieces = cut.pieces
@@ -180,7 +191,7 @@ def _couple(cut, turn, depth, border, step, time, speed_factor, rate, sources, c
         _clear(of_delay[group])
         used[group] = 0
     spindle, speed = angle_at(turn, time), speed_at(turn, time)
-    engaged = 0
+    engaged, in_contact = 0, 0.0
     for piece in range(pieces.bottom.shape[0]):
         top = part_below(pieces, piece, depth)
         if top <= 0.0:
@@ -191,6 +202,9 @@ def _couple(cut, turn, depth, border, step, time, speed_factor, rate, sources, c
             if low >= high:
                 continue
             engaged = 1
+            in_contact += pieces.thickness[piece] * (
+                share_of_height(pieces, piece, high) - share_of_height(pieces, piece, low)
+            )
             points = _points_along(cut, piece, high - low, speed)
             for q in range(points):
                 x, share = cut.edge_place[points, q], cut.edge_weight[points, q]
@@ -219,6 +233,8 @@ def _couple(cut, turn, depth, border, step, time, speed_factor, rate, sources, c
                 sources, count = _add_source(
                     border, step, time, earlier, rate, part, sources, count, now
                 )
+    if cut.contact[0] > 0.0 or cut.contact[1] > 0.0:
+        _add_contact(cut, min(1.0, in_contact / depth / cut.contact[2]), stiffness, dashpot)
     for group in range(used.shape[0]):
         if used[group] == 1:
             earlier = time_at(turn, spindle - pieces.group_delay[group])

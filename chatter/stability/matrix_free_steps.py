@@ -46,6 +46,7 @@ class SteppedCut(NamedTuple):
     variation: SpeedVariation
     fastest: float  # vibration that steps resolve, with no cut, rad/s
     stiffening: float  # by which its square grows with depth, rad^2/s^2/m
+    contact: NDArray[np.float64]  # stiffness N/m, damping N s/m, share at which it is whole (3,)
     edge_place: NDArray[np.float64]  # Gauss points on [0, 1], row q for q of them (17, 16)
     edge_weight: NDArray[np.float64]  # (17, 16)
 

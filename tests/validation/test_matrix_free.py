@@ -8,8 +8,15 @@ from reference.general_cases import case_dict, load
 
 from chatter.case import Case
 from chatter.errors import RunError
-from chatter.methods import GRIDS, METHODS, operating_frequency, operating_multiplier
+from chatter.methods import (
+    GRIDS,
+    METHODS,
+    chosen_method,
+    operating_frequency,
+    operating_multiplier,
+)
 from chatter.model import milling_model
+from chatter.simulation.limits import growths
 from chatter.stability import collocation, matrix_free, sweep
 from chatter.stability.matrix_free_steps import PLACES, mode_answer
 from chatter.stability.sweep import no_progress
@@ -73,7 +80,7 @@ TOOLS = {
 def test_radius_of_every_tool_is_that_of_collocation(name):
     model = TOOLS[name]
     rpm, depth = (part.ravel() for part in np.meshgrid([6100.0, 9700.0], [0.4e-3, 2e-3, 4e-3]))
-    found = np.abs(matrix_free.multipliers(model.cut(4e-3), rpm * RPM, depth))
+    found = np.abs(matrix_free.multipliers(model.stepped_cut(4e-3), rpm * RPM, depth))
     exact = np.abs(collocation.multipliers(model.cut(4e-3, 12, 0.6), rpm * RPM, depth))
     assert found == pytest.approx(exact, rel=1e-4, abs=1e-5)
 
@@ -84,7 +91,7 @@ def test_radius_of_random_cases_of_any_tool():
     for cut, expected in CASES[::2]:
         model = milling_model(Case.from_dict(case_dict(cut)))
         point = np.array([cut.speed]), np.array([cut.depth])
-        radius = abs(matrix_free.multipliers(model.cut(cut.depth), *point)[0])
+        radius = abs(matrix_free.multipliers(model.stepped_cut(cut.depth), *point)[0])
         # the reference counts from turn to turn
         repeats = 1 if cut.variation else round(2.0 * math.pi / period_angle(model.cutter))
         errors.append(abs(radius**repeats - expected) / max(1.0, expected))
@@ -102,7 +109,7 @@ def test_radius_of_random_cases_of_any_tool():
 )
 def test_published_multipliers(mode, rpm, depth_mm, immersion, exact):
     model = model_of({}, {"mode": mode, "radial_depth": immersion * 16e-3})
-    found = matrix_free.converged_multiplier(model.cut(5e-3), rpm * RPM, depth_mm * 1e-3)
+    found = matrix_free.converged_multiplier(model.stepped_cut(5e-3), rpm * RPM, depth_mm * 1e-3)
     assert abs(found.value) == pytest.approx(exact, rel=2e-6)
     assert abs(abs(found.value) - exact) <= found.error < 2e-5
 
@@ -114,12 +121,15 @@ def test_fourth_order_convergence(name):
     exact = abs(collocation.multipliers(model.cut(2e-3, 12, 0.4), *point)[0])
     errors = np.array(
         [
-            abs(abs(matrix_free.multipliers(model.cut(2e-3), *point, refinements=(r,))[0]) - exact)
+            abs(
+                abs(matrix_free.multipliers(model.stepped_cut(2e-3), *point, refinements=(r,))[0])
+                - exact
+            )
             for r in (1, 2, 4)
         ]
     )
     assert np.log2(errors[:-1] / errors[1:]) == pytest.approx([4.0, 4.0], abs=0.35)
-    better = abs(matrix_free.multipliers(model.cut(2e-3), *point)[0])
+    better = abs(matrix_free.multipliers(model.stepped_cut(2e-3), *point)[0])
     assert abs(better - exact) < 0.2 * errors[1]
 
 
@@ -151,7 +161,7 @@ def test_the_grid_and_the_operating_point_of_the_method():
 
 
 def test_the_same_bytes_whatever_the_number_of_threads(monkeypatch):
-    cut = TOOLS["variable helix"].cut(3e-3)
+    cut = TOOLS["variable helix"].stepped_cut(3e-3)
     speeds, depths = np.linspace(600.0, 1300.0, 40), np.full(40, 3e-3)
     found = []
     for workers in (1, 2, 5):
@@ -161,7 +171,7 @@ def test_the_same_bytes_whatever_the_number_of_threads(monkeypatch):
 
 
 def test_too_many_vibrations_are_refused():
-    cut = TOOLS["uniform"].cut(1e-3)
+    cut = TOOLS["uniform"].stepped_cut(1e-3)
     with pytest.raises(RunError, match="raise the lowest spindle speed"):
         matrix_free.multipliers(cut, np.array([0.1]), np.array([1e-3]))
 
@@ -187,3 +197,57 @@ def test_a_mode_answers_exactly_to_a_line(angle):
         v = b / omega**2 + fade * (rate[0] * c + rate[1] * s)
         found = row @ np.concatenate([start, forces])
         assert found == pytest.approx([x, v / omega], rel=1e-7, abs=1e-9)
+
+
+# --- contact of tool and work ---------------------------------------------------------------------
+
+#: one of two straight teeth is always in the cut of a slot: the contact is always whole
+SLOT = {"mode": "slot", "radial_depth": 16e-3, "spindle_speed": 8000 * RPM}
+
+
+def test_a_contact_that_is_always_whole_is_a_stiffer_mode():
+    spring, damper = 4e5, 30.0
+    omega, mass = 2.0 * math.pi * 922.0, 0.03993
+    held = model_of({}, SLOT, contact={"stiffness": spring, "damping": damper})
+    stiffness = mass * omega**2 + spring
+    damping = 2.0 * 0.011 * mass * omega + damper
+    natural = math.sqrt(stiffness / mass)
+    stiff = model_of(
+        {}, SLOT,
+        [
+            {
+                "frequency": natural / (2.0 * math.pi), "damping": damping / (2.0 * mass * natural),
+                "mass": mass, "direction": [1, 0, 0],
+            }
+        ],
+    )  # fmt: skip
+    speeds, depths = np.full(3, 8000 * RPM), np.array([0.3e-3, 1e-3, 3e-3])
+    found = np.abs(matrix_free.multipliers(held.stepped_cut(3e-3), speeds, depths))
+    exact = np.abs(collocation.multipliers(stiff.cut(3e-3, 12, 0.6), speeds, depths))
+    assert found == pytest.approx(exact, rel=1e-5)
+    free = np.abs(matrix_free.multipliers(model_of({}, SLOT).stepped_cut(3e-3), speeds, depths))
+    assert not np.allclose(found, free, rtol=0.02)
+
+
+@pytest.mark.parametrize("full_at", [1.0, 0.3])
+def test_a_contact_that_comes_and_goes_grows_as_in_the_simulation(full_at):
+    contact = {"stiffness": 5e5, "damping": 20.0, "full_at": full_at}
+    # shallow: a large steady deflection moves the place where a vanishing chip ends the contact
+    depth = 0.2e-3
+    cut = {
+        "mode": "down", "radial_depth": 4e-3, "spindle_speed": 7000 * RPM, "axial_depth": depth,
+    }  # fmt: skip
+    model = model_of({"helix": math.radians(30.0)}, cut, TWO_MODES, contact=contact)
+    point = np.array([7000 * RPM]), np.array([depth])
+    found = abs(matrix_free.multipliers(model.stepped_cut(depth), *point)[0])
+    (simulated,) = growths(model.case, model.structure.modes, *point)
+    assert found == pytest.approx(simulated.radius, rel=1e-3)
+    without = abs(matrix_free.multipliers(matrix_free.stepped_cut(model.cut(depth)), *point)[0])
+    assert abs(without - found) > 0.1
+
+
+def test_auto_takes_the_contact_along():
+    model = model_of({}, SLOT, contact={"stiffness": 4e5})
+    assert chosen_method(model.case, None)[0] == "matrix-free"
+    assert chosen_method(model_of({}, SLOT).case, None)[0] == "collocation"
+    assert any("matrix-free and time methods alone" in note for note in model.notes)
