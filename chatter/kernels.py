@@ -68,6 +68,10 @@ KERNEL = {"cache": True, "error_model": "numpy"}
 INLINED_KERNEL = {**KERNEL, "forceinline": True}
 #: sums may be taken in lanes: always in the same order on one machine, whatever the threads
 SUMMING_KERNEL = {**KERNEL, "fastmath": {"reassoc", "contract", "nsz"}}
+#: functions that compiled code alone calls: no entry for Python, kept on disk within their drivers
+INNER_KERNEL = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+#: functions with one caller, which becomes part of it
+SINGLE_KERNEL = {**INNER_KERNEL, "inline": "always"}
 #: loops over points, called from Python, in several threads at once
 DRIVER = {"cache": True, "error_model": "numpy", "nogil": True}
 

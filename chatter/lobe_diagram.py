@@ -146,6 +146,7 @@ class LobeDiagram:
                     int(self.limits.steps.min()),
                     int(self.limits.steps.max()),
                 ],
+                "estimated_error": finite_or_none(self.limits.error),
                 "depth_step_mm": self.deepest * 1e3 / len(axial_depths(self.case, self.deepest)),
             },
             "notes": list(self.notes),

@@ -18,6 +18,7 @@ from chatter.speed_groups import (
     zero_order_by_group,
 )
 from chatter.stability import collocation, matrix_free, multi_frequency, semi_discretization
+from chatter.stability.cut_arrays import CutArrays
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.multiplier import Multiplier
 from chatter.stability.step_schemes import FullDiscretization, SecondOrder, ZerothOrder
@@ -63,7 +64,13 @@ def by_collocation(
     progress: Progress,
 ) -> LimitCurve:
     """Limits by collocation on elements, of any tool."""
-    return collocation.limit_curve(model.cut(float(depths[-1])), speeds, depths, progress)
+
+    def cut_at(points: int, waves: float) -> CutArrays:
+        return model.cut(float(depths[-1]), points, waves)
+
+    lobes = model.case.lobes
+    tolerance = lobes.tolerance if lobes else collocation.LIMIT_ERROR
+    return collocation.converged_limit_curve(cut_at, speeds, depths, progress, tolerance)
 
 
 @limits_by_group

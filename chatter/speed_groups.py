@@ -162,4 +162,5 @@ def _joined_limits(
         steps[places] = curve.steps
         for i, place in enumerate(places):
             kind[place], crossings[place] = curve.bifurcation[i], curve.crossings[i]
-    return LimitCurve(speeds, depth, frequency, tuple(kind), tuple(crossings), steps)
+    error = max(curve.error for _, curve in found)
+    return LimitCurve(speeds, depth, frequency, tuple(kind), tuple(crossings), steps, error)

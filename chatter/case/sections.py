@@ -286,6 +286,10 @@ class Lobes(Section):
     steps: whole_number(4, 20_000, "steps a tooth period") | None = Field(
         None, description="fixes the steps a tooth period; by default they are chosen"
     )
+    tolerance: quantity("number", at_least=1e-6, at_most=0.05) = Field(
+        1e-3,
+        description="largest estimated error of the limit depths, relative; the resolution follows",
+    )
 
     @model_validator(mode="after")
     def _check_size(self) -> Lobes:

@@ -95,6 +95,7 @@ def lobes(
         print_json(diagram.summary())
     else:
         _print_pockets(diagram.summary())
+        _print_method(diagram.summary())
     print_notes(diagram.notes)
     print_written(written)
 
@@ -177,6 +178,12 @@ def _print_pockets(summary: dict) -> None:
         f"{'stable' if operating['stable'] else 'chatter'}; "
         f"limit there {_millimetres(limit, summary['searched_to_mm'])} mm"
     )
+
+
+def _print_method(summary: dict) -> None:
+    error = summary["resolution"]["estimated_error"]
+    good_to = "" if error is None else f"; limits good to {max(error, 1e-6):.1g} of their depth"
+    typer.echo(f"method: {summary['method']}{good_to}")
 
 
 def _millimetres(depth: float | None, searched_to: float) -> str:

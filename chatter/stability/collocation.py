@@ -6,7 +6,6 @@ of the spindle speed, and converges spectrally.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 import numpy as np
@@ -16,14 +15,22 @@ from chatter.stability import drivers
 from chatter.stability.cut_arrays import RESOLUTION, CutArrays
 from chatter.stability.following import followed_crossings
 from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.limit_search import PointMethod, growth, limit_curve_by
+from chatter.stability.limit_search import growth, limits_at
 from chatter.stability.multiplier import Multiplier
 from chatter.stability.sweep import Progress, no_progress, sweep
 
 #: resolutions of a single point, one after the other until two agree
 FINER = ((10, 1.0), (12, 0.8), (12, 0.5), (12, 0.3), (12, 0.15))
-#: harmonics looked at for the chatter frequency, beyond the highest mode by this factor
-_HIGHEST = 2.0
+#: of a limit, relative to its depth
+DEPTH_TOLERANCE = 1e-6
+#: largest estimated error of limits, relative to their depth
+LIMIT_ERROR = 1e-3
+#: limits that are looked at again with finer elements
+_CHECKED = 16
+#: speeds from one to the next of those at which all depths are looked at
+STRIDE = 4
+#: points handed to a thread at once: many enough to fill the lanes of the kernels
+_POINTS_A_CHUNK = 64
 
 #: a cut at a resolution: (points, waves) -> CutArrays
 CutAt = Callable[[int, float], CutArrays]
@@ -50,14 +57,44 @@ def multipliers(
     (n,) array of complex
         Imaginary part >= 0.
     """
+    return _solved(cut, speeds, depths, np.zeros(len(speeds), dtype=np.bool_), progress)[0]
+
+
+def _solved(
+    cut: CutArrays,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    listened: NDArray[np.bool_],
+    progress: Progress = no_progress,
+) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+    """Multipliers, and chatter frequencies (Hz) of the points listened to, nan elsewhere."""
     if len(speeds) == 0:
-        return np.empty(0, dtype=np.complex128)
+        return np.empty(0, dtype=np.complex128), np.empty(0)
+    order = _neighbours_together(cut, speeds, depths)
     parts = sweep(
-        lambda index: drivers.element_multipliers(cut, speeds[index], depths[index]),
+        lambda index: drivers.element_multipliers(
+            cut, speeds[order[index]], depths[order[index]], listened[order[index]]
+        ),
         len(speeds),
         progress,
+        _POINTS_A_CHUNK,
     )
-    return np.concatenate(parts)
+    multiplier, frequency = np.empty(len(speeds), dtype=np.complex128), np.empty(len(speeds))
+    multiplier[order] = np.concatenate([part[0] for part in parts])
+    frequency[order] = np.concatenate([part[1] for part in parts])
+    return multiplier, frequency
+
+
+def _neighbours_together(
+    cut: CutArrays, speeds: NDArray[np.float64], depths: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    """Order of the points in which those follow each other that can share work."""
+    if cut.variation.amplitude > 0.0:
+        # the pattern of a varying speed changes with its mean
+        return np.lexsort((depths, speeds))
+    # at one depth much is shared, at neighbouring speeds most of it
+    _, row, count = np.unique(depths, return_inverse=True, return_counts=True)
+    return np.lexsort((speeds, np.where(count[row] > 1, depths, 0.0)))
 
 
 def converged_multiplier(
@@ -84,58 +121,20 @@ def converged_multiplier(
         value = better
         if error <= tolerance * max(1.0, abs(value)):
             break
-    steps = int(drivers.points_a_period(cut, speed, depth))
+    steps = int(drivers.points_of_periods(cut, point[0], depth)[0])
     return Multiplier(value, steps, float(error))
 
 
+def chatter_frequencies(
+    cut: CutArrays, speeds: NDArray[np.float64], depths: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Frequency (Hz) at which the motion of the dominant multiplier is largest, at n points."""
+    return _solved(cut, speeds, depths, np.ones(len(speeds), dtype=np.bool_))[1]
+
+
 def chatter_frequency(cut: CutArrays, speed: float, depth: float) -> float:
-    """Frequency (Hz) at which the motion of the dominant multiplier is largest.
-
-    The force of the dominant motion, taken apart into exp((sigma + i omega_l) t) over the period,
-    drives the structure at each omega_l; the frequency with the largest displacement is heard.
-    """
-    value, time, weight, force, period = drivers.dominant_force(cut, speed, depth)
-    base = np.log(complex(value) if value != 0.0 else 1e-300) / period
-    highest = _HIGHEST * float(cut.natural_frequency.max())
-    line = 2.0 * np.pi / period
-    harmonic = np.arange(-math.ceil(highest / line) - 1, math.ceil(highest / line) + 2)
-    s = base + 1j * line * harmonic
-    spectrum = np.exp(-np.outer(s, time)) @ (weight[:, None] * force)
-    w, zeta = cut.natural_frequency, cut.damping
-    modal = (spectrum @ cut.force_gain.T) / (s[:, None] ** 2 + 2.0 * zeta * w * s[:, None] + w**2)
-    amplitude = np.linalg.norm(modal @ cut.shape, axis=1)
-    return float(abs(s[np.argmax(amplitude)].imag)) / (2.0 * np.pi)
-
-
-def followed_limits(
-    cut: CutArrays,
-    speeds: NDArray[np.float64],
-    depths: NDArray[np.float64],
-    tolerance: float = 5e-3,
-) -> list[NDArray[np.float64]]:
-    """Limits at every speed by following the boundary, for a diagram that follows a slider.
-
-    Parameters
-    ----------
-    cut : CutArrays
-        At any resolution: 6 points an element do for a picture.
-    speeds : (n,) array of float
-        rad/s, ascending.
-    depths : (m,) array of float
-        Coarse net, m.
-    tolerance : float
-        Of a limit, relative to its depth.
-
-    Returns
-    -------
-    list of n arrays
-        m; all changes of stability, lost at even places; see `following` for what may be missed.
-    """
-
-    def at(points: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
-        return growth(multipliers(cut, speeds[points], depth))
-
-    return followed_crossings(len(speeds), depths, at, tolerance)
+    """The same (Hz) at one point."""
+    return float(chatter_frequencies(cut, np.array([speed]), np.array([depth]))[0])
 
 
 def limit_curve(
@@ -143,16 +142,88 @@ def limit_curve(
     speeds: NDArray[np.float64],
     depths: NDArray[np.float64],
     progress: Progress = no_progress,
+    tolerance: float = DEPTH_TOLERANCE,
+    stride: int = STRIDE,
 ) -> LimitCurve:
-    """Limits of stability at every spindle speed; see `limit_search`."""
+    """Limits of stability at every spindle speed, by following the boundary.
 
-    def at(
-        points: NDArray[np.int64], depth: NDArray[np.float64], report: Progress = no_progress
-    ) -> NDArray[np.complex128]:
-        return multipliers(cut, speeds[points], depth, report)
+    Parameters
+    ----------
+    cut : CutArrays
+    speeds : (n,) array of float
+        rad/s, ascending.
+    depths : (m,) array of float
+        Net on which changes of stability are looked for, m.
+    progress : callable, optional
+        Called with (done, total) speeds.
+    tolerance : float
+        Of a limit, relative to its depth.
+    stride : int
+        All depths are looked at for every so many speeds, a power of two; see `following` for what
+        may be missed between them.
+    """
 
-    def heard(speed: int, depth: float) -> float:
-        return chatter_frequency(cut, float(speeds[speed]), depth)
+    def growth_at(points: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
+        return growth(multipliers(cut, speeds[points], depth))
 
+    def heard(
+        points: NDArray[np.int64], depth: NDArray[np.float64]
+    ) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+        return _solved(cut, speeds[points], depth, np.ones(len(points), dtype=np.bool_))
+
+    crossings = followed_crossings(len(speeds), depths, growth_at, tolerance, stride, progress)
     steps = drivers.points_of_periods(cut, speeds, float(depths[-1]))
-    return limit_curve_by(PointMethod(at, at, heard), speeds, depths, steps, progress)
+    return limits_at(heard, speeds, crossings, steps)
+
+
+def converged_limit_curve(
+    cut_at: CutAt,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    progress: Progress = no_progress,
+    tolerance: float = LIMIT_ERROR,
+) -> LimitCurve:
+    """Limits at every spindle speed, with finer elements until they are good to a tolerance.
+
+    Parameters
+    ----------
+    cut_at : callable
+        Cut at a resolution.
+    speeds, depths, progress
+        As for `limit_curve`.
+    tolerance : float
+        On the depths of the limits, relative.
+
+    Returns
+    -------
+    LimitCurve
+        With the estimated error.
+    """
+    cut = cut_at(*RESOLUTION)
+    for finer in FINER:
+        finer_cut = cut_at(*finer)
+        limits = limit_curve(cut, speeds, depths, progress)
+        error = _limit_error(limits, cut, finer_cut)
+        if error <= tolerance:
+            break
+        cut = finer_cut
+    return limits._replace(error=error)
+
+
+def _limit_error(limits: LimitCurve, cut: CutArrays, finer: CutArrays) -> float:
+    """Largest relative shift of the limit depth, of some limits, by a finer resolution."""
+    found = np.flatnonzero(np.isfinite(limits.critical_depth))
+    if found.size == 0:
+        return 0.0
+    # the slowest speeds have the most waves in a cut: none of them is left out
+    picked = found[
+        np.unique(np.geomspace(1, found.size, min(found.size, _CHECKED)).astype(int) - 1)
+    ]
+    speed, depth = limits.spindle_speed[picked], limits.critical_depth[picked]
+    step = 1e-3 * depth
+    left, right = (growth(multipliers(cut, speed, depth + s)) for s in (-step, step))
+    slope = np.maximum(np.abs(right - left) / (2.0 * step), 1e-300)
+    shift = np.abs(
+        growth(multipliers(finer, speed, depth)) - growth(multipliers(cut, speed, depth))
+    )
+    return float(np.max(shift / (slope * depth)))

@@ -1,5 +1,8 @@
 """Where stability is lost or regained along depth: net, then refinement of every bracket at once.
 
+A stretch that fits between two depths of the net is not passed over where the growth beside it
+nearly reaches zero: the top of such a peak, or the floor of such a valley, is looked for.
+
 The search knows nothing of the method: it asks for the growth (logarithm of the spectral radius)
 at batches of points, which the sweep spreads over the threads.
 """
@@ -7,6 +10,7 @@ at batches of points, which the sweep spreads over the threads.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,9 +21,14 @@ Growth = Callable[[NDArray[np.int64], NDArray[np.float64]], NDArray[np.float64]]
 #: a limit is found when its bracket is this small, relative to the depth
 _DEPTH_TOLERANCE = 1e-7
 _GROWTH_TOLERANCE = 1e-9
+#: or when the growth left, over its slope, is this share of the tolerance
+_ROOT_SHARE = 0.2
 _MOST_ITERATIONS = 60
 #: growth on the net may be off by this much
 _DOUBTFUL_GROWTH = 0.05
+#: a peak may rise above the net by this share of its height over the depths beside it
+_PEAK_REACH = 1.5
+_PEAK_STEPS = 4
 
 
 def growth_on_net(
@@ -52,11 +61,22 @@ def _in_doubt(growth: NDArray[np.float64]) -> NDArray[np.bool_]:
     return changes | (near & (peak | valley))
 
 
+class _Brackets(NamedTuple):
+    """Between two depths of a speed stability changes."""
+
+    speed: NDArray[np.int64]
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+    at_low: NDArray[np.float64]  # growth
+    at_high: NDArray[np.float64]
+
+
 def find_crossings(
     net: NDArray[np.float64],
     depths: NDArray[np.float64],
     growth: Growth,
     tolerance: float = _DEPTH_TOLERANCE,
+    looked_at: NDArray[np.bool_] | None = None,
 ) -> list[NDArray[np.float64]]:
     """Depths of all changes of stability at each speed.
 
@@ -70,29 +90,131 @@ def find_crossings(
         For the refinement.
     tolerance : float
         Of a limit, relative to its depth.
+    looked_at : (n, m) array of bool, optional
+        Where the growth of the net has the right sign alone, it is False; beside changes it is not.
 
     Returns
     -------
     list of n arrays
         m, ascending; stability is lost at even places and regained at odd ones.
     """
-    unstable = np.concatenate([np.zeros((net.shape[0], 1), dtype=bool), net > 0.0], axis=1)
-    speed, place = np.nonzero(unstable[:, 1:] != unstable[:, :-1])
     edges = np.concatenate([[0.0], depths])
-    limit = _refine(speed, edges[place], edges[place + 1], growth, tolerance)
-    return [limit[speed == i] for i in range(net.shape[0])]
+    at_zero = np.full((net.shape[0], 1), -np.inf)
+    values = np.concatenate([at_zero, net], axis=1)
+    seen = values if looked_at is None else values.copy()
+    if looked_at is not None:
+        seen[:, 1:][~looked_at] = np.nan
+    parts = [_on_the_net(values, edges, growth), *_between(seen, edges, growth)]
+    brackets = _Brackets(*(np.concatenate(field) for field in zip(*parts, strict=True)))
+    limit = _refine(brackets, growth, tolerance)
+    return [np.sort(limit[brackets.speed == i]) for i in range(net.shape[0])]
 
 
-def _refine(
+def _on_the_net(
+    values: NDArray[np.float64], edges: NDArray[np.float64], growth: Growth
+) -> _Brackets:
+    """Changes of sign between neighbouring depths."""
+    unstable = values > 0.0
+    speed, place = np.nonzero(unstable[:, 1:] != unstable[:, :-1])
+    at_low = values[speed, place]
+    unknown = np.flatnonzero(~np.isfinite(at_low))
+    at_low[unknown] = growth(speed[unknown], edges[place[unknown]])
+    # at zero depth there is no cut to make it unstable, whatever rounding says
+    at_low[unknown] = np.minimum(at_low[unknown], -1e-12)
+    return _Brackets(speed, edges[place], edges[place + 1], at_low, values[speed, place + 1])
+
+
+def _between(
+    values: NDArray[np.float64], edges: NDArray[np.float64], growth: Growth
+) -> list[_Brackets]:
+    """Changes of sign about peaks and valleys that only reach across zero between the depths."""
+    middle, before, after = values[:, 1:-1], values[:, :-2], values[:, 2:]
+    side = np.where(middle > 0.0, -1.0, 1.0)
+    with np.errstate(invalid="ignore"):
+        peak = (side * middle >= side * before) & (side * middle >= side * after)
+        step = np.maximum(
+            np.where(np.isfinite(before), np.abs(middle - before), 0.0), np.abs(middle - after)
+        )
+        same = ((before > 0.0) == (middle > 0.0)) & ((after > 0.0) == (middle > 0.0))
+        speed, place = np.nonzero(peak & same & (np.abs(middle) < _PEAK_REACH * step))
+    x = np.stack([edges[place], edges[place + 1], edges[place + 2]])
+    y = np.stack([before[speed, place], middle[speed, place], after[speed, place]])
+    found: list[_Brackets] = []
+    for _ in range(_PEAK_STEPS):
+        known = np.all(np.isfinite(y), axis=0)
+        speed, x, y = speed[known], x[:, known], y[:, known]
+        if speed.size == 0:
+            break
+        place = _vertex(x, y)
+        value = growth(speed, place)
+        across = (value > 0.0) != (y[1] > 0.0)
+        k = np.flatnonzero(across)
+        # of the two old middles and ends, those next to the new place
+        left = np.where(place < x[1], 0, 1)
+        for end in (left[k], left[k] + 1):
+            found.append(_bracket(speed[k], place[k], value[k], x[end, k], y[end, k]))
+        speed, x, y = _narrowed(speed, x, y, place, value, ~across)
+    return found
+
+
+def _bracket(
     speed: NDArray[np.int64],
-    low: NDArray[np.float64],
-    high: NDArray[np.float64],
-    growth: Growth,
-    tolerance: float,
-) -> NDArray[np.float64]:
+    one: NDArray[np.float64],
+    at_one: NDArray[np.float64],
+    other: NDArray[np.float64],
+    at_other: NDArray[np.float64],
+) -> _Brackets:
+    """Brackets between two depths in either order."""
+    swap = other < one
+    return _Brackets(
+        speed,
+        np.where(swap, other, one),
+        np.where(swap, one, other),
+        np.where(swap, at_other, at_one),
+        np.where(swap, at_one, at_other),
+    )
+
+
+def _vertex(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Place of the extremum of the parabolas through three points, kept off the points."""
+    left, right = x[1] - x[0], x[2] - x[1]
+    rise, fall = (y[1] - y[0]) / left, (y[1] - y[2]) / right
+    with np.errstate(invalid="ignore", divide="ignore"):
+        vertex = x[1] + 0.5 * (rise * right - fall * left) / (rise + fall) * np.where(
+            rise + fall == 0.0, 0.0, 1.0
+        )
+    vertex = np.where(np.isfinite(vertex), vertex, x[1])
+    wider = np.where(left > right, -0.3 * left, 0.3 * right)
+    near = np.abs(vertex - x[1]) < 0.1 * np.minimum(left, right)
+    vertex = np.where(near, x[1] + wider, vertex)
+    return np.clip(vertex, x[0] + 0.1 * left, x[2] - 0.1 * right)
+
+
+def _narrowed(
+    speed: NDArray[np.int64],
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    place: NDArray[np.float64],
+    value: NDArray[np.float64],
+    kept: NDArray[np.bool_],
+) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    """Triples about the extremum that the new values leave."""
+    speed, x, y, place, value = speed[kept], x[:, kept], y[:, kept], place[kept], value[kept]
+    side = np.where(y[1] > 0.0, -1.0, 1.0)
+    further, beyond = side * value > side * y[1], place > x[1]
+    low = np.where(further, np.where(beyond, 1, 0), np.where(beyond, 0, 3))
+    middle = np.where(further, 3, 1)
+    high = np.where(further, np.where(beyond, 2, 1), np.where(beyond, 3, 2))
+    all_x, all_y = np.vstack([x, place]), np.vstack([y, value])
+    picked, column = np.stack([low, middle, high]), np.arange(speed.size)
+    return speed, all_x[picked, column], all_y[picked, column]
+
+
+def _refine(brackets: _Brackets, growth: Growth, tolerance: float) -> NDArray[np.float64]:
     """Root in each bracket by the Illinois method, all brackets at once."""
-    low, high = low.copy(), high.copy()
-    at_low, at_high = growth(speed, low), growth(speed, high)
+    speed = brackets.speed
+    low, high = brackets.low.copy(), brackets.high.copy()
+    at_low, at_high = brackets.at_low.copy(), brackets.at_high.copy()
     root = np.where(np.abs(at_low) < np.abs(at_high), low, high)
     open_brackets = np.flatnonzero((at_low > 0.0) != (at_high > 0.0))
     last_side = np.zeros(speed.size, dtype=np.int64)
@@ -107,6 +229,12 @@ def _refine(
         middle = np.clip(middle, low[k] + margin, high[k] - margin)
         value = growth(speed[k], middle)
         root[k] = middle
+        # the flatter side: a jump must not pass for a slope
+        with np.errstate(divide="ignore", invalid="ignore"):
+            slope = np.fmin(
+                np.abs(value - at_low[k]) / (middle - low[k]),
+                np.abs(at_high[k] - value) / (high[k] - middle),
+            )
         upper = (value > 0.0) == (at_high[k] > 0.0)
         high[k[upper]], at_high[k[upper]] = middle[upper], value[upper]
         low[k[~upper]], at_low[k[~upper]] = middle[~upper], value[~upper]
@@ -116,5 +244,6 @@ def _refine(
         at_high[k[stuck & ~upper]] *= 0.5
         last_side[k] = side
         done = (np.abs(value) < _GROWTH_TOLERANCE) | (high[k] - low[k] <= tolerance * high[k])
+        done |= np.abs(value) <= _ROOT_SHARE * tolerance * middle * slope
         open_brackets = k[~done]
     return root

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -25,8 +26,19 @@ _CHATTER_ABOVE_NATURAL = 1.2
 RESOLUTION = (8, 1.0)
 #: an element turns the spindle by no more than this, rad
 LONGEST_ANGLE = 0.9
+_SMALLEST_RESIDUAL = 1e-9
 #: largest order of a Gauss quadrature along a piece of the edge
 _MOST_EDGE_POINTS = 16
+
+
+class Resolution(NamedTuple):
+    """How long an element may be."""
+
+    longest: float  # s
+    fastest: float  # vibration that elements resolve, with no cut, rad/s
+    stiffening: float  # by which its square grows with depth, rad^2/s^2/m
+    longest_angle: float  # rad
+    residual: float  # of the dominant eigenpair, relative, at which its search stops
 
 
 class CutArrays(NamedTuple):
@@ -42,10 +54,7 @@ class CutArrays(NamedTuple):
     variation: SpeedVariation
     points: ElementPoints
     response: ResponseTable
-    longest: float  # element, s
-    fastest: float  # vibration that elements resolve, with no cut, rad/s
-    stiffening: float  # by which its square grows with depth, rad^2/s^2/m
-    longest_angle: float  # element, rad
+    resolution: Resolution
     edge_place: NDArray[np.float64]  # Gauss points on [0, 1], row q for q of them (17, 16)
     edge_weight: NDArray[np.float64]  # (17, 16)
 
@@ -77,6 +86,17 @@ def _stiffening(modes: tuple[NDArray[np.float64], ...], pieces: EdgePieces) -> f
     return 0.5 * reach * float(max(share[at_tip].sum(), largest))
 
 
+@lru_cache(maxsize=1)
+def _edge_quadratures() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Places and weights of the Gauss quadratures of all orders on [0, 1], a row an order."""
+    place = np.zeros((_MOST_EDGE_POINTS + 1, _MOST_EDGE_POINTS))
+    weight = np.zeros_like(place)
+    for count in range(1, _MOST_EDGE_POINTS + 1):
+        nodes, weights = np.polynomial.legendre.leggauss(count)
+        place[count, :count], weight[count, :count] = 0.5 * (nodes + 1.0), 0.5 * weights
+    return place, weight
+
+
 def cut_arrays(
     modes: tuple[NDArray[np.float64], ...],
     basis: NDArray[np.float64],
@@ -105,12 +125,10 @@ def cut_arrays(
     natural_frequency, damping, shape, force_gain = modes
     fastest = _CHATTER_ABOVE_NATURAL * relevant_frequency(*modes)
     longest = waves * 2.0 * math.pi / fastest
-    place = np.zeros((_MOST_EDGE_POINTS + 1, _MOST_EDGE_POINTS))
-    weight = np.zeros_like(place)
-    for count in range(1, _MOST_EDGE_POINTS + 1):
-        nodes, weights = np.polynomial.legendre.leggauss(count)
-        place[count, :count], weight[count, :count] = 0.5 * (nodes + 1.0), 0.5 * weights
+    place, weight = _edge_quadratures()
     of_element = element_points(points)
+    # no better than the elements are
+    residual = max(_SMALLEST_RESIDUAL, 10.0 ** (4.0 - 1.5 * points))
     return CutArrays(
         natural_frequency=natural_frequency,
         damping=damping,
@@ -122,10 +140,9 @@ def cut_arrays(
         variation=variation,
         points=of_element,
         response=response_table(natural_frequency, damping, of_element, longest),
-        longest=longest,
-        fastest=fastest,
-        stiffening=_stiffening(modes, pieces),
-        longest_angle=LONGEST_ANGLE,
+        resolution=Resolution(
+            longest, fastest, _stiffening(modes, pieces), LONGEST_ANGLE, residual
+        ),
         edge_place=place,
         edge_weight=weight,
     )

@@ -6,11 +6,15 @@ import numpy as np
 from numba import njit
 
 from chatter.kernels import DRIVER
-from chatter.stability.element_layout import element_layout
-from chatter.stability.element_map import build_element_map, force_over_period
+from chatter.lanes import LANES
+from chatter.stability.chatter_frequency import heard_frequencies
+from chatter.stability.cut_plan import alike, plans_of
+from chatter.stability.element_layout import element_counts, element_layout, period_borders
+from chatter.stability.element_map import Structure, build_element_map
+from chatter.stability.lane_multipliers import dominant_pairs
 from chatter.stability.multipliers import dominant_multiplier
 from chatter.stability.period_map import advance_step, build_period_map, period_map_by
-from chatter.stability.spindle_turn import spindle_turn
+from chatter.stability.spindle_turn import in_mean_angle, spindle_turn
 
 
 @njit(**DRIVER)
@@ -80,33 +84,68 @@ def motion_over_period(period, vector):
 
 
 @njit(**DRIVER)
-def element_multipliers(cut, speeds, depths):
+def element_multipliers(cut, speeds, depths, listened):
     """Dominant multipliers of n points by collocation.
+
+    Points whose plans are alike are treated together, in lanes; what comes out for a point does not
+    depend on which others it is treated with.
 
     Parameters
     ----------
     cut : CutArrays
     speeds, depths : (n,) array of float
-        rad/s, m.
+        rad/s, m. Neighbours of the same depth cost less.
+    listened : (n,) array of bool
+        Points at which the chatter frequency is wanted.
 
     Returns
     -------
-    (n,) array of complex
+    multiplier : (n,) array of complex
         Imaginary part >= 0.
+    frequency : (n,) array of float
+        Hz, nan where it was not wanted.
     """
-    out = np.empty(speeds.shape[0], dtype=np.complex128)
-    for i in range(speeds.shape[0]):
-        period = build_element_map(cut, speeds[i], depths[i])
-        out[i], _, _ = dominant_multiplier(period)
-    return out
-
-
-@njit(**DRIVER)
-def points_a_period(cut, speed, depth):
-    """Collocation points in a period."""
-    turn = spindle_turn(cut.variation, speed, cut.period_angle)
-    layout = element_layout(cut, turn, depth)
-    return layout.cut_start.shape[0] * cut.points.weight.shape[0]
+    n = speeds.shape[0]
+    multiplier = np.empty(n, dtype=np.complex128)
+    frequency = np.full(n, np.nan)
+    structures, numbers, of_point = plans_of(cut, speeds, depths)
+    structure = Structure(cut.natural_frequency, cut.damping, cut.shape, cut.force_gain)
+    damped = cut.pieces.damping[1] > 0.0
+    done = np.zeros(n, dtype=np.bool_)
+    lanes, members = np.empty(LANES, dtype=np.int64), np.empty(LANES, dtype=np.int64)
+    lane_speeds, heard = np.empty((1, LANES)), np.empty(LANES)
+    for first in range(n):
+        if done[first]:
+            continue
+        count = 0
+        for i in range(first, n):
+            if count == LANES:
+                break
+            one, other = of_point[i], of_point[first]
+            if not done[i] and (one == other or alike(structures[one], structures[other])):
+                lanes[count] = i
+                done[i] = True
+                count += 1
+        wanted = False
+        for lane in range(LANES):
+            # lanes that are left over do what the first does
+            point = lanes[lane] if lane < count else first
+            members[lane], lane_speeds[0, lane] = of_point[point], speeds[point]
+            wanted |= listened[point]
+        period = build_element_map(
+            structure, cut.response, damped, structures[of_point[first]], numbers, members,
+            lane_speeds,
+        )  # fmt: skip
+        found = dominant_pairs(period, cut.resolution.residual)
+        if wanted:
+            heard_frequencies(
+                structure, cut.points, numbers, members, lane_speeds, period, found, heard
+            )
+        for lane in range(count):
+            multiplier[lanes[lane]] = found.value[lane]
+            if listened[lanes[lane]]:
+                frequency[lanes[lane]] = heard[lane]
+    return multiplier, frequency
 
 
 @njit(**DRIVER)
@@ -114,40 +153,8 @@ def points_of_periods(cut, speeds, depth):
     """Collocation points in a period (n,) at n speeds."""
     out = np.empty(speeds.shape[0], dtype=np.int64)
     for i in range(speeds.shape[0]):
-        out[i] = points_a_period(cut, speeds[i], depth)
+        turn = in_mean_angle(spindle_turn(cut.variation, speeds[i], cut.period_angle))
+        borders = period_borders(cut.pieces, cut.period_angle, turn, depth)
+        layout = element_layout(borders, element_counts(cut.resolution, borders, speeds[i], depth))
+        out[i] = layout.cut_start.shape[0] * cut.points.weight.shape[0]
     return out
-
-
-@njit(**DRIVER)
-def dominant_force(cut, speed, depth):
-    """Force of the dominant motion over a period.
-
-    Returns
-    -------
-    multiplier : complex
-    time : (k,) array of float
-        Of the collocation points, s.
-    weight : (k,) array of float
-        Of the quadrature over time, s.
-    force : (k, r) array of complex
-    period : float
-        s.
-    """
-    period = build_element_map(cut, speed, depth)
-    value, vector, _ = dominant_multiplier(period)
-    cuts, values, _ = period.feedback.shape
-    rank = cut.shape.shape[1]
-    points = values // rank
-    force = np.empty((cuts * points, rank), dtype=np.complex128)
-    parts = (np.ascontiguousarray(vector.real), np.ascontiguousarray(vector.imag))
-    real, imag = force_over_period(period, parts[0]), force_over_period(period, parts[1])
-    time, weight = np.empty(cuts * points), np.empty(cuts * points)
-    for e in range(cuts):
-        for i in range(points):
-            row = e * points + i
-            length = period.layout.cut_length[e]
-            time[row] = period.layout.cut_start[e] + length * cut.points.place[i + 1]
-            weight[row] = length * cut.points.weight[i]
-            for k in range(rank):
-                force[row, k] = complex(real[e, i * rank + k], imag[e, i * rank + k])
-    return value, time, weight, force, period.layout.period

@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from chatter.kernels import KERNEL
+from chatter.kernels import INNER_KERNEL, SINGLE_KERNEL
 from chatter.stability.spindle_turn import angle_at, time_at
 from cutting.edge_pieces import (
     engaged_span,
@@ -34,19 +34,31 @@ _RATIO = 0.16
 
 
 class ElementLayout(NamedTuple):
-    """M elements of a period, of which E lie in the cut."""
+    """M elements of a period, of which E lie in the cut; places and lengths in mean angle turned.
 
-    start: NDArray[np.float64]  # s (M,)
+    Mean angle is time times the mean spindle speed.
+    """
+
     cut: NDArray[np.int64]  # number among the elements in the cut, -1 for free motion (M,)
     shape: NDArray[np.int64]  # number of the length (M,)
-    length: NDArray[np.float64]  # distinct lengths, s (S,)
+    length: NDArray[np.float64]  # distinct lengths, rad (S,)
     length_cuts: NDArray[np.int64]  # 1 where an element in the cut has the length (S,)
-    cut_start: NDArray[np.float64]  # start of the elements in the cut, s (E,)
-    cut_length: NDArray[np.float64]  # s (E,)
-    period: float  # s
+    cut_start: NDArray[np.float64]  # start of the elements in the cut, rad (E,)
+    cut_length: NDArray[np.float64]  # rad (E,)
+    period: float  # rad
 
 
-@njit(**KERNEL)
+class PeriodBorders(NamedTuple):
+    """I intervals of a period between the borders of elements that the cut itself sets."""
+
+    place: NDArray[np.float64]  # mean angle, rad (I + 1,)
+    singular: NDArray[np.int64]  # 1 where a chip vanishes and its slope is infinite (I + 1,)
+    engaged: NDArray[np.int64]  # 1 in the cut (I,)
+    turned: NDArray[np.float64]  # angle turned in the interval, rad (I,)
+    period: float  # mean angle, rad
+
+
+@njit(**INNER_KERNEL)
 def is_engaged(pieces, depth, spindle):
     """Tell whether any edge is in the cut at a spindle angle."""
     for piece in range(pieces.bottom.shape[0]):
@@ -61,14 +73,28 @@ def is_engaged(pieces, depth, spindle):
     return False
 
 
-@njit(**KERNEL)
-def _border_angles(cut, depth):
-    """Borders in one period of the tool, ascending (rad), and 1 for each that is singular."""
-    pieces, period = cut.pieces, cut.period_angle
-    angles = np.empty(4 * pieces.bottom.shape[0] + 1)
-    singular = np.zeros(angles.shape[0], dtype=np.int64)
+@njit(**INNER_KERNEL)
+def _sort(places, marks):
+    """Sort places in ascending order, and their marks with them; nearly sorted ones are quick."""
+    for i in range(1, places.shape[0]):
+        place, mark = places[i], marks[i]
+        j = i
+        while j > 0 and places[j - 1] > place:
+            places[j], marks[j] = places[j - 1], marks[j - 1]
+            j -= 1
+        places[j], marks[j] = place, mark
+
+
+@njit(**SINGLE_KERNEL)
+def _border_angles(pieces, period, depth, angles, singular):
+    """Fill in borders in one period of the tool, in no order (rad), and 1 for each singular one.
+
+    Returns their number.
+    """
     count = 0
-    lowest = pieces.bottom.min()
+    lowest = np.inf
+    for piece in range(pieces.bottom.shape[0]):
+        lowest = min(lowest, pieces.bottom[piece])
     for piece in range(pieces.bottom.shape[0]):
         top = part_below(pieces, piece, depth)
         if top <= 0.0:
@@ -88,94 +114,138 @@ def _border_angles(cut, depth):
                 at = arc[piece, 0] + s * (arc[piece, 1] - arc[piece, 0])
                 angle = at - place
                 angles[count] = angle - period * math.floor(angle / period)
+                singular[count] = 0
                 if pieces.exponent != 0.0:
                     chip = pieces.feed[piece] * math.sin(at) - pieces.inset[piece]
                     if chip < 1e-3 * pieces.feed[piece]:
                         singular[count] = 1
                 count += 1
-    order = np.argsort(angles[:count])
-    borders, flags = np.empty(count + 1), np.zeros(count + 1, dtype=np.int64)
+    return count
+
+
+@njit(**SINGLE_KERNEL)
+def _distinct(angles, singular, count, period):
+    """Sort borders, take equal ones together and return how many are left, one at the least."""
+    _sort(angles[:count], singular[:count])
     kept = 0
-    for i in order:
-        if kept > 0 and angles[i] - borders[kept - 1] <= _SAME * period:
-            flags[kept - 1] = max(flags[kept - 1], singular[i])
+    for i in range(count):
+        if kept > 0 and angles[i] - angles[kept - 1] <= _SAME * period:
+            singular[kept - 1] = max(singular[kept - 1], singular[i])
             continue
-        borders[kept], flags[kept] = angles[i], singular[i]
+        angles[kept], singular[kept] = angles[i], singular[i]
         kept += 1
-    if kept > 1 and borders[0] + period - borders[kept - 1] <= _SAME * period:
+    if kept > 1 and angles[0] + period - angles[kept - 1] <= _SAME * period:
         kept -= 1
-        flags[0] = max(flags[0], flags[kept])
+        singular[0] = max(singular[0], singular[kept])
     if kept == 0:
-        borders[0], kept = 0.0, 1
-    return borders[:kept], flags[:kept]
+        angles[0], singular[0], kept = 0.0, 0, 1
+    return kept
 
 
-@njit(**KERNEL)
-def _period_borders(cut, turn, borders, flags):
-    """Border times over the whole period, ascending, and their flags."""
-    count = borders.shape[0]
-    corners = 2 * turn.cycles if turn.triangle == 1 and turn.amplitude > 0.0 else 0
-    times = np.empty(turn.patterns * count + corners + 1)
-    marks = np.zeros(times.shape[0], dtype=np.int64)
-    n = 0
-    for pattern in range(turn.patterns):
-        for i in range(count):
-            times[n] = time_at(turn, borders[i] + pattern * cut.period_angle)
-            marks[n] = flags[i]
+@njit(**SINGLE_KERNEL)
+def _add_corners(turn, places, marks, n, period):
+    """Add the corners of a triangular variation of the speed; returns the number of borders."""
+    first, borders = places[0], n
+    for i in range(2 * turn.cycles):
+        place = (0.25 + 0.5 * i) / turn.frequency
+        place -= period * math.floor((place - first) / period)
+        near = first + period - place
+        for k in range(borders):
+            near = min(near, abs(places[k] - place))
+        if near > _SAME * period:
+            places[n], marks[n] = place, 0
             n += 1
-    period = turn.patterns * cut.period_angle / turn.speed
-    for i in range(corners):
-        time = (0.25 + 0.5 * i) / turn.frequency
-        time -= period * math.floor((time - times[0]) / period)
-        near = np.abs(times[:n] - time).min()
-        if near > _SAME * period and times[0] + period - time > _SAME * period:
-            times[n] = time
-            n += 1
-    order = np.argsort(times[:n])
-    out, out_marks = np.empty(n + 1), np.zeros(n + 1, dtype=np.int64)
-    for k in range(n):
-        out[k], out_marks[k] = times[order[k]], marks[order[k]]
-    out[n], out_marks[n] = out[0] + period, out_marks[0]
-    return out, out_marks, period
+    return n
 
 
-@njit(**KERNEL)
-def element_layout(cut, turn, depth):
-    """Cut a period into elements.
+@njit(**INNER_KERNEL)
+def period_borders(pieces, tool_period, turn, depth):
+    """Borders over the whole period at which a tip or a top of an edge enters or leaves.
 
     Parameters
     ----------
-    cut : CutArrays
+    pieces : EdgePieces
+    tool_period : float
+        Angle after which the tool looks the same again, rad.
     turn : SpindleTurn
+        In mean angle.
     depth : float
         Axial depth, m.
 
     Returns
     -------
+    PeriodBorders
+    """
+    room = 4 * pieces.bottom.shape[0] + 1
+    angles, singular = np.empty(room), np.empty(room, dtype=np.int64)
+    count = _border_angles(pieces, tool_period, depth, angles, singular)
+    count = _distinct(angles, singular, count, tool_period)
+    triangular = turn.triangle == 1 and turn.amplitude > 0.0
+    n = turn.patterns * count
+    room = n + 1 + (2 * turn.cycles if triangular else 0)
+    places, marks = np.empty(room), np.empty(room, dtype=np.int64)
+    for pattern in range(turn.patterns):
+        for i in range(count):
+            places[pattern * count + i] = time_at(turn, angles[i] + pattern * tool_period)
+            marks[pattern * count + i] = singular[i]
+    period = turn.patterns * tool_period
+    if triangular:
+        n = _add_corners(turn, places, marks, n, period)
+    _sort(places[:n], marks[:n])
+    places[n], marks[n] = places[0] + period, marks[0]
+    engaged, turned = np.empty(n, dtype=np.int64), np.empty(n)
+    for k in range(n):
+        turned[k] = angle_at(turn, places[k + 1]) - angle_at(turn, places[k])
+        middle = angle_at(turn, 0.5 * (places[k] + places[k + 1]))
+        engaged[k] = 1 if is_engaged(pieces, depth, middle) else 0
+    return PeriodBorders(places[: n + 1], marks[: n + 1], engaged, turned, period)
+
+
+@njit(**INNER_KERNEL)
+def empty_borders():
+    """Borders before there are any."""
+    whole = np.empty(0, dtype=np.int64)
+    return PeriodBorders(np.empty(0), whole, whole, np.empty(0), 0.0)
+
+
+@njit(**INNER_KERNEL)
+def element_counts(resolution, borders, speed, depth):
+    """Elements (I,) that each interval needs at a mean speed (rad/s)."""
+    counts = np.empty(borders.engaged.shape[0], dtype=np.int64)
+    waves = math.sqrt(1.0 + resolution.stiffening * depth / resolution.fastest**2)
+    for i in range(counts.shape[0]):
+        span = (borders.place[i + 1] - borders.place[i]) / speed
+        need = max(span * waves / resolution.longest, borders.turned[i] / resolution.longest_angle)
+        counts[i] = max(1, math.ceil(need - 1e-9)) if borders.engaged[i] == 1 else 1
+    return counts
+
+
+@njit(**INNER_KERNEL)
+def element_layout(borders, counts):
+    """Cut a period into elements.
+
+    Parameters
+    ----------
+    borders : PeriodBorders
+    counts : (I,) array of int
+        Elements of each interval.
+
+    Returns
+    -------
     ElementLayout
     """
-    borders, flags = _border_angles(cut, depth)
-    times, marks, period = _period_borders(cut, turn, borders, flags)
-    intervals = times.shape[0] - 1
-    pieces_of = np.empty(intervals, dtype=np.int64)
-    engaged = np.empty(intervals, dtype=np.int64)
+    place, marks, engaged = borders.place, borders.singular, borders.engaged
+    intervals = counts.shape[0]
     total = 0
-    waves = math.sqrt(1.0 + cut.stiffening * depth / cut.fastest**2)
     for i in range(intervals):
-        span = times[i + 1] - times[i]
-        turned = angle_at(turn, times[i + 1]) - angle_at(turn, times[i])
-        middle = angle_at(turn, 0.5 * (times[i] + times[i + 1]))
-        engaged[i] = 1 if is_engaged(cut.pieces, depth, middle) else 0
-        need = max(span * waves / cut.longest, turned / cut.longest_angle)
-        pieces_of[i] = max(1, math.ceil(need - 1e-9)) if engaged[i] == 1 else 1
-        total += pieces_of[i] + (2 * _LEVELS if engaged[i] == 1 else 0)
+        total += counts[i] + (2 * _LEVELS if engaged[i] == 1 else 0)
     start, length = np.empty(total), np.empty(total)
     number = np.full(total, -1, dtype=np.int64)
     m, cuts = 0, 0
     for i in range(intervals):
-        step = (times[i + 1] - times[i]) / pieces_of[i]
-        for k in range(pieces_of[i]):
-            low, high = times[i] + k * step, times[i] + (k + 1) * step
+        step = (place[i + 1] - place[i]) / counts[i]
+        for k in range(counts[i]):
+            low, high = place[i] + k * step, place[i] + (k + 1) * step
             if engaged[i] == 1 and k == 0 and marks[i] == 1:
                 at = low
                 for level in range(_LEVELS, 0, -1):
@@ -184,7 +254,7 @@ def element_layout(cut, turn, depth):
                     at += length[m]
                     m, cuts = m + 1, cuts + 1
                 low = at
-            graded = engaged[i] == 1 and k == pieces_of[i] - 1 and marks[i + 1] == 1
+            graded = engaged[i] == 1 and k == counts[i] - 1 and marks[i + 1] == 1
             end = high - step * _RATIO if graded else high
             start[m], length[m] = low, end - low
             if engaged[i] == 1:
@@ -197,17 +267,19 @@ def element_layout(cut, turn, depth):
                     start[m], number[m], length[m] = end, cuts, at - end
                     end = at
                     m, cuts = m + 1, cuts + 1
-    return _with_shapes(start[:m], length[:m], number[:m], cuts, period)
+    shape, cut_start, cut_length = np.empty(m, dtype=np.int64), np.empty(cuts), np.empty(cuts)
+    for i in range(m):
+        if number[i] >= 0:
+            cut_start[number[i]], cut_length[number[i]] = start[i], length[i]
+    distinct, of_cut = _shapes(length, number, m, shape)
+    return ElementLayout(number[:m], shape, distinct, of_cut, cut_start, cut_length, borders.period)
 
 
-@njit(**KERNEL)
-def _with_shapes(start, length, number, cuts, period):
-    count = start.shape[0]
-    shape = np.empty(count, dtype=np.int64)
-    distinct = np.empty(count)
-    of_cut = np.zeros(count, dtype=np.int64)
+@njit(**SINGLE_KERNEL)
+def _shapes(length, number, count, shape):
+    """Set shape (count,) to the number of each length; returns them and which lie in the cut."""
+    distinct, of_cut = np.empty(count), np.zeros(count, dtype=np.int64)
     shapes = 0
-    cut_start, cut_length = np.empty(cuts), np.empty(cuts)
     for m in range(count):
         found = -1
         for s in range(shapes):
@@ -221,22 +293,19 @@ def _with_shapes(start, length, number, cuts, period):
         shape[m] = found
         if number[m] >= 0:
             of_cut[found] = 1
-            cut_start[number[m]], cut_length[number[m]] = start[m], length[m]
-    return ElementLayout(
-        start, number, shape, distinct[:shapes], of_cut[:shapes], cut_start, cut_length, period
-    )
+    return distinct[:shapes], of_cut[:shapes]
 
 
-@njit(**KERNEL)
-def element_before(layout, time):
-    """Element in the cut that holds a time, counted on from period to period, and the place in it.
+@njit(**INNER_KERNEL)
+def element_before(layout, angle):
+    """Element in the cut that holds a mean angle, counted on over the periods, and the place in it.
 
     Between two elements in the cut, by rounding, the end of the nearer one.
     """
     cuts = layout.cut_start.shape[0]
     first = layout.cut_start[0]
-    turn = math.floor((time - first) / layout.period + _SAME)
-    local = time - turn * layout.period
+    turn = math.floor((angle - first) / layout.period + _SAME)
+    local = angle - turn * layout.period
     low, high = 0, cuts
     while high - low > 1:
         middle = (low + high) // 2

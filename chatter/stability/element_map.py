@@ -6,544 +6,443 @@ motion when the earlier teeth passed. The error falls faster than any power of t
 points (spectral elements; Khasawneh and Mann 2011, Int. J. Numer. Meth. Eng. 87, for delays).
 Nothing is assumed of the delays: they may be several, change along an edge, with the speed, be
 longer than the period or shorter than an element.
+
+Eight points of the stability diagram make one map, a point a lane; their plans must be alike.
 """
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from chatter.kernels import KERNEL, SUMMING_KERNEL
-from chatter.stability.element_layout import (
-    ElementLayout,
-    element_before,
-    element_layout,
-)
-from chatter.stability.element_response import mode_response
-from chatter.stability.spindle_turn import angle_at, speed_at, spindle_turn, time_at
-from cutting.edge_pieces import (
-    coupling_at,
-    engaged_span,
-    first_and_last_turn,
-    part_below,
-    radius_at,
-    share_of_height,
-)
-
-#: points closer than this share of an element are the same
-_SAME_POINT = 1e-7
+from chatter.kernels import INNER_KERNEL, SINGLE_KERNEL
+from chatter.lanes import LANES, load, spread, store
+from chatter.stability.cut_plan import PlanStructure, structure_of_plan
+from chatter.stability.element_response import free_response, mode_response
 
 
 class ElementMap(NamedTuple):
     """M elements, E of them in the cut, S distinct lengths; q = p r values at the Gauss points.
 
-    The state holds (omega x, v) of every mode. A source is a block (r, p + 1, r) that takes the
-    motion at the points of an earlier element to the force at one point, or, with `point` >= 0,
-    the motion at that point alone.
+    The state holds (omega x, v) of every mode; the last axis of real arrays holds the lanes.
     """
 
-    layout: ElementLayout
-    free: NDArray[np.float64]  # of each mode over a length (S, n, 2, 2)
-    motion_of_state: NDArray[np.float64]  # (S, q, 2n)
-    motion_of_force: NDArray[np.float64]  # (S, q, q)
-    state_of_force: NDArray[np.float64]  # (S, 2n, q)
-    solution: NDArray[np.float64]  # force from the force of the earlier motion (E, q, q)
-    feedback: NDArray[np.float64]  # force from the state, negative (E, q, 2n)
-    first_source: NDArray[np.int64]  # of each point (E p + 1,)
-    source: NDArray[np.int64]  # element, counted from the period's first; negative before it
-    point: NDArray[np.int64]
-    block: NDArray[np.float64]  # (sources, r, (p + 1) r)
+    plan: PlanStructure
+    free: NDArray[np.float64]  # of each mode over a length (S, n, 2, 2, 8)
+    motion_of_state: NDArray[np.float64]  # (S, q, 2n, 8)
+    motion_of_force: NDArray[np.float64]  # (S, q, q, 8)
+    state_of_force: NDArray[np.float64]  # (S, 2n, q, 8)
+    factors: NDArray[np.float64]  # of the matrix that the force solves (E, q, q, 8)
+    couple: NDArray[np.float64]  # force from the state, negative (E, q, 2n, 8)
+    block: NDArray[np.float64]  # of the sources (sources, r, (p + 1) r, 8)
     output: NDArray[np.float64]  # motion of the tool point from the state, scaled (r, 2n)
-    scale: float  # by which all motion is multiplied, 1/s
-    memory: int  # elements before the period that are looked back to
 
 
-class _Sources(NamedTuple):
-    first: NDArray[np.int64]
-    element: NDArray[np.int64]
-    point: NDArray[np.int64]
-    block: NDArray[np.float64]
+class Structure(NamedTuple):
+    """Modes as the map sees them."""
+
+    natural_frequency: NDArray[np.float64]  # rad/s (n,)
+    damping: NDArray[np.float64]  # (n,)
+    shape: NDArray[np.float64]  # (n, r)
+    force_gain: NDArray[np.float64]  # 1/kg (n, r)
 
 
-@njit(**SUMMING_KERNEL)
-def invert(a, inverse):
-    """Set `inverse` to the inverse of a (n, n), which is overwritten; partial pivoting."""
-    n = a.shape[0]
-    inverse[:, :] = 0.0
-    for i in range(n):
-        inverse[i, i] = 1.0
-    for k in range(n):
-        pivot = k
-        for i in range(k + 1, n):
-            if abs(a[i, k]) > abs(a[pivot, k]):
-                pivot = i
-        if pivot != k:
-            for j in range(n):
-                a[k, j], a[pivot, j] = a[pivot, j], a[k, j]
-                inverse[k, j], inverse[pivot, j] = inverse[pivot, j], inverse[k, j]
-        scale = 1.0 / a[k, k]
-        for j in range(n):
-            a[k, j] *= scale
-            inverse[k, j] *= scale
-        for i in range(n):
-            if i == k:
-                continue
-            factor = a[i, k]
-            if factor == 0.0:
-                continue
-            for j in range(n):
-                a[i, j] -= factor * a[k, j]
-                inverse[i, j] -= factor * inverse[k, j]
+class _Rates(NamedTuple):
+    """Velocity at the Gauss points, which dashpots feel; of no lengths where there are none."""
+
+    of_state: NDArray[np.float64]  # (S, q, 2n, 8)
+    of_force: NDArray[np.float64]  # (S, q, q, 8)
 
 
-@njit(**KERNEL)
-def _length_response(cut, scale, length, in_cut, damped, free, of_state, of_force, to_state, rates):
-    """Fill the matrices of one element length; `rates` are those of the velocity, if damped."""
-    modes, rank = cut.shape.shape
-    count = cut.points.weight.shape[0]
-    rows = 2 * count + 2 if damped else count + 2
-    response = np.empty((rows, count + 2))
-    rate_of_state, rate_of_force = rates
-    of_state[:, :] = 0.0
-    of_force[:, :] = 0.0
-    rate_of_state[:, :] = 0.0
-    rate_of_force[:, :] = 0.0
+@njit(**INNER_KERNEL)
+def motion_of_state(structure):
+    """Motion of the tool point from the state (r, 2n), scaled to be as large as that, and scale."""
+    modes, rank = structure.shape.shape
+    largest = 1e-300
     for m in range(modes):
-        w = cut.natural_frequency[m]
-        if not in_cut:
-            z = cut.damping[m]
-            root = math.sqrt(1.0 - z * z)
-            decay = math.exp(-z * w * length)
-            c, s = decay * math.cos(root * w * length), decay * math.sin(root * w * length)
-            free[m, 0, 0], free[m, 0, 1] = c + z / root * s, s / root
-            free[m, 1, 0], free[m, 1, 1] = -s / root, c - z / root * s
-            continue
-        mode_response(cut.response, m, w * length, response)
-        for a in range(2):
-            for b in range(2):
-                free[m, a, b] = response[count + a, b]
-        for l in range(rank):  # noqa: E741
-            gain = cut.force_gain[m, l] / w
-            for j in range(count):
-                column = j * rank + l
-                to_state[2 * m, column] = gain * response[count, 2 + j]
-                to_state[2 * m + 1, column] = gain * response[count + 1, 2 + j]
-            for k in range(rank):
-                both = scale * cut.shape[m, k] / w * gain
-                if both == 0.0:
-                    continue
-                for i in range(count):
-                    for j in range(count):
-                        of_force[i * rank + k, j * rank + l] += both * response[i, 2 + j]
-                if damped:
-                    both = cut.shape[m, k] * gain
-                    for i in range(count):
-                        for j in range(count):
-                            rate_of_force[i * rank + k, j * rank + l] += (
-                                both * response[count + 2 + i, 2 + j]
-                            )
         for k in range(rank):
-            reach = scale * cut.shape[m, k] / w
-            for i in range(count):
-                for b in range(2):
-                    of_state[i * rank + k, 2 * m + b] = reach * response[i, b]
-                    if damped:
-                        rate_of_state[i * rank + k, 2 * m + b] = (
-                            cut.shape[m, k] * response[count + 2 + i, b]
-                        )
+            largest = max(largest, abs(structure.shape[m, k]) / structure.natural_frequency[m])
+    output = np.zeros((rank, 2 * modes))
+    for m in range(modes):
+        for k in range(rank):
+            reach = structure.shape[m, k] / structure.natural_frequency[m]
+            output[k, 2 * m] = reach / largest
+    return output, 1.0 / largest
 
 
-@njit(**KERNEL)
-def _edge_points(cut, piece, span, speed):
-    """Order of the quadrature along a part of a piece."""
-    pieces = cut.pieces
-    turned = abs(pieces.angle[piece, 1] - pieces.angle[piece, 0]) * span
-    bend = abs(pieces.immersion[piece, 1] - pieces.immersion[piece, 0]) * span
-    if turned + bend < 1e-9 and pieces.group[piece] >= 0:
-        return 1
-    if pieces.exponent != 0.0:
-        return 16
-    shift = abs(pieces.delay[piece, 1] - pieces.delay[piece, 0]) * span / speed
-    waves = shift / cut.longest
-    return min(16, 2 + math.ceil(2.5 * (turned + bend) + 5.0 * waves))
+@njit(**INNER_KERNEL)
+def _add_response(response, row, factor, k, l, of_force):  # noqa: E741
+    """Add the response to the force in direction l, seen in direction k, from a row on."""
+    points = response.shape[1] - 2
+    rank = of_force.shape[0] // points
+    for i in range(points):
+        for j in range(points):
+            at = (i * rank + k, j * rank + l)
+            store(of_force, at, load(of_force, at) + factor * load(response, (row + i, 2 + j)))
 
 
-@njit(**KERNEL)
-def _grown(sources, count):
-    """Room for more sources."""
-    capacity = sources.element.shape[0]
-    if count < capacity:
-        return sources
-    element = np.empty(2 * capacity, dtype=np.int64)
-    point = np.empty(2 * capacity, dtype=np.int64)
-    block = np.empty((2 * capacity, *sources.block.shape[1:]))
-    element[:capacity] = sources.element
-    point[:capacity] = sources.point
-    block[:capacity] = sources.block
-    return _Sources(sources.first, element, point, block)
+@njit(**SINGLE_KERNEL)
+def _mode_over_length(structure, m, scale, response, of_state, of_force, to_state):
+    """Enter what mode m does over an element: motion at the points, state at the end."""
+    rank, points = structure.shape.shape[1], response.shape[1] - 2
+    w = structure.natural_frequency[m]
+    for l in range(rank):  # noqa: E741
+        gain = structure.force_gain[m, l] / w
+        for j in range(points):
+            for a in range(2):
+                value = gain * load(response, (points + a, 2 + j))
+                store(to_state, (2 * m + a, j * rank + l), value)
+        for k in range(rank):
+            factor = scale / w * structure.shape[m, k] * gain
+            if factor != 0.0:
+                _add_response(response, 0, factor, k, l, of_force)
+    for k in range(rank):
+        reach = scale / w * structure.shape[m, k]
+        for i in range(points):
+            for b in range(2):
+                store(of_state, (i * rank + k, 2 * m + b), reach * load(response, (i, b)))
 
 
-@njit(**KERNEL)
-def _note_source(cut, layout, sources, first, count, time, stiffness, scale):
-    """Add the coupling to the motion at an earlier time; returns the sources and their number."""
-    element, place = element_before(layout, time)
-    points = cut.points.place.shape[0]
-    rank = stiffness.shape[0]
-    near = -1
-    for q in range(points):
-        if abs(place - cut.points.place[q]) < _SAME_POINT:
-            near = q
-    found = -1
-    for entry in range(first, count):
-        if sources.element[entry] == element and sources.point[entry] == near:
-            found = entry
-            break
-    if found < 0:
-        sources = _grown(sources, count)
-        found = count
-        count += 1
-        sources.element[found], sources.point[found] = element, near
-        sources.block[found] = 0.0
-    block = sources.block[found]
-    if near >= 0:
-        for i in range(rank):
-            for j in range(rank):
-                block[i, near * rank + j] += stiffness[i, j] / scale
-        return sources, count
-    total = 0.0
-    for q in range(points):
-        total += cut.points.barycentric[q] / (place - cut.points.place[q])
-    for q in range(points):
-        share = cut.points.barycentric[q] / (place - cut.points.place[q]) / total / scale
-        for i in range(rank):
-            for j in range(rank):
-                block[i, q * rank + j] += share * stiffness[i, j]
-    return sources, count
+@njit(**SINGLE_KERNEL)
+def _rates_over_length(structure, m, response, of_state, of_force):
+    """Enter the velocity at the points that mode m makes over an element."""
+    rank, points = structure.shape.shape[1], response.shape[1] - 2
+    row = points + 2
+    for k in range(rank):
+        reach = structure.shape[m, k]
+        for l in range(rank):  # noqa: E741
+            factor = reach * structure.force_gain[m, l] / structure.natural_frequency[m]
+            if factor != 0.0:
+                _add_response(response, row, factor, k, l, of_force)
+        for i in range(points):
+            for b in range(2):
+                store(of_state, (i * rank + k, 2 * m + b), reach * load(response, (row + i, b)))
 
 
-@njit(**KERNEL)
-def _couple(cut, layout, turn, depth, speed_factor, time, scale, sources, count, now, work):
-    """Couplings at one time: fill `now` (stiffness, dashpot) and append the sources."""
-    pieces = cut.pieces
-    stiffness, dashpot = now
-    part, part_dashpot, groups, used = work
-    rank = stiffness.shape[0]
-    stiffness[:, :] = 0.0
-    dashpot[:, :] = 0.0
-    groups[:, :, :] = 0.0
-    used[:] = 0
-    first_source = count
-    spindle = angle_at(turn, time)
-    speed = speed_at(turn, time)
-    for piece in range(pieces.bottom.shape[0]):
-        top = part_below(pieces, piece, depth)
-        if top <= 0.0:
-            continue
-        first, last = first_and_last_turn(pieces, piece, top, spindle)
-        for back in range(first, last + 1):
-            low, high = engaged_span(pieces, piece, top, spindle, back)
-            straight = pieces.angle[piece, 0] == pieces.angle[piece, 1]
-            if low >= high and not (straight and low <= high):
+@njit(**SINGLE_KERNEL)
+def _fill_lengths(structure, table, turns, length_cuts, scale, period, rates):
+    """Enter what all modes do over every distinct length, in lanes turns (S, 8), s."""
+    points = table.coefficient.shape[3] - 2
+    rows = 2 * points + 2 if rates.of_state.shape[0] > 0 else points + 2
+    response, place = np.empty((rows, points + 2, LANES)), np.empty((1, LANES))
+    for s in range(length_cuts.shape[0]):
+        for m in range(structure.shape.shape[0]):
+            free = period.free[s, m]
+            store(place, 0, structure.natural_frequency[m] * load(turns, s))
+            if length_cuts[s] == 0:
+                free_response(structure.damping[m], place, free)
                 continue
-            order = _edge_points(cut, piece, high - low, speed)
-            for q in range(order):
-                x, share = cut.edge_place[order, q], cut.edge_weight[order, q]
-                if pieces.exponent != 0.0 and order > 1:
-                    # towards both ends, where the chip may vanish
-                    share *= 30.0 * (x * (1.0 - x)) ** 2
-                    x = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
-                place = low + x * (high - low)
-                weight = share * (high - low) * pieces.length[piece]
-                coupling_at(
-                    pieces, piece, place, spindle, weight, speed_factor, cut.basis,
-                    part, part_dashpot,
-                )  # fmt: skip
-                for i in range(rank):
-                    for j in range(rank):
-                        stiffness[i, j] += part[i, j]
-                if speed_factor > 0.0:
-                    for i in range(rank):
-                        for j in range(rank):
-                            dashpot[i, j] += part_dashpot[i, j]
-                group = pieces.group[piece]
-                if group >= 0:
-                    used[group] = 1
-                    for i in range(rank):
-                        for j in range(rank):
-                            groups[group, i, j] += part[i, j]
-                else:
-                    delay = pieces.delay[piece, 0]
-                    delay += share_of_height(pieces, piece, place) * (
-                        pieces.delay[piece, 1] - pieces.delay[piece, 0]
-                    )
-                    earlier = time_at(turn, spindle - delay)
-                    sources, count = _note_source(
-                        cut, layout, sources, first_source, count, earlier, part, scale
-                    )
-    for group in range(used.shape[0]):
-        if used[group] == 1:
-            earlier = time_at(turn, spindle - pieces.group_delay[group])
-            sources, count = _note_source(
-                cut, layout, sources, first_source, count, earlier, groups[group], scale
-            )
-    return sources, count
+            mode_response(table.coefficient[m], table.furthest[m], place, response)
+            for a in range(2):
+                for b in range(2):
+                    store(free, (a, b), load(response, (points + a, b)))
+            _mode_over_length(
+                structure, m, scale, response, period.motion_of_state[s],
+                period.motion_of_force[s], period.state_of_force[s],
+            )  # fmt: skip
+            if rates.of_state.shape[0] > 0:
+                _rates_over_length(structure, m, response, rates.of_state[s], rates.of_force[s])
 
 
-@njit(**SUMMING_KERNEL)
-def build_element_map(cut, speed, depth):
+@njit(**INNER_KERNEL)
+def _add_row(matrix, row, factor, other, column):
+    """Add factor times a row of another matrix to a row of one."""
+    for j in range(matrix.shape[1]):
+        value = load(matrix, (row, j)) + factor * load(other, (column, j))
+        store(matrix, (row, j), value)
+
+
+@njit(**INNER_KERNEL)
+def _enter_cut(coupling, row, of_force, of_state, matrix, couple):
+    """Enter stiffness or dashpots (r, r, 8) at the point whose values begin at a row."""
+    rank = coupling.shape[0]
+    for k in range(rank):
+        for l in range(rank):  # noqa: E741
+            factor = load(coupling, (k, l))
+            _add_row(matrix, row + k, factor, of_force, row + l)
+            _add_row(couple, row + k, factor, of_state, row + l)
+
+
+@njit(**INNER_KERNEL)
+def _enter_own(block, row, of_force, of_state, output, matrix, couple):
+    """Enter a source that lies within the very element."""
+    rank, width = block.shape[0], block.shape[1]
+    for k in range(rank):
+        for l in range(rank):  # noqa: E741
+            start = load(block, (k, l))
+            for j in range(couple.shape[1]):
+                value = load(couple, (row + k, j)) - start * output[l, j]
+                store(couple, (row + k, j), value)
+        for column in range(width - rank):
+            weight = -1.0 * load(block, (k, rank + column))
+            _add_row(matrix, row + k, weight, of_force, column)
+            _add_row(couple, row + k, weight, of_state, column)
+
+
+@njit(**INNER_KERNEL)
+def _factorise(a):
+    """Replace a (n, n, 8) by its factors; the diagonal of the upper one is inverted.
+
+    No pivoting: the matrix is one plus a response to earlier forces alone, so that its leading
+    parts are those of shorter elements.
+    """
+    n = a.shape[0]
+    for k in range(n):
+        pivot = 1.0 / load(a, (k, k))
+        store(a, (k, k), pivot)
+        for i in range(k + 1, n):
+            factor = load(a, (i, k)) * pivot
+            store(a, (i, k), factor)
+            for j in range(k + 1, n):
+                store(a, (i, j), load(a, (i, j)) - factor * load(a, (k, j)))
+
+
+@njit(**INNER_KERNEL)
+def _solve(factors, x):
+    """Replace x (n, 8) by the solution of the factorised matrix."""
+    n = x.shape[0]
+    for i in range(1, n):
+        total = load(x, i)
+        for j in range(i):
+            total -= load(factors, (i, j)) * load(x, j)
+        store(x, i, total)
+    for i in range(n - 1, -1, -1):
+        total = load(x, i)
+        for j in range(i + 1, n):
+            total -= load(factors, (i, j)) * load(x, j)
+        store(x, i, total * load(factors, (i, i)))
+
+
+@njit(**INNER_KERNEL)
+def _side_by_side(numbers, members, first, count, out):
+    """Set out (count, 8) to a part of the numbers of the plans of all lanes."""
+    for lane in range(LANES):
+        of_lane = numbers[members[lane]]
+        for i in range(count):
+            out[i, lane] = of_lane[first + i]
+
+
+@njit(**INNER_KERNEL)
+def _multiply_all(a, factor):
+    """Multiply all of a (n, 8) by a plain factor or by lanes."""
+    for i in range(a.shape[0]):
+        store(a, i, load(a, i) * factor)
+
+
+@njit(**SINGLE_KERNEL)
+def build_element_map(structure, table, damped, packed, numbers, members, speeds):
     """Assemble the elements of one period.
 
     Parameters
     ----------
-    cut : CutArrays
-    speed : float
-        Mean spindle speed, rad/s.
-    depth : float
-        Axial depth, m.
+    structure : Structure
+    table : ResponseTable
+    damped : bool
+        Whether the cut has dashpots.
+    packed : (i,) array of int
+        Structure of the plans of all lanes.
+    numbers : list of arrays of float
+        Of all plans.
+    members : (8,) array of int
+        Plan of every lane.
+    speeds : (1, 8) array of float
+        Mean spindle speed of every lane, rad/s.
 
     Returns
     -------
     ElementMap
     """
-    turn = spindle_turn(cut.variation, speed, cut.period_angle)
-    layout = element_layout(cut, turn, depth)
-    modes, rank = cut.shape.shape
-    points = cut.points.weight.shape[0]
+    plan = structure_of_plan(packed)
+    modes, rank = structure.shape.shape
+    points = table.coefficient.shape[3] - 2
     size, values = 2 * modes, points * rank
-    shapes, cuts = layout.length.shape[0], layout.cut_start.shape[0]
-    damped = cut.pieces.damping[1] > 0.0
-    largest = 1e-300
-    for m in range(modes):
-        for k in range(rank):
-            largest = max(largest, abs(cut.shape[m, k]) / cut.natural_frequency[m])
-    scale = 1.0 / largest
-    free = np.zeros((shapes, modes, 2, 2))
-    of_state, of_force = np.zeros((shapes, values, size)), np.zeros((shapes, values, values))
-    to_state = np.zeros((shapes, size, values))
-    rate_rows = shapes if damped else 1
-    rate_of_state = np.zeros((rate_rows, values, size))
-    rate_of_force = np.zeros((rate_rows, values, values))
-    for s in range(shapes):
-        at = s if damped else 0
-        _length_response(
-            cut, scale, layout.length[s], layout.length_cuts[s] == 1, damped, free[s],
-            of_state[s], of_force[s], to_state[s], (rate_of_state[at], rate_of_force[at]),
-        )  # fmt: skip
-    solution, feedback = np.empty((cuts, values, values)), np.empty((cuts, values, size))
-    sources = _Sources(
-        np.zeros(cuts * points + 1, dtype=np.int64),
-        np.empty(cuts * points + 8, dtype=np.int64),
-        np.empty(cuts * points + 8, dtype=np.int64),
-        np.empty((cuts * points + 8, rank, (points + 1) * rank)),
-    )
-    count = 0
-    now = (np.empty((rank, rank)), np.empty((rank, rank)))
-    work = (
-        np.empty((rank, rank)),
-        np.empty((rank, rank)),
-        np.empty((cut.pieces.group_delay.shape[0], rank, rank)),
-        np.empty(cut.pieces.group_delay.shape[0], dtype=np.int64),
-    )
-    radius = radius_at(cut.pieces, depth)
-    output = np.zeros((rank, size))
-    for m in range(modes):
-        for k in range(rank):
-            output[k, 2 * m] = scale * cut.shape[m, k] / cut.natural_frequency[m]
-    matrix, couple = np.empty((values, values)), np.empty((values, size))
-    for m in range(layout.start.shape[0]):
-        e = layout.cut[m]
+    lengths, cuts, sources = packed[1], packed[2], packed[3]
+    output, scale = motion_of_state(structure)
+    slowness = 1.0 / load(speeds, 0)
+    turns = np.empty((lengths, LANES))
+    _side_by_side(numbers, members, 1, lengths, turns)
+    _multiply_all(turns, slowness)
+    pairs = cuts * points * rank * rank
+    stiffness, dashpot = np.empty((pairs, LANES)), np.empty((pairs, LANES))
+    first = 1 + lengths + 2 * cuts
+    _side_by_side(numbers, members, first, pairs, stiffness)
+    _side_by_side(numbers, members, first + pairs, pairs, dashpot)
+    block = np.empty((sources * rank * (values + rank), LANES))
+    _side_by_side(numbers, members, first + 2 * pairs, block.shape[0], block)
+    _multiply_all(stiffness, 1.0 / scale)
+    _multiply_all(dashpot, slowness)
+    _multiply_all(block, 1.0 / scale)
+    period = ElementMap(
+        plan, np.empty((lengths, modes, 2, 2, LANES)), np.empty((lengths, values, size, LANES)),
+        np.zeros((lengths, values, values, LANES)), np.empty((lengths, size, values, LANES)),
+        np.zeros((cuts, values, values, LANES)), np.zeros((cuts, values, size, LANES)),
+        block.reshape((sources, rank, values + rank, LANES)), output,
+    )  # fmt: skip
+    rated = lengths if damped else 0
+    rates = _Rates(np.empty((rated, values, size, LANES)), np.zeros((rated, values, values, LANES)))
+    _fill_lengths(structure, table, turns, plan.length_cuts, scale, period, rates)
+    couplings = (cuts * points, rank, rank, LANES)
+    _enter_elements(period, rates, stiffness.reshape(couplings), dashpot.reshape(couplings))
+    return period
+
+
+@njit(**SINGLE_KERNEL)
+def _enter_elements(period, rates, stiffness, dashpot):
+    """Fill in and factorise the matrices of all elements in the cut."""
+    plan, block = period.plan, period.block
+    _, values, _, _ = period.couple.shape
+    rank = stiffness.shape[1]
+    points = values // rank
+    for m in range(plan.cut.shape[0]):
+        e, s = plan.cut[m], plan.shape[m]
         if e < 0:
             continue
-        s = layout.shape[m]
-        matrix[:, :] = 0.0
-        couple[:, :] = 0.0
+        matrix, couple = period.factors[e], period.couple[e]
+        of_force, of_state = period.motion_of_force[s], period.motion_of_state[s]
         for i in range(values):
-            matrix[i, i] = 1.0
+            store(matrix, (i, i), spread(1.0))
         for i in range(points):
-            time = layout.start[m] + cut.points.place[i + 1] * layout.length[s]
-            factor = 1.0 / (radius * speed_at(turn, time)) if damped else 0.0
-            before = count
-            sources, count = _couple(
-                cut, layout, turn, depth, factor, time, scale, sources, count, now, work
-            )
-            sources.first[e * points + i + 1] = count
-            for k in range(rank):
-                row = i * rank + k
-                for l in range(rank):  # noqa: E741
-                    column = i * rank + l
-                    stiff = now[0][k, l] / scale
-                    for j in range(values):
-                        matrix[row, j] += stiff * of_force[s, column, j]
-                    for j in range(size):
-                        couple[row, j] += stiff * of_state[s, column, j]
-                    if damped:
-                        for j in range(values):
-                            matrix[row, j] += now[1][k, l] * rate_of_force[s, column, j]
-                        for j in range(size):
-                            couple[row, j] += now[1][k, l] * rate_of_state[s, column, j]
-            for entry in range(before, count):
-                if sources.element[entry] == e:
-                    # the earlier motion lies within this very element
-                    _own_source(
-                        sources.block[entry], i, of_force[s], of_state[s], output, matrix, couple
-                    )
-                    sources.block[entry] = 0.0
-                    sources.element[entry] = e - 1
-                    sources.point[entry] = 0
-        invert(matrix, solution[e])
-        for i in range(values):
-            for j in range(size):
-                total = 0.0
-                for k in range(values):
-                    total += solution[e, i, k] * couple[k, j]
-                feedback[e, i, j] = total
-    memory = 0
-    for entry in range(count):
-        memory = max(memory, -sources.element[entry])
-    return ElementMap(
-        layout, free, of_state, of_force, to_state, solution, feedback, sources.first,
-        sources.element[:count], sources.point[:count], sources.block[:count], output, scale,
-        memory,
+            at, row = e * points + i, i * rank
+            _enter_cut(stiffness[at], row, of_force, of_state, matrix, couple)
+            if rates.of_state.shape[0] > 0:
+                _enter_cut(dashpot[at], row, rates.of_force[s], rates.of_state[s], matrix, couple)
+            for entry in range(plan.first_source[at], plan.first_source[at + 1]):
+                if plan.source[entry] == e:
+                    _enter_own(block[entry], row, of_force, of_state, period.output, matrix, couple)
+        _factorise(matrix)
+
+
+class ElementScratch(NamedTuple):
+    """Scratch of `apply_element_map`; `force` is left with that at the points of all elements."""
+
+    motion: NDArray[np.float64]  # of all elements (memory + E, q + r, 8)
+    force: NDArray[np.float64]  # (E, q, 8)
+    state: NDArray[np.float64]  # (2n, 8)
+    following: NDArray[np.float64]  # (2n, 8)
+
+
+@njit(**INNER_KERNEL)
+def element_scratch(period):
+    """Return scratch for `apply_element_map`."""
+    cuts, values, size, _ = period.couple.shape
+    memory = period.plan.memory
+    return ElementScratch(
+        np.zeros((memory + cuts, values + period.output.shape[0], LANES)),
+        np.empty((cuts, values, LANES)), np.empty((size, LANES)), np.empty((size, LANES)),
     )  # fmt: skip
 
 
-@njit(**KERNEL)
-def _own_source(block, i, of_force, of_state, output, matrix, couple):
-    rank = block.shape[0]
-    values, size = of_state.shape
-    for k in range(rank):
-        row = i * rank + k
-        for j in range(size):
-            for l in range(rank):  # noqa: E741
-                couple[row, j] -= block[k, l] * output[l, j]
-        for column in range(values):
-            weight = block[k, rank + column]
-            if weight == 0.0:
-                continue
-            for j in range(values):
-                matrix[row, j] -= weight * of_force[column, j]
-            for j in range(size):
-                couple[row, j] -= weight * of_state[column, j]
+@njit(**INNER_KERNEL)
+def _multiply(a, x, first, out):
+    """Set out, from its row `first` on, to a (n, m, 8) times x (m, 8)."""
+    for i in range(a.shape[0]):
+        total = spread(0.0)
+        for j in range(a.shape[1]):
+            total += load(a, (i, j)) * load(x, j)
+        store(out, first + i, total)
 
 
-@njit(**KERNEL)
-def element_scratch(period):
-    """Scratch of `apply_element_map`: motion of all elements, force, delayed force, state."""
-    cuts, values, size = period.feedback.shape
-    rank = period.output.shape[0]
-    return (
-        np.empty(((period.memory + cuts), values + rank)),
-        np.empty(values),
-        np.empty(values),
-        np.empty(size),
-    )
+@njit(**INNER_KERNEL)
+def _multiply_add(a, x, first, out):
+    """Add a (n, m, 8) times x (m, 8) to out, from its row `first` on."""
+    for i in range(a.shape[0]):
+        total = load(out, first + i)
+        for j in range(a.shape[1]):
+            total += load(a, (i, j)) * load(x, j)
+        store(out, first + i, total)
 
 
-@njit(**SUMMING_KERNEL)
-def _advance(period, m, scratch):
-    """Advance state and motion over one element; leaves the force on it in the scratch."""
-    motion, force, delayed, state = scratch
-    _, values, size = period.feedback.shape
-    rank = period.output.shape[0]
-    points = values // rank
-    width = values + rank
-    memory = period.memory
-    e, s = period.layout.cut[m], period.layout.shape[m]
-    if e >= 0:
-        own = motion[memory + e]
+@njit(**INNER_KERNEL)
+def _copy(source, first, out, start, count):
+    """Copy rows (.., 8) from one place to another."""
+    for i in range(count):
+        store(out, start + i, load(source, first + i))
+
+
+@njit(**SINGLE_KERNEL)
+def _delayed_force(plan, block, e, motion, force):
+    """Set force (q, 8) to what the earlier motion asks for at the points of element e."""
+    rank, width = block.shape[1], block.shape[2]
+    points = force.shape[0] // rank
+    for i in range(points):
         for k in range(rank):
-            total = 0.0
-            for j in range(size):
-                total += period.output[k, j] * state[j]
-            own[k] = total
-        for i in range(points):
+            store(force, i * rank + k, spread(0.0))
+        for entry in range(
+            plan.first_source[e * points + i], plan.first_source[e * points + i + 1]
+        ):
+            if plan.source[entry] == e:
+                continue
+            earlier = motion[plan.memory + plan.source[entry]]
+            q = plan.point[entry]
+            low, high = (q * rank, (q + 1) * rank) if q >= 0 else (0, width)
             for k in range(rank):
-                delayed[i * rank + k] = 0.0
-            first = period.first_source[e * points + i]
-            for entry in range(first, period.first_source[e * points + i + 1]):
-                earlier = motion[memory + period.source[entry]]
-                q = period.point[entry]
-                low, high = (q * rank, (q + 1) * rank) if q >= 0 else (0, width)
-                for k in range(rank):
-                    total = 0.0
-                    for j in range(low, high):
-                        total += period.block[entry, k, j] * earlier[j]
-                    delayed[i * rank + k] += total
-        for i in range(values):
-            total = 0.0
-            for j in range(values):
-                total += period.solution[e, i, j] * delayed[j]
-            for j in range(size):
-                total -= period.feedback[e, i, j] * state[j]
-            force[i] = total
-        for i in range(values):
-            total = 0.0
-            for j in range(size):
-                total += period.motion_of_state[s, i, j] * state[j]
-            for j in range(values):
-                total += period.motion_of_force[s, i, j] * force[j]
-            own[rank + i] = total
-    for mode in range(size // 2):
-        a, b = state[2 * mode], state[2 * mode + 1]
-        state[2 * mode] = period.free[s, mode, 0, 0] * a + period.free[s, mode, 0, 1] * b
-        state[2 * mode + 1] = period.free[s, mode, 1, 0] * a + period.free[s, mode, 1, 1] * b
-    if e >= 0:
-        for i in range(size):
-            total = 0.0
-            for j in range(values):
-                total += period.state_of_force[s, i, j] * force[j]
-            state[i] += total
+                total = load(force, i * rank + k)
+                for j in range(low, high):
+                    total += load(block, (entry, k, j)) * load(earlier, j)
+                store(force, i * rank + k, total)
 
 
-@njit(**KERNEL)
-def _start(period, vector, scratch):
-    motion, _, _, state = scratch
-    size, width = state.shape[0], motion.shape[1]
-    for i in range(size):
-        state[i] = vector[i]
-    for e in range(period.memory):
-        for j in range(width):
-            motion[e, j] = vector[size + e * width + j]
+@njit(**INNER_KERNEL)
+def _free_motion(free, state, following):
+    """Set what follows (2n, 8) to the state after free motion, free (n, 2, 2, 8)."""
+    for mode in range(free.shape[0]):
+        a, b = load(state, 2 * mode), load(state, 2 * mode + 1)
+        for row in range(2):
+            value = load(free, (mode, row, 0)) * a + load(free, (mode, row, 1)) * b
+            store(following, 2 * mode + row, value)
 
 
-@njit(**KERNEL)
+@njit(**SINGLE_KERNEL)
+def _in_cut(couple, factors, of_state, of_force, to_state, output, state, own, force, following):
+    """Advance over an element in the cut; force holds what the earlier motion asks for."""
+    rank, size = output.shape
+    for k in range(rank):
+        total = spread(0.0)
+        for j in range(size):
+            total += output[k, j] * load(state, j)
+        store(own, k, total)
+    for i in range(force.shape[0]):
+        total = load(force, i)
+        for j in range(size):
+            total -= load(couple, (i, j)) * load(state, j)
+        store(force, i, total)
+    _solve(factors, force)
+    _multiply(of_state, state, rank, own)
+    _multiply_add(of_force, force, rank, own)
+    _multiply_add(to_state, force, 0, following)
+
+
+@njit(**INNER_KERNEL)
 def apply_element_map(period, vector, out, scratch):
     """Set out to the image of the vector after one period.
 
     Parameters
     ----------
     period : ElementMap
-    vector, out : (2n + memory (p + 1) r,) array of float
+    vector, out : (2n + memory (p + 1) r, 8) array of float
         State, then the motion at the points of the last elements in the cut, scaled.
-    scratch : tuple
-        As from `element_scratch`.
+    scratch : ElementScratch
     """
-    _start(period, vector, scratch)
-    for m in range(period.layout.start.shape[0]):
-        _advance(period, m, scratch)
-    motion, _, _, state = scratch
+    plan, motion, state = period.plan, scratch.motion, scratch.state
     size, width = state.shape[0], motion.shape[1]
-    cuts = period.feedback.shape[0]
-    for i in range(size):
-        out[i] = state[i]
-    for e in range(period.memory):
-        for j in range(width):
-            out[size + e * width + j] = motion[cuts + e, j]
-
-
-@njit(**KERNEL)
-def force_over_period(period, vector):
-    """Force at the points of all elements in the cut, (E, p r), that follows from a vector."""
-    scratch = element_scratch(period)
-    _start(period, vector, scratch)
-    cuts, values, _ = period.feedback.shape
-    out = np.empty((cuts, values))
-    for m in range(period.layout.start.shape[0]):
-        _advance(period, m, scratch)
-        if period.layout.cut[m] >= 0:
-            out[period.layout.cut[m]] = scratch[1]
-    return out
+    cuts = scratch.force.shape[0]
+    _copy(vector, 0, state, 0, size)
+    for e in range(plan.memory):
+        _copy(vector, size + e * width, motion[e], 0, width)
+    for m in range(plan.cut.shape[0]):
+        e, s = plan.cut[m], plan.shape[m]
+        _free_motion(period.free[s], state, scratch.following)
+        if e >= 0:
+            _delayed_force(plan, period.block, e, motion, scratch.force[e])
+            _in_cut(
+                period.couple[e], period.factors[e], period.motion_of_state[s],
+                period.motion_of_force[s], period.state_of_force[s], period.output, state,
+                motion[plan.memory + e], scratch.force[e], scratch.following,
+            )  # fmt: skip
+        _copy(scratch.following, 0, state, 0, size)
+    _copy(state, 0, out, 0, size)
+    for e in range(plan.memory):
+        _copy(motion[cuts + e], 0, out, size + e * width, width)

@@ -15,7 +15,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from chatter.kernels import KERNEL
+from chatter.kernels import INNER_KERNEL
+from chatter.lanes import load, spread, store
 
 
 class ElementPoints(NamedTuple):
@@ -119,18 +120,37 @@ def response_table(
     return ResponseTable(np.ascontiguousarray(np.stack(tables)), furthest)
 
 
-@njit(**KERNEL)
-def mode_response(table, mode, x, out):
-    """Set out to the first rows of the response of a mode at omega h = x, (rows, p + 2)."""
-    coefficient = table.coefficient[mode]
-    rows, columns = out.shape
-    t = 2.0 * x / table.furthest[mode] - 1.0
-    before, now = 1.0, t
-    for i in range(rows):
-        for j in range(columns):
-            out[i, j] = coefficient[0, i, j] + t * coefficient[1, i, j]
+@njit(**INNER_KERNEL)
+def mode_response(coefficient, furthest, x, out):
+    """Set out to the first rows of the response of a mode at omega h = x.
+
+    Parameters
+    ----------
+    coefficient : (K, 2p + 2, p + 2) array of float
+        Of the mode, in the `ResponseTable`.
+    furthest : float
+        omega h up to which it holds.
+    x : (1, 8) array of float
+    out : (rows, p + 2, 8) array of float
+    """
+    t = (2.0 / furthest) * load(x, 0) - 1.0
+    before, now = spread(1.0), t
+    for i in range(out.shape[0]):
+        for j in range(out.shape[1]):
+            store(out, (i, j), coefficient[0, i, j] + t * coefficient[1, i, j])
     for k in range(2, coefficient.shape[0]):
         before, now = now, 2.0 * t * now - before
-        for i in range(rows):
-            for j in range(columns):
-                out[i, j] += now * coefficient[k, i, j]
+        for i in range(out.shape[0]):
+            for j in range(out.shape[1]):
+                store(out, (i, j), load(out, (i, j)) + now * coefficient[k, i, j])
+
+
+@njit(**INNER_KERNEL)
+def free_response(ratio, x, out):
+    """Set out (2, 2, 8) to what a mode without force makes of its state over omega h = x (1, 8)."""
+    root = math.sqrt(1.0 - ratio * ratio)
+    for lane in range(x.shape[1]):
+        decay = math.exp(-ratio * x[0, lane])
+        c, s = decay * math.cos(root * x[0, lane]), decay * math.sin(root * x[0, lane])
+        out[0, 0, lane], out[0, 1, lane] = c + ratio / root * s, s / root
+        out[1, 0, lane], out[1, 1, lane] = -s / root, c - ratio / root * s

@@ -4,7 +4,8 @@ Multi-dimensional bisection (Bachrathy and Stepan 2012, Period. Polytech. Mech. 
 of growth: a coarse net over all speeds and depths, then speeds halfway between, where only the
 depths are looked at around which the columns on either side change sign or differ. What is left is
 one bracket a crossing at every speed, refined to the tolerance. An island is missed if it fits
-between the columns and rows of the coarse net.
+between the columns of the coarse net, or between two depths where nothing beside it comes near zero
+(see `crossings`).
 """
 
 from __future__ import annotations
@@ -15,6 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.stability.crossings import find_crossings
+from chatter.stability.sweep import Progress, no_progress
+
+#: growth of a peak or valley that the columns beside may have above or below zero
+_NEARLY_ZERO = 0.2
 
 #: growth at points: (indices of speeds, depths) -> (n,)
 Growth = Callable[[NDArray[np.int64], NDArray[np.float64]], NDArray[np.float64]]
@@ -26,6 +31,7 @@ def followed_crossings(
     growth: Growth,
     tolerance: float = 5e-3,
     stride: int = 8,
+    progress: Progress = no_progress,
 ) -> list[NDArray[np.float64]]:
     """Depths of all changes of stability at each speed.
 
@@ -41,6 +47,8 @@ def followed_crossings(
         Of a limit, relative to its depth.
     stride : int
         Every so many speeds make the coarse net; a power of two.
+    progress : callable, optional
+        Called with (done, total) speeds.
 
     Returns
     -------
@@ -49,20 +57,24 @@ def followed_crossings(
     """
     values = np.full((speed_count, depths.size), np.nan)
     columns = np.unique(np.append(np.arange(0, speed_count, stride), speed_count - 1))
-    _look_at(values, columns, np.ones((columns.size, depths.size), dtype=bool), depths, growth)
+    looked_at = np.zeros(values.shape, dtype=bool)
+    looked_at[columns] = True
+    _look_at(values, columns, looked_at[columns], depths, growth)
+    progress(len(columns), max(speed_count, len(columns) + 1))
     while stride > 1:
         stride //= 2
         between = np.setdiff1d(np.arange(0, speed_count, stride), columns)
         before = columns[np.searchsorted(columns, between) - 1]
         after = columns[np.searchsorted(columns, between)]
-        wanted = _beside_changes(values[before]) | _beside_changes(values[after])
+        wanted = _worth_a_look(values[before]) | _worth_a_look(values[after])
         wanted |= (values[before] > 0.0) != (values[after] > 0.0)
         # where both sides agree and nothing changes nearby the sign is taken over
         values[between] = values[before]
         _look_at(values, between, wanted, depths, growth)
-        _widen(values, between, wanted, depths, growth)
+        looked_at[between] = _widen(values, between, wanted, depths, growth)
         columns = np.sort(np.append(columns, between))
-    return find_crossings(values, depths, growth, tolerance)
+        progress(len(columns) - 1, speed_count)
+    return find_crossings(values, depths, growth, tolerance, looked_at)
 
 
 def _look_at(
@@ -87,18 +99,30 @@ def _beside_changes(values: NDArray[np.float64]) -> NDArray[np.bool_]:
     return changes | below
 
 
+def _worth_a_look(values: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Depths beside a change of sign, or at peaks and valleys of growth that nearly reach zero."""
+    padded = np.pad(values, ((0, 0), (1, 1)), mode="edge")
+    before, after = padded[:, :-2], padded[:, 2:]
+    side = np.where(values > 0.0, -1.0, 1.0)
+    # a doubtful place beyond the first and the last depth is none
+    inner = np.arange(values.shape[1]) < values.shape[1] - 1
+    peak = (side * values >= side * before) & (side * values >= side * after) & inner
+    near = np.pad(peak & (np.abs(values) < _NEARLY_ZERO), ((0, 0), (1, 1)))
+    return _beside_changes(values) | near[:, 1:-1] | near[:, :-2] | near[:, 2:]
+
+
 def _widen(
     values: NDArray[np.float64],
     columns: NDArray[np.int64],
     seen: NDArray[np.bool_],
     depths: NDArray[np.float64],
     growth: Growth,
-) -> None:
-    """Look beside every change of sign in which one of the two places was only taken over."""
+) -> NDArray[np.bool_]:
+    """Look beside changes of sign of which one side was only taken over; returns what is seen."""
     seen = seen.copy()
     while True:
         wanted = _beside_changes(values[columns]) & ~seen
         if not wanted.any():
-            return
+            return seen
         _look_at(values, columns, wanted, depths, growth)
         seen |= wanted

@@ -196,3 +196,15 @@ def hessenberg_vector(h, value):
         x[i] /= a[i, i]
         total += abs(x[i]) ** 2
     return x / math.sqrt(total)
+
+
+@njit(**KERNEL)
+def dominant_pair(h):
+    """Eigenvalue of largest magnitude (imaginary part >= 0) and its eigenvector of unit norm."""
+    values = hessenberg_eigenvalues(h.copy())
+    best = 0
+    for i in range(values.shape[0]):
+        if abs(values[i]) > abs(values[best]):
+            best = i
+    value = complex(values[best].real, abs(values[best].imag))
+    return value, hessenberg_vector(h, value)

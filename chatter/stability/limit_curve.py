@@ -17,7 +17,8 @@ class LimitCurve(NamedTuple):
     bifurcation: tuple[str, ...]  # "hopf", "flip" or "none" (n,)
     crossings: tuple[NDArray[np.float64], ...]  # m, all: lost at even places, regained at odd
     steps: NDArray[np.int64]  # steps a tooth period (n,), 0 where the method has none
+    error: float = np.nan  # estimated, of the limit depths, relative; nan where it was not
 
     def up_to(self, count: int) -> LimitCurve:
         """Return the curve of the first `count` speeds."""
-        return LimitCurve(*(column[:count] for column in self))
+        return LimitCurve(*(column[:count] for column in self[:-1]), self.error)

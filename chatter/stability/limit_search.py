@@ -11,10 +11,14 @@ from numpy.typing import NDArray
 from chatter.stability.crossings import find_crossings, growth_on_net
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.multiplier import bifurcation_kind
-from chatter.stability.sweep import Progress, no_progress, sweep
+from chatter.stability.sweep import Progress, no_progress
 
 #: multipliers at points: (indices of speeds, depths, progress) -> (n,) complex
 AtPoints = Callable[..., NDArray[np.complex128]]
+#: multipliers and chatter frequencies (Hz) at points: (indices of speeds, depths) -> 2 x (n,)
+Heard = Callable[
+    [NDArray[np.int64], NDArray[np.float64]], tuple[NDArray[np.complex128], NDArray[np.float64]]
+]
 
 
 class PointMethod(NamedTuple):
@@ -22,7 +26,7 @@ class PointMethod(NamedTuple):
 
     plain: AtPoints  # on the net
     refined: AtPoints  # where it matters; the same function where there is but one
-    frequency: Callable[[int, float], float]  # chatter frequency, Hz, at a speed and a depth
+    heard: Heard
 
 
 def growth(values: NDArray[np.complex128]) -> NDArray[np.float64]:
@@ -62,18 +66,34 @@ def limit_curve_by(
     same = method.refined is method.plain
     net = growth_on_net(len(speeds), depths, plain, plain if same else refined)
     crossings = find_crossings(net, depths, refined)
+    return limits_at(method.heard, speeds, crossings, steps)
+
+
+def limits_at(
+    heard: Heard,
+    speeds: NDArray[np.float64],
+    crossings: list[NDArray[np.float64]],
+    steps: NDArray[np.int64],
+) -> LimitCurve:
+    """First limit at every speed, what is heard there and of what kind it is.
+
+    Parameters
+    ----------
+    heard : callable
+        Multipliers and chatter frequencies at points.
+    speeds : (n,) array of float
+        rad/s.
+    crossings : list of n arrays
+        m, all changes of stability at every speed.
+    steps : (n,) array of int
+        Resolution, to be told.
+    """
     found = np.array([i for i, depth in enumerate(crossings) if depth.size], dtype=np.int64)
     first = np.full(len(speeds), np.inf)
     first[found] = [crossings[i][0] for i in found]
     frequency = np.full(len(speeds), np.nan)
+    at_limit, frequency[found] = heard(found, first[found])
     kind = ["none"] * len(speeds)
-    at_limit = method.refined(found, first[found], no_progress)
-    heard = sweep(
-        lambda chunk: [method.frequency(int(i), float(first[i])) for i in found[chunk]],
-        len(found),
-        points_a_chunk=8,
-    )
-    frequency[found] = [value for part in heard for value in part]
     for i, value in zip(found.tolist(), at_limit, strict=True):
         kind[i] = bifurcation_kind(complex(value))
     return LimitCurve(speeds, first, frequency, tuple(kind), tuple(crossings), steps)

@@ -68,10 +68,10 @@ def stepped_cut(
     stiffness, _, full_at = contact
     reach = np.linalg.norm(cut.shape, axis=1) * np.linalg.norm(cut.force_gain, axis=1)
     # the stiffest that the contact can make a mode
-    fastest = math.hypot(cut.fastest, math.sqrt(stiffness * float(reach.max())))
+    fastest = math.hypot(cut.resolution.fastest, math.sqrt(stiffness * float(reach.max())))
     return SteppedCut(
         cut.natural_frequency, cut.damping, cut.shape, cut.force_gain, cut.basis, cut.pieces,
-        cut.period_angle, cut.variation, fastest, cut.stiffening,
+        cut.period_angle, cut.variation, fastest, cut.resolution.stiffening,
         np.array([*contact[:2], max(full_at, 1e-12)]), cut.edge_place, cut.edge_weight,
     )  # fmt: skip
 
@@ -411,8 +411,18 @@ def limit_curve(
     ) -> NDArray[np.complex128]:
         return multipliers(cut, speeds[points], depth, report, _EXTRAPOLATED)
 
-    def heard(speed: int, depth: float) -> float:
-        return chatter_frequency(cut, float(speeds[speed]), depth)
+    def heard(
+        points: NDArray[np.int64], depth: NDArray[np.float64]
+    ) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+        def some(index: NDArray[np.int64]) -> list[float]:
+            return [
+                chatter_frequency(cut, float(speeds[points[i]]), float(depth[i])) for i in index
+            ]
+
+        found = sweep(some, len(points), points_a_chunk=8)
+        return refined(points, depth, no_progress), np.array(
+            [one for part in found for one in part]
+        )
 
     deepest, finer = float(depths[-1]), _EXTRAPOLATED[-1]
     steps = np.array([steps_a_period(cut, float(v), deepest, finer) for v in speeds])

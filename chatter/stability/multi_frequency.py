@@ -302,7 +302,7 @@ def limit_curve(
     progress : callable, optional
         Called with (done, total) points of the net.
     """
-    counts = harmonic_counts(cut.fastest, cut.period_angle, speeds)
+    counts = harmonic_counts(cut.resolution.fastest, cut.period_angle, speeds)
     orders = 2 * int(counts.max()) + 1
     base = 2.0 * np.pi / cut.period_angle * speeds
     at_net = [harmonics_at(cut, float(depth), orders) for depth in depths]

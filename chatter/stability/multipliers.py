@@ -8,8 +8,8 @@ import numpy as np
 from numba import njit
 
 from chatter.kernels import KERNEL, SUMMING_KERNEL
-from chatter.stability.hessenberg import hessenberg_eigenvalues, hessenberg_vector
-from chatter.stability.maps import apply_map, dimension_of, scratch_of
+from chatter.stability.hessenberg import dominant_pair
+from chatter.stability.period_map import apply_period_map, period_scratch
 
 #: residual of the dominant eigenpair, relative to its magnitude, at which the iteration stops
 _TOLERANCE = 1e-8
@@ -33,19 +33,7 @@ def _start_vector(period, out, scratch):
         scale += abs(period.output[0, i])
     # motion is smaller than the state by the size of the output matrix
     start[size:] *= scale / size
-    apply_map(period, start, out, scratch)
-
-
-@njit(**KERNEL)
-def _dominant_pair(hessenberg):
-    """Eigenvalue of largest magnitude (imaginary part >= 0) and its eigenvector."""
-    values = hessenberg_eigenvalues(hessenberg.copy())
-    best = 0
-    for i in range(values.shape[0]):
-        if abs(values[i]) > abs(values[best]):
-            best = i
-    value = complex(values[best].real, abs(values[best].imag))
-    return value, hessenberg_vector(hessenberg, value)
+    apply_period_map(period, start, out, scratch)
 
 
 @njit(**SUMMING_KERNEL)
@@ -54,8 +42,7 @@ def dominant_multiplier(period):
 
     Parameters
     ----------
-    period : PeriodMap, ElementMap
-        Any map that `maps` knows.
+    period : PeriodMap
 
     Returns
     -------
@@ -67,8 +54,9 @@ def dominant_multiplier(period):
         Norm of the eigenpair's residual over the multiplier's magnitude.
     """
     size = period.output.shape[1]
-    dimension = dimension_of(period)
-    scratch = scratch_of(period)
+    _, _, rank = period.from_left.shape
+    dimension = size + period.nodes * rank
+    scratch = period_scratch(period)
     largest = min(dimension, _LARGEST_SPACE)
     basis = np.empty((largest + 1, dimension))
     hessenberg = np.zeros((largest + 1, largest))
@@ -85,7 +73,7 @@ def dominant_multiplier(period):
     coordinates = np.ones(1, dtype=np.complex128)
     used = 0
     for k in range(largest):
-        apply_map(period, basis[k], basis[k + 1], scratch)
+        apply_period_map(period, basis[k], basis[k + 1], scratch)
         before = math.sqrt((basis[k + 1] ** 2).sum())
         for _ in range(2):
             for j in range(k + 1):
@@ -100,7 +88,7 @@ def dominant_multiplier(period):
         invariant = norm <= 1e-14 * before
         hessenberg[k + 1, k] = norm
         if used in (look, largest) or invariant:
-            multiplier, coordinates = _dominant_pair(hessenberg[:used, :used].copy())
+            multiplier, coordinates = dominant_pair(hessenberg[:used, :used].copy())
             residual = norm * abs(coordinates[used - 1]) / max(abs(multiplier), 1e-300)
             look = min(largest, math.ceil(look * _GROWTH))
             if residual < _TOLERANCE or invariant:

@@ -206,8 +206,15 @@ def limit_curve(
     ) -> NDArray[np.complex128]:
         return _at_points(arrays, speeds[index], depth, count[index], _PLAIN, report, scheme)
 
-    def heard(index: int, depth: float) -> float:
-        return chatter_frequency(arrays, float(speeds[index]), depth)
+    def heard(
+        index: NDArray[np.int64], depth: NDArray[np.float64]
+    ) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+        def some(places: NDArray[np.int64]) -> list[float]:
+            return [chatter_frequency(arrays, float(speeds[index[i]]), depth[i]) for i in places]
+
+        parts = sweep(some, len(index), points_a_chunk=8)
+        frequencies = np.array([value for part in parts for value in part])
+        return refined(index, depth, no_progress), frequencies
 
     method = PointMethod(plain, refined if len(refinements) > 1 else plain, heard)
     return limit_curve_by(method, speeds, depths, count, progress)

@@ -66,6 +66,14 @@ def spindle_turn(variation, speed, pattern):
     return SpindleTurn(speed, variation.amplitude, frequency, variation.triangle, patterns, best)
 
 
+@njit(**KERNEL)
+def in_mean_angle(turn):
+    """The same turn with the mean angle in place of time: the mean speed is 1."""
+    return SpindleTurn(
+        1.0, turn.amplitude, turn.frequency / turn.speed, turn.triangle, turn.patterns, turn.cycles
+    )
+
+
 @njit(**INLINED_KERNEL)
 def angle_at(turn, time):
     """Angle turned since time zero, rad."""

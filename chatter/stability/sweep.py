@@ -79,6 +79,11 @@ def sweep(
         for first in range(0, count, points_a_chunk)
     ]
     results: list[Result] = []
+    if len(chunks) == 1:
+        # a thread would take longer to start
+        results.append(function(chunks[0]))
+        progress(count, count)
+        return results
     with ThreadPoolExecutor(max_workers=worker_count()) as pool:
         futures = [pool.submit(function, chunk) for chunk in chunks]
         try:

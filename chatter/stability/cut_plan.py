@@ -1,0 +1,400 @@
+"""What the cut couples over one period: elements, stiffness, dashpots, and the earlier motion.
+
+All places are mean angles (time times the mean speed): at a constant speed the plan depends on the
+speed only through the number of elements, so that neighbouring speeds share it. A plan is packed
+into whole numbers that tell its structure and real ones that fill it: plans of the same structure
+go side by side into the lanes of one map.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from chatter.kernels import INNER_KERNEL, SINGLE_KERNEL
+from chatter.stability.element_layout import (
+    element_before,
+    element_counts,
+    element_layout,
+    empty_borders,
+    period_borders,
+)
+from chatter.stability.spindle_turn import (
+    angle_at,
+    in_mean_angle,
+    speed_at,
+    spindle_turn,
+    time_at,
+)
+from cutting.edge_pieces import (
+    coupling_at,
+    engaged_span,
+    first_and_last_turn,
+    part_below,
+    radius_at,
+    share_of_height,
+)
+
+#: points closer than this share of an element are the same
+_SAME_POINT = 1e-7
+#: the order of a quadrature along the edge follows the speed in steps of this power of two
+_SPEED_STEP = 0.5
+#: whole numbers before the lists of a structure
+_HEADER = 5
+
+
+class PlanStructure(NamedTuple):
+    """Structure of a plan: M elements, E of them in the cut, S distinct lengths, p points each."""
+
+    cut: NDArray[np.int64]  # number of each element among those in the cut, or -1 (M,)
+    shape: NDArray[np.int64]  # number of the length of each element (M,)
+    length_cuts: NDArray[np.int64]  # 1 where an element in the cut has the length (S,)
+    first_source: NDArray[np.int64]  # of each point (E p + 1,)
+    source: NDArray[np.int64]  # element, counted from the period's first; negative before it
+    point: NDArray[np.int64]  # the only one that a source needs of its element, or -1
+    memory: int  # elements before the period that are looked back to
+
+
+class _Sources(NamedTuple):
+    """Blocks that take the motion at the points of an earlier element to the force at a point."""
+
+    element: NDArray[np.int64]
+    point: NDArray[np.int64]
+    block: NDArray[np.float64]  # N/m (sources, r, (p + 1) r)
+
+
+class _EdgeRule(NamedTuple):
+    """Quadrature along the edge."""
+
+    place: NDArray[np.float64]
+    weight: NDArray[np.float64]
+    longest: float  # element, s
+    speed: float  # for which it is made, rad/s
+
+
+@njit(**INNER_KERNEL)
+def resolution_speed(speed):
+    """Speed, at most the given one, for which the edges are resolved; rad/s."""
+    return 2.0 ** (_SPEED_STEP * math.floor(math.log2(speed) / _SPEED_STEP))
+
+
+@njit(**INNER_KERNEL)
+def _edge_points(rule, pieces, piece, span, turning):
+    """Order of the quadrature along a part of a piece."""
+    turned = abs(pieces.angle[piece, 1] - pieces.angle[piece, 0]) * span
+    bend = abs(pieces.immersion[piece, 1] - pieces.immersion[piece, 0]) * span
+    if turned + bend < 1e-9 and pieces.group[piece] >= 0:
+        return 1
+    if pieces.exponent != 0.0:
+        return 16
+    shift = abs(pieces.delay[piece, 1] - pieces.delay[piece, 0]) * span
+    waves = shift / (rule.speed * turning * rule.longest)
+    return min(16, 2 + math.ceil(2.5 * (turned + bend) + 5.0 * waves))
+
+
+@njit(**INNER_KERNEL)
+def _empty_sources(count, rank, width):
+    """Room for sources."""
+    whole = np.empty(count, dtype=np.int64)
+    return _Sources(whole, np.empty(count, dtype=np.int64), np.empty((count, rank, width)))
+
+
+@njit(**INNER_KERNEL)
+def _grown(sources):
+    """Twice the room for sources."""
+    count, rank, width = sources.block.shape
+    larger = _empty_sources(2 * count, rank, width)
+    for i in range(count):
+        larger.element[i], larger.point[i] = sources.element[i], sources.point[i]
+        for k in range(rank):
+            for j in range(width):
+                larger.block[i, k, j] = sources.block[i, k, j]
+    return larger
+
+
+@njit(**SINGLE_KERNEL)
+def _begin_source(sources, at, element):
+    """Make an empty source of an element."""
+    sources.element[at], sources.point[at] = element, -2
+    for k in range(sources.block.shape[1]):
+        for j in range(sources.block.shape[2]):
+            sources.block[at, k, j] = 0.0
+
+
+@njit(**SINGLE_KERNEL)
+def _add_source(points, sources, at, place, couplings, which):
+    """Add a coupling to the motion at a place in an element to a source."""
+    rank, count = couplings.shape[1], points.place.shape[0]
+    near, total = -1, 0.0
+    for q in range(count):
+        distance = place - points.place[q]
+        if abs(distance) < _SAME_POINT:
+            near = q
+        else:
+            total += points.barycentric[q] / distance
+    for q in range(count):
+        share = 1.0 if near == q else 0.0
+        if near < 0:
+            share = points.barycentric[q] / (place - points.place[q]) / total
+        if share != 0.0:
+            for i in range(rank):
+                for j in range(rank):
+                    sources.block[at, i, q * rank + j] += share * couplings[which, i, j]
+    # -2: nothing there as yet
+    known = sources.point[at]
+    sources.point[at] = near if known in (-2, near) else -1
+
+
+@njit(**INNER_KERNEL)
+def _note(points, layout, angle, sources, first, count, couplings, which):
+    """Add a coupling to the motion at an earlier mean angle; returns the number of sources."""
+    element, place = element_before(layout, angle)
+    found = count
+    for entry in range(first, count):
+        if sources.element[entry] == element:
+            found = entry
+            break
+    if found == count:
+        _begin_source(sources, found, element)
+    _add_source(points, sources, found, place, couplings, which)
+    return max(count, found + 1)
+
+
+@njit(**SINGLE_KERNEL)
+def _couple(
+    pieces, tops, rule, basis, points, layout, turn, speed_factor, angle, sources, first_source,
+    row, stiffness, dashpot, groups, part, part_dashpot,
+):  # fmt: skip
+    """Enter the couplings at one mean angle; returns the number of sources."""
+    rank = basis.shape[1]
+    used = groups.shape[0] - 1
+    for group in range(used):
+        for i in range(rank):
+            for j in range(rank):
+                groups[group, i, j] = 0.0
+    count = first_source
+    spindle, turning = angle_at(turn, angle), speed_at(turn, angle)
+    for piece in range(tops.shape[0]):
+        top = tops[piece]
+        if top <= 0.0:
+            continue
+        group = pieces.group[piece]
+        first, last = first_and_last_turn(pieces, piece, top, spindle)
+        for back in range(first, last + 1):
+            low, high = engaged_span(pieces, piece, top, spindle, back)
+            straight = pieces.angle[piece, 0] == pieces.angle[piece, 1]
+            if low >= high and not (straight and low <= high):
+                continue
+            order = _edge_points(rule, pieces, piece, high - low, turning)
+            for q in range(order):
+                x, share = rule.place[order, q], rule.weight[order, q]
+                if pieces.exponent != 0.0 and order > 1:
+                    # towards both ends, where the chip may vanish
+                    share *= 30.0 * (x * (1.0 - x)) ** 2
+                    x = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
+                place = low + x * (high - low)
+                weight = share * (high - low) * pieces.length[piece]
+                coupling_at(
+                    pieces, piece, place, spindle, weight, speed_factor / turning, basis, part,
+                    part_dashpot,
+                )  # fmt: skip
+                # the last of the groups is that of the single point
+                into = group if group >= 0 else used
+                for i in range(rank):
+                    for j in range(rank):
+                        stiffness[row, i, j] += part[i, j]
+                        dashpot[row, i, j] += part_dashpot[i, j]
+                        groups[into, i, j] = part[i, j] + (
+                            groups[into, i, j] if group >= 0 else 0.0
+                        )
+                if group < 0:
+                    height = share_of_height(pieces, piece, place)
+                    delay = pieces.delay[piece, 0] + height * (
+                        pieces.delay[piece, 1] - pieces.delay[piece, 0]
+                    )
+                    earlier = time_at(turn, spindle - delay)
+                    count = _note(
+                        points, layout, earlier, sources, first_source, count, groups, used
+                    )
+    for group in range(used):
+        filled = False
+        for i in range(rank):
+            for j in range(rank):
+                filled |= groups[group, i, j] != 0.0
+        if filled:
+            earlier = time_at(turn, spindle - pieces.group_delay[group])
+            count = _note(points, layout, earlier, sources, first_source, count, groups, group)
+    return count
+
+
+@njit(**SINGLE_KERNEL)
+def cut_plan(cut, turn, layout, speed, depth):
+    """Couplings at the points of all elements of a period, packed.
+
+    Parameters
+    ----------
+    cut : CutArrays
+    turn : SpindleTurn
+        In mean angle.
+    layout : ElementLayout
+    speed : float
+        `resolution_speed` of the mean spindle speed, rad/s.
+    depth : float
+        Axial depth, m.
+
+    Returns
+    -------
+    structure : (i,) array of int
+        See `structure_of_plan`.
+    numbers : (n,) array of float
+        Period, lengths (S,), starts and lengths of the elements in the cut (E,), rad; stiffness
+        (E p, r, r), dashpots (E p, r, r) times the mean speed, blocks of the sources, N/m.
+    """
+    points, pieces, basis = cut.points, cut.pieces, cut.basis
+    rank, count_a_element = basis.shape[1], points.weight.shape[0]
+    cuts = layout.cut_start.shape[0]
+    rows = cuts * count_a_element
+    tops = np.empty(pieces.bottom.shape[0])
+    most = pieces.group_delay.shape[0]
+    for piece in range(tops.shape[0]):
+        tops[piece] = part_below(pieces, piece, depth)
+        if tops[piece] > 0.0 and pieces.group[piece] < 0:
+            most += 2 * cut.edge_place.shape[1]
+    sources = _empty_sources(rows + most, rank, (count_a_element + 1) * rank)
+    stiffness, dashpot = np.zeros((rows, rank, rank)), np.zeros((rows, rank, rank))
+    groups = np.empty((pieces.group_delay.shape[0] + 1, rank, rank))
+    part, part_dashpot = np.empty((rank, rank)), np.zeros((rank, rank))
+    rule = _EdgeRule(cut.edge_place, cut.edge_weight, cut.resolution.longest, speed)
+    damped = pieces.damping[1] > 0.0
+    speed_factor = 1.0 / radius_at(pieces, depth) if damped else 0.0
+    first_source = np.zeros(rows + 1, dtype=np.int64)
+    for row in range(rows):
+        e, i = row // count_a_element, row % count_a_element
+        angle = layout.cut_start[e] + points.place[i + 1] * layout.cut_length[e]
+        count = first_source[row]
+        if count + most > sources.element.shape[0]:
+            sources = _grown(sources)
+        first_source[row + 1] = _couple(
+            pieces, tops, rule, basis, points, layout, turn, speed_factor, angle, sources, count,
+            row, stiffness, dashpot, groups, part, part_dashpot,
+        )  # fmt: skip
+    return (
+        _packed_structure(layout, first_source, sources),
+        _packed_numbers(layout, stiffness, dashpot, sources.block, first_source[rows]),
+    )
+
+
+@njit(**INNER_KERNEL)
+def _put(part, out, at):
+    """Copy an array of one axis into another from a place on; returns the next place."""
+    for i in range(part.shape[0]):
+        out[at + i] = part[i]
+    return at + part.shape[0]
+
+
+@njit(**SINGLE_KERNEL)
+def _packed_structure(layout, first_source, sources):
+    count = first_source[first_source.shape[0] - 1]
+    elements, lengths = layout.cut.shape[0], layout.length_cuts.shape[0]
+    out = np.empty(
+        _HEADER + 2 * elements + lengths + first_source.shape[0] + 2 * count, dtype=np.int64
+    )
+    out[0], out[1], out[2] = elements, lengths, layout.cut_start.shape[0]
+    memory = 0
+    for entry in range(count):
+        memory = max(memory, -sources.element[entry])
+    out[3], out[4] = count, memory
+    at = _put(layout.cut, out, _HEADER)
+    at = _put(layout.shape, out, at)
+    at = _put(layout.length_cuts, out, at)
+    at = _put(first_source, out, at)
+    at = _put(sources.element[:count], out, at)
+    _put(sources.point[:count], out, at)
+    return out
+
+
+@njit(**SINGLE_KERNEL)
+def _packed_numbers(layout, stiffness, dashpot, block, sources):
+    kept = sources * block.shape[1] * block.shape[2]
+    out = np.empty(
+        1 + layout.length.shape[0] + 2 * layout.cut_start.shape[0] + 2 * stiffness.size + kept
+    )
+    out[0] = layout.period
+    at = _put(layout.length, out, 1)
+    at = _put(layout.cut_start, out, at)
+    at = _put(layout.cut_length, out, at)
+    at = _put(stiffness.reshape(stiffness.size), out, at)
+    at = _put(dashpot.reshape(stiffness.size), out, at)
+    _put(block.reshape(block.size)[:kept], out, at)
+    return out
+
+
+@njit(**INNER_KERNEL)
+def structure_of_plan(packed):
+    """Unpack the structure of a plan.
+
+    Returns
+    -------
+    PlanStructure
+    """
+    elements, lengths, count = packed[0], packed[1], packed[3]
+    points = packed.shape[0] - _HEADER - 2 * elements - lengths - 2 * count
+    a = _HEADER + elements
+    b = a + elements
+    c = b + lengths
+    d = c + points
+    e = d + count
+    return PlanStructure(
+        packed[_HEADER:a], packed[a:b], packed[b:c], packed[c:d], packed[d:e], packed[e:], packed[4]
+    )
+
+
+@njit(**INNER_KERNEL)
+def alike(one, other):
+    """Tell whether two packed structures are the same: lanes of one map may hold both plans."""
+    if one.shape[0] != other.shape[0]:
+        return False
+    return np.all(one == other)
+
+
+@njit(**SINGLE_KERNEL)
+def plans_of(cut, speeds, depths):
+    """Plans of n points; neighbours of equal depth and equal elements share one.
+
+    Parameters
+    ----------
+    cut : CutArrays
+    speeds, depths : (n,) array of float
+        rad/s, m.
+
+    Returns
+    -------
+    structures : list of arrays of int
+    numbers : list of arrays of float
+    of_point : (n,) array of int
+        Place in the lists.
+    """
+    of_point = np.empty(speeds.shape[0], dtype=np.int64)
+    structures = [np.empty(0, dtype=np.int64) for _ in range(0)]
+    numbers = [np.empty(0) for _ in range(0)]
+    constant = cut.variation.amplitude == 0.0
+    counts, speed, borders = np.empty(0, dtype=np.int64), 0.0, empty_borders()
+    for i in range(speeds.shape[0]):
+        turn = in_mean_angle(spindle_turn(cut.variation, speeds[i], cut.period_angle))
+        beside = constant and i > 0 and depths[i] == depths[i - 1]
+        if not beside:
+            borders = period_borders(cut.pieces, cut.period_angle, turn, depths[i])
+        needed = element_counts(cut.resolution, borders, speeds[i], depths[i])
+        resolved = resolution_speed(speeds[i])
+        if not (beside and speed == resolved and alike(needed, counts)):
+            counts, speed = needed, resolved
+            layout = element_layout(borders, counts)
+            structure, filled = cut_plan(cut, turn, layout, speed, depths[i])
+            structures.append(structure)
+            numbers.append(filled)
+        of_point[i] = len(structures) - 1
+    return structures, numbers, of_point
