@@ -21,7 +21,7 @@ from chatter.errors import RunError
 from chatter.kernels import DRIVER, KERNEL
 from chatter.stability.cut_arrays import CutArrays
 from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.limit_search import PointMethod, limit_curve_by
+from chatter.stability.limit_search import PointMethod, growth, limit_curve_by
 from chatter.stability.matrix_free_plan import StepPlan, step_plan
 from chatter.stability.matrix_free_steps import SteppedCut, period_steps
 from chatter.stability.multiplier import Multiplier
@@ -42,6 +42,8 @@ _MOST_STEPS = 100_000
 _RESIDUAL = 1e-9
 #: functions beyond the states at the first look, growth from look to look, and the most
 _FIRST_LOOK, _GROWTH, _MOST_FUNCTIONS = 6, 1.3, 320
+#: limits whose error is estimated
+_CHECKED = 12
 #: harmonics looked at for the chatter frequency reach this far beyond the highest mode
 _HIGHEST = 2.0
 
@@ -426,7 +428,21 @@ def limit_curve(
 
     deepest, finer = float(depths[-1]), _EXTRAPOLATED[-1]
     steps = np.array([steps_a_period(cut, float(v), deepest, finer) for v in speeds])
-    return limit_curve_by(PointMethod(plain, refined, heard), speeds, depths, steps, progress)
+    limits = limit_curve_by(PointMethod(plain, refined, heard), speeds, depths, steps, progress)
+    return limits._replace(error=_limit_error(cut, limits))
+
+
+def _limit_error(cut: SteppedCut, limits: LimitCurve) -> float:
+    """Largest relative shift of some limits by what the extrapolation adds to the finer steps."""
+    found = np.flatnonzero(np.isfinite(limits.critical_depth))
+    picked = found[:: max(1, found.size // _CHECKED)]
+    if not picked.size:
+        return 0.0
+    speed, depth = limits.spindle_speed[picked], limits.critical_depth[picked]
+    at = growth(multipliers(cut, speed, depth))
+    finer = growth(multipliers(cut, speed, depth, refinements=_EXTRAPOLATED[1:]))
+    slope = (growth(multipliers(cut, speed, 1.001 * depth)) - at) / (1e-3 * depth)
+    return float(np.max(np.abs(at - finer) / np.maximum(np.abs(slope) * depth, 1e-300)))
 
 
 @njit(**DRIVER)

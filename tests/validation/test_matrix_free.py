@@ -146,6 +146,9 @@ def test_limits_are_those_of_collocation(name):
     assert found.bifurcation == other.bifurcation
     assert [len(c) for c in found.crossings] == [len(c) for c in other.crossings]
     assert found.steps.min() > 40
+    # the estimate is that of the finer steps alone: the extrapolated limits are better
+    apart = np.nanmax(np.abs(found.critical_depth / other.critical_depth - 1.0))
+    assert 0.1 * apart < found.error < 1e-3
 
 
 def test_the_grid_and_the_operating_point_of_the_method():
