@@ -158,7 +158,7 @@ def _given_modes(case: Case, speed: float) -> GivenModes:
 def _notes_on_speed(case: Case) -> tuple[str, ...]:
     if not depends_on_speed(case):
         return ()
-    notes = ["the structure depends on the spindle speed; at every speed it is the one of it"]
+    notes = ["the structure depends on the spindle speed, and is taken as it is at each speed"]
     for place, mode in enumerate(case.structure.mode):
         if mode.speed_dependence is not None:
             first, *_, last = mode.speed_dependence.speeds
