@@ -5,6 +5,7 @@ matrix exponentials by scipy, all eigenvalues by numpy. It is timed on a sample 
 """
 
 import math
+import sys
 import time
 from functools import partial
 
@@ -25,11 +26,12 @@ TWO_MODES = (5000, 25000, 401, 10e-3, 201)
 FOUR_MODES = (2000, 10000, 201, 8e-3, 101)
 
 
-def two_degrees_of_freedom(immersion):
+def two_degrees_of_freedom(immersion, tool=None, **cut):
+    """Two teeth of 16 mm up-milling, or another tool; equal modes in both directions."""
     mode = {"frequency": "922 Hz", "damping": 0.011, "mass": "0.03993 kg"}
     return Case.from_dict(
         {
-            "tool": {"teeth": 2, "diameter": "16 mm"},
+            "tool": {"diameter": "16 mm", **(tool or {"teeth": 2})},
             "material": {"Ktc": "600 MPa", "Krc": "200 MPa"},
             "cut": {
                 "mode": "up",
@@ -37,6 +39,7 @@ def two_degrees_of_freedom(immersion):
                 "feed_per_tooth": "0.1 mm",
                 "axial_depth": "1 mm",
                 "radial_depth": 16e-3 * immersion,
+                **cut,
             },
             "structure": {
                 "mode": [{**mode, "direction": [1, 0, 0]}, {**mode, "direction": [0, 1, 0]}]
@@ -152,6 +155,50 @@ def collocation_grids():
             )
 
 
+def other_tools():
+    """Cost of a point for tools beyond the plain end mill, and of one mode in one direction."""
+    tools = {
+        "ball, 160 and 200 deg, helix 30": (
+            {
+                "kind": "ball",
+                "teeth": 2,
+                "pitch": ["160 deg", "200 deg"],
+                "helix": "30 deg",
+            },
+            6e-3,
+        ),
+        "helix 30/32/30/32": (
+            {"teeth": 4, "helix": ["30 deg", "32 deg", "30 deg", "32 deg"]},
+            2e-3,
+        ),
+        "four teeth, helix 30, runout 20 um": (
+            {
+                "teeth": 4,
+                "helix": "30 deg",
+                "runout": {"offset": "20 um", "angle": "30 deg"},
+            },
+            2e-3,
+        ),
+    }
+    cases = {
+        name: (two_degrees_of_freedom(0.5, tool), deepest)
+        for name, (tool, deepest) in tools.items()
+    }
+    varied = {"amplitude": 0.1, "frequency": "10 Hz", "shape": "sine"}
+    cases["speed varied by 10 % at 10 Hz"] = (
+        two_degrees_of_freedom(0.5, speed_variation=varied),
+        2e-3,
+    )
+    cases["one mode, helix 45, 5 % immersion"] = helical_islands(45.0), 9e-3
+    for name, (case, deepest) in cases.items():
+        model = milling_model(case)
+        s, d = np.meshgrid(np.linspace(8000, 12000, 60) * RPM, np.linspace(0.1, 1.0, 10) * deepest)
+        solve = partial(collocation.multipliers, model.cut(deepest), s.ravel(), d.ravel())
+        _, _, processor = timed(solve)
+        rate = s.size / processor
+        print(f"{name}: {1e6 / rate:7.1f} us, {rate:8.0f} points/s and core")
+
+
 def limit_curves():
     """A limit curve of 400 speeds to 0.5 %, two modes a direction."""
     model = milling_model(two_degrees_of_freedom(0.5))
@@ -178,8 +225,59 @@ def limit_curves():
     )
 
 
+def helical_islands(helix_deg):
+    """One direction, low immersion: flip lobes close to islands where the edge is inclined."""
+    mode = {"frequency": "922 Hz", "damping": 0.011, "mass": "0.03993 kg", "direction": [1, 0, 0]}
+    return Case.from_dict(
+        {
+            "tool": {"teeth": 2, "diameter": "8 mm", "helix": f"{helix_deg} deg"},
+            "material": {"Ktc": "600 MPa", "Krc": "200 MPa"},
+            "cut": {
+                "mode": "up",
+                "spindle_speed": "19000 rpm",
+                "feed_per_tooth": "0.1 mm",
+                "axial_depth": "1 mm",
+                "radial_depth": "0.4 mm",
+            },
+            "structure": {"mode": [mode]},
+        }
+    )
+
+
+def missed():
+    """Changes of stability that following misses, against a net of eight times the depths."""
+    diagrams = [
+        *((two_degrees_of_freedom(part), 5000, 25000, 400, 10e-3) for part in (0.05, 0.1, 0.5)),
+        *((altintas_engin_budak(helix), 2000, 10000, 200, 8e-3) for helix in (0.0, 30.0)),
+        *((helical_islands(helix), 14000, 25000, 400, 9e-3) for helix in (20.0, 30.0, 45.0)),
+    ]
+    total = np.zeros(4, dtype=int)
+    for case, low, high, count, deepest in diagrams:
+        model, speeds = milling_model(case), np.linspace(low, high, count) * RPM
+        cut, depths = model.cut(deepest), np.linspace(0.0, deepest, 61)[1:]
+        fine = np.linspace(0.0, deepest, 8 * 60 + 1)[1:]
+        found = collocation.limit_curve(cut, speeds, depths).crossings
+        wanted = collocation.limit_curve(cut, speeds, fine, stride=1).crossings
+        pairs = list(zip(found, wanted, strict=True))
+        lost = [len(other) - len(one) for one, other in pairs]
+        first = [one[:1] for one in found], [other[:1] for other in wanted]
+        wrong = sum(
+            one.size != other.size or bool(np.any(one > 1.005 * other))
+            for one, other in zip(*first, strict=True)
+        )
+        total += [count, sum(map(len, wanted)), sum(map(abs, lost)), wrong]
+        print(
+            f"{case.tool.helix}, {case.cut.radial_depth * 1e3:g} mm wide, {count} speeds: "
+            f"{sum(map(len, wanted))} changes of stability, {sum(map(abs, lost))} missed at "
+            f"{sum(part != 0 for part in lost)} speeds, first limit wrong at {wrong}"
+        )
+    speeds, changes, lost, wrong = total
+    print(f"all: {speeds} speeds, {changes} changes, {lost} missed, first limit wrong at {wrong}")
+
+
 def main():
     collocation_grids()
+    other_tools()
     limit_curves()
     print()
     semi_discretization_grids()
@@ -213,4 +311,7 @@ def semi_discretization_grids():
 
 
 if __name__ == "__main__":
-    main()
+    if sys.argv[1:] == ["missed"]:
+        missed()
+    else:
+        main()
