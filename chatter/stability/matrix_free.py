@@ -37,7 +37,7 @@ _EXTRAPOLATED = (1, 2)
 _ORDER = 4
 #: a correction beyond this share means that two multipliers have changed places
 _LARGEST_CORRECTION = 0.05
-_MOST_STEPS = 100_000
+_MOST_STEPS, _FINEST = 100_000, 16
 #: residual of the dominant eigenpair, relative to its magnitude, at which the iteration stops
 _RESIDUAL = 1e-9
 #: functions beyond the states at the first look, growth from look to look, and the most
@@ -328,9 +328,13 @@ def multipliers(
     return np.concatenate(sweep(at, len(speeds), progress, points_a_chunk=8))
 
 
+def _steps_a_turn(cut: SteppedCut, speed: float, refinement: int) -> float:
+    return cut.fastest / speed * STEPS_A_WAVE * refinement
+
+
 def _plan(cut: SteppedCut, speed: float, depth: float, refinement: int) -> StepPlan:
-    waves = cut.fastest / speed
-    if waves * STEPS_A_WAVE * refinement > _MOST_STEPS:
+    if _steps_a_turn(cut, speed, refinement) > _MOST_STEPS:
+        waves = cut.fastest / speed
         raise RunError(
             f"at {speed * 30.0 / math.pi:.4g} rpm a turn holds {waves:.3g} vibrations, more than "
             "the matrix-free method can step through; raise the lowest spindle speed"
@@ -369,7 +373,10 @@ def converged_multiplier(
         if coarse is not None:
             value = _extrapolated(np.array([coarse, fine]), (1, 2))[0]
             error = abs(abs(value) - abs(fine[0]))
-            if error <= tolerance * max(1.0, abs(value)) or refinement >= 16:
+            finest = (
+                refinement >= _FINEST or _steps_a_turn(cut, speed, 2 * refinement) > _MOST_STEPS
+            )
+            if error <= tolerance * max(1.0, abs(value)) or finest:
                 return Multiplier(complex(value), plan.length_of.size, float(error))
         coarse, refinement = fine, 2 * refinement
 

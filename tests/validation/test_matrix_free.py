@@ -177,6 +177,9 @@ def test_too_many_vibrations_are_refused():
     cut = TOOLS["uniform"].stepped_cut(1e-3)
     with pytest.raises(RunError, match="raise the lowest spindle speed"):
         matrix_free.multipliers(cut, np.array([0.1]), np.array([1e-3]))
+    # few enough for two resolutions, too many for all: what is there is told with its error
+    found = matrix_free.converged_multiplier(cut, 6.0, 1e-3, 1e-15)
+    assert 0.0 < found.error < 1e-3
 
 
 @pytest.mark.parametrize("angle", [1e-3, 0.3, 1.4, 1.6, 7.0])
