@@ -191,6 +191,7 @@ class MillingModel:
             case.cut.feed_per_tooth * self.teeth,
             deepest,
             self.flank,
+            waves,
         )
         varied = case.cut.speed_variation
         variation = SpeedVariation(0.0, 1.0, 0)

@@ -35,6 +35,8 @@ _PIECE_TURN = math.radians(2.0)
 _PIECE_LAG = 0.03
 _PIECE_LAG_OF_PASSES = 0.006
 _PIECES_A_WAVE = 24
+#: Newton steps to the place at which an edge on a corner crosses the border of its arc
+_PLACE_STEPS = 6
 #: arcs shorter than this are none, rad
 _SHORTEST_ARC = 1e-9
 
@@ -59,6 +61,7 @@ class EdgePieces(NamedTuple):
     inset: NDArray[np.float64]  # m (P,)
     exponent: float  # of the slope: slope = cutting (chip/reference)^exponent, 0 for a linear law
     reference: float  # m
+    turning: NDArray[np.int64]  # 1 where an edge first meets or last leaves the stock within (P, 2)
     outline: NDArray[np.float64]  # radius at the tip's cylinder, corner radius, edge angle (3,)
     damping: NDArray[
         np.float64
@@ -74,14 +77,16 @@ class _Line(NamedTuple):
     length: NDArray[np.float64]  # (L,)
 
 
-def _corner_angles(cutter: Cutter, mode: MillingMode, radial_depth: float) -> NDArray[np.float64]:
+def _corner_angles(
+    cutter: Cutter, mode: MillingMode, radial_depth: float, turn: float
+) -> NDArray[np.float64]:
     """Immersion angles of the piece borders within the corner, rad."""
-    count = max(1, math.ceil(cutter.edge_angle / _PIECE_TURN))
+    count = max(1, math.ceil(cutter.edge_angle / turn))
     angles = np.linspace(0.0, cutter.edge_angle, count + 1)
     reach = cutter.radius - radial_depth
     if mode != "slot" and abs(reach) < cutter.radius:
         # where the edge first meets the stock its arc grows steeply: borders even in the arc
-        arcs = np.arange(0.0, math.pi, _PIECE_TURN)
+        arcs = np.arange(0.0, math.pi, turn)
         with np.errstate(divide="ignore"):
             radius = reach / np.cos(arcs)
         sine = (radius - cutter.radius + cutter.corner_radius) / cutter.corner_radius
@@ -92,14 +97,19 @@ def _corner_angles(cutter: Cutter, mode: MillingMode, radial_depth: float) -> ND
 
 
 def _line(
-    cutter: Cutter, deepest: float, mode: MillingMode, radial_depth: float, heights: list[float]
+    cutter: Cutter,
+    deepest: float,
+    mode: MillingMode,
+    radial_depth: float,
+    heights: list[float],
+    fineness: float,
 ) -> _Line:
     corner = cutter.corner_radius
     height, radius = [0.0], [cutter.radius - corner]
     immersion: list[tuple[float, float]] = []
     length: list[float] = []
     if corner > 0.0:
-        angles = _corner_angles(cutter, mode, radial_depth)
+        angles = _corner_angles(cutter, mode, radial_depth, fineness * _PIECE_TURN)
         height = list(corner * (1.0 - np.cos(angles)))
         radius = list(cutter.radius - corner + corner * np.sin(angles))
         immersion = list(itertools.pairwise(angles))
@@ -138,19 +148,21 @@ def crossing_heights(cutter: Cutter, deepest: float) -> list[float]:
     return heights
 
 
-def _borders_of_straight(cutter: Cutter, deepest: float, own_passes: bool) -> list[float]:
+def _borders_of_straight(
+    cutter: Cutter, deepest: float, own_passes: bool, fineness: float
+) -> list[float]:
     heights = crossing_heights(cutter, deepest)
     several = len(set(cutter.helix)) > 1
     slope = max(abs(math.tan(helix)) for helix in cutter.helix) / cutter.radius
     if cutter.serration is not None:
-        heights += _even_heights(cutter.serration.wavelength / _PIECES_A_WAVE, deepest)
+        heights += _even_heights(fineness * cutter.serration.wavelength / _PIECES_A_WAVE, deepest)
     elif own_passes and several:
-        heights += _even_heights(_PIECE_LAG / slope, deepest)
+        heights += _even_heights(fineness * _PIECE_LAG / slope, deepest)
     if cutter.edge_angle < 0.5 * math.pi - 1e-9:
         # the radius, and with it the arc, changes along a cone
         rate = 1.0 / math.tan(cutter.edge_angle) / cutter.radius
         turn = _PIECE_LAG_OF_PASSES if own_passes else _PIECE_LAG
-        heights += _even_heights(turn / max(rate, slope), deepest)
+        heights += _even_heights(fineness * turn / max(rate, slope), deepest)
     return heights
 
 
@@ -209,6 +221,7 @@ def edge_pieces(
     feed_per_turn: float,
     deepest: float,
     flank: ViscousProcessDamping | Ploughing | None = None,
+    fineness: float = 1.0,
 ) -> EdgePieces:
     """Cut the edges of a tool into pieces from the tip to a height.
 
@@ -222,6 +235,8 @@ def edge_pieces(
         m.
     flank : ViscousProcessDamping or Ploughing, optional
         Ploughing is taken for small vibration; see `small_vibration_coefficient`.
+    fineness : float
+        Factor on how much an edge turns, trails or widens within a piece.
 
     Returns
     -------
@@ -229,10 +244,11 @@ def edge_pieces(
     """
     wave = cutter.serration is not None
     own_passes = wave or np.ptp(cutter.radial_offsets) > 0.0 or np.ptp(cutter.axial_offsets) > 0.0
-    heights = _borders_of_straight(cutter, deepest, own_passes)
-    line = _line(cutter, deepest, mode, radial_depth, heights)
+    heights = _borders_of_straight(cutter, deepest, own_passes, fineness)
+    line = _line(cutter, deepest, mode, radial_depth, heights, fineness)
     lag = np.tan(np.asarray(cutter.helix)) / cutter.radius
     rows: list[tuple] = []
+    owners: list[tuple[int, int, int]] = []
     entry, leave = slice_engagement(
         mode, radial_depth, cutter.radius, np.maximum(line.radius, 1e-12)
     )
@@ -260,24 +276,48 @@ def edge_pieces(
         arcs = np.stack([*arc.T, arc.mean(axis=1)])
         for tooth in range(cutter.teeth):
             order, alpha = earlier[tooth, 0], ahead[tooth, 0]
-            rise = np.sin(turned)[:, None] * feed_per_turn * alpha / _TURN
+            # flutes of different helix are not as far ahead at the ends as in the middle
+            apart = angle[order] - angle[tooth]
+            gaps = alpha + (apart - apart[:, 2:]).T
+            rise = np.sin(turned)[:, None] * feed_per_turn * gaps / _TURN
             inset = (offset[order] - offset[tooth]).T
             found = [(0, arc[0], arc[1])]
             if own_passes:
                 found = _arcs_of_passes(rise, inset, arcs)
             for k, first, last in found:
                 other = order[k]
-                gap = alpha[k] + (angle[other] - angle[tooth]) - (angle[other, 2] - angle[tooth, 2])
+                owners.append((piece, tooth, int(other)))
                 rows.append(
                     (
                         line.height[piece], line.height[piece + 1] - line.height[piece],
                         line.length[piece], angle[tooth, :2], first, last,
-                        gap[:2], kappa, line.radius[ends], _reference_slope(laws[tooth]),
+                        gaps[:2, k], kappa, line.radius[ends], _reference_slope(laws[tooth]),
                         rise[2, k], inset[2, k],
                         cutter.corner_radius if kappa[0] < kappa[1] else 0.0,
                     )
                 )  # fmt: skip
-    return _as_arrays(rows, cutter, laws[0], flank)
+    return _as_arrays(rows, _turning(rows, owners), cutter, laws[0], flank)
+
+
+def _turning(rows: list[tuple], owners: list[tuple[int, int, int]]) -> NDArray[np.int64]:
+    """Mark the ends (P, 2) of pieces at which an edge first meets the stock, or last leaves it.
+
+    There the spindle angle of entry or exit turns round along the edge, or the edge ends.
+    """
+    marks = np.zeros((len(rows), 2), dtype=np.int64)
+    place = {owner: i for i, owner in enumerate(owners)}
+    there = {owner[:2] for owner in owners}
+    for owner, i in place.items():
+        piece, tooth, other = owner
+        marks[i, 0] |= piece > 0 and (piece - 1, tooth) not in there
+        marks[i, 1] |= (piece + 1, tooth) not in there
+        following = place.get((piece + 1, tooth, other))
+        if following is None:
+            continue
+        for arc in (4, 5):
+            rises = [np.diff(np.asarray(rows[k][arc]) - rows[k][3])[0] for k in (i, following)]
+            marks[i, 1] |= rises[0] * rises[1] < 0.0
+    return marks
 
 
 def _arc_of_piece(
@@ -303,6 +343,7 @@ def _reference_slope(law: ForceLaw) -> NDArray[np.float64]:
 
 def _as_arrays(
     rows: list[tuple],
+    turning: NDArray[np.int64],
     cutter: Cutter,
     law: ForceLaw,
     flank: ViscousProcessDamping | Ploughing | None,
@@ -334,7 +375,7 @@ def _as_arrays(
         entry=columns[4], exit=columns[5], delay=delay, immersion=columns[7], radius=columns[8],
         group=group, group_delay=np.array(groups), cutting=columns[9], feed=columns[10],
         inset=columns[11], corner=columns[12], exponent=exponent, reference=reference,
-        damping=damping,
+        damping=damping, turning=turning,
         outline=np.array([cutter.radius, cutter.corner_radius, cutter.edge_angle]),
     )  # fmt: skip
 
@@ -402,6 +443,22 @@ def share_of_height(pieces, piece, place):
 
 
 @register_jitable(**_INLINED)
+def _place_on_corner(pieces, piece, place, value, lag, rate):
+    """Place where value + lag h + rate s = 0, h the share of the height, which bends along s."""
+    low, high = pieces.immersion[piece, 0], pieces.immersion[piece, 1]
+    steepness = pieces.corner[piece] * (high - low) / pieces.thickness[piece]
+    for _ in range(_PLACE_STEPS):
+        slope = lag * steepness * math.sin(low + place * (high - low)) + rate
+        if slope == 0.0:
+            break
+        step = (value + lag * share_of_height(pieces, piece, place) + rate * place) / slope
+        place = min(1.0, max(0.0, place - step))
+        if abs(step) < 1e-12:
+            break
+    return place
+
+
+@register_jitable(**_INLINED)
 def engaged_span(pieces, piece, top, spindle, turn):
     """Part of a piece that is in the cut at a spindle angle.
 
@@ -434,10 +491,15 @@ def engaged_span(pieces, piece, top, spindle, turn):
         if rate == 0.0:
             if value <= 0.0:
                 return 1.0, 0.0
-        elif rate > 0.0:
-            low = max(low, -value / rate)
+            continue
+        place = -value / rate
+        if pieces.corner[piece] > 0.0 and 0.0 < place < 1.0:
+            lag = turned if side == 0 else -turned
+            place = _place_on_corner(pieces, piece, place, value, lag, rate - lag)
+        if rate > 0.0:
+            low = max(low, place)
         else:
-            high = min(high, -value / rate)
+            high = min(high, place)
     return low, high
 
 
@@ -488,6 +550,9 @@ def coupling_at(pieces, piece, place, spindle, weight, speed_factor, basis, stif
         # flutes of different helix leave each other more or less of the feed from height to height
         first, last = pieces.delay[piece, 0], pieces.delay[piece, 1]
         feed = pieces.feed[piece] * (first + height * (last - first)) / (0.5 * (first + last))
+        if bend != 0.0:
+            # towards the tip of a corner the chip thins out with the edge's inclination
+            feed *= sk / math.sin(kappa + 0.5 * bend)
         chip = feed * s - pieces.inset[piece]
         chip = max(chip, 1e-9 * pieces.reference)
         size *= math.exp(pieces.exponent * math.log(chip / pieces.reference))

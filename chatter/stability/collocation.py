@@ -20,7 +20,7 @@ from chatter.stability.multiplier import Multiplier
 from chatter.stability.sweep import Progress, no_progress, sweep
 
 #: resolutions of a single point, one after the other until two agree
-FINER = ((10, 1.0), (12, 0.8), (12, 0.5), (12, 0.3), (12, 0.15))
+FINER = ((10, 0.7), (12, 0.5), (12, 0.3), (12, 0.15))
 #: of a limit, relative to its depth
 DEPTH_TOLERANCE = 1e-6
 #: largest estimated error of limits, relative to their depth

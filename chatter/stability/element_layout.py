@@ -28,6 +28,8 @@ from cutting.edge_pieces import (
 _SAME = 1e-10
 #: element lengths closer than this share are the same
 _SAME_LENGTH = 1e-9
+#: places of an interval that are looked at to tell whether an edge is in the cut
+_LOOKS = (0.5, 0.02, 0.98)
 #: levels and ratio of the elements towards a singular place
 _LEVELS = 5
 _RATIO = 0.16
@@ -100,10 +102,13 @@ def _border_angles(pieces, period, depth, angles, singular):
         if top <= 0.0:
             continue
         for end in range(2):
-            # the lowest place of an edge that cuts, and the top of the cut
-            if (end == 0 and pieces.bottom[piece] > lowest) or (
-                end == 1 and depth > pieces.bottom[piece] + pieces.thickness[piece] * (1.0 + 1e-12)
-            ):
+            # the lowest place that cuts, the top of the cut, and where an edge meets the stock
+            if end == 0:
+                wanted = pieces.bottom[piece] <= lowest
+            else:
+                above = depth - pieces.bottom[piece]
+                wanted = above <= pieces.thickness[piece] * (1.0 + 1e-12)
+            if not (wanted or pieces.turning[piece, end] == 1):
                 continue
             s = top if end == 1 else 0.0
             height = share_of_height(pieces, piece, s)
@@ -196,8 +201,11 @@ def period_borders(pieces, tool_period, turn, depth):
     engaged, turned = np.empty(n, dtype=np.int64), np.empty(n)
     for k in range(n):
         turned[k] = angle_at(turn, places[k + 1]) - angle_at(turn, places[k])
-        middle = angle_at(turn, 0.5 * (places[k] + places[k + 1]))
-        engaged[k] = 1 if is_engaged(pieces, depth, middle) else 0
+        engaged[k] = 0
+        for share in _LOOKS:
+            angle = angle_at(turn, places[k] + share * (places[k + 1] - places[k]))
+            if engaged[k] == 0 and is_engaged(pieces, depth, angle):
+                engaged[k] = 1
     return PeriodBorders(places[: n + 1], marks[: n + 1], engaged, turned, period)
 
 
