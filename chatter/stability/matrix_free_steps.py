@@ -65,9 +65,10 @@ def _border_angles(cut, depth):
         top = part_below(pieces, piece, depth)
         ends = pieces.bottom[piece] + pieces.thickness[piece] * (1.0 + 1e-12)
         for end in range(2):
-            # between the tip and the top of the cut the pieces of an edge follow one another
+            # between the tip, the top of the cut and where an edge first meets the stock the
+            # pieces of an edge follow one another
             inner = depth > ends if end == 1 else pieces.bottom[piece] > lowest
-            if top <= 0.0 or inner:
+            if top <= 0.0 or (inner and pieces.turning[piece, end] == 0):
                 continue
             place = top if end == 1 else 0.0
             turned = pieces.angle[piece, 1] - pieces.angle[piece, 0]

@@ -87,7 +87,7 @@ def test_radius_of_every_tool_is_that_of_collocation(name):
 
 def test_radius_of_random_cases_of_any_tool():
     errors = []
-    # one in two: all sixty are within 4e-5, of which the reference itself is 3e-5
+    # one in two: all sixty are within 3e-5
     for cut, expected in CASES[::2]:
         model = milling_model(Case.from_dict(case_dict(cut)))
         point = np.array([cut.speed]), np.array([cut.depth])
