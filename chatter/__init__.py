@@ -21,6 +21,8 @@ stability_check    `check`: verdict on the operating point
 simulation         `simulate`: the cut in the time domain
 what_if            `whatif`: what would change if values were others
 monte_carlo        `uncertainty`: tolerances of the input to limits
+best_cut           `optimum`: the highest removal rate within limits
+pitch_angles       `pitch`: pitch angles for a range of speeds
 judgement          chatter or not, from the signals of a cut
 machine_file       the machine file: bodies, drives, friction, control -> a machine
 virtual_machine    `frf`, `move`: virtual tests of a machine
@@ -42,6 +44,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from chatter.best_cut.study import optimum as optimum
     from chatter.case import Case as Case
     from chatter.case import load as load
     from chatter.case import schema as schema
@@ -53,6 +56,7 @@ if TYPE_CHECKING:
     from chatter.modal_test import modes as modes
     from chatter.monte_carlo.study import uncertainty as uncertainty
     from chatter.path_diagram import lobes_over as lobes_over
+    from chatter.pitch_angles.study import pitch as pitch
     from chatter.simulation.bifurcation import bifurcation as bifurcation
     from chatter.simulation.simulate import simulate as simulate
     from chatter.stability_check import check as check
@@ -76,7 +80,9 @@ _PUBLIC = {
     "lobes": "chatter.lobe_diagram",
     "lobes_over": "chatter.path_diagram",
     "modes": "chatter.modal_test",
+    "optimum": "chatter.best_cut.study",
     "move": "chatter.virtual_machine.from_file",
+    "pitch": "chatter.pitch_angles.study",
     "schema": "chatter.case",
     "simulate": "chatter.simulation.simulate",
     "uncertainty": "chatter.monte_carlo.study",

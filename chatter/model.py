@@ -226,8 +226,14 @@ def viscous(flank: ViscousProcessDamping | Ploughing | None) -> ViscousProcessDa
     return flank
 
 
-def milling_model(case: Case) -> MillingModel:
+def milling_model(case: Case, structure: Structure | None = None) -> MillingModel:
     """Compile a case for the stability methods.
+
+    Parameters
+    ----------
+    case : Case
+    structure : Structure, optional
+        That of the case, where it is known already; it is then not looked at again.
 
     Raises
     ------
@@ -237,7 +243,7 @@ def milling_model(case: Case) -> MillingModel:
     case.require("tool", "material", "cut", "structure")
     check_plausible(case)
     refuse_teeth_off_the_tool(case)
-    structure = structure_of(case)
+    structure = structure_of(case) if structure is None else structure
     cutter = cutter_of(case)
     notes = list(structure.notes)
     flank = _flank(case)

@@ -36,7 +36,7 @@ from chatter.search_range import depths_at_one_speed
 from chatter.stability.sweep import Progress, no_progress, one_thread, sweep
 from chatter.what_if.finished import key_of
 from chatter.what_if.subject import fingerprint, patched
-from chatter.what_if.variation import Variation
+from chatter.what_if.variation import Value, Variation
 
 #: values of a range that gives no count: of a curve, and of each side of a map
 _CURVE_COUNT, _MAP_COUNT = 60, 40
@@ -114,9 +114,15 @@ def lobes_over(
 
 
 def _limits_over(case: Case, axis: Variation, method: str, each: Each) -> PathLimits:
-    points = [_Point(patched(case, value.patch), method) for value in axis.values]
+    labels = [f"{axis.path} = {value.label}" for value in axis.values]
+    points = [
+        _Point(_patched(case, [(axis, value)], label), method)
+        for value, label in zip(axis.values, labels, strict=True)
+    ]
     found = each(_limit_at, points, "values")
+    reasons = _reasons(found, case.name, labels)
     frequencies = [np.nan if one["frequency"] is None else one["frequency"] for one in found]
+    searched = [np.nan if one["searched_to"] is None else one["searched_to"] for one in found]
     return PathLimits(
         case=case,
         method=method,
@@ -124,26 +130,34 @@ def _limits_over(case: Case, axis: Variation, method: str, each: Each) -> PathLi
         crossings=tuple(np.array(one["crossings"], dtype=np.float64) for one in found),
         chatter_frequency=np.array(frequencies),
         bifurcation=tuple(one["bifurcation"] for one in found),
-        searched_to=np.array([one["searched_to"] for one in found]),
+        searched_to=np.array(searched),
         standing=standing_number(case, axis),
-        notes=_notes([tuple(one["notes"]) for one in found]),
+        reasons=reasons,
+        notes=_notes(_told(found, reasons)),
     )
 
 
 def _limit_at(point: _Point) -> dict[str, Any]:
-    """Limits of a case at its speed, as JSON knows it."""
+    """Limits of a case at its speed, as JSON knows it, or why there is none."""
     case = point.case
-    limits_of = chosen_method(case, point.method)[1]
-    model = milling_model(case)
-    speeds = np.array([case.cut.spindle_speed])
-    depths = depths_at_one_speed(case, zero_order_of(model, speeds))
-    limit = limits_of(model, speeds, depths, resolution(case), no_progress)
+    try:
+        limits_of = chosen_method(case, point.method)[1]
+        model = milling_model(case)
+        speeds = np.array([case.cut.spindle_speed])
+        depths = depths_at_one_speed(case, zero_order_of(model, speeds))
+        limit = limits_of(model, speeds, depths, resolution(case), no_progress)
+    except InputError as error:
+        return {
+            "crossings": [], "frequency": None, "bifurcation": "none", "searched_to": None,
+            "notes": [], "refused": list(error.messages),
+        }  # fmt: skip
     return {
         "crossings": limit.crossings[0].tolist(),
         "frequency": finite_or_none(float(limit.chatter_frequency[0])),
         "bifurcation": limit.bifurcation[0],
         "searched_to": float(depths[-1]),
         "notes": list(model.notes),
+        "refused": [],
     }
 
 
@@ -160,21 +174,26 @@ def _map_over(case: Case, x: Variation, y: Variation, method: str, each: Each) -
     # what the inner path makes of the case does not depend on the other one
     own = [patched(case, value.patch).cut for value in along.values] if along else []
     others = {"x": y, "y": x}.get(inner)
-    lines = []
-    for outer, places in groups:
-        j, i = places[0]
-        patch = others.values[outer].patch if others else {**x.values[i].patch, **y.values[j].patch}
-        lines.append(_line_along(patched(case, patch), method, along, own))
+    lines, labels = [], []
+    for _, places in groups:
+        row, column = places[0]
+        chosen = [(x, x.values[column]), (y, y.values[row])]
+        if others is not None:
+            chosen = [(axis, value) for axis, value in chosen if axis is others]
+        labels.append(" and ".join(f"{axis.path} = {value.label}" for axis, value in chosen))
+        lines.append(_line_along(_patched(case, chosen, labels[-1]), method, along, own))
     found = each(_radius_along, lines, "columns")
-    radius = np.empty((len(rows), len(columns)))
-    for (_, places), line in zip(groups, found, strict=True):
-        for (j, i), value in zip(places, line["radius"], strict=True):
+    reasons = _reasons(found, case.name, labels)
+    radius = np.full((len(rows), len(columns)), np.nan)
+    for (_, places), line, why in zip(groups, found, reasons, strict=True):
+        for (j, i), value in zip(places, line["radius"], strict=not why):
             radius[j, i] = value
-    notes = _notes([tuple(line["notes"]) for line in found])
+    left_out = {label: why for label, why in zip(labels, reasons, strict=True) if why}
+    notes = _notes(_told(found, reasons))
     if method not in ("collocation", *GRIDS):
         notes = (*notes, f"the map is by collocation; {method} gives no spectral radius")
     standing = (standing_number(case, x), standing_number(case, y))
-    return StabilityMap(case, method, x, y, radius, standing, notes)
+    return StabilityMap(case, method, x, y, radius, standing, notes, left_out)
 
 
 def _line_along(case: Case, method: str, along: Variation | None, own: list) -> _Point:
@@ -190,12 +209,15 @@ def _line_along(case: Case, method: str, along: Variation | None, own: list) -> 
 
 
 def _radius_along(line: _Point) -> dict[str, Any]:
-    """Spectral radius of a case at some speeds and depths, as JSON knows it."""
-    model = milling_model(line.case)
+    """Spectral radius of a case at some speeds and depths, as JSON knows it, or why none."""
     radius_at = GRIDS.get(line.method, radius_by_collocation)
     points = np.array(line.speeds), np.array(line.depths)
-    radius = radius_at(model, *points, resolution(line.case), no_progress)
-    return {"radius": radius.tolist(), "notes": list(model.notes)}
+    try:
+        model = milling_model(line.case)
+        radius = radius_at(model, *points, resolution(line.case), no_progress)
+    except InputError as error:
+        return {"radius": [], "notes": [], "refused": list(error.messages)}
+    return {"radius": radius.tolist(), "notes": list(model.notes), "refused": []}
 
 
 def _inner(case: Case, x: Variation, y: Variation) -> str:
@@ -207,6 +229,15 @@ def _inner(case: Case, x: Variation, y: Variation) -> str:
             if axis.path == path:
                 return name
     return ""
+
+
+def _patched(case: Case, chosen: Sequence[tuple[Variation, Value]], label: str) -> Case:
+    """Case at values of axes, which are named where they describe no case."""
+    patch = {path: given for _, value in chosen for path, given in value.patch.items()}
+    try:
+        return patched(case, patch)
+    except InputError as error:
+        raise InputError([f"at {label}: {text}" for text in error.messages]) from None
 
 
 def _each(
@@ -238,6 +269,18 @@ def _kept(
         for one in points
     ]
     return kept_results(function, points, keys, noun, cluster, folder, progress)
+
+
+def _reasons(found: Sequence[dict[str, Any]], name: str, labels: Sequence[str]) -> tuple[str, ...]:
+    """Why there is no result, empty where there is; refused where there is none at all."""
+    reasons = tuple(" ".join(one["refused"]).removeprefix(f"{name}: ") for one in found)
+    if all(reasons):
+        raise InputError(f"{name}: at {labels[0]}, and at every other value: {reasons[0]}")
+    return reasons
+
+
+def _told(found: Sequence[dict[str, Any]], reasons: Sequence[str]) -> list[tuple[str, ...]]:
+    return [tuple(one["notes"]) for one, why in zip(found, reasons, strict=True) if not why]
 
 
 def _notes(told: Sequence[tuple[str, ...]]) -> tuple[str, ...]:

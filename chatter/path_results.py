@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,9 @@ from chatter.what_if.variation import Variation
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+#: values left out that are told on the terminal
+_MOST_TOLD = 3
 
 
 @dataclass(frozen=True)
@@ -39,6 +43,9 @@ class PathLimits:
     standing : float
         What the case itself has at the path, in the unit of the axis; nan where it has none.
     notes : tuple of str
+    reasons : tuple of n str
+        Why a value has no limit at all, as where the tool does not reach the work; empty where it
+        was looked for.
     """
 
     case: Case
@@ -50,6 +57,7 @@ class PathLimits:
     searched_to: NDArray[np.float64]
     standing: float
     notes: tuple[str, ...] = ()
+    reasons: tuple[str, ...] = ()
 
     @property
     def x(self) -> NDArray[np.float64]:
@@ -58,14 +66,16 @@ class PathLimits:
 
     @property
     def critical_depth(self) -> NDArray[np.float64]:
-        """First limit (n,), m; inf where none was found."""
-        return np.array([found[0] if len(found) else np.inf for found in self.crossings])
+        """First limit (n,), m; inf where none was found, nan where none could be looked for."""
+        first = [found[0] if len(found) else np.inf for found in self.crossings]
+        return np.where(np.isnan(self.searched_to), np.nan, first)
 
     def summary(self) -> dict:
         """Return the content of summary.json."""
         depth = self.critical_depth
         ends = {}
-        for name, place in (("lowest_limit", depth.argmin()), ("highest_limit", depth.argmax())):
+        lowest, highest = np.nanargmin(depth), np.nanargmax(depth)
+        for name, place in (("lowest_limit", lowest), ("highest_limit", highest)):
             ends[name] = {
                 "value": float(self.x[place]),
                 "critical_depth_mm": finite_or_none(float(depth[place]) * 1e3),
@@ -78,12 +88,19 @@ class PathLimits:
             "x": _axis_summary(self.axis, self.standing),
             **ends,
             "values_with_several_stable_intervals": sum(len(c) > 1 for c in self.crossings),
+            "left_out": self.left_out,
             "notes": list(self.notes),
         }
 
+    @property
+    def left_out(self) -> dict[str, str]:
+        """Values that have no limit at all, and why."""
+        pairs = zip(self.axis.values, self.reasons, strict=True) if self.reasons else ()
+        return {f"{self.axis.path} = {value.label}": why for value, why in pairs if why}
+
     def told(self) -> list[str]:
         """Sentences for the terminal."""
-        lines = []
+        lines = _told_of(self.left_out)
         for name in ("lowest_limit", "highest_limit"):
             end = self.summary()[name]
             depth = end["critical_depth_mm"]
@@ -105,7 +122,7 @@ class PathLimits:
     def _table(self) -> str:
         lines = [
             f"{_heading(self.axis)},critical_depth [mm],chatter_frequency [Hz],bifurcation,"
-            "all_crossings [mm],searched_to [mm]"
+            "all_crossings [mm],searched_to [mm],left_out"
         ]
         rows = zip(
             self.x,
@@ -116,11 +133,17 @@ class PathLimits:
             self.searched_to,
             strict=True,
         )
-        for value, depth, frequency, kind, crossings, deepest in rows:
+        reasons = self.reasons or ("",) * len(self.crossings)
+        for (value, depth, frequency, kind, crossings, deepest), why in zip(
+            rows, reasons, strict=True
+        ):
+            if why:
+                lines.append(f"{value:.9g},,,none,,,{_quoted(why)}")
+                continue
             heard = f"{frequency:.3f}" if math.isfinite(frequency) else ""
             every = " ".join(f"{one * 1e3:.7g}" for one in crossings)
             lines.append(
-                f"{value:.9g},{depth * 1e3:.7g},{heard},{kind},{every},{deepest * 1e3:.7g}"
+                f"{value:.9g},{depth * 1e3:.7g},{heard},{kind},{every},{deepest * 1e3:.7g},"
             )
         return "\n".join(lines) + "\n"
 
@@ -140,6 +163,8 @@ class StabilityMap:
     standing : (float, float)
         What the case itself has at the paths, in the units of the axes; nan where it has none.
     notes : tuple of str
+    left_out : mapping
+        Values that describe no cut, and why; their points of the map are nan.
     """
 
     case: Case
@@ -149,6 +174,7 @@ class StabilityMap:
     spectral_radius: NDArray[np.float64]
     standing: tuple[float, float]
     notes: tuple[str, ...] = ()
+    left_out: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def x(self) -> NDArray[np.float64]:
@@ -176,10 +202,11 @@ class StabilityMap:
             "method": self.method,
             "x": _axis_summary(self.x_axis, self.standing[0]),
             "y": _axis_summary(self.y_axis, self.standing[1]),
-            "stable_share": float((self.spectral_radius < 1.0).mean()),
-            "lowest_spectral_radius": float(self.spectral_radius.min()),
-            "highest_spectral_radius": float(self.spectral_radius.max()),
+            "stable_share": self._stable_share,
+            "lowest_spectral_radius": float(np.nanmin(self.spectral_radius)),
+            "highest_spectral_radius": float(np.nanmax(self.spectral_radius)),
             "boundary": [found.tolist() for found in self.boundary],
+            "left_out": dict(self.left_out),
             "notes": list(self.notes),
         }
 
@@ -187,9 +214,15 @@ class StabilityMap:
         """Sentences for the terminal."""
         radius = self.spectral_radius
         return [
-            f"{(radius < 1.0).mean():.0%} of the map is stable; spectral radius from "
-            f"{radius.min():.4g} to {radius.max():.4g}"
+            *_told_of(self.left_out),
+            f"{self._stable_share:.0%} of the map is stable; spectral radius from "
+            f"{np.nanmin(radius):.4g} to {np.nanmax(radius):.4g}",
         ]
+
+    @property
+    def _stable_share(self) -> float:
+        known = self.spectral_radius[np.isfinite(self.spectral_radius)]
+        return float((known < 1.0).mean())
 
     def plot(self) -> Figure:
         """Return the map as a matplotlib figure."""
@@ -205,13 +238,27 @@ class StabilityMap:
         lines = [f"{_heading(self.x_axis)},{_heading(self.y_axis)},spectral_radius"]
         for j, y in enumerate(self.y):
             for i, x in enumerate(self.x):
-                lines.append(f"{x:.9g},{y:.9g},{self.spectral_radius[j, i]:.9g}")
+                radius = self.spectral_radius[j, i]
+                lines.append(f"{x:.9g},{y:.9g}," + (f"{radius:.9g}" if radius == radius else ""))
         return "\n".join(lines) + "\n"
 
 
 def _zeros(y: NDArray[np.float64], growth: NDArray[np.float64]) -> NDArray[np.float64]:
-    k = np.flatnonzero((growth[1:] >= 0.0) != (growth[:-1] >= 0.0))
+    known = np.isfinite(growth[1:]) & np.isfinite(growth[:-1])
+    k = np.flatnonzero(known & ((growth[1:] >= 0.0) != (growth[:-1] >= 0.0)))
     return y[k] - growth[k] * (y[k + 1] - y[k]) / (growth[k + 1] - growth[k])
+
+
+def _told_of(left_out: Mapping[str, str]) -> list[str]:
+    """Sentences about values that were left out; not all where they are many."""
+    lines = [f"left out, {label}: {why}" for label, why in list(left_out.items())[:_MOST_TOLD]]
+    more = len(left_out) - len(lines)
+    return [*lines, f"and {more} more values left out"] if more else lines
+
+
+def _quoted(text: str) -> str:
+    """Text as one cell of a table."""
+    return '"' + text.replace('"', '""') + '"'
 
 
 def _heading(axis: Variation) -> str:

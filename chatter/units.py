@@ -71,6 +71,7 @@ DIMENSIONS: dict[str, Dimension] = {
     "pressure": Dimension("a pressure (force per area)", "Pa", "1650 MPa"),
     "force": Dimension("a force", "N", "80 N"),
     "torque": Dimension("a torque", "N*m", "2 N*m"),
+    "power": Dimension("a power", "W", "15 kW"),
     "time": Dimension("a time", "s", "0.5 s"),
     "acceleration": Dimension("an acceleration", "m/s^2", "5 m/s^2"),
     "jerk": Dimension("a jerk", "m/s^3", "500 m/s^3"),
@@ -88,7 +89,6 @@ _FOREIGN = {
     "m^3": "a volume",
     "m/s^2": "an acceleration",
     "m/N": "a compliance",
-    "W": "a power",
     "K": "a temperature",
     "A": "a current",
 }

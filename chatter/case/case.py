@@ -13,12 +13,14 @@ from chatter.case.checks import (
     engagement_problems,
     engagement_problems_of_draft,
     friction_problems,
+    optimum_problems,
 )
 from chatter.case.cut import Cut
 from chatter.case.description import Description
 from chatter.case.document import move_references
 from chatter.case.editing import Layout
 from chatter.case.material import Material
+from chatter.case.optimum import Optimum, PitchDesign
 from chatter.case.sections import (
     Axis,
     Contact,
@@ -77,6 +79,8 @@ class Case(Description):
     stock: Stock | None = None
     lobes: Lobes | None = None
     uncertainty: Uncertainty | None = None
+    optimum: Optimum | None = None
+    pitch_design: PitchDesign | None = None
 
     #: takes the place of the file that structure.machine names; no file holds it
     _machine: Any = PrivateAttr(default=None)
@@ -94,7 +98,10 @@ class Case(Description):
 
     def _further_problems(self, data: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
         del data
-        return friction_problems(self.structure, self.friction)
+        return [
+            *friction_problems(self.structure, self.friction),
+            *optimum_problems(self.optimum, self.cut, self.tool),
+        ]
 
     def _resolve_files(self, content: dict[str, Any]) -> None:
         if self.structure is None:

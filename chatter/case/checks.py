@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from chatter.case.cut import Cut
+from chatter.case.optimum import Optimum
 from chatter.case.path import field_at
 from chatter.case.sections import Friction
 from chatter.case.structure import StructureSection
@@ -69,6 +70,27 @@ def friction_problems(
         for place, mode in enumerate(structure.mode if structure is not None else ())
         if mode.friction is not None and mode.friction not in frictions
     ]
+
+
+def optimum_problems(
+    optimum: Optimum | None, cut: Cut | None, tool: Tool | None
+) -> list[tuple[str, str]]:
+    """Check the widths of [optimum] against the cut and the tool.
+
+    Returns
+    -------
+    list of (str, str)
+        Path and sentence of what is wrong.
+    """
+    if optimum is None or optimum.widths is None or cut is None or tool is None:
+        return []
+    if cut.mode == "slot":
+        text = 'mode = "slot" cuts the whole diameter; leave widths out, or choose "up" or "down"'
+        return [("optimum.widths", text)]
+    if optimum.widths.to > tool.diameter * (1.0 + 1e-9):
+        width, size = f"{optimum.widths.to * 1e3:g} mm", f"{tool.diameter * 1e3:g} mm"
+        return [("optimum.widths.to", f"{width} is more than the diameter of the tool, {size}")]
+    return []
 
 
 def _length(section: type, table: Any, key: str) -> float | None:

@@ -11,7 +11,7 @@ from chatter.case.base import Section
 from chatter.case.quantities import PositiveLength, quantity
 
 #: no tooth takes a thicker chip, so that a number meant in mm is not taken for one in m
-_LARGEST_FEED = 0.02
+LARGEST_FEED = 0.02
 
 
 class SpeedVariation(Section):
@@ -29,7 +29,7 @@ class Cut(Section):
 
     mode: Literal["up", "down", "slot"]
     spindle_speed: quantity("angular_speed", above=0.0)
-    feed_per_tooth: quantity("length", above=0.0, at_most=_LARGEST_FEED)
+    feed_per_tooth: quantity("length", above=0.0, at_most=LARGEST_FEED)
     axial_depth: PositiveLength
     radial_depth: PositiveLength | None = Field(
         None, validate_default=True, description="width of cut; a slot is as wide as the tool"

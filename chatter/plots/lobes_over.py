@@ -53,7 +53,8 @@ def _draw_limits(axes: Axes, diagram: PathLimits) -> None:
     x, top = diagram.x, _top(diagram)
     depth = (np.arange(_FILL_ROWS) + 0.5) * top / _FILL_ROWS
     chatter = np.array([np.searchsorted(found, depth) % 2 for found in diagram.crossings]).T
-    beyond = depth[:, None] > diagram.searched_to[None, :]
+    # nothing is known beyond the search, and where there was none
+    beyond = ~(depth[:, None] <= diagram.searched_to[None, :])
     axes.pcolormesh(
         x,
         depth * 1e3,
@@ -93,7 +94,7 @@ def _draw_limits(axes: Axes, diagram: PathLimits) -> None:
 def _top(diagram: PathLimits) -> float:
     """Highest depth shown, m: what all limits reach, or all of the search without any."""
     found = [crossing for crossings in diagram.crossings for crossing in crossings]
-    highest = 1.15 * max(found) if found else float(diagram.searched_to.max())
+    highest = 1.15 * max(found) if found else float(np.nanmax(diagram.searched_to))
     return max(highest, 1.05 * diagram.case.cut.axial_depth)
 
 
@@ -159,6 +160,7 @@ def plot_map(diagram: StabilityMap) -> Figure:
     figure = style.new_figure(8.0, 5.6)
     axes = figure.subplots()
     x, y, radius = diagram.x, diagram.y, diagram.spectral_radius
+    radius = np.ma.masked_invalid(radius)
     lowest = min(float(radius.min()), 0.99)
     highest = min(max(float(radius.max()), 1.01), _HIGHEST_RADIUS)
     mesh = axes.pcolormesh(
@@ -171,7 +173,7 @@ def plot_map(diagram: StabilityMap) -> Figure:
         rasterized=True,
     )
     if radius.min() < 1.0 < radius.max():
-        growth = np.log(np.maximum(radius, 1e-300))
+        growth = np.ma.log(np.ma.maximum(radius, 1e-300))
         axes.contour(x, y, growth, levels=[0.0], colors=[style.BLUE], linewidths=1.6)
         axes.plot([], [], color=style.BLUE, linewidth=1.6, label="|µ| = 1")
     if y[0] <= diagram.standing[1] <= y[-1]:

@@ -154,6 +154,50 @@ def test_closed_islands_leave_several_stable_intervals():
     assert found.plot().axes
 
 
+def ball():
+    """Ball of 12 mm, 0.5 mm deep, where it reaches 2.4 mm from its axis."""
+    return two_degrees_of_freedom(axial_depth="0.5 mm", radial_depth="6 mm").patch(
+        {"tool.kind": "ball", "tool.diameter": "12 mm"}
+    )
+
+
+def test_a_value_that_the_tool_does_not_reach_leaves_a_gap(tmp_path):
+    found = chatter.lobes_over(ball(), "cut.radial_depth=2 mm..6 mm:5")
+    # at a height h the ball reaches sqrt(2 R h - h^2) from its axis, and the work is R - a_e off
+    reached = np.sqrt(2 * 6.0 * 0.5 - 0.25) > 6.0 - found.x
+    assert list(np.isfinite(found.searched_to)) == list(reached)
+    assert reached.tolist() == [False, False, True, True, True]
+    assert all(("not reach" in why) != ok for why, ok in zip(found.reasons, reached, strict=True))
+    assert np.isnan(found.critical_depth[:2]).all()
+    assert list(found.left_out) == ["cut.radial_depth = 2 mm", "cut.radial_depth = 3 mm"]
+    assert found.told()[0].startswith("left out, cut.radial_depth = 2 mm: cut.radial_depth: down")
+    alone = chatter.lobes_over(ball(), "cut.radial_depth=4 mm..6 mm:3")
+    assert found.critical_depth[2:] == pytest.approx(alone.critical_depth)
+    found.save(tmp_path)
+    with (tmp_path / "lobes.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [bool(row["left_out"]) for row in rows] == [True, True, False, False, False]
+    assert rows[0]["critical_depth [mm]"] == ""
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    assert set(summary["left_out"]) == set(found.left_out)
+
+
+def test_values_that_the_tool_does_not_reach_leave_a_gap_in_a_map(tmp_path):
+    width, speed = "cut.radial_depth=2 mm..6 mm:3", "cut.spindle_speed=9000 rpm..12000 rpm:2"
+    found = chatter.lobes_over(ball(), speed, width)
+    assert np.isnan(found.spectral_radius).tolist() == [[True] * 2, [False] * 2, [False] * 2]
+    assert list(found.left_out) == ["cut.radial_depth = 2 mm"]
+    assert np.isfinite(found.summary()["stable_share"])
+    assert (found.save(tmp_path)[-1]).stat().st_size > 10_000
+
+
+def test_nothing_is_drawn_where_no_value_is_reached():
+    with pytest.raises(InputError, match=r"at cut.radial_depth = 1 mm, and at every other value"):
+        chatter.lobes_over(ball(), "cut.radial_depth=1 mm..2 mm:2")
+    with pytest.raises(InputError, match=r"at cut.radial_depth = 20 mm: .*more than the diameter"):
+        chatter.lobes_over(ball(), "cut.radial_depth=5 mm..20 mm:2")
+
+
 def write_case(folder):
     path = folder / "case.toml"
     path.write_text(

@@ -28,6 +28,7 @@ UNITS = {
     "pressure": {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9, "N/mm^2": 1e6, "N/mm²": 1e6, "N/mm**2": 1e6},
     "force": {"N": 1.0, "kN": 1e3},
     "torque": {"N*m": 1.0, "N m": 1.0, "N*mm": 1e-3},
+    "power": {"W": 1.0, "kW": 1e3, "N*m/s": 1.0},
     "time": {"s": 1.0, "ms": 1e-3, "min": 60.0},
     "velocity": {"m/s": 1.0, "mm/min": 1e-3 / 60.0, "m/min": 1.0 / 60.0},
     "pressure_gradient": {"N/m^3": 1.0, "N/mm^3": 1e9},

@@ -1,0 +1,16 @@
+"""The best cut: removal rate within limits of spindle, deflection, surface and stability.
+
+================== ===================================================================
+module             responsibility
+================== ===================================================================
+steady_cut         power, torque, deflection and location error of the stable cut
+stable_depths      all stable stretches of depth, and what margins leave of them
+limits             what a cut may use, and how much of it a cut uses
+sheet              all speeds and depths at one width and feed
+search             coarse net and refinement
+robustness         probability of stability of the candidates
+confirmation       candidates simulated in the time domain
+study              `optimum`: all of it, one after the other
+result             what is found: tables, files
+================== ===================================================================
+"""

@@ -1,0 +1,83 @@
+"""Picture of a pitch design: limits before and after, and over the difference of pitch."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from chatter.plots import style
+
+if TYPE_CHECKING:
+    from chatter.pitch_angles.result import PitchResult
+
+_RPM = 30.0 / math.pi
+_COLOURS = {"alternating": style.ORANGE, "linear": "#CC79A7"}
+
+
+def plot_pitch(found: PitchResult) -> Figure:
+    """Draw the limits before and after, and what the rule and the families give.
+
+    Parameters
+    ----------
+    found : PitchResult
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = style.new_figure(8.4, 7.4)
+    limits, families = figure.subplots(2, 1, height_ratios=[1.6, 1.0])
+    draw_limits(limits, found)
+    draw_families(families, found)
+    limits.set_title(found.case.title or "Pitch angles", loc="left", pad=38.0)
+    return figure
+
+
+def draw_limits(axes: Axes, found: PitchResult) -> None:
+    """Draw the first limit over speed before and after; where none was found the line ends."""
+    speed = found.speeds * _RPM
+    curves = (
+        ("before", found.standing, style.GREY),
+        ("after", found.best, style.BLUE),
+    )
+    for name, design, colour in curves:
+        limits = design.limits
+        angles = ", ".join(f"{angle:g}" for angle in design.pitch)
+        known = np.where(limits < found.deepest, limits * 1e3, np.nan)
+        axes.plot(speed, known, color=colour, linewidth=1.6, label=f"{name}: {angles} deg")
+        lowest = float(limits.min()) * 1e3
+        axes.axhline(lowest, color=colour, linewidth=0.9, linestyle=(0, (4, 2)))
+        axes.annotate(
+            f"{lowest:.3g} mm", (1.0, lowest), xycoords=("axes fraction", "data"),
+            ha="right", va="bottom", fontsize=8.0, color=colour,
+        )  # fmt: skip
+    axes.set_xlim(speed[0], speed[-1])
+    axes.set_ylim(bottom=0.0)
+    axes.set_xlabel("spindle speed [rpm]")
+    axes.set_ylabel("limit of the axial depth [mm]")
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, fontsize=8.0, frameon=False)
+    style.finish(axes)
+
+
+def draw_families(axes: Axes, found: PitchResult) -> None:
+    """Draw the lowest limit over the difference of pitch, and where regeneration cancels."""
+    for curve in found.curves:
+        colour = _COLOURS[curve.name]
+        lowest = [one.lowest_limit * 1e3 for one in curve.designs]
+        axes.plot(np.degrees(curve.differences), lowest, ".-", color=colour, label=curve.name)
+        for number, difference in enumerate(np.degrees(curve.rule)):
+            label = f"rule, {curve.name}" if number == 0 else None
+            axes.axvline(difference, color=colour, linewidth=1.2, linestyle=":", label=label)
+    axes.axhline(
+        found.best.lowest_limit * 1e3, color=style.BLUE, linewidth=1.0, linestyle="--",
+        label="best found, at the finer speeds",
+    )  # fmt: skip
+    axes.set_ylim(bottom=0.0)
+    axes.set_xlabel("difference between neighbouring pitch angles [deg]")
+    axes.set_ylabel("lowest limit [mm]")
+    axes.legend(loc="best", fontsize=8.0, frameon=False, ncols=2)
+    style.finish(axes)

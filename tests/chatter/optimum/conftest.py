@@ -1,0 +1,6 @@
+"""Make the cuts that the tests share importable under any import mode."""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
