@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.case import Case
-from chatter.cluster import Computing, computing_on
+from chatter.cluster import Computing
+from chatter.kept_results import kept_results
 from chatter.methods import GRIDS, radius_by_collocation, resolution
 from chatter.model import MillingModel, milling_model
 from chatter.stability.sweep import Progress, no_progress
-from chatter.what_if.finished import FinishedPoints, key_of
+from chatter.what_if.finished import key_of
 from chatter.what_if.subject import fingerprint
 
 _SPEEDS_A_BLOCK = 4
@@ -49,26 +50,16 @@ def radius_in_blocks(
     RunError
         If it is interrupted; finished blocks are in the folder.
     """
-    store = FinishedPoints(folder)
     blocks = [
         np.arange(first, min(first + _SPEEDS_A_BLOCK, len(speeds)))
         for first in range(0, len(speeds), _SPEEDS_A_BLOCK)
     ]
     base = key_of("grid", fingerprint(case), method, repr(depths.tolist()))
     keys = [key_of(base, repr(speeds[block].tolist())) for block in blocks]
-    missing = [place for place, key in enumerate(keys) if key not in store]
     radius_at = partial(_radius_of_speeds, case, depths, method)
-    done = len(keys) - len(missing)
-    try:
-        with computing_on(cluster) as computing:
-            wanted = [speeds[blocks[place]] for place in missing]
-            for place, found in computing.results(radius_at, wanted):
-                store.add(keys[missing[place]], found)
-                done += 1
-                progress(done, len(keys))
-    except KeyboardInterrupt:
-        raise store.interrupted(keys, "blocks of the grid") from None
-    return np.concatenate([np.array(store[key], dtype=np.float64) for key in keys], axis=1)
+    wanted = [speeds[block] for block in blocks]
+    found = kept_results(radius_at, wanted, keys, "blocks of the grid", cluster, folder, progress)
+    return np.concatenate([np.array(one, dtype=np.float64) for one in found], axis=1)
 
 
 @lru_cache(maxsize=2)

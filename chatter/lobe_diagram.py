@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from chatter.case import Case
 from chatter.cluster import Computing
+from chatter.forced_vibration import notes_on_steady_cut
 from chatter.grid_blocks import radius_in_blocks
 from chatter.methods import (
     GRIDS,
@@ -25,6 +26,7 @@ from chatter.model import MillingModel, milling_model
 from chatter.pockets import DEPTH_MARGIN, SPEED_MARGIN, Pocket, find_pockets
 from chatter.result_files import as_json, finite_or_none, write_results
 from chatter.search_range import axial_depths, deepest_depth, spindle_speeds
+from chatter.speed_groups import natural_frequencies
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.sweep import Progress, no_progress
 from chatter.stability.zero_order import ZeroOrderLimit
@@ -83,8 +85,8 @@ class LobeDiagram:
         Places worth using, highest removal rate first.
     operating : LimitCurve
         Limits at the speed of the case alone.
-    natural_frequencies : tuple of float
-        Of the modes, Hz; empty where no modes were needed.
+    natural_frequencies : (k, n) array of float
+        Of the k modes at every speed, Hz.
     grid : StabilityGrid or None
     notes : tuple of str
         Assumptions and limits of the result.
@@ -97,7 +99,7 @@ class LobeDiagram:
     deepest: float
     pockets: tuple[Pocket, ...]
     operating: LimitCurve
-    natural_frequencies: tuple[float, ...] = ()
+    natural_frequencies: NDArray[np.float64]
     grid: StabilityGrid | None = None
     notes: tuple[str, ...] = ()
 
@@ -265,9 +267,9 @@ def lobes(
         deepest=deepest,
         pockets=find_pockets(speeds, limits.critical_depth, deepest, removal_area(case)),
         operating=operating_limit(case, model, limits_of, deepest),
-        natural_frequencies=tuple(mode.frequency for mode in model.structure.modes),
+        natural_frequencies=natural_frequencies(model, speeds),
         grid=computed,
-        notes=model.notes,
+        notes=(*model.notes, *notes_on_steady_cut(model, name)),
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -108,8 +108,16 @@ class MeasuredSide:
         return frequency, total
 
 
-def measured_sides(case: Case) -> tuple[tuple[MeasuredSide, ...], tuple[str, ...]]:
-    """Read the FRFs of a case.
+def measured_sides(
+    case: Case, entries: Sequence[MeasuredFrf]
+) -> tuple[tuple[MeasuredSide, ...], tuple[str, ...]]:
+    """Read FRFs of a case.
+
+    Parameters
+    ----------
+    case : Case
+    entries : sequence of MeasuredFrf
+        Those of its files that count.
 
     Returns
     -------
@@ -127,7 +135,7 @@ def measured_sides(case: Case) -> tuple[tuple[MeasuredSide, ...], tuple[str, ...
     problems: list[str] = []
     found: dict[Side, list[Frf]] = {"tool": [], "workpiece": []}
     nodes: dict[Side, set[str]] = {"tool": set(), "workpiece": set()}
-    for entry in case.structure.frf:
+    for entry in entries:
         try:
             frfs = read_frfs(entry.file)
             found[entry.side] += _directed(entry, frfs, notes)

@@ -5,15 +5,19 @@ Adding a method is one function here and one entry in `METHODS`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
 from chatter.case import Case
 from chatter.errors import InputError
 from chatter.model import MillingModel
-from chatter.stability import collocation, multi_frequency, semi_discretization
+from chatter.speed_groups import (
+    LimitMethod,
+    limits_by_group,
+    radius_by_group,
+    zero_order_by_group,
+)
+from chatter.stability import collocation, matrix_free, multi_frequency, semi_discretization
 from chatter.stability.cut_arrays import CutArrays
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.multiplier import Multiplier
@@ -22,11 +26,8 @@ from chatter.stability.sweep import Progress
 from chatter.stability.zero_order import ZeroOrderLimit, zero_order_limit
 from chatter.stability.zero_order_delays import limits_of_delays
 
-LimitMethod = Callable[
-    [MillingModel, NDArray[np.float64], NDArray[np.float64], "int | None", Progress], LimitCurve
-]
 
-
+@limits_by_group
 def by_semi_discretization(
     model: MillingModel,
     speeds: NDArray[np.float64],
@@ -39,6 +40,7 @@ def by_semi_discretization(
 
 
 def _by_scheme(scheme: semi_discretization.Scheme) -> LimitMethod:
+    @limits_by_group
     def limits(
         model: MillingModel,
         speeds: NDArray[np.float64],
@@ -53,6 +55,7 @@ def _by_scheme(scheme: semi_discretization.Scheme) -> LimitMethod:
     return limits
 
 
+@limits_by_group
 def by_collocation(
     model: MillingModel,
     speeds: NDArray[np.float64],
@@ -70,6 +73,19 @@ def by_collocation(
     return collocation.converged_limit_curve(cut_at, speeds, depths, progress, tolerance)
 
 
+@limits_by_group
+def by_matrix_free(
+    model: MillingModel,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    steps: int | None,  # noqa: ARG001  (every method has the same signature)
+    progress: Progress,
+) -> LimitCurve:
+    """Limits from initial functions propagated in time, of any tool."""
+    return matrix_free.limit_curve(model.stepped_cut(float(depths[-1])), speeds, depths, progress)
+
+
+@limits_by_group
 def by_multi_frequency(
     model: MillingModel,
     speeds: NDArray[np.float64],
@@ -91,6 +107,7 @@ def by_multi_frequency(
     return multi_frequency.limit_curve(cut, response, speeds, depths, progress)
 
 
+@limits_by_group
 def by_zero_order(
     model: MillingModel,
     speeds: NDArray[np.float64],
@@ -115,6 +132,7 @@ def by_zero_order(
     )
 
 
+@limits_by_group
 def by_time(
     model: MillingModel,
     speeds: NDArray[np.float64],
@@ -135,6 +153,7 @@ METHODS: dict[str, LimitMethod] = {
     "semi-discretization-0": _by_scheme(ZerothOrder()),
     "semi-discretization-2": _by_scheme(SecondOrder()),
     "full-discretization": _by_scheme(FullDiscretization()),
+    "matrix-free": by_matrix_free,
     "multi-frequency": by_multi_frequency,
     "zero-order": by_zero_order,
     "time": by_time,
@@ -143,6 +162,7 @@ METHODS: dict[str, LimitMethod] = {
 AUTO = "auto"
 
 
+@radius_by_group
 def radius_by_semi_discretization(
     model: MillingModel,
     speeds: NDArray[np.float64],
@@ -154,6 +174,7 @@ def radius_by_semi_discretization(
     return np.abs(semi_discretization.multipliers(model.arrays, speeds, depths, steps, progress))
 
 
+@radius_by_group
 def radius_by_collocation(
     model: MillingModel,
     speeds: NDArray[np.float64],
@@ -166,6 +187,20 @@ def radius_by_collocation(
     return np.abs(collocation.multipliers(cut, speeds, depths, progress))
 
 
+@radius_by_group
+def radius_by_matrix_free(
+    model: MillingModel,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    steps: int | None,  # noqa: ARG001
+    progress: Progress,
+) -> NDArray[np.float64]:
+    """Spectral radius (n,) at n points from initial functions propagated in time."""
+    cut = model.stepped_cut(float(np.max(depths)))
+    return np.abs(matrix_free.multipliers(cut, speeds, depths, progress))
+
+
+@radius_by_group
 def radius_by_time(
     model: MillingModel,
     speeds: NDArray[np.float64],
@@ -181,16 +216,22 @@ def radius_by_time(
 
 
 #: methods that give the spectral radius on a grid; the others leave it to collocation
-GRIDS = {"time": radius_by_time, "semi-discretization": radius_by_semi_discretization}
+GRIDS = {
+    "time": radius_by_time,
+    "semi-discretization": radius_by_semi_discretization,
+    "matrix-free": radius_by_matrix_free,
+}
 
 
 def operating_multiplier(model: MillingModel, method: str, steps: int | None) -> Multiplier:
     """Dominant multiplier at the operating point of a case, with an estimate of its error.
 
-    By semi-discretization where that is the method, else by collocation.
+    By semi-discretization or the matrix-free method where that is the method, else by collocation.
     """
     cut = model.case.cut
     speed, depth = cut.spindle_speed, cut.axial_depth
+    if method == "matrix-free":
+        return matrix_free.converged_multiplier(model.stepped_cut(depth), speed, depth)
     if method != "semi-discretization":
         return collocation.converged_multiplier(
             lambda points, waves: model.cut(depth, points, waves), speed, depth
@@ -204,14 +245,16 @@ def operating_multiplier(model: MillingModel, method: str, steps: int | None) ->
     return Multiplier(complex(coarse), steps, float(abs(abs(coarse) - abs(fine)) * 4.0 / 3.0))
 
 
-def operating_frequency(model: MillingModel) -> float:
+def operating_frequency(model: MillingModel, method: str = "collocation") -> float:
     """Frequency (Hz) of the motion that grows fastest, or dies out slowest, as the case cuts."""
     cut = model.case.cut
-    return collocation.chatter_frequency(
-        model.cut(cut.axial_depth), cut.spindle_speed, cut.axial_depth
-    )
+    point = cut.spindle_speed, cut.axial_depth
+    if method == "matrix-free":
+        return matrix_free.chatter_frequency(model.stepped_cut(cut.axial_depth), *point)
+    return collocation.chatter_frequency(model.cut(cut.axial_depth), *point)
 
 
+@zero_order_by_group
 def zero_order_of(model: MillingModel, speeds: NDArray[np.float64]) -> ZeroOrderLimit:
     """Zeroth-order limits of a model at given speeds (rad/s).
 
@@ -234,7 +277,8 @@ def zero_order_of(model: MillingModel, speeds: NDArray[np.float64]) -> ZeroOrder
 def chosen_method(case: Case, method: str | None) -> tuple[str, LimitMethod]:
     """Name and function of the method: as asked for, else as the case says, else the best.
 
-    ``"auto"`` takes collocation, and semi-discretization where the case fixes its steps.
+    ``"auto"`` takes collocation, semi-discretization where the case fixes its steps, and the
+    matrix-free method where tool and work have a contact, which it alone of the linear ones holds.
 
     Raises
     ------
@@ -243,7 +287,8 @@ def chosen_method(case: Case, method: str | None) -> tuple[str, LimitMethod]:
     """
     name = method or (case.lobes.method if case.lobes else None) or AUTO
     if name == AUTO:
-        name = "collocation" if resolution(case) is None else "semi-discretization"
+        name = "collocation" if case.contact is None else "matrix-free"
+        name = name if resolution(case) is None else "semi-discretization"
     if name not in METHODS:
         known = ", ".join(f'"{key}"' for key in (AUTO, *METHODS))
         raise InputError(f'method "{name}" is not known; there are {known}')

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -16,9 +16,11 @@ from chatter.simulation.cutter import cutter_of, force_law, helix_angles, plough
 from chatter.simulation.setup import refuse_teeth_off_the_tool
 from chatter.stability.arrays import MillingArrays
 from chatter.stability.cut_arrays import RESOLUTION, CutArrays, cut_arrays
+from chatter.stability.matrix_free import stepped_cut
+from chatter.stability.matrix_free_steps import SteppedCut
 from chatter.stability.mean_couplings import mean_couplings
 from chatter.stability.spindle_turn import SpeedVariation
-from chatter.structure import Structure, structure_of
+from chatter.structure import Structure, depends_on_speed, structure_at, structure_of
 from cutting.directional import DirectionalTable, directional_table, mean_over_turn
 from cutting.edge_pieces import (
     crossing_heights,
@@ -67,6 +69,33 @@ class MillingModel:
     def teeth(self) -> int:
         """Number of teeth."""
         return self.cutter.teeth
+
+    @property
+    def depends_on_speed(self) -> bool:
+        """True where the structure is another one at another spindle speed."""
+        return depends_on_speed(self.case)
+
+    def at_speed(self, spindle_speed: float) -> MillingModel:
+        """Return the model with the structure of a spindle speed (rad/s).
+
+        Raises
+        ------
+        InputError
+            If the structure moves in other directions there.
+        """
+        structure = structure_at(self.case, spindle_speed)
+        basis = _motion_basis(structure.directions)
+        if basis.shape != self.basis.shape or not np.allclose(basis, self.basis, atol=1e-9):
+            raise InputError(
+                f"{self.case.name}: structure: at {spindle_speed * 30.0 / math.pi:.0f} rpm the "
+                "tool point moves in other directions than at the speed of the cut; the same are "
+                "wanted at all speeds"
+            )
+        own = replace(self, structure=structure)
+        # what the structure has no part in is computed once
+        shared = ("table", "mean_couplings")
+        own.__dict__.update({key: self.__dict__[key] for key in shared if key in self.__dict__})
+        return own
 
     @property
     def lag_per_depth(self) -> float:
@@ -173,6 +202,13 @@ class MillingModel:
         period = period_angle(self.cutter)
         return cut_arrays(self._modes, self.basis, pieces, period, variation, points, waves)
 
+    def stepped_cut(self, deepest: float) -> SteppedCut:
+        """What the matrix-free method sees of it, down to a depth (m), with the contact."""
+        contact = self.case.contact
+        if contact is None:
+            return stepped_cut(self.cut(deepest))
+        return stepped_cut(self.cut(deepest), (contact.stiffness, contact.damping, contact.full_at))
+
     @cached_property
     def receptance(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
         """Lines (m,) in Hz and relative receptance (m, r, r) in the directions of motion, m/N.
@@ -180,7 +216,7 @@ class MillingModel:
         As measured, with no fit, where the case names FRFs; else that of the modes.
         """
         lines, full = self.structure.receptance()
-        return lines, np.einsum("ai,nab,bj->nij", self.basis, full, self.basis)
+        return lines, np.ascontiguousarray(self.basis.T @ full @ self.basis)
 
 
 def viscous(flank: ViscousProcessDamping | Ploughing | None) -> ViscousProcessDamping | None:
@@ -218,7 +254,9 @@ def milling_model(case: Case, structure: Structure | None = None) -> MillingMode
             "ploughing is taken for small vibration, as a dashpot; chatter simulate has it in full"
         )
     if case.contact is not None:
-        notes.append("the contact of tool and work acts in the time domain alone")
+        notes.append(
+            "the contact of tool and work is part of the matrix-free and time methods alone"
+        )
     if case.structure is not None and any(mode.friction for mode in case.structure.mode):
         notes.append("the friction of modes acts in the time domain alone")
     model = MillingModel(

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from chatter.case import Case
+from chatter.forced_vibration import notes_on_steady_cut
 from chatter.methods import (
     chosen_method,
     operating_frequency,
@@ -115,7 +116,8 @@ def check(case: Case, method: str | None = None) -> StabilityCheck:
     case : Case
     method : str, optional
         Gives the limit depth: one of `chatter.methods.METHODS`, or "auto". The spectral radius is
-        that of semi-discretization where that is the method, else of collocation.
+        that of semi-discretization or the matrix-free method where that is the method, else of
+        collocation.
 
     Returns
     -------
@@ -131,7 +133,7 @@ def check(case: Case, method: str | None = None) -> StabilityCheck:
     point = operating_multiplier(model, name, resolution(case))
     heard = np.nan
     if abs(point.value) >= 1.0:
-        heard = operating_frequency(model)
+        heard = operating_frequency(model, name)
     speeds = np.array([case.cut.spindle_speed])
     zero_order = zero_order_of(model, speeds)
     depths = depths_at_one_speed(case, zero_order)
@@ -143,5 +145,5 @@ def check(case: Case, method: str | None = None) -> StabilityCheck:
         limit=limits_of(model, speeds, depths, resolution(case), no_progress),
         searched_to=float(depths[-1]),
         zero_order_depth=float(zero_order.critical_depth[0]),
-        notes=model.notes,
+        notes=(*model.notes, *notes_on_steady_cut(model, name)),
     )

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 #: chatter is looked for up to this multiple of the highest mode
 _HIGHEST_CHATTER = 4.0
+_RPM = 30.0 / np.pi
 
 
 @dataclass(frozen=True)
@@ -111,28 +112,75 @@ def _on_lines(
     return np.stack(columns, axis=1).reshape(lines.size, 3, 3)
 
 
-def _given_modes(case: Case) -> GivenModes:
-    speed = case.cut.spindle_speed if case.cut is not None else 0.0
+def depends_on_speed(case: Case) -> bool:
+    """Tell whether the modes or FRFs of a case are others at another spindle speed."""
+    section = case.structure
+    return section is not None and (
+        any(mode.depends_on_speed for mode in section.mode) or bool(_measured_speeds(case))
+    )
+
+
+def standing_speeds(case: Case, speeds: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Spindle speed whose structure stands for each speed (rad/s): alike means the same structure.
+
+    Of measured FRFs those of the nearest speed stand for all around it; modes change with every
+    speed; else it is the speed of the case.
+    """
+    speeds = np.asarray(speeds, dtype=np.float64)
+    if not depends_on_speed(case):
+        return np.full(speeds.shape, case.cut.spindle_speed)
+    measured = np.array(_measured_speeds(case))
+    if not measured.size:
+        return speeds
+    return measured[np.argmin(np.abs(speeds[..., None] - measured), axis=-1)]
+
+
+def _measured_speeds(case: Case) -> list[float]:
+    """Speeds (rad/s) at which FRFs were measured, ascending; none where they are not told."""
+    told = {frf.spindle_speed for frf in case.structure.frf if frf.spindle_speed is not None}
+    return sorted(told)
+
+
+def _given_modes(case: Case, speed: float) -> GivenModes:
     modes = []
     for place, mode in enumerate(case.structure.mode):
         frequency = mode.frequency_at(speed)
         if not frequency > 0.0:
             raise InputError(
                 f"{case.name}: structure.mode[{place}].frequency_slope: {mode.frequency_slope:g} "
-                f"s/rad leaves no frequency at {speed * 30.0 / np.pi:.0f} rpm"
+                f"s/rad leaves no frequency at {speed * _RPM:.0f} rpm"
             )
-        modes.append(Mode(frequency, mode.damping, mode.modal_mass, mode.direction, mode.side))
-    notes = ()
-    if any(mode.frequency_slope for mode in case.structure.mode):
-        notes = (f"natural frequencies as at {speed * 30.0 / np.pi:.0f} rpm",)
-    return GivenModes(tuple(modes), notes)
+        damping, mass = mode.damping_at(speed), mode.mass_at(speed)
+        modes.append(Mode(frequency, damping, mass, mode.direction, mode.side))
+    return GivenModes(tuple(modes), _notes_on_speed(case))
+
+
+def _notes_on_speed(case: Case) -> tuple[str, ...]:
+    if not depends_on_speed(case):
+        return ()
+    notes = ["the structure depends on the spindle speed, and is taken as it is at each speed"]
+    for place, mode in enumerate(case.structure.mode):
+        if mode.speed_dependence is not None:
+            first, *_, last = mode.speed_dependence.speeds
+            notes.append(
+                f"structure.mode[{place}].speed_dependence goes from {first * _RPM:.0f} to "
+                f"{last * _RPM:.0f} rpm; beyond, the mode is held as at the end"
+            )
+    measured = _measured_speeds(case)
+    if measured:
+        listed = ", ".join(f"{speed * _RPM:.0f}" for speed in measured)
+        notes.append(
+            f"FRFs were measured at {listed} rpm; those of the nearest of these speeds stand for "
+            "all around it"
+        )
+    return tuple(notes)
 
 
 Structure = GivenModes | MeasuredStructure
 
 
 def structure_of(case: Case) -> Structure:
-    """Return the structure that a case describes.
+    """Return the structure that a case describes, at its spindle speed.
 
     Raises
     ------
@@ -140,11 +188,28 @@ def structure_of(case: Case) -> Structure:
         If the FRF files cannot be read or do not say what is needed, or the machine cannot make
         the cut.
     """
+    return structure_at(case, case.cut.spindle_speed if case.cut is not None else 0.0)
+
+
+def structure_at(case: Case, spindle_speed: float) -> Structure:
+    """Return the structure that a case describes, at any spindle speed (rad/s).
+
+    A machine is taken at the speed of the case.
+
+    Raises
+    ------
+    InputError
+        As `structure_of`.
+    """
     section = case.structure
     if section.mode:
-        return _given_modes(case)
+        return _given_modes(case, spindle_speed)
     if section.frf:
-        return MeasuredStructure(*measured_sides(case))
+        told = _measured_speeds(case)
+        nearest = min(told, key=lambda speed: abs(speed - spindle_speed)) if told else None
+        chosen = tuple(frf for frf in section.frf if frf.spindle_speed in (None, nearest))
+        sides, notes = measured_sides(case, chosen)
+        return MeasuredStructure(sides, (*notes, *_notes_on_speed(case)))
     from chatter.coupled.linearised import machine_structure
 
     return machine_structure(case)

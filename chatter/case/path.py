@@ -88,9 +88,12 @@ def info_at(model: type[BaseModel], steps: tuple[Step, ...]) -> FieldInfo | None
 def field_at(model: type[BaseModel], steps: tuple[Step, ...]) -> QuantityField | None:
     """Quantity field that a path leads to, or into where it is a list; None for other fields."""
     info = info_at(model, steps)
-    if info is None:
-        return None
-    return next(iter(_quantity_fields([*info.metadata, info.annotation])), None)
+    if info is not None:
+        return next(iter(_quantity_fields([*info.metadata, info.annotation])), None)
+    # quantities by name, such as the positions of axes
+    named = info_at(model, steps[:-1]) if steps and isinstance(steps[-1], str) else None
+    entries = [] if named is None else _entries_by_name(named.annotation)
+    return next(iter(_quantity_fields(entries)), None)
 
 
 def key_of(section: type[BaseModel], key: str) -> str | None:
@@ -116,6 +119,12 @@ def _sections(annotation: Any) -> list[type[BaseModel]]:
 def is_mapping(annotation: Any) -> bool:
     """Whether an annotation is that of tables by name."""
     return get_origin(annotation) is dict
+
+
+def _entries_by_name(annotation: Any) -> list[Any]:
+    """What the entries of a table by name are, where an annotation is that of one."""
+    parts = get_args(annotation) if get_origin(annotation) in (Union, UnionType) else (annotation,)
+    return [get_args(part)[1] for part in parts if is_mapping(part)]
 
 
 def _quantity_fields(parts: list[Any]) -> list[QuantityField]:

@@ -204,6 +204,37 @@ def quantities(count: int, dimension: str, **bounds: float) -> Any:
     return Annotated[tuple[(float,) * count], BeforeValidator(read), WithJsonSchema(schema), field]
 
 
+def quantity_list(dimension: str, fewest: int, most: int, **bounds: float) -> Any:
+    """Return the field type of a list of any number of quantities of one dimension.
+
+    Parameters
+    ----------
+    dimension : str
+    fewest, most : int
+        Entries that there may be.
+    **bounds : float
+        As for `quantity`.
+    """
+    field = QuantityField(dimension, **bounds)
+
+    def read(given: Any) -> tuple[float, ...]:
+        if not isinstance(given, (list, tuple)) or not fewest <= len(given) <= most:
+            raise ValueError(
+                f"{shown(given)} is given; a list of {fewest} to {most} quantities is wanted, "
+                f"such as [{field.example}, ...]"
+            )
+        return tuple(field.read(part) for part in given)
+
+    schema = {
+        "type": "array",
+        "items": {"anyOf": field.json_schema()["anyOf"]},
+        "minItems": fewest,
+        "maxItems": most,
+        "description": f"quantities, each {field.noun}",
+    }
+    return Annotated[tuple[float, ...], BeforeValidator(read), WithJsonSchema(schema), field]
+
+
 #: no cutter is larger, so that a number meant in mm is not taken for one in m
 _LARGEST_LENGTH = 2.0
 

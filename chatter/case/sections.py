@@ -276,6 +276,7 @@ class Lobes(Section):
             "semi-discretization-0",
             "semi-discretization-2",
             "full-discretization",
+            "matrix-free",
             "multi-frequency",
             "zero-order",
             "time",

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import re
+from bisect import bisect
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -18,11 +20,12 @@ from pydantic import (
 )
 
 from chatter.case.base import Section, raise_if_any
-from chatter.case.quantities import quantity
+from chatter.case.quantities import quantity, quantity_list
 from chatter.shown import shown
 
 #: a direction may miss unit length by this much before it is refused rather than normalised
 _UNIT_TOLERANCE = 0.01
+_INERTIA = ("mass", "stiffness")
 _DIRECTION = re.compile("[xyz]{1,2}")
 
 
@@ -48,6 +51,55 @@ UnitVector = Annotated[
 ]
 
 
+#: entries of a table over the spindle speed
+_FEWEST_SPEEDS, _MOST_SPEEDS = 2, 1000
+
+
+class SpeedDependence(Section):
+    """A mode at several spindle speeds: linear between them, held at the ends beyond."""
+
+    speeds: quantity_list("angular_speed", _FEWEST_SPEEDS, _MOST_SPEEDS, at_least=0.0) = Field(
+        description="spindle speeds, ascending"
+    )
+    frequency: quantity_list("frequency", _FEWEST_SPEEDS, _MOST_SPEEDS, above=0.0) | None = None
+    damping: quantity_list("number", _FEWEST_SPEEDS, _MOST_SPEEDS, above=0.0, below=1.0) | None = (
+        None
+    )
+    mass: quantity_list("mass", _FEWEST_SPEEDS, _MOST_SPEEDS, above=0.0) | None = None
+    stiffness: quantity_list("stiffness", _FEWEST_SPEEDS, _MOST_SPEEDS, above=0.0) | None = None
+
+    @model_validator(mode="after")
+    def _check_table(self) -> SpeedDependence:
+        count = len(self.speeds)
+        columns = {key: getattr(self, key) for key in ("frequency", "damping", *_INERTIA)}
+        given = {key: column for key, column in columns.items() if column is not None}
+        problems = [
+            (key, f"has {len(column)} values for {count} speeds; one for each is wanted")
+            for key, column in given.items()
+            if len(column) != count
+        ]
+        if any(high <= low for low, high in pairwise(self.speeds)):
+            problems.append(("speeds", "must ascend, each above the one before"))
+        if self.mass is not None and self.stiffness is not None:
+            problems.append(("", "give mass or stiffness, not both"))
+        if not given:
+            problems.append(("", "says nothing; give frequency, damping, mass or stiffness"))
+        raise_if_any(problems)
+        return self
+
+    def at(self, key: str, spindle_speed: float) -> float | None:
+        """Value of a quantity at a spindle speed, rad/s; None where the table lacks it."""
+        column = getattr(self, key)
+        if column is None:
+            return None
+        place = bisect(self.speeds, spindle_speed)
+        if place in (0, len(column)):
+            return column[min(place, len(column) - 1)]
+        low, high = self.speeds[place - 1], self.speeds[place]
+        share = (spindle_speed - low) / (high - low)
+        return column[place - 1] + share * (column[place] - column[place - 1])
+
+
 class ModeSection(Section):
     """One real mode at the tool point."""
 
@@ -62,6 +114,9 @@ class ModeSection(Section):
     frequency_slope: quantity("inverse_angular_speed") = Field(
         0.0, description="relative change of the frequency with the spindle speed"
     )
+    speed_dependence: SpeedDependence | None = Field(
+        None, description="what the mode is at several spindle speeds"
+    )
     direction: UnitVector = Field(
         description="unit vector: x feed, y normal, z tool axis", examples=[[1, 0, 0]]
     )
@@ -74,12 +129,45 @@ class ModeSection(Section):
     def _check_inertia(self) -> ModeSection:
         given = (self.mass is not None) + (self.stiffness is not None)
         text = {0: "either mass or stiffness is needed", 2: "give mass or stiffness, not both"}
-        raise_if_any([("", text[given])] if given != 1 else [])
+        problems = [("", text[given])] if given != 1 else []
+        table = self.speed_dependence
+        if self.frequency_slope and table is not None and table.frequency is not None:
+            problems.append(
+                ("frequency_slope", "and speed_dependence.frequency both say how it changes")
+            )
+        raise_if_any(problems)
         return self
+
+    @property
+    def depends_on_speed(self) -> bool:
+        """True where the mode is another one at another spindle speed."""
+        return bool(self.frequency_slope) or self.speed_dependence is not None
 
     def frequency_at(self, spindle_speed: float) -> float:
         """Natural frequency, Hz, at a spindle speed, rad/s; not above 0 where the slope ends."""
+        table = self.speed_dependence
+        if table is not None and table.frequency is not None:
+            return table.at("frequency", spindle_speed)
         return self.frequency * (1.0 + self.frequency_slope * spindle_speed)
+
+    def damping_at(self, spindle_speed: float) -> float:
+        """Damping ratio at a spindle speed, rad/s."""
+        table = self.speed_dependence
+        listed = None if table is None else table.at("damping", spindle_speed)
+        return self.damping if listed is None else listed
+
+    def mass_at(self, spindle_speed: float) -> float:
+        """Modal mass, kg, at a spindle speed, rad/s: of the table, else as at rest.
+
+        A stiffness of the table goes with the frequency at that speed.
+        """
+        table = self.speed_dependence
+        if table is not None and table.mass is not None:
+            return table.at("mass", spindle_speed)
+        if table is not None and table.stiffness is not None:
+            omega = 2.0 * math.pi * self.frequency_at(spindle_speed)
+            return table.at("stiffness", spindle_speed) / omega**2
+        return self.modal_mass
 
     @property
     def modal_mass(self) -> float:
@@ -115,6 +203,9 @@ class MeasuredFrf(Section):
         None,
         description="node of the tool point, where there are several",
         json_schema_extra={"type": ["string", "integer"]},
+    )
+    spindle_speed: quantity("angular_speed", at_least=0.0) | None = Field(
+        None, description="at which it was measured; it holds at all of them by default"
     )
 
     @field_validator("direction")

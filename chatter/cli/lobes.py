@@ -69,11 +69,9 @@ def lobes(
     """Compute the stability lobe diagram of a case."""
     description = patched_case(case, assignments)
     if x or y:
-        if live or grid or cluster or port or no_browser:
-            raise InputError(
-                "--x and --y draw a diagram of their own; leave --live, --grid, --cluster out"
-            )
-        _over_paths(description, x, y, method, output_folder(out, case.stem), json)
+        if live or grid or port or no_browser:
+            raise InputError("--x and --y draw a diagram of their own; leave --live, --grid out")
+        _over_paths(description, x, y, method, cluster, output_folder(out, case.stem), json)
         return
     if live and (grid or json or out or cluster):
         raise InputError("--live shows a page and writes no files; leave --grid, --json, --out out")
@@ -83,7 +81,9 @@ def lobes(
         _serve(description, method, port, no_browser)
         return
     if cluster is not None and not grid:
-        raise InputError("--cluster computes the grid of a diagram; give --grid with it")
+        raise InputError(
+            "--cluster computes the grid of a diagram, or one over --x and --y; give one of them"
+        )
     from chatter.lobe_diagram import lobes as run_lobes
 
     announce_compilation()
@@ -101,14 +101,20 @@ def lobes(
 
 
 def _over_paths(
-    case: Case, x: str | None, y: str | None, method: str | None, folder: Path, json: bool
+    case: Case,
+    x: str | None,
+    y: str | None,
+    method: str | None,
+    cluster: str | None,
+    folder: Path,
+    json: bool,
 ) -> None:
     """Compute, write and tell a diagram over other paths than the spindle speed."""
     from chatter.path_diagram import lobes_over
 
     announce_compilation()
     with progress_bar("stability") as progress:
-        diagram = lobes_over(case, x, y, method, progress)
+        diagram = lobes_over(case, x, y, method, progress, cluster, folder)
     written = diagram.save(folder)
     if json:
         print_json(diagram.summary())

@@ -39,7 +39,7 @@ Method = Annotated[
     typer.Option(
         "--method",
         help="auto (default), collocation, semi-discretization (also -0 and -2), "
-        "full-discretization, multi-frequency, zero-order or time.",
+        "full-discretization, matrix-free, multi-frequency, zero-order or time.",
     ),
 ]
 

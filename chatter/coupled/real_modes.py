@@ -23,8 +23,8 @@ _LEFT, _FLOOR = 2e-3, 0.3
 _MOST_FURTHER = 6
 _EVEN_LINES = 150
 _FIRST_DAMPING = 0.05
-#: damping ratios, least and largest
-_DAMPINGS = 1e-4, 3.0
+#: damping ratios, least and largest; the methods take modes that vibrate
+_DAMPINGS = 1e-4, 0.95
 #: modes that stand for all above the band lie at this multiple of its end
 _ABOVE = 2.5
 #: improvement of the sum of squares by a further mode below which it was the last

@@ -17,6 +17,7 @@ from chatter.explain.milling import structural_paths
 from chatter.explain.tolerance import tolerated
 from chatter.model import milling_model
 from chatter.stability.collocation import multipliers
+from chatter.structure import depends_on_speed
 
 #: scatter of a limit depth from test to test, as a share, and tests judged wrongly for no reason
 _SCATTER, _WRONG = 0.06, 0.02
@@ -115,10 +116,7 @@ def stability_margins(
     the depth.
     """
     growth, slope = np.empty(speeds.size), np.empty(speeds.size)
-    shifting = case.structure is not None and any(
-        mode.frequency_slope for mode in case.structure.mode
-    )
-    groups = np.unique(speeds) if shifting else [None]
+    groups = np.unique(speeds) if depends_on_speed(case) else [None]
     for speed in groups:
         chosen = slice(None) if speed is None else speeds == speed
         own = case if speed is None else case.patch({"cut.spindle_speed": float(speed)})

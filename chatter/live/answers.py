@@ -108,7 +108,7 @@ class LiveCase:
         steps = resolution(case)
         speeds = np.linspace(*span, speed_count)
         depths = np.linspace(0.0, deepest, depth_count + 1)[1:]
-        follows = stage == "coarse" and self.method == "collocation"
+        follows = stage == "coarse" and self.method == "collocation" and not model.depends_on_speed
         limits_of = followed_limits if follows else self._limits_of
         curve = limits_of(model, speeds, depths, steps, progress)
         cut = case.cut

@@ -89,6 +89,7 @@ _METHOD_LABEL = {
     "semi-discretization-0": "limit, semi-discretization of order 0",
     "semi-discretization-2": "limit, semi-discretization of order 2",
     "full-discretization": "limit, full discretization",
+    "matrix-free": "limit, matrix-free",
     "multi-frequency": "limit, multi-frequency",
     "zero-order": "limit, zeroth-order",
     "time": "limit, time domain",
@@ -184,9 +185,11 @@ def draw_chatter_frequency(axes: Axes, diagram: LobeDiagram) -> None:
         axes.plot(speed[flip], heard[flip], ".", markersize=3, color=style.RED, label="flip")
     low, high = _frequency_range(heard)
     for number, natural in enumerate(diagram.natural_frequencies):
-        if low <= natural <= high:
-            axes.axhline(
-                natural,
+        shown = np.where((natural >= low) & (natural <= high), natural, np.nan)
+        if np.isfinite(shown).any():
+            axes.plot(
+                speed,
+                shown,
                 color=style.GREY,
                 linewidth=0.8,
                 linestyle=":",

@@ -131,7 +131,7 @@ def test_the_good_case_is_good():
         # choices
         ('"end mill"', '"endmill"', 'tool.kind: "endmill" is not allowed; allowed are "end mill", "ball", "bull nose", "taper" or "inserted"'),
         ('mode = "up"', 'mode = "climb"', 'cut.mode: "climb" is not allowed; allowed are "up", "down" or "slot"'),
-        ("[lobes]", '[lobes]\nmethod = "magic"', 'lobes.method: "magic" is not allowed; allowed are "auto", "collocation", "semi-discretization", "semi-discretization-0", "semi-discretization-2", "full-discretization", "multi-frequency", "zero-order" or "time"'),
+        ("[lobes]", '[lobes]\nmethod = "magic"', 'lobes.method: "magic" is not allowed; allowed are "auto", "collocation", "semi-discretization", "semi-discretization-0", "semi-discretization-2", "full-discretization", "matrix-free", "multi-frequency", "zero-order" or "time"'),
         # types
         ('title = "good"', "title = 3", "title: 3 is given, text in quotes is wanted"),
         ('{ to = "5 mm", count = 20 }', '"5 mm"', 'lobes.depths: "5 mm" is given, a table is wanted'),

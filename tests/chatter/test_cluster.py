@@ -26,6 +26,9 @@ from chatter.what_if.finished import FILE
 distributed = pytest.importorskip("distributed")
 cloudpickle = pytest.importorskip("cloudpickle")
 
+sys.path.insert(0, str(Path(__file__).parent / "coupled"))
+from coupled_machines import body, cut_case, linear_axis, spindle, spring, written as saved  # noqa: E402, I001
+
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 CASE = EXAMPLES / "two-degrees-of-freedom" / "case.toml"
 cloudpickle.register_pickle_by_value(sys.modules[__name__])
@@ -85,7 +88,83 @@ def run_uncertainty(folder, cluster=None):
     return written(found, folder)
 
 
-STUDIES = {"grid": run_grid, "whatif": run_whatif, "uncertainty": run_uncertainty}
+def column_machine(folder):
+    """Head that climbs a column on a soft foot: the higher it stands, the softer the tool."""
+    machine = {
+        "tool_point": "tip",
+        "workpiece": "work",
+        "damping_ratio": 0.03,
+        "body": {
+            "bed": body(1e5),
+            "column": body(300.0, (0.0, 0.0, 0.5), (30.0, 30.0, 30.0)),
+            "head": body(80.0, (0.0, 0.0, 0.4), (2.0, 2.0, 2.0)),
+        },
+        "connector": {
+            "anchors": spring("bed", "ground"),
+            "foot": spring("column", "bed", rx=6e6, ry=5e6),
+            "guide": spring("head", "column", at=(0.0, 0.0, 0.4), z=0.0),
+        },
+        "point": {
+            "tip": {"on": "head", "at": [0.0, 0.0, 0.4]},
+            "work": {"on": "bed", "at": [0.0, 0.0, 0.4]},
+        },
+        "axis": {
+            "Z": linear_axis((0, 0, 1), "head", "column", ["head"]),
+            "S": spindle("head", inertia=0.02),
+        },
+    }
+    path = saved(folder, machine)
+    cut = {"spindle_speed": "400 rpm", "axial_depth": "1 mm"}
+    lobes = {"speeds": {"from": "300 rpm", "to": "500 rpm", "count": 8}, "depths": {"to": "60 mm"}}
+    case = cut_case({"machine": str(path)}, cut=cut)
+    return case.patch({"lobes": {"method": "zero-order", **lobes}})
+
+
+@pytest.fixture(scope="module", autouse=True)
+def column(tmp_path_factory):
+    """The case on the column machine, its file where workers find it, too."""
+    COLUMN["case"] = column_machine(tmp_path_factory.mktemp("column"))
+
+
+COLUMN = {}
+POSITION = "machine.axis.Z.position"
+
+
+def run_workspace(folder, cluster=None):
+    vary = {POSITION: ["0 mm", "120 mm", "250 mm"], "cut.radial_depth": ["5 mm", "6 mm"]}
+    case = COLUMN["case"]
+    found = chatter.whatif(
+        case, vary, "lobes", quantity="critical_depth_mm", folder=folder, cluster=cluster
+    )
+    return written(found, folder)
+
+
+def run_path(folder, cluster=None):
+    found = chatter.lobes_over(
+        COLUMN["case"], f"{POSITION}=50 mm..250 mm:6", cluster=cluster, folder=folder
+    )
+    return written(found, folder)
+
+
+def run_map(folder, cluster=None):
+    found = chatter.lobes_over(
+        small_case(),
+        "cut.spindle_speed=15000 rpm..20000 rpm:5",
+        "cut.radial_depth=0.5 mm..2 mm:4",
+        cluster=cluster,
+        folder=folder,
+    )
+    return {**written(found, folder), "radius": found.spectral_radius.tobytes()}
+
+
+STUDIES = {
+    "grid": run_grid,
+    "whatif": run_whatif,
+    "uncertainty": run_uncertainty,
+    "workspace": run_workspace,
+    "path": run_path,
+    "map": run_map,
+}
 
 
 def without_grid_archive(files):
@@ -138,6 +217,52 @@ def test_a_lost_worker_costs_its_own_tasks_alone(client, tmp_path):
     assert 0 <= repeated <= 9
     assert str(killed) in {pid for _, pid, _ in computed}
     client.wait_for_workers(2, timeout=60)
+
+
+class LosingAWorker(OnDask):
+    """Kills a worker process when some results have come."""
+
+    killed = None
+
+    def results(self, function, items):
+        for count, found in enumerate(super().results(function, items)):
+            if count == 2:
+                self.killed = pids_of(self._client)[0]
+                os.kill(self.killed, signal.SIGKILL)
+            yield found
+
+
+@pytest.mark.parametrize("name", ["workspace", "path"])
+def test_a_study_of_the_workspace_bears_the_loss_of_a_worker(name, client, here, tmp_path):
+    computing = LosingAWorker(client, 1e-9)
+    assert STUDIES[name](tmp_path, computing) == here[name]
+    assert computing.killed is not None
+    keys = [json.loads(line)["key"] for line in (tmp_path / FILE).read_text().splitlines()]
+    assert len(keys) == len(set(keys)) == 6
+    client.wait_for_workers(2, timeout=60)
+    assert computing.killed not in pids_of(client)
+
+
+def test_a_study_of_the_workspace_goes_on_where_it_was(client, here, tmp_path):
+    class Interrupted(OnDask):
+        def results(self, function, items):
+            for count, found in enumerate(super().results(function, items)):
+                if count == 3:
+                    raise KeyboardInterrupt
+                yield found
+
+    with pytest.raises(RunError, match="interrupted: 3 of 6 values"):
+        run_path(tmp_path, Interrupted(client, 1e-9))
+    assert len((tmp_path / FILE).read_text(encoding="utf-8").splitlines()) == 3
+    assert run_path(tmp_path, OnDask(client)) == here["path"]
+    assert len((tmp_path / FILE).read_text(encoding="utf-8").splitlines()) == 6
+
+
+def test_the_workspace_makes_a_difference(here):
+    rows = here["path"]["lobes.csv"].decode().splitlines()[1:]
+    depths = [float(row.split(",")[1]) for row in rows]
+    assert depths == sorted(depths, reverse=True)
+    assert depths[-1] < 0.7 * depths[0]
 
 
 def test_interruption_keeps_what_is_finished(client, here, tmp_path):

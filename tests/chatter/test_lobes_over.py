@@ -265,7 +265,7 @@ def test_files_of_the_command(tmp_path):
         (["--x", "machine.body[0].mass=1 kg..2 kg"], "no machine"),
         (["--x", "cut.radial_depth=1 mm..2 mm", "--grid"], "--grid"),
         (["--x", "cut.radial_depth=1 mm..2 mm", "--live"], "--live"),
-        (["--y", "cut.radial_depth=1 mm..2 mm", "--cluster", "local"], "--cluster"),
+        (["--y", "cut.radial_depth=1 mm..2 mm", "--cluster", "nowhere"], "--cluster"),
     ],
 )
 def test_refusals(tmp_path, options, told):

@@ -1,0 +1,259 @@
+"""The matrix-free method against exact values, the independent reference and collocation."""
+
+import math
+
+import numpy as np
+import pytest
+from reference.general_cases import case_dict, load
+
+from chatter.case import Case
+from chatter.errors import RunError
+from chatter.methods import (
+    GRIDS,
+    METHODS,
+    chosen_method,
+    operating_frequency,
+    operating_multiplier,
+)
+from chatter.model import milling_model
+from chatter.simulation.limits import growths
+from chatter.stability import collocation, matrix_free, sweep
+from chatter.stability.matrix_free_steps import PLACES, mode_answer
+from chatter.stability.sweep import no_progress
+from cutting.edge_pieces import period_angle
+
+RPM = math.pi / 30.0
+CASES = load()
+
+
+def model_of(tool, cut, modes=None, **sections):
+    modes = modes or [
+        {"frequency": 922.0, "damping": 0.011, "mass": 0.03993, "direction": [1, 0, 0]}
+    ]
+    return milling_model(
+        Case.from_dict(
+            {
+                "tool": {"teeth": 2, "diameter": 16e-3, **tool},
+                "material": {"Ktc": 6e8, "Krc": 2e8},
+                "cut": {
+                    "mode": "down", "spindle_speed": 1000.0, "feed_per_tooth": 1e-4,
+                    "axial_depth": 1e-3, "radial_depth": 1.6e-3, **cut,
+                },
+                "structure": {"mode": modes},
+                **sections,
+            }
+        )
+    )  # fmt: skip
+
+
+TWO_MODES = [
+    {"frequency": 922.0, "damping": 0.011, "mass": 0.03993, "direction": [1, 0, 0]},
+    {"frequency": 750.0, "damping": 0.02, "mass": 0.05, "direction": [0, 1, 0]},
+]
+TOOLS = {
+    "uniform": model_of({}, {}),
+    "variable pitch": model_of(
+        {"teeth": 4, "pitch": [math.radians(a) for a in (84, 96, 87, 93)]}, {}, TWO_MODES
+    ),
+    "variable helix": model_of(
+        {"helix": [math.radians(30.0), math.radians(38.0)]}, {}, TWO_MODES
+    ),
+    "ball": model_of(
+        {"kind": "ball", "helix": math.radians(20.0)}, {"mode": "slot", "radial_depth": 16e-3},
+        TWO_MODES,
+    ),
+    "runout": model_of(
+        {"teeth": 3, "helix": math.radians(30.0), "runout": {"offset": 2e-5, "angle": 0.4}}, {},
+        TWO_MODES,
+    ),
+    "process damping": model_of(
+        {}, {"mode": "slot", "radial_depth": 16e-3}, TWO_MODES,
+        process_damping={"coefficient": 2e4, "friction": 0.3},
+    ),
+    "varying speed": model_of(
+        {}, {"speed_variation": {"amplitude": 0.1, "frequency": 40.0}}, TWO_MODES
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", TOOLS)
+def test_radius_of_every_tool_is_that_of_collocation(name):
+    model = TOOLS[name]
+    rpm, depth = (part.ravel() for part in np.meshgrid([6100.0, 9700.0], [0.4e-3, 2e-3, 4e-3]))
+    found = np.abs(matrix_free.multipliers(model.stepped_cut(4e-3), rpm * RPM, depth))
+    exact = np.abs(collocation.multipliers(model.cut(4e-3, 12, 0.6), rpm * RPM, depth))
+    assert found == pytest.approx(exact, rel=1e-4, abs=1e-5)
+
+
+def test_radius_of_random_cases_of_any_tool():
+    errors = []
+    # one in two: all sixty are within 3e-5
+    for cut, expected in CASES[::2]:
+        model = milling_model(Case.from_dict(case_dict(cut)))
+        point = np.array([cut.speed]), np.array([cut.depth])
+        radius = abs(matrix_free.multipliers(model.stepped_cut(cut.depth), *point)[0])
+        # the reference counts from turn to turn
+        repeats = 1 if cut.variation else round(2.0 * math.pi / period_angle(model.cutter))
+        errors.append(abs(radius**repeats - expected) / max(1.0, expected))
+    assert max(errors) < 1e-4
+
+
+@pytest.mark.parametrize(
+    ("mode", "rpm", "depth_mm", "immersion", "exact"),
+    [
+        # BENCHMARKS.md 2.1 and 2.2
+        ("down", 5000, 0.2, 1.0, 0.81974278427),
+        ("down", 5000, 1.0, 1.0, 1.40647352539),
+        ("up", 20000, 4.0, 0.05, 1.0543980187),
+    ],
+)
+def test_published_multipliers(mode, rpm, depth_mm, immersion, exact):
+    model = model_of({}, {"mode": mode, "radial_depth": immersion * 16e-3})
+    found = matrix_free.converged_multiplier(model.stepped_cut(5e-3), rpm * RPM, depth_mm * 1e-3)
+    assert abs(found.value) == pytest.approx(exact, rel=2e-6)
+    assert abs(abs(found.value) - exact) <= found.error < 2e-5
+
+
+@pytest.mark.parametrize("name", ["uniform", "variable pitch", "process damping"])
+def test_fourth_order_convergence(name):
+    model = TOOLS[name]
+    point = np.array([5000 * RPM]), np.array([2e-3])
+    exact = abs(collocation.multipliers(model.cut(2e-3, 12, 0.4), *point)[0])
+    errors = np.array(
+        [
+            abs(
+                abs(matrix_free.multipliers(model.stepped_cut(2e-3), *point, refinements=(r,))[0])
+                - exact
+            )
+            for r in (1, 2, 4)
+        ]
+    )
+    assert np.log2(errors[:-1] / errors[1:]) == pytest.approx([4.0, 4.0], abs=0.35)
+    better = abs(matrix_free.multipliers(model.stepped_cut(2e-3), *point)[0])
+    assert abs(better - exact) < 0.2 * errors[1]
+
+
+@pytest.mark.parametrize("name", ["uniform", "variable pitch", "runout"])
+def test_limits_are_those_of_collocation(name):
+    model = TOOLS[name]
+    speeds = np.array([5200.0, 8000.0, 11000.0]) * RPM
+    depths = np.linspace(0.0, 12e-3, 25)[1:]
+    found = METHODS["matrix-free"](model, speeds, depths, None, no_progress)
+    other = METHODS["collocation"](model, speeds, depths, None, no_progress)
+    assert np.isfinite(other.critical_depth).sum() >= 2
+    assert found.critical_depth == pytest.approx(other.critical_depth, rel=2e-3)
+    assert found.chatter_frequency == pytest.approx(other.chatter_frequency, rel=1e-3, nan_ok=True)
+    assert found.bifurcation == other.bifurcation
+    assert [len(c) for c in found.crossings] == [len(c) for c in other.crossings]
+    assert found.steps.min() > 40
+    # the estimate is that of the finer steps alone: the extrapolated limits are better
+    apart = np.nanmax(np.abs(found.critical_depth / other.critical_depth - 1.0))
+    assert 0.1 * apart < found.error < 1e-3
+
+
+def test_the_grid_and_the_operating_point_of_the_method():
+    model = model_of({}, {"spindle_speed": 5000 * RPM, "mode": "slot", "radial_depth": 16e-3})
+    point = np.array([5000 * RPM]), np.array([1e-3])
+    radius = GRIDS["matrix-free"](model, *point, None, no_progress)
+    assert radius == pytest.approx([1.40647352539], rel=1e-5)
+    own = operating_multiplier(model, "matrix-free", None)
+    assert abs(own.value) == pytest.approx(1.40647352539, rel=2e-6)
+    assert operating_frequency(model, "matrix-free") == pytest.approx(
+        operating_frequency(model), rel=1e-4
+    )
+
+
+def test_the_same_bytes_whatever_the_number_of_threads(monkeypatch):
+    cut = TOOLS["variable helix"].stepped_cut(3e-3)
+    speeds, depths = np.linspace(600.0, 1300.0, 40), np.full(40, 3e-3)
+    found = []
+    for workers in (1, 2, 5):
+        monkeypatch.setattr(sweep, "worker_count", lambda workers=workers: workers)
+        found.append(matrix_free.multipliers(cut, speeds, depths).tobytes())
+    assert len(set(found)) == 1
+
+
+def test_too_many_vibrations_are_refused():
+    cut = TOOLS["uniform"].stepped_cut(1e-3)
+    with pytest.raises(RunError, match="raise the lowest spindle speed"):
+        matrix_free.multipliers(cut, np.array([0.1]), np.array([1e-3]))
+    # few enough for two resolutions, too many for all: what is there is told with its error
+    found = matrix_free.converged_multiplier(cut, 6.0, 1e-3, 1e-15)
+    assert 0.0 < found.error < 1e-3
+
+
+@pytest.mark.parametrize("angle", [1e-3, 0.3, 1.4, 1.6, 7.0])
+def test_a_mode_answers_exactly_to_a_line(angle):
+    """Against the particular and the free motion of x'' + 2 z w x' + w^2 x = a + b t."""
+    omega, zeta, length = 50.0, 0.07, angle / 50.0
+    out = np.empty((4, 2, 4))
+    mode_answer(omega, zeta, length, out)
+    start, forces = np.array([0.3, -0.2]), np.array([2.0, 5.0])
+    b = (forces[1] - forces[0]) / ((PLACES[1] - PLACES[0]) * length)
+    a = forces[0] - b * PLACES[0] * length
+    constant = (a - 2.0 * zeta * b / omega) / omega**2
+    root = omega * math.sqrt(1.0 - zeta**2)
+    first = start[0] - constant
+    second = (start[1] * omega - b / omega**2 + zeta * omega * first) / root
+    for place, row in zip(PLACES, out, strict=True):
+        t = place * length
+        fade, c, s = math.exp(-zeta * omega * t), math.cos(root * t), math.sin(root * t)
+        x = constant + b / omega**2 * t + fade * (first * c + second * s)
+        rate = -zeta * omega * first + root * second, -zeta * omega * second - root * first
+        v = b / omega**2 + fade * (rate[0] * c + rate[1] * s)
+        found = row @ np.concatenate([start, forces])
+        assert found == pytest.approx([x, v / omega], rel=1e-7, abs=1e-9)
+
+
+# --- contact of tool and work ---------------------------------------------------------------------
+
+#: one of two straight teeth is always in the cut of a slot: the contact is always whole
+SLOT = {"mode": "slot", "radial_depth": 16e-3, "spindle_speed": 8000 * RPM}
+
+
+def test_a_contact_that_is_always_whole_is_a_stiffer_mode():
+    spring, damper = 4e5, 30.0
+    omega, mass = 2.0 * math.pi * 922.0, 0.03993
+    held = model_of({}, SLOT, contact={"stiffness": spring, "damping": damper})
+    stiffness = mass * omega**2 + spring
+    damping = 2.0 * 0.011 * mass * omega + damper
+    natural = math.sqrt(stiffness / mass)
+    stiff = model_of(
+        {}, SLOT,
+        [
+            {
+                "frequency": natural / (2.0 * math.pi), "damping": damping / (2.0 * mass * natural),
+                "mass": mass, "direction": [1, 0, 0],
+            }
+        ],
+    )  # fmt: skip
+    speeds, depths = np.full(3, 8000 * RPM), np.array([0.3e-3, 1e-3, 3e-3])
+    found = np.abs(matrix_free.multipliers(held.stepped_cut(3e-3), speeds, depths))
+    exact = np.abs(collocation.multipliers(stiff.cut(3e-3, 12, 0.6), speeds, depths))
+    assert found == pytest.approx(exact, rel=1e-5)
+    free = np.abs(matrix_free.multipliers(model_of({}, SLOT).stepped_cut(3e-3), speeds, depths))
+    assert not np.allclose(found, free, rtol=0.02)
+
+
+@pytest.mark.parametrize("full_at", [1.0, 0.3])
+def test_a_contact_that_comes_and_goes_grows_as_in_the_simulation(full_at):
+    contact = {"stiffness": 5e5, "damping": 20.0, "full_at": full_at}
+    # shallow: a large steady deflection moves the place where a vanishing chip ends the contact
+    depth = 0.2e-3
+    cut = {
+        "mode": "down", "radial_depth": 4e-3, "spindle_speed": 7000 * RPM, "axial_depth": depth,
+    }  # fmt: skip
+    model = model_of({"helix": math.radians(30.0)}, cut, TWO_MODES, contact=contact)
+    point = np.array([7000 * RPM]), np.array([depth])
+    found = abs(matrix_free.multipliers(model.stepped_cut(depth), *point)[0])
+    (simulated,) = growths(model.case, model.structure.modes, *point)
+    assert found == pytest.approx(simulated.radius, rel=1e-3)
+    without = abs(matrix_free.multipliers(matrix_free.stepped_cut(model.cut(depth)), *point)[0])
+    assert abs(without - found) > 0.1
+
+
+def test_auto_takes_the_contact_along():
+    model = model_of({}, SLOT, contact={"stiffness": 4e5})
+    assert chosen_method(model.case, None)[0] == "matrix-free"
+    assert chosen_method(model_of({}, SLOT).case, None)[0] == "collocation"
+    assert any("matrix-free and time methods alone" in note for note in model.notes)
