@@ -75,7 +75,9 @@ def test_example_runs_and_reports(name, effect, numbers, lobes, tmp_path, capsys
     assert "http" not in page  # nothing is fetched
     assert page.count("data:image/png;base64") >= 3
     if lobes:
-        assert "by itself does not act in linear lobes" in page
+        # a contact acts in the cut, and the lobes with it are not those without
+        assert "by itself does not act in linear lobes" not in page
+        assert "From refitted to with what was added, the lowest limit goes" in page
     load(tmp_path / "case-updated.toml")
 
 
