@@ -43,7 +43,7 @@ def announce_compilation(driver: object | None = None) -> None:
 
     known = any(CACHE_FOLDER.rglob("*.nbi")) if driver is None else is_compiled(driver)
     if not known:
-        MESSAGES.print("first use: compiling the numerical kernels, once, under a minute ...")
+        MESSAGES.print("first use: compiling the numerical kernels, once, about half a minute ...")
 
 
 def print_json(summary: dict) -> None:
