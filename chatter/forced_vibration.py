@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.model import MillingModel
-from cutting.edge_pieces import EdgePieces, part_below, share_of_height
+from cutting.edge_coupling import part_below, share_of_height
+from cutting.edge_pieces import EdgePieces
 
 _TURN = 2.0 * math.pi
 #: delays and the period that differ by less are the same, rad

@@ -23,6 +23,7 @@ from chatter.stability.element_layout import (
     empty_borders,
     period_borders,
 )
+from chatter.stability.plan_structure import alike, packed_numbers, packed_structure
 from chatter.stability.spindle_turn import (
     angle_at,
     in_mean_angle,
@@ -30,7 +31,7 @@ from chatter.stability.spindle_turn import (
     spindle_turn,
     time_at,
 )
-from cutting.edge_pieces import (
+from cutting.edge_coupling import (
     coupling_at,
     engaged_span,
     first_and_last_turn,
@@ -43,20 +44,6 @@ from cutting.edge_pieces import (
 _SAME_POINT = 1e-7
 #: the order of a quadrature along the edge follows the speed in steps of this power of two
 _SPEED_STEP = 0.5
-#: whole numbers before the lists of a structure
-_HEADER = 5
-
-
-class PlanStructure(NamedTuple):
-    """Structure of a plan: M elements, E of them in the cut, S distinct lengths, p points each."""
-
-    cut: NDArray[np.int64]  # number of each element among those in the cut, or -1 (M,)
-    shape: NDArray[np.int64]  # number of the length of each element (M,)
-    length_cuts: NDArray[np.int64]  # 1 where an element in the cut has the length (S,)
-    first_source: NDArray[np.int64]  # of each point (E p + 1,)
-    source: NDArray[np.int64]  # element, counted from the period's first; negative before it
-    point: NDArray[np.int64]  # the only one that a source needs of its element, or -1
-    memory: int  # elements before the period that are looked back to
 
 
 class _Sources(NamedTuple):
@@ -249,7 +236,7 @@ def cut_plan(cut, turn, layout, speed, depth):
     Returns
     -------
     structure : (i,) array of int
-        See `structure_of_plan`.
+        See `plan_structure`.
     numbers : (n,) array of float
         Period, lengths (S,), starts and lengths of the elements in the cut (E,), rad; stiffness
         (E p, r, r), dashpots (E p, r, r) times the mean speed, blocks of the sources, N/m.
@@ -283,82 +270,9 @@ def cut_plan(cut, turn, layout, speed, depth):
             row, stiffness, dashpot, groups, part, part_dashpot,
         )  # fmt: skip
     return (
-        _packed_structure(layout, first_source, sources),
-        _packed_numbers(layout, stiffness, dashpot, sources.block, first_source[rows]),
+        packed_structure(layout, first_source, sources.element, sources.point),
+        packed_numbers(layout, stiffness, dashpot, sources.block, first_source[rows]),
     )
-
-
-@njit(**INNER_KERNEL)
-def _put(part, out, at):
-    """Copy an array of one axis into another from a place on; returns the next place."""
-    for i in range(part.shape[0]):
-        out[at + i] = part[i]
-    return at + part.shape[0]
-
-
-@njit(**SINGLE_KERNEL)
-def _packed_structure(layout, first_source, sources):
-    count = first_source[first_source.shape[0] - 1]
-    elements, lengths = layout.cut.shape[0], layout.length_cuts.shape[0]
-    out = np.empty(
-        _HEADER + 2 * elements + lengths + first_source.shape[0] + 2 * count, dtype=np.int64
-    )
-    out[0], out[1], out[2] = elements, lengths, layout.cut_start.shape[0]
-    memory = 0
-    for entry in range(count):
-        memory = max(memory, -sources.element[entry])
-    out[3], out[4] = count, memory
-    at = _put(layout.cut, out, _HEADER)
-    at = _put(layout.shape, out, at)
-    at = _put(layout.length_cuts, out, at)
-    at = _put(first_source, out, at)
-    at = _put(sources.element[:count], out, at)
-    _put(sources.point[:count], out, at)
-    return out
-
-
-@njit(**SINGLE_KERNEL)
-def _packed_numbers(layout, stiffness, dashpot, block, sources):
-    kept = sources * block.shape[1] * block.shape[2]
-    out = np.empty(
-        1 + layout.length.shape[0] + 2 * layout.cut_start.shape[0] + 2 * stiffness.size + kept
-    )
-    out[0] = layout.period
-    at = _put(layout.length, out, 1)
-    at = _put(layout.cut_start, out, at)
-    at = _put(layout.cut_length, out, at)
-    at = _put(stiffness.reshape(stiffness.size), out, at)
-    at = _put(dashpot.reshape(stiffness.size), out, at)
-    _put(block.reshape(block.size)[:kept], out, at)
-    return out
-
-
-@njit(**INNER_KERNEL)
-def structure_of_plan(packed):
-    """Unpack the structure of a plan.
-
-    Returns
-    -------
-    PlanStructure
-    """
-    elements, lengths, count = packed[0], packed[1], packed[3]
-    points = packed.shape[0] - _HEADER - 2 * elements - lengths - 2 * count
-    a = _HEADER + elements
-    b = a + elements
-    c = b + lengths
-    d = c + points
-    e = d + count
-    return PlanStructure(
-        packed[_HEADER:a], packed[a:b], packed[b:c], packed[c:d], packed[d:e], packed[e:], packed[4]
-    )
-
-
-@njit(**INNER_KERNEL)
-def alike(one, other):
-    """Tell whether two packed structures are the same: lanes of one map may hold both plans."""
-    if one.shape[0] != other.shape[0]:
-        return False
-    return np.all(one == other)
 
 
 @njit(**SINGLE_KERNEL)

@@ -8,12 +8,13 @@ from numba import njit
 from chatter.kernels import DRIVER
 from chatter.lanes import LANES
 from chatter.stability.chatter_frequency import heard_frequencies
-from chatter.stability.cut_plan import alike, plans_of
+from chatter.stability.cut_plan import plans_of
+from chatter.stability.element_assembly import Structure, build_element_map
 from chatter.stability.element_layout import element_counts, element_layout, period_borders
-from chatter.stability.element_map import Structure, build_element_map
 from chatter.stability.lane_multipliers import dominant_pairs
 from chatter.stability.multipliers import dominant_multiplier
 from chatter.stability.period_map import advance_step, build_period_map, period_map_by
+from chatter.stability.plan_structure import alike
 from chatter.stability.spindle_turn import in_mean_angle, spindle_turn
 
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from chatter.kernels import INNER_KERNEL, SINGLE_KERNEL
 from chatter.stability.spindle_turn import angle_at, time_at
-from cutting.edge_pieces import (
+from cutting.edge_coupling import (
     engaged_span,
     first_and_last_turn,
     part_below,

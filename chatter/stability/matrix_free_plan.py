@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from chatter.kernels import KERNEL
 from chatter.stability.matrix_free_steps import PLACES, mode_answer, period_steps
 from chatter.stability.spindle_turn import angle_at, speed_at, spindle_turn, time_at
-from cutting.edge_pieces import (
+from cutting.edge_coupling import (
     coupling_at,
     engaged_span,
     first_and_last_turn,

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from chatter.kernels import KERNEL
 from chatter.stability.spindle_turn import SpeedVariation, angle_at, time_at
-from cutting.edge_pieces import EdgePieces, part_below, share_of_height
+from cutting.edge_coupling import part_below, share_of_height
+from cutting.edge_pieces import EdgePieces
 
 #: Gauss points of a step, and where the motion is kept besides: its middle and its end
 _ROOT = math.sqrt(3.0) / 6.0

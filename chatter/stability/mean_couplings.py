@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from chatter.kernels import DRIVER
-from cutting.edge_pieces import coupling_at, part_below, share_of_height
+from cutting.edge_coupling import coupling_at, part_below, share_of_height
 
 #: delays that differ by less than this are taken together, rad
 _SAME_DELAY = 2e-3

@@ -25,7 +25,7 @@ from chatter.stability.crossings import find_crossings
 from chatter.stability.cut_arrays import CutArrays
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.sweep import Progress, no_progress, sweep
-from cutting.edge_pieces import coupling_at, part_below, radius_at, share_of_height
+from cutting.edge_coupling import coupling_at, part_below, radius_at, share_of_height
 
 #: harmonics reach this far beyond the highest resonance
 _REACH = 4.0
