@@ -147,12 +147,15 @@ def _edge_points(pieces: EdgePieces, depth: float) -> EdgePoints:
             up = share_of_height(pieces, piece, along)
             first, last = pieces.delay[piece]
             delay = first + up * (last - first)
+            kappa = _between(pieces.immersion[piece], along)
+            sine = math.sin(kappa)
+            inset = sine * _between(pieces.inset[piece], up)
+            inset += math.cos(kappa) * pieces.axial_inset[piece]
             columns.append(
                 (
                     _between(pieces.angle[piece], up), _between(pieces.entry[piece], along),
                     _between(pieces.exit[piece], along), delay,
-                    _between(pieces.immersion[piece], along), pieces.length[piece] * top / parts,
-                    pieces.feed[piece] * delay / (0.5 * (first + last)), pieces.inset[piece],
+                    kappa, pieces.length[piece] * top / parts, sine * pieces.feed * delay, inset,
                     pieces.cutting[piece],
                 )
             )  # fmt: skip

@@ -124,6 +124,40 @@ def first_and_last_turn(pieces, piece, top, spindle):
 
 
 @register_jitable(**_INLINED)
+def chip_at(pieces, piece, height, sine, sine_of_edge, cosine_of_edge):
+    """Chip of a rigid tool, m, below zero where the edge misses.
+
+    Parameters
+    ----------
+    pieces : EdgePieces
+    piece : int
+    height : float
+        Share of the height of the piece.
+    sine : float
+        Of the immersion angle.
+    sine_of_edge, cosine_of_edge : float
+        Of the axial immersion angle.
+    """
+    # flutes of different helix leave each other more or less of the feed from height to height
+    first, last = pieces.delay[piece, 0], pieces.delay[piece, 1]
+    low, high = pieces.inset[piece, 0], pieces.inset[piece, 1]
+    radial = pieces.feed * (first + height * (last - first)) * sine - (low + height * (high - low))
+    return sine_of_edge * radial - cosine_of_edge * pieces.axial_inset[piece]
+
+
+@register_jitable(**_INLINED)
+def chip_vanishes(pieces, piece, place, immersion):
+    """Tell whether a place along a piece has hardly a chip left at an immersion angle."""
+    low, high = pieces.immersion[piece, 0], pieces.immersion[piece, 1]
+    kappa = low + place * (high - low)
+    # at the very tip of a corner the chip is nothing at any angle
+    sk = max(math.sin(kappa), 1e-9)
+    height = share_of_height(pieces, piece, place)
+    chip = chip_at(pieces, piece, height, math.sin(immersion), sk, math.cos(kappa))
+    return chip < 1e-3 * sk * pieces.feed * pieces.delay[piece, 0]
+
+
+@register_jitable(**_INLINED)
 def coupling_at(pieces, piece, place, spindle, weight, speed_factor, basis, stiffness, dashpot):
     """Add the coupling of a point of the edge to displacement and velocity.
 
@@ -155,13 +189,7 @@ def coupling_at(pieces, piece, place, spindle, weight, speed_factor, basis, stif
         sk, ck = math.sin(kappa + place * bend), math.cos(kappa + place * bend)
     size = weight
     if pieces.exponent != 0.0:
-        # flutes of different helix leave each other more or less of the feed from height to height
-        first, last = pieces.delay[piece, 0], pieces.delay[piece, 1]
-        feed = pieces.feed[piece] * (first + height * (last - first)) / (0.5 * (first + last))
-        if bend != 0.0:
-            # towards the tip of a corner the chip thins out with the edge's inclination
-            feed *= sk / math.sin(kappa + 0.5 * bend)
-        chip = feed * s - pieces.inset[piece]
+        chip = chip_at(pieces, piece, height, s, sk, ck)
         chip = max(chip, 1e-9 * pieces.reference)
         size *= math.exp(pieces.exponent * math.log(chip / pieces.reference))
     kt, kr, ka = pieces.cutting[piece, 0], pieces.cutting[piece, 1], pieces.cutting[piece, 2]

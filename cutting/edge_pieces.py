@@ -52,8 +52,9 @@ class EdgePieces(NamedTuple):
     group: NDArray[np.int64]  # pieces of equal, constant delay; -1 where it varies (P,)
     group_delay: NDArray[np.float64]  # rad (G,)
     cutting: NDArray[np.float64]  # slope at the reference chip: tangential .. axial, N/m^2 (P, 3)
-    feed: NDArray[np.float64]  # chip = feed sin(phi) - inset, m (P,)
-    inset: NDArray[np.float64]  # m (P,)
+    inset: NDArray[np.float64]  # by which the earlier edge reaches further out, m (P, 2)
+    axial_inset: NDArray[np.float64]  # and further towards the work, m (P,)
+    feed: float  # by which the work moves for an angle turned, m/rad
     exponent: float  # of the slope: slope = cutting (chip/reference)^exponent, 0 for a linear law
     reference: float  # m
     turning: NDArray[np.int64]  # 1 where an edge first meets or last leaves the stock within (P, 2)
@@ -287,11 +288,12 @@ def edge_pieces(
                         line.height[piece], line.height[piece + 1] - line.height[piece],
                         line.length[piece], angle[tooth, :2], first, last,
                         gaps[:2, k], kappa, line.radius[ends], _reference_slope(laws[tooth]),
-                        rise[2, k], inset[2, k],
+                        radial[other, :2] - radial[tooth, :2],
+                        cutter.axial_offsets[other] - cutter.axial_offsets[tooth],
                         cutter.corner_radius if kappa[0] < kappa[1] else 0.0,
                     )
                 )  # fmt: skip
-    return _as_arrays(rows, _turning(rows, owners), cutter, laws[0], flank)
+    return _as_arrays(rows, _turning(rows, owners), cutter, laws[0], flank, feed_per_turn / _TURN)
 
 
 def _turning(rows: list[tuple], owners: list[tuple[int, int, int]]) -> NDArray[np.int64]:
@@ -342,6 +344,7 @@ def _as_arrays(
     cutter: Cutter,
     law: ForceLaw,
     flank: ViscousProcessDamping | Ploughing | None,
+    feed: float,
 ) -> EdgePieces:
     count = len(rows)
     columns = [np.array(column, dtype=np.float64) for column in zip(*rows, strict=True)]
@@ -368,9 +371,9 @@ def _as_arrays(
     return EdgePieces(
         bottom=columns[0], thickness=columns[1], length=columns[2], angle=columns[3],
         entry=columns[4], exit=columns[5], delay=delay, immersion=columns[7], radius=columns[8],
-        group=group, group_delay=np.array(groups), cutting=columns[9], feed=columns[10],
-        inset=columns[11], corner=columns[12], exponent=exponent, reference=reference,
-        damping=damping, turning=turning,
+        group=group, group_delay=np.array(groups), cutting=columns[9], feed=feed,
+        inset=columns[10], axial_inset=columns[11], corner=columns[12], exponent=exponent,
+        reference=reference, damping=damping, turning=turning,
         outline=np.array([cutter.radius, cutter.corner_radius, cutter.edge_angle]),
     )  # fmt: skip
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from chatter.kernels import INNER_KERNEL, SINGLE_KERNEL
 from chatter.stability.spindle_turn import angle_at, time_at
 from cutting.edge_coupling import (
+    chip_vanishes,
     engaged_span,
     first_and_last_turn,
     part_below,
@@ -120,10 +121,8 @@ def _border_angles(pieces, period, depth, angles, singular):
                 angle = at - place
                 angles[count] = angle - period * math.floor(angle / period)
                 singular[count] = 0
-                if pieces.exponent != 0.0:
-                    chip = pieces.feed[piece] * math.sin(at) - pieces.inset[piece]
-                    if chip < 1e-3 * pieces.feed[piece]:
-                        singular[count] = 1
+                if pieces.exponent != 0.0 and chip_vanishes(pieces, piece, s, at):
+                    singular[count] = 1
                 count += 1
     return count
 

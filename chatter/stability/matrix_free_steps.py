@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from chatter.kernels import KERNEL
 from chatter.stability.spindle_turn import SpeedVariation, angle_at, time_at
-from cutting.edge_coupling import part_below, share_of_height
+from cutting.edge_coupling import chip_vanishes, part_below, share_of_height
 from cutting.edge_pieces import EdgePieces
 
 #: Gauss points of a step, and where the motion is kept besides: its middle and its end
@@ -79,8 +79,7 @@ def _border_angles(cut, depth):
                 immersed = arc[0] + place * (arc[1] - arc[0])
                 angle = immersed - lag
                 angles[count] = angle - period * math.floor(angle / period)
-                chip = pieces.feed[piece] * math.sin(immersed) - pieces.inset[piece]
-                if pieces.exponent != 0.0 and chip < 1e-3 * pieces.feed[piece]:
+                if pieces.exponent != 0.0 and chip_vanishes(pieces, piece, place, immersed):
                     singular[count] = 1
                 count += 1
     if count == 0:
