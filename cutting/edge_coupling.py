@@ -11,12 +11,12 @@ from numba.extending import register_jitable
 
 _TURN = 2.0 * math.pi
 #: a call would count the references to every array of the table
-_INLINED = {"error_model": "numpy", "forceinline": True}
+INLINED = {"error_model": "numpy", "forceinline": True}
 #: Newton steps to the place at which an edge on a corner crosses the border of its arc
 _PLACE_STEPS = 6
 
 
-@register_jitable(**_INLINED)
+@register_jitable(**INLINED)
 def part_below(pieces, piece, depth):
     """Part of a piece, from its low end and along its length, that lies below a depth (m)."""
     share = (depth - pieces.bottom[piece]) / pieces.thickness[piece]
@@ -29,7 +29,7 @@ def part_below(pieces, piece, depth):
     return (math.acos(1.0 - depth / corner) - low) / (high - low)
 
 
-@register_jitable(**_INLINED)
+@register_jitable(**INLINED)
 def radius_at(pieces, height):
     """Radius of the edge at a height above the tip, m."""
     radius, corner, angle = pieces.outline[0], pieces.outline[1], pieces.outline[2]
@@ -39,7 +39,7 @@ def radius_at(pieces, height):
     return radius - corner * (1.0 - math.sin(angle)) + (height - top) / math.tan(angle)
 
 
-@register_jitable(**_INLINED)
+@register_jitable(**INLINED)
 def share_of_height(pieces, piece, place):
     """Height of a place along a piece above its low end, as a share of the piece's."""
     corner = pieces.corner[piece]
@@ -50,7 +50,7 @@ def share_of_height(pieces, piece, place):
     return (height - pieces.bottom[piece]) / pieces.thickness[piece]
 
 
-@register_jitable(**_INLINED)
+@register_jitable(**INLINED)
 def _place_on_corner(pieces, piece, place, value, lag, rate):
     """Place where value + lag h + rate s = 0, h the share of the height, which bends along s."""
     low, high = pieces.immersion[piece, 0], pieces.immersion[piece, 1]
@@ -66,7 +66,7 @@ def _place_on_corner(pieces, piece, place, value, lag, rate):
     return place
 
 
-@register_jitable(**_INLINED)
+@register_jitable(**INLINED)
 def engaged_span(pieces, piece, top, spindle, turn):
     """Part of a piece that is in the cut at a spindle angle.
 
@@ -111,7 +111,7 @@ def engaged_span(pieces, piece, top, spindle, turn):
     return low, high
 
 
-@register_jitable(**_INLINED)
+@register_jitable(**INLINED)
 def first_and_last_turn(pieces, piece, top, spindle):
     """Turns by which a piece may have to be turned back to lie in its arc."""
     a = spindle + pieces.angle[piece, 0]
@@ -123,7 +123,7 @@ def first_and_last_turn(pieces, piece, top, spindle):
     return first, last
 
 
-@register_jitable(**_INLINED)
+@register_jitable(**INLINED)
 def chip_at(pieces, piece, height, sine, sine_of_edge, cosine_of_edge):
     """Chip of a rigid tool, m, below zero where the edge misses.
 
@@ -145,7 +145,7 @@ def chip_at(pieces, piece, height, sine, sine_of_edge, cosine_of_edge):
     return sine_of_edge * radial - cosine_of_edge * pieces.axial_inset[piece]
 
 
-@register_jitable(**_INLINED)
+@register_jitable(**INLINED)
 def chip_vanishes(pieces, piece, place, immersion):
     """Tell whether a place along a piece has hardly a chip left at an immersion angle."""
     low, high = pieces.immersion[piece, 0], pieces.immersion[piece, 1]
@@ -157,7 +157,7 @@ def chip_vanishes(pieces, piece, place, immersion):
     return chip < 1e-3 * sk * pieces.feed * pieces.delay[piece, 0]
 
 
-@register_jitable(**_INLINED)
+@register_jitable(**INLINED)
 def coupling_at(pieces, piece, place, spindle, weight, speed_factor, basis, stiffness, dashpot):
     """Add the coupling of a point of the edge to displacement and velocity.
 

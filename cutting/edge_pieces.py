@@ -3,6 +3,8 @@
 A piece belongs to one tooth and cuts, between an entry and an exit angle, the surface that one
 certain earlier pass has left. Along it place on the tool and delay vary linearly with the height,
 and the arc with the length.
+Pieces of a tooth that follow one another and cut what the same earlier tooth has left make a chain:
+along it all is smooth, so that a force is summed up over a run of its pieces at once.
 An upright edge in a tool of one helix is one piece from the tip to any height; corners are cut
 into pieces by their curvature; where runout, setting errors or serration decide which pass left the
 surface, every pass has its own arc.
@@ -26,12 +28,15 @@ from cutting.tool import Cutter, corner_height
 
 _TURN = 2.0 * math.pi
 #: a corner turns by this much within a piece, and its arc changes by it, rad
-_PIECE_TURN = math.radians(2.0)
+_PIECE_TURN = math.radians(1.2)
 #: an edge trails, or a cone widens, by this much within a piece, rad; less where runout makes the
 #: arcs change from piece to piece
 _PIECE_LAG = 0.03
 _PIECE_LAG_OF_PASSES = 0.006
 _PIECES_A_WAVE = 24
+#: with a size effect a chain on a corner ends where its inclination has grown by this factor: at
+#: the tip the slope of the force law is infinite
+_CHAIN_GROWTH = 3.0
 #: arcs shorter than this are none, rad
 _SHORTEST_ARC = 1e-9
 
@@ -59,6 +64,7 @@ class EdgePieces(NamedTuple):
     reference: float  # m
     turning: NDArray[np.int64]  # 1 where an edge first meets or last leaves the stock within (P, 2)
     outline: NDArray[np.float64]  # radius at the tip's cylinder, corner radius, edge angle (3,)
+    chain: NDArray[np.int64]  # first piece of each chain, and the number of pieces (C + 1,)
     damping: NDArray[
         np.float64
     ]  # force per edge length, rate and 1/V: tangential, radial, N/m (2,)
@@ -82,7 +88,7 @@ def _corner_angles(
     reach = cutter.radius - radial_depth
     if mode != "slot" and abs(reach) < cutter.radius:
         # where the edge first meets the stock its arc grows steeply: borders even in the arc
-        arcs = np.arange(0.0, math.pi, turn)
+        arcs = np.linspace(0.0, math.pi, math.ceil(math.pi / turn) + 1)
         with np.errstate(divide="ignore"):
             radius = reach / np.cos(arcs)
         sine = (radius - cutter.radius + cutter.corner_radius) / cutter.corner_radius
@@ -293,7 +299,39 @@ def edge_pieces(
                         cutter.corner_radius if kappa[0] < kappa[1] else 0.0,
                     )
                 )  # fmt: skip
-    return _as_arrays(rows, _turning(rows, owners), cutter, laws[0], flank, feed_per_turn / _TURN)
+    turning = _turning(rows, owners)
+    order, chain = _chains(rows, owners, laws[0], apart=wave)
+    rows = [rows[i] for i in order]
+    feed = feed_per_turn / _TURN
+    return _as_arrays(rows, turning[order], chain, cutter, laws[0], flank, feed)
+
+
+def _chains(
+    rows: list[tuple], owners: list[tuple[int, int, int]], law: ForceLaw, apart: bool
+) -> tuple[list[int], NDArray[np.int64]]:
+    """Order of the pieces along chains, and the first place of each chain and the end (C + 1,).
+
+    A serrated edge is not smooth from piece to piece: every piece is a chain apart.
+    """
+    met: dict[tuple[int, int, int], int] = {}
+    keys = []
+    for owner in owners:
+        piece, tooth, other = owner
+        met[owner] = met.get(owner, -1) + 1
+        keys.append((tooth, other, met[owner], piece))
+    order = sorted(range(len(rows)), key=lambda i: keys[i])
+    sized = isinstance(law, ExponentialLaw) and law.exponent < 1.0
+    starts: list[int] = []
+    lowest = 0.0  # inclination at the start of the chain
+    for place, i in enumerate(order):
+        kappa, corner = rows[i][7], rows[i][12]
+        before = order[place - 1]
+        follows = place > 0 and keys[i] == (*keys[before][:3], keys[before][3] + 1)
+        smooth = follows and not apart and rows[before][12] == corner
+        if not smooth or (sized and corner > 0.0 and kappa[1] > _CHAIN_GROWTH * lowest):
+            starts.append(place)
+            lowest = max(kappa[0], 1e-12)
+    return order, np.array([*starts, len(order)], dtype=np.int64)
 
 
 def _turning(rows: list[tuple], owners: list[tuple[int, int, int]]) -> NDArray[np.int64]:
@@ -341,6 +379,7 @@ def _reference_slope(law: ForceLaw) -> NDArray[np.float64]:
 def _as_arrays(
     rows: list[tuple],
     turning: NDArray[np.int64],
+    chain: NDArray[np.int64],
     cutter: Cutter,
     law: ForceLaw,
     flank: ViscousProcessDamping | Ploughing | None,
@@ -373,7 +412,7 @@ def _as_arrays(
         entry=columns[4], exit=columns[5], delay=delay, immersion=columns[7], radius=columns[8],
         group=group, group_delay=np.array(groups), cutting=columns[9], feed=feed,
         inset=columns[10], axial_inset=columns[11], corner=columns[12], exponent=exponent,
-        reference=reference, damping=damping, turning=turning,
+        reference=reference, damping=damping, turning=turning, chain=chain,
         outline=np.array([cutter.radius, cutter.corner_radius, cutter.edge_angle]),
     )  # fmt: skip
 

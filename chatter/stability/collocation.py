@@ -15,7 +15,7 @@ from chatter.stability import drivers
 from chatter.stability.cut_arrays import RESOLUTION, CutArrays
 from chatter.stability.following import followed_crossings
 from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.limit_search import growth, limits_at
+from chatter.stability.limit_search import HeardPoints, growth, limits_at
 from chatter.stability.multiplier import Multiplier
 from chatter.stability.sweep import Progress, no_progress, sweep
 
@@ -27,6 +27,8 @@ DEPTH_TOLERANCE = 1e-6
 LIMIT_ERROR = 1e-3
 #: limits that are looked at again with finer elements
 _CHECKED = 16
+#: limits are searched to this share of the largest error
+_SEARCHED = 0.1
 #: speeds from one to the next of those at which all depths are looked at
 STRIDE = 4
 #: points handed to a thread at once: many enough to fill the lanes of the kernels
@@ -171,9 +173,12 @@ def limit_curve(
     ) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
         return _solved(cut, speeds[points], depth, np.ones(len(points), dtype=np.bool_))
 
-    crossings = followed_crossings(len(speeds), depths, growth_at, tolerance, stride, progress)
+    near_limits = HeardPoints(heard)
+    crossings = followed_crossings(
+        len(speeds), depths, growth_at, tolerance, stride, progress, near_limits.growth
+    )
     steps = drivers.points_of_periods(cut, speeds, float(depths[-1]))
-    return limits_at(heard, speeds, crossings, steps)
+    return limits_at(near_limits.nearest, speeds, crossings, steps)
 
 
 def converged_limit_curve(
@@ -202,7 +207,7 @@ def converged_limit_curve(
     cut = cut_at(*RESOLUTION)
     for finer in FINER:
         finer_cut = cut_at(*finer)
-        limits = limit_curve(cut, speeds, depths, progress)
+        limits = limit_curve(cut, speeds, depths, progress, _SEARCHED * tolerance)
         error = _limit_error(limits, cut, finer_cut)
         if error <= tolerance:
             break

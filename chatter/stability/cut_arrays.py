@@ -17,6 +17,7 @@ from chatter.stability.element_response import (
 )
 from chatter.stability.spindle_turn import SpeedVariation
 from cutting.edge_pieces import EdgePieces
+from cutting.edge_runs import MOST_POINTS
 
 #: modes whose resonance peak is below this share of the highest do not set the resolution
 _RELEVANT_PEAK = 0.01
@@ -27,8 +28,6 @@ RESOLUTION = (8, 1.0)
 #: an element turns the spindle by no more than this, rad
 LONGEST_ANGLE = 0.9
 _SMALLEST_RESIDUAL = 1e-9
-#: largest order of a Gauss quadrature along a piece of the edge
-_MOST_EDGE_POINTS = 16
 
 
 class Resolution(NamedTuple):
@@ -87,11 +86,11 @@ def _stiffening(modes: tuple[NDArray[np.float64], ...], pieces: EdgePieces) -> f
 
 
 @lru_cache(maxsize=1)
-def _edge_quadratures() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _edge_runss() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Places and weights of the Gauss quadratures of all orders on [0, 1], a row an order."""
-    place = np.zeros((_MOST_EDGE_POINTS + 1, _MOST_EDGE_POINTS))
+    place = np.zeros((MOST_POINTS + 1, MOST_POINTS))
     weight = np.zeros_like(place)
-    for count in range(1, _MOST_EDGE_POINTS + 1):
+    for count in range(1, MOST_POINTS + 1):
         nodes, weights = np.polynomial.legendre.leggauss(count)
         place[count, :count], weight[count, :count] = 0.5 * (nodes + 1.0), 0.5 * weights
     return place, weight
@@ -125,7 +124,7 @@ def cut_arrays(
     natural_frequency, damping, shape, force_gain = modes
     fastest = _CHATTER_ABOVE_NATURAL * relevant_frequency(*modes)
     longest = waves * 2.0 * math.pi / fastest
-    place, weight = _edge_quadratures()
+    place, weight = _edge_runss()
     of_element = element_points(points)
     # no better than the elements are
     residual = max(_SMALLEST_RESIDUAL, 10.0 ** (4.0 - 1.5 * points))

@@ -22,6 +22,7 @@ from chatter.stability.element_layout import (
     element_layout,
     empty_borders,
     period_borders,
+    speed_step,
 )
 from chatter.stability.plan_structure import alike, packed_numbers, packed_structure
 from chatter.stability.spindle_turn import (
@@ -31,13 +32,15 @@ from chatter.stability.spindle_turn import (
     spindle_turn,
     time_at,
 )
-from cutting.edge_coupling import (
-    coupling_at,
-    engaged_span,
-    first_and_last_turn,
-    part_below,
-    radius_at,
-    share_of_height,
+from cutting.edge_coupling import coupling_at, part_below, radius_at, share_of_height
+from cutting.edge_runs import (
+    TURN,
+    crowd,
+    length_of_run,
+    place_in_run,
+    points_along,
+    run_from,
+    turns_of_chain,
 )
 
 #: points closer than this share of an element are the same
@@ -61,26 +64,6 @@ class _EdgeRule(NamedTuple):
     weight: NDArray[np.float64]
     longest: float  # element, s
     speed: float  # for which it is made, rad/s
-
-
-@njit(**INNER_KERNEL)
-def resolution_speed(speed):
-    """Speed, at most the given one, for which the edges are resolved; rad/s."""
-    return 2.0 ** (_SPEED_STEP * math.floor(math.log2(speed) / _SPEED_STEP))
-
-
-@njit(**INNER_KERNEL)
-def _edge_points(rule, pieces, piece, span, turning):
-    """Order of the quadrature along a part of a piece."""
-    turned = abs(pieces.angle[piece, 1] - pieces.angle[piece, 0]) * span
-    bend = abs(pieces.immersion[piece, 1] - pieces.immersion[piece, 0]) * span
-    if turned + bend < 1e-9 and pieces.group[piece] >= 0:
-        return 1
-    if pieces.exponent != 0.0:
-        return 16
-    shift = abs(pieces.delay[piece, 1] - pieces.delay[piece, 0]) * span
-    waves = shift / (rule.speed * turning * rule.longest)
-    return min(16, 2 + math.ceil(2.5 * (turned + bend) + 5.0 * waves))
 
 
 @njit(**INNER_KERNEL)
@@ -153,8 +136,8 @@ def _note(points, layout, angle, sources, first, count, couplings, which):
 
 @njit(**SINGLE_KERNEL)
 def _couple(
-    pieces, tops, rule, basis, points, layout, turn, speed_factor, angle, sources, first_source,
-    row, stiffness, dashpot, groups, part, part_dashpot,
+    pieces, tops, reach, rule, basis, points, layout, turn, speed_factor, angle, sources,
+    first_source, row, stiffness, dashpot, groups, part, part_dashpot,
 ):  # fmt: skip
     """Enter the couplings at one mean angle; returns the number of sources."""
     rank = basis.shape[1]
@@ -165,48 +148,47 @@ def _couple(
                 groups[group, i, j] = 0.0
     count = first_source
     spindle, turning = angle_at(turn, angle), speed_at(turn, angle)
-    for piece in range(tops.shape[0]):
-        top = tops[piece]
-        if top <= 0.0:
-            continue
-        group = pieces.group[piece]
-        first, last = first_and_last_turn(pieces, piece, top, spindle)
+    elements = 1.0 / (rule.speed * turning * rule.longest)
+    for chain in range(reach.shape[0]):
+        first = math.ceil((spindle - reach[chain, 1]) / TURN - 1e-12)
+        last = math.floor((spindle - reach[chain, 0]) / TURN + 1e-12)
         for back in range(first, last + 1):
-            low, high = engaged_span(pieces, piece, top, spindle, back)
-            straight = pieces.angle[piece, 0] == pieces.angle[piece, 1]
-            if low >= high and not (straight and low <= high):
-                continue
-            order = _edge_points(rule, pieces, piece, high - low, turning)
-            for q in range(order):
-                x, share = rule.place[order, q], rule.weight[order, q]
-                if pieces.exponent != 0.0 and order > 1:
-                    # towards both ends, where the chip may vanish
-                    share *= 30.0 * (x * (1.0 - x)) ** 2
-                    x = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
-                place = low + x * (high - low)
-                weight = share * (high - low) * pieces.length[piece]
-                coupling_at(
-                    pieces, piece, place, spindle, weight, speed_factor / turning, basis, part,
-                    part_dashpot,
-                )  # fmt: skip
-                # the last of the groups is that of the single point
-                into = group if group >= 0 else used
-                for i in range(rank):
-                    for j in range(rank):
-                        stiffness[row, i, j] += part[i, j]
-                        dashpot[row, i, j] += part_dashpot[i, j]
-                        groups[into, i, j] = part[i, j] + (
-                            groups[into, i, j] if group >= 0 else 0.0
+            piece, end = pieces.chain[chain], pieces.chain[chain + 1]
+            while piece < end:
+                final, low, high, change = run_from(
+                    pieces, tops, piece, end, spindle, back, elements
+                )
+                if final < piece:
+                    piece += 1
+                    continue
+                order, crowded = points_along(pieces, piece, final, low, high, change, spindle)
+                length = length_of_run(pieces, piece, final, low, high)
+                at, start = piece, -low * pieces.length[piece]
+                for q in range(order):
+                    x, share = crowd(rule.place[order, q], rule.weight[order, q], crowded)
+                    at, place, start = place_in_run(pieces, at, final, start, x * length)
+                    coupling_at(
+                        pieces, at, place, spindle, share * length, speed_factor / turning, basis,
+                        part, part_dashpot,
+                    )  # fmt: skip
+                    # the last of the groups is that of the single point
+                    group = pieces.group[at]
+                    into = group if group >= 0 else used
+                    for i in range(rank):
+                        for j in range(rank):
+                            stiffness[row, i, j] += part[i, j]
+                            dashpot[row, i, j] += part_dashpot[i, j]
+                            groups[into, i, j] = part[i, j] + (
+                                groups[into, i, j] if group >= 0 else 0.0
+                            )
+                    if group < 0:
+                        shift = pieces.delay[at, 1] - pieces.delay[at, 0]
+                        delay = pieces.delay[at, 0] + share_of_height(pieces, at, place) * shift
+                        earlier = time_at(turn, spindle - delay)
+                        count = _note(
+                            points, layout, earlier, sources, first_source, count, groups, used
                         )
-                if group < 0:
-                    height = share_of_height(pieces, piece, place)
-                    delay = pieces.delay[piece, 0] + height * (
-                        pieces.delay[piece, 1] - pieces.delay[piece, 0]
-                    )
-                    earlier = time_at(turn, spindle - delay)
-                    count = _note(
-                        points, layout, earlier, sources, first_source, count, groups, used
-                    )
+                piece = final + 1
     for group in range(used):
         filled = False
         for i in range(rank):
@@ -229,7 +211,7 @@ def cut_plan(cut, turn, layout, speed, depth):
         In mean angle.
     layout : ElementLayout
     speed : float
-        `resolution_speed` of the mean spindle speed, rad/s.
+        `speed_step` of the mean spindle speed, rad/s.
     depth : float
         Axial depth, m.
 
@@ -251,6 +233,9 @@ def cut_plan(cut, turn, layout, speed, depth):
         tops[piece] = part_below(pieces, piece, depth)
         if tops[piece] > 0.0 and pieces.group[piece] < 0:
             most += 2 * cut.edge_place.shape[1]
+    reach = np.empty((pieces.chain.shape[0] - 1, 2))
+    for chain in range(reach.shape[0]):
+        reach[chain, 0], reach[chain, 1] = turns_of_chain(pieces, tops, chain)
     sources = _empty_sources(rows + most, rank, (count_a_element + 1) * rank)
     stiffness, dashpot = np.zeros((rows, rank, rank)), np.zeros((rows, rank, rank))
     groups = np.empty((pieces.group_delay.shape[0] + 1, rank, rank))
@@ -266,8 +251,8 @@ def cut_plan(cut, turn, layout, speed, depth):
         if count + most > sources.element.shape[0]:
             sources = _grown(sources)
         first_source[row + 1] = _couple(
-            pieces, tops, rule, basis, points, layout, turn, speed_factor, angle, sources, count,
-            row, stiffness, dashpot, groups, part, part_dashpot,
+            pieces, tops, reach, rule, basis, points, layout, turn, speed_factor, angle, sources,
+            count, row, stiffness, dashpot, groups, part, part_dashpot,
         )  # fmt: skip
     return (
         packed_structure(layout, first_source, sources.element, sources.point),
@@ -303,7 +288,7 @@ def plans_of(cut, speeds, depths):
         if not beside:
             borders = period_borders(cut.pieces, cut.period_angle, turn, depths[i])
         needed = element_counts(cut.resolution, borders, speeds[i], depths[i])
-        resolved = resolution_speed(speeds[i])
+        resolved = speed_step(speeds[i], _SPEED_STEP)
         if not (beside and speed == resolved and alike(needed, counts)):
             counts, speed = needed, resolved
             layout = element_layout(borders, counts)

@@ -31,9 +31,14 @@ _SAME = 1e-10
 _SAME_LENGTH = 1e-9
 #: places of an interval that are looked at to tell whether an edge is in the cut
 _LOOKS = (0.5, 0.02, 0.98)
+#: of more intervals than these the elements are counted in steps of the speed, in powers of two
+_FEW_INTERVALS = 12
+_STEP_OF_MANY = 0.25
 #: levels and ratio of the elements towards a singular place
-_LEVELS = 5
+_MOST_LEVELS = 5
 _RATIO = 0.16
+#: an edge that trails by this much from tip to top smears what is singular over an element, rad
+_SMEARED = 0.9
 
 
 class ElementLayout(NamedTuple):
@@ -55,7 +60,7 @@ class PeriodBorders(NamedTuple):
     """I intervals of a period between the borders of elements that the cut itself sets."""
 
     place: NDArray[np.float64]  # mean angle, rad (I + 1,)
-    singular: NDArray[np.int64]  # 1 where a chip vanishes and its slope is infinite (I + 1,)
+    levels: NDArray[np.int64]  # of ever smaller elements, where a chip vanishes (I + 1,)
     engaged: NDArray[np.int64]  # 1 in the cut (I,)
     turned: NDArray[np.float64]  # angle turned in the interval, rad (I,)
     period: float  # mean angle, rad
@@ -88,9 +93,19 @@ def _sort(places, marks):
         places[j], marks[j] = place, mark
 
 
+@njit(**INNER_KERNEL)
+def _levels_at(pieces, piece, place, immersion, depth):
+    """Levels of smaller elements towards a border; none where the slope of the law is finite."""
+    if pieces.exponent == 0.0 or not chip_vanishes(pieces, piece, place, immersion):
+        return 0
+    lag = abs(pieces.angle[piece, 1] - pieces.angle[piece, 0]) * depth / pieces.thickness[piece]
+    smeared = math.log(max(lag / _SMEARED, 1e-12)) / math.log(_RATIO)
+    return min(_MOST_LEVELS, max(1, 1 + math.ceil(smeared)))
+
+
 @njit(**SINGLE_KERNEL)
-def _border_angles(pieces, period, depth, angles, singular):
-    """Fill in borders in one period of the tool, in no order (rad), and 1 for each singular one.
+def _border_angles(pieces, period, depth, angles, levels):
+    """Fill in borders in one period of the tool, in no order (rad), and their levels.
 
     Returns their number.
     """
@@ -120,29 +135,27 @@ def _border_angles(pieces, period, depth, angles, singular):
                 at = arc[piece, 0] + s * (arc[piece, 1] - arc[piece, 0])
                 angle = at - place
                 angles[count] = angle - period * math.floor(angle / period)
-                singular[count] = 0
-                if pieces.exponent != 0.0 and chip_vanishes(pieces, piece, s, at):
-                    singular[count] = 1
+                levels[count] = _levels_at(pieces, piece, s, at, depth)
                 count += 1
     return count
 
 
 @njit(**SINGLE_KERNEL)
-def _distinct(angles, singular, count, period):
+def _distinct(angles, levels, count, period):
     """Sort borders, take equal ones together and return how many are left, one at the least."""
-    _sort(angles[:count], singular[:count])
+    _sort(angles[:count], levels[:count])
     kept = 0
     for i in range(count):
         if kept > 0 and angles[i] - angles[kept - 1] <= _SAME * period:
-            singular[kept - 1] = max(singular[kept - 1], singular[i])
+            levels[kept - 1] = max(levels[kept - 1], levels[i])
             continue
-        angles[kept], singular[kept] = angles[i], singular[i]
+        angles[kept], levels[kept] = angles[i], levels[i]
         kept += 1
     if kept > 1 and angles[0] + period - angles[kept - 1] <= _SAME * period:
         kept -= 1
-        singular[0] = max(singular[0], singular[kept])
+        levels[0] = max(levels[0], levels[kept])
     if kept == 0:
-        angles[0], singular[0], kept = 0.0, 0, 1
+        angles[0], levels[0], kept = 0.0, 0, 1
     return kept
 
 
@@ -181,9 +194,9 @@ def period_borders(pieces, tool_period, turn, depth):
     PeriodBorders
     """
     room = 4 * pieces.bottom.shape[0] + 1
-    angles, singular = np.empty(room), np.empty(room, dtype=np.int64)
-    count = _border_angles(pieces, tool_period, depth, angles, singular)
-    count = _distinct(angles, singular, count, tool_period)
+    angles, levels = np.empty(room), np.empty(room, dtype=np.int64)
+    count = _border_angles(pieces, tool_period, depth, angles, levels)
+    count = _distinct(angles, levels, count, tool_period)
     triangular = turn.triangle == 1 and turn.amplitude > 0.0
     n = turn.patterns * count
     room = n + 1 + (2 * turn.cycles if triangular else 0)
@@ -191,7 +204,7 @@ def period_borders(pieces, tool_period, turn, depth):
     for pattern in range(turn.patterns):
         for i in range(count):
             places[pattern * count + i] = time_at(turn, angles[i] + pattern * tool_period)
-            marks[pattern * count + i] = singular[i]
+            marks[pattern * count + i] = levels[i]
     period = turn.patterns * tool_period
     if triangular:
         n = _add_corners(turn, places, marks, n, period)
@@ -209,6 +222,12 @@ def period_borders(pieces, tool_period, turn, depth):
 
 
 @njit(**INNER_KERNEL)
+def speed_step(speed, step):
+    """Speed, at most the given one, out of steps of a power of two; rad/s."""
+    return 2.0 ** (step * math.floor(math.log2(speed) / step))
+
+
+@njit(**INNER_KERNEL)
 def empty_borders():
     """Borders before there are any."""
     whole = np.empty(0, dtype=np.int64)
@@ -219,6 +238,9 @@ def empty_borders():
 def element_counts(resolution, borders, speed, depth):
     """Elements (I,) that each interval needs at a mean speed (rad/s)."""
     counts = np.empty(borders.engaged.shape[0], dtype=np.int64)
+    if counts.shape[0] > _FEW_INTERVALS:
+        # one of so many would change its number at every speed, and no plan could be shared
+        speed = speed_step(speed, _STEP_OF_MANY)
     waves = math.sqrt(1.0 + resolution.stiffening * depth / resolution.fastest**2)
     for i in range(counts.shape[0]):
         span = (borders.place[i + 1] - borders.place[i]) / speed
@@ -241,11 +263,11 @@ def element_layout(borders, counts):
     -------
     ElementLayout
     """
-    place, marks, engaged = borders.place, borders.singular, borders.engaged
+    place, levels, engaged = borders.place, borders.levels, borders.engaged
     intervals = counts.shape[0]
     total = 0
     for i in range(intervals):
-        total += counts[i] + (2 * _LEVELS if engaged[i] == 1 else 0)
+        total += counts[i] + (levels[i] + levels[i + 1] if engaged[i] == 1 else 0)
     start, length = np.empty(total), np.empty(total)
     number = np.full(total, -1, dtype=np.int64)
     m, cuts = 0, 0
@@ -253,15 +275,15 @@ def element_layout(borders, counts):
         step = (place[i + 1] - place[i]) / counts[i]
         for k in range(counts[i]):
             low, high = place[i] + k * step, place[i] + (k + 1) * step
-            if engaged[i] == 1 and k == 0 and marks[i] == 1:
+            if engaged[i] == 1 and k == 0 and levels[i] > 0:
                 at = low
-                for level in range(_LEVELS, 0, -1):
+                for level in range(levels[i], 0, -1):
                     start[m], number[m] = at, cuts
                     length[m] = low + step * _RATIO**level - at
                     at += length[m]
                     m, cuts = m + 1, cuts + 1
                 low = at
-            graded = engaged[i] == 1 and k == counts[i] - 1 and marks[i + 1] == 1
+            graded = engaged[i] == 1 and k == counts[i] - 1 and levels[i + 1] > 0
             end = high - step * _RATIO if graded else high
             start[m], length[m] = low, end - low
             if engaged[i] == 1:
@@ -269,8 +291,10 @@ def element_layout(borders, counts):
                 cuts += 1
             m += 1
             if graded:
-                for level in range(1, _LEVELS + 1):
-                    at = high - step * _RATIO ** (level + 1) if level < _LEVELS else high
+                for level in range(1, levels[i + 1] + 1):
+                    at = high
+                    if level < levels[i + 1]:
+                        at -= step * _RATIO ** (level + 1)
                     start[m], number[m], length[m] = end, cuts, at - end
                     end = at
                     m, cuts = m + 1, cuts + 1

@@ -32,6 +32,7 @@ def followed_crossings(
     tolerance: float = 5e-3,
     stride: int = 8,
     progress: Progress = no_progress,
+    refined: Growth | None = None,
 ) -> list[NDArray[np.float64]]:
     """Depths of all changes of stability at each speed.
 
@@ -49,6 +50,8 @@ def followed_crossings(
         Every so many speeds make the coarse net; a power of two.
     progress : callable, optional
         Called with (done, total) speeds.
+    refined : callable, optional
+        Growth for the refinement of limits; `growth` by default.
 
     Returns
     -------
@@ -74,7 +77,7 @@ def followed_crossings(
         looked_at[between] = _widen(values, between, wanted, depths, growth)
         columns = np.sort(np.append(columns, between))
         progress(len(columns) - 1, speed_count)
-    return find_crossings(values, depths, growth, tolerance, looked_at)
+    return find_crossings(values, depths, growth, tolerance, looked_at, refined)
 
 
 def _look_at(

@@ -34,6 +34,51 @@ def growth(values: NDArray[np.complex128]) -> NDArray[np.float64]:
     return np.log(np.maximum(np.abs(values), 1e-30))
 
 
+class HeardPoints:
+    """Points near limits that have been heard, so that no limit is computed once more to hear it.
+
+    Parameters
+    ----------
+    at : callable
+        Multipliers and chatter frequencies at points.
+    """
+
+    #: a point stands for another at the same speed within this share of its depth
+    _NEAR = 1e-3
+
+    def __init__(self, at: Heard) -> None:
+        self._at = at
+        self._point = np.empty(0, dtype=np.int64)
+        self._depth, self._frequency = np.empty(0), np.empty(0)
+        self._value = np.empty(0, dtype=np.complex128)
+
+    def growth(self, point: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Growth at points, which are remembered."""
+        value, frequency = self._at(point, depth)
+        self._point, self._depth = np.append(self._point, point), np.append(self._depth, depth)
+        self._value = np.append(self._value, value)
+        self._frequency = np.append(self._frequency, frequency)
+        return growth(value)
+
+    def nearest(
+        self, point: NDArray[np.int64], depth: NDArray[np.float64]
+    ) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+        """Multipliers and chatter frequencies next to points, one to a speed."""
+        best = np.full(len(point), -1, dtype=np.int64)
+        distance = self._NEAR * depth
+        place = np.searchsorted(point, self._point)
+        for i, k in enumerate(place.tolist()):
+            if k < len(point) and point[k] == self._point[i]:
+                apart = abs(self._depth[i] - depth[k])
+                if apart <= distance[k]:
+                    best[k], distance[k] = i, apart
+        value, frequency = self._value[best], self._frequency[best]
+        unknown = np.flatnonzero(best < 0)
+        if unknown.size:
+            value[unknown], frequency[unknown] = self._at(point[unknown], depth[unknown])
+        return value, frequency
+
+
 def limit_curve_by(
     method: PointMethod,
     speeds: NDArray[np.float64],

@@ -25,6 +25,7 @@ from cutting.edge_coupling import (
     radius_at,
     share_of_height,
 )
+from cutting.edge_runs import change_along, crowd, points_along
 
 #: step lengths closer than this share are the same
 _SAME_LENGTH = 1e-9
@@ -154,21 +155,6 @@ def _add_source(border, step, time, earlier, rate, coupling, sources, count, now
 
 
 @njit(**KERNEL)
-def _points_along(cut, piece, span, speed):
-    """Points of the quadrature along a part of a piece."""
-    pieces = cut.pieces
-    turned = abs(pieces.angle[piece, 1] - pieces.angle[piece, 0]) * span
-    bend = abs(pieces.immersion[piece, 1] - pieces.immersion[piece, 0]) * span
-    shift = abs(pieces.delay[piece, 1] - pieces.delay[piece, 0]) * span
-    if turned + bend + shift < 1e-9:
-        return 1
-    if pieces.exponent != 0.0:
-        return 16
-    waves = shift / speed * cut.fastest / (2.0 * math.pi)
-    return min(16, 2 + math.ceil(2.5 * (turned + bend) + 5.0 * waves))
-
-
-@njit(**KERNEL)
 def _add_contact(cut, share, stiffness, dashpot):
     """Add the contact of tool and work in the plane of the cut, alike in both directions."""
     rank = stiffness.shape[0]
@@ -205,13 +191,11 @@ def _couple(cut, turn, depth, border, step, time, speed_factor, rate, sources, c
             in_contact += pieces.thickness[piece] * (
                 share_of_height(pieces, piece, high) - share_of_height(pieces, piece, low)
             )
-            points = _points_along(cut, piece, high - low, speed)
+            waves = cut.fastest / (2.0 * math.pi * speed)
+            extent = change_along(pieces, piece, waves) * (high - low)
+            points, crowded = points_along(pieces, piece, piece, low, high, extent, spindle)
             for q in range(points):
-                x, share = cut.edge_place[points, q], cut.edge_weight[points, q]
-                if pieces.exponent != 0.0 and points > 1:
-                    # dense towards both ends, where the chip may vanish
-                    share *= 30.0 * (x * (1.0 - x)) ** 2
-                    x = x * x * x * (10.0 - 15.0 * x + 6.0 * x * x)
+                x, share = crowd(cut.edge_place[points, q], cut.edge_weight[points, q], crowded)
                 place = low + x * (high - low)
                 length = share * (high - low) * pieces.length[piece]
                 coupling_at(
