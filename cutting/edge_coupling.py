@@ -11,7 +11,7 @@ from numba.extending import register_jitable
 
 _TURN = 2.0 * math.pi
 #: a call would count the references to every array of the table
-INLINED = {"error_model": "numpy", "forceinline": True}
+INLINED = {"error_model": "numpy", "forceinline": True, "_nrt": False}
 #: Newton steps to the place at which an edge on a corner crosses the border of its arc
 _PLACE_STEPS = 6
 

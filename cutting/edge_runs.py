@@ -11,7 +11,7 @@ from numba.extending import register_jitable
 
 from cutting.edge_coupling import INLINED, chip_at, engaged_span, share_of_height
 
-TURN = 2.0 * math.pi
+_TURN = 2.0 * math.pi
 #: Gauss points that a table of quadratures goes up to
 MOST_POINTS = 16
 #: a run turns, bends and shifts by no more than this, rad
@@ -22,25 +22,49 @@ _SHORT_RUN = 0.15
 _WHOLE = 1.0 - 1e-12
 #: digits (as a power of e) to which a power of the chip is integrated
 _CHIP_DIGITS = 15.0
-#: more points than this are spent better on crowding them towards the ends
-_MOST_POINTS_OF_CHIP = 11
+#: more points than this are spent better on crowding them towards an end
+_MOST_POINTS_OF_CHIP = 6
+#: points by which a run takes more where they crowd
+_FOR_CROWDING = 6
+#: ends of a run at which the chip vanishes
+NO_END, LOW_END, HIGH_END, BOTH_ENDS = 0, 1, 2, 3
 
 
 @register_jitable(**INLINED)
-def turns_of_chain(pieces, tops, chain):
-    """Spindle angle at which a chain can first be in the cut, and last, for no turn taken off.
+def reach_of_piece(pieces, tops, piece, reach):
+    """Set reach (4,) to the spindle angles, rad, between which a piece is in the cut.
 
-    The first above the second where none of it lies below the depth of cut.
+    Outside the first and the last nothing of it is, between the second and the third all of it.
     """
+    a, b = pieces.angle[piece, 0], pieces.angle[piece, 1]
+    entry, leave = pieces.entry[piece], pieces.exit[piece]
+    reach[0] = min(entry[0], entry[1]) - max(a, b)
+    reach[1] = max(entry[0], entry[1]) - min(a, b)
+    reach[2] = min(leave[0], leave[1]) - max(a, b)
+    reach[3] = max(leave[0], leave[1]) - min(a, b)
+    if tops[piece] <= 0.0:
+        reach[0], reach[3] = 1e3, -1e3
+
+
+@register_jitable(**INLINED)
+def turns_of_chain(pieces, reach, chain, spindle):
+    """Turns by which a chain may have to be turned back to be in the cut, first and last."""
     early, late = 1e3, -1e3
     for piece in range(pieces.chain[chain], pieces.chain[chain + 1]):
-        if tops[piece] <= 0.0:
-            continue
-        a = pieces.angle[piece, 0]
-        b = a + tops[piece] * (pieces.angle[piece, 1] - a)
-        early = min(early, min(pieces.entry[piece, 0], pieces.entry[piece, 1]) - max(a, b))
-        late = max(late, max(pieces.exit[piece, 0], pieces.exit[piece, 1]) - min(a, b))
-    return early, late
+        early, late = min(early, reach[piece, 0]), max(late, reach[piece, 3])
+    first = math.ceil((spindle - late) / _TURN - 1e-12)
+    return first, math.floor((spindle - early) / _TURN + 1e-12)
+
+
+@register_jitable(**INLINED)
+def _span(pieces, tops, reach, piece, spindle, back):
+    """Part of a piece that is in the cut, as `engaged_span` gives it."""
+    turned = spindle - _TURN * back
+    if turned <= reach[piece, 0] or turned >= reach[piece, 3]:
+        return 1.0, 0.0
+    if reach[piece, 1] < turned < reach[piece, 2]:
+        return 0.0, tops[piece]
+    return engaged_span(pieces, piece, tops[piece], spindle, back)
 
 
 @register_jitable(**INLINED)
@@ -55,7 +79,7 @@ def change_along(pieces, piece, elements):
 
 
 @register_jitable(**INLINED)
-def run_from(pieces, tops, piece, end, spindle, back, elements):
+def run_from(pieces, tops, reach, piece, end, spindle, back, elements):
     """Run of pieces in the cut that begins in a piece, or none.
 
     Parameters
@@ -63,6 +87,8 @@ def run_from(pieces, tops, piece, end, spindle, back, elements):
     pieces : EdgePieces
     tops : (P,) array of float
         Part of each piece below the depth of cut.
+    reach : (P, 4) array of float
+        See `reach_of_piece`.
     piece, end : int
         First piece, and that beyond the last of its chain.
     spindle : float
@@ -81,15 +107,13 @@ def run_from(pieces, tops, piece, end, spindle, back, elements):
     change : float
         By which the run turns, bends and shifts.
     """
-    last, change = piece, change_along(pieces, piece, elements)
-    if tops[piece] <= 0.0:
-        return piece - 1, 0.0, 0.0, 0.0
-    low, high = engaged_span(pieces, piece, tops[piece], spindle, back)
+    last = piece
+    low, high = _span(pieces, tops, reach, piece, spindle, back)
     if low >= high:
         return piece - 1, 0.0, 0.0, 0.0
-    change *= high - low
-    while high >= _WHOLE and last + 1 < end and tops[last + 1] > 0.0:
-        below, above = engaged_span(pieces, last + 1, tops[last + 1], spindle, back)
+    change = change_along(pieces, piece, elements) * (high - low)
+    while high >= _WHOLE and last + 1 < end:
+        below, above = _span(pieces, tops, reach, last + 1, spindle, back)
         longer = change + change_along(pieces, last + 1, elements)
         if below > 0.0 or above <= 0.0 or longer > _LONGEST_RUN:
             break
@@ -115,34 +139,43 @@ def points_along(pieces, piece, last, low, high, change, spindle):
     Returns
     -------
     points : int
-    crowded : bool
-        Whether the points are to crowd towards the ends, where the chip vanishes.
+    ends : int
+        Ends towards which the points are to crowd, because the chip vanishes there.
     """
     if change < 1e-9 and pieces.group[piece] >= 0:
-        return 1, False
+        return 1, NO_END
     points = 2
     if change > _SHORT_RUN:
         points = min(MOST_POINTS, 2 + math.ceil(2.5 * change))
     if pieces.exponent == 0.0:
-        return points, False
+        return points, NO_END
     one = max(_chip_at_place(pieces, piece, low, spindle), 0.0)
     other = max(_chip_at_place(pieces, last, high, spindle), 0.0)
     root = math.sqrt(min(one, other) / max(one, other, 1e-300))
     # a singularity at the distance x from the middle of [-1, 1]: errors fall as (x + sqrt(x^2-1))
     # to the power -2 n (Trefethen 2008, SIAM Rev. 50, Theorem 4.5)
     rate = math.log((1.0 + root) / max(1.0 - root, 1e-12))
-    if 2.0 * _MOST_POINTS_OF_CHIP * rate < _CHIP_DIGITS:
-        return MOST_POINTS, True
-    return max(points, math.ceil(0.5 * _CHIP_DIGITS / rate)), False
+    if 2.0 * _MOST_POINTS_OF_CHIP * rate >= _CHIP_DIGITS:
+        return max(points, math.ceil(0.5 * _CHIP_DIGITS / rate)), NO_END
+    middle = _chip_at_place(pieces, (piece + last) // 2, 0.5 * (low + high), spindle)
+    if max(one, other) < 0.5 * middle:
+        return MOST_POINTS, BOTH_ENDS
+    return min(MOST_POINTS, points + _FOR_CROWDING), LOW_END if one < other else HIGH_END
 
 
 @register_jitable(**INLINED)
-def crowd(place, weight, crowded):
-    """Place and weight on [0, 1], drawn towards both ends where wanted."""
-    if not crowded:
+def crowd(place, weight, ends):
+    """Place and weight on [0, 1], drawn towards the ends at which the chip vanishes."""
+    if ends == NO_END:
         return place, weight
-    weight *= 30.0 * (place * (1.0 - place)) ** 2
-    return place * place * place * (10.0 - 15.0 * place + 6.0 * place * place), weight
+    if ends == BOTH_ENDS:
+        weight *= 30.0 * (place * (1.0 - place)) ** 2
+        return place * place * place * (10.0 - 15.0 * place + 6.0 * place * place), weight
+    away = place if ends == LOW_END else 1.0 - place
+    # a fourth power: what is left of a chip to any power vanishes smoothly
+    weight *= 4.0 * away * away * away
+    away *= away * away * away
+    return away if ends == LOW_END else 1.0 - away, weight
 
 
 @register_jitable(**INLINED)

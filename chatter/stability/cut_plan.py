@@ -34,11 +34,11 @@ from chatter.stability.spindle_turn import (
 )
 from cutting.edge_coupling import coupling_at, part_below, radius_at, share_of_height
 from cutting.edge_runs import (
-    TURN,
     crowd,
     length_of_run,
     place_in_run,
     points_along,
+    reach_of_piece,
     run_from,
     turns_of_chain,
 )
@@ -55,6 +55,7 @@ class _Sources(NamedTuple):
     element: NDArray[np.int64]
     point: NDArray[np.int64]
     block: NDArray[np.float64]  # N/m (sources, r, (p + 1) r)
+    share: NDArray[np.float64]  # of each point of an element in a place (p + 1,), scratch
 
 
 class _EdgeRule(NamedTuple):
@@ -70,7 +71,10 @@ class _EdgeRule(NamedTuple):
 def _empty_sources(count, rank, width):
     """Room for sources."""
     whole = np.empty(count, dtype=np.int64)
-    return _Sources(whole, np.empty(count, dtype=np.int64), np.empty((count, rank, width)))
+    return _Sources(
+        whole, np.empty(count, dtype=np.int64), np.empty((count, rank, width)),
+        np.empty(width // rank),
+    )  # fmt: skip
 
 
 @njit(**INNER_KERNEL)
@@ -104,16 +108,16 @@ def _add_source(points, sources, at, place, couplings, which):
         distance = place - points.place[q]
         if abs(distance) < _SAME_POINT:
             near = q
-        else:
-            total += points.barycentric[q] / distance
+            distance = _SAME_POINT
+        sources.share[q] = points.barycentric[q] / distance
+        total += sources.share[q]
     for q in range(count):
-        share = 1.0 if near == q else 0.0
-        if near < 0:
-            share = points.barycentric[q] / (place - points.place[q]) / total
-        if share != 0.0:
-            for i in range(rank):
-                for j in range(rank):
-                    sources.block[at, i, q * rank + j] += share * couplings[which, i, j]
+        share = sources.share[q] / total
+        if near >= 0:
+            share = 1.0 if near == q else 0.0
+        for i in range(rank):
+            for j in range(rank):
+                sources.block[at, i, q * rank + j] += share * couplings[which, i, j]
     # -2: nothing there as yet
     known = sources.point[at]
     sources.point[at] = near if known in (-2, near) else -1
@@ -149,23 +153,22 @@ def _couple(
     count = first_source
     spindle, turning = angle_at(turn, angle), speed_at(turn, angle)
     elements = 1.0 / (rule.speed * turning * rule.longest)
-    for chain in range(reach.shape[0]):
-        first = math.ceil((spindle - reach[chain, 1]) / TURN - 1e-12)
-        last = math.floor((spindle - reach[chain, 0]) / TURN + 1e-12)
+    for chain in range(pieces.chain.shape[0] - 1):
+        first, last = turns_of_chain(pieces, reach, chain, spindle)
         for back in range(first, last + 1):
             piece, end = pieces.chain[chain], pieces.chain[chain + 1]
             while piece < end:
                 final, low, high, change = run_from(
-                    pieces, tops, piece, end, spindle, back, elements
+                    pieces, tops, reach, piece, end, spindle, back, elements
                 )
                 if final < piece:
                     piece += 1
                     continue
-                order, crowded = points_along(pieces, piece, final, low, high, change, spindle)
+                order, ends = points_along(pieces, piece, final, low, high, change, spindle)
                 length = length_of_run(pieces, piece, final, low, high)
                 at, start = piece, -low * pieces.length[piece]
                 for q in range(order):
-                    x, share = crowd(rule.place[order, q], rule.weight[order, q], crowded)
+                    x, share = crowd(rule.place[order, q], rule.weight[order, q], ends)
                     at, place, start = place_in_run(pieces, at, final, start, x * length)
                     coupling_at(
                         pieces, at, place, spindle, share * length, speed_factor / turning, basis,
@@ -228,14 +231,18 @@ def cut_plan(cut, turn, layout, speed, depth):
     cuts = layout.cut_start.shape[0]
     rows = cuts * count_a_element
     tops = np.empty(pieces.bottom.shape[0])
-    most = pieces.group_delay.shape[0]
+    longest = 0.0
     for piece in range(tops.shape[0]):
         tops[piece] = part_below(pieces, piece, depth)
         if tops[piece] > 0.0 and pieces.group[piece] < 0:
-            most += 2 * cut.edge_place.shape[1]
-    reach = np.empty((pieces.chain.shape[0] - 1, 2))
-    for chain in range(reach.shape[0]):
-        reach[chain, 0], reach[chain, 1] = turns_of_chain(pieces, tops, chain)
+            longest = max(longest, max(pieces.delay[piece, 0], pieces.delay[piece, 1]))
+    # a delay that varies along the edge reaches into no more elements than there are that far back
+    most = pieces.group_delay.shape[0]
+    if longest > 0.0:
+        most += cuts * (2 + math.ceil(2.0 * longest / layout.period))
+    reach = np.empty((tops.shape[0], 4))
+    for piece in range(tops.shape[0]):
+        reach_of_piece(pieces, tops, piece, reach[piece])
     sources = _empty_sources(rows + most, rank, (count_a_element + 1) * rank)
     stiffness, dashpot = np.zeros((rows, rank, rank)), np.zeros((rows, rank, rank))
     groups = np.empty((pieces.group_delay.shape[0] + 1, rank, rank))

@@ -193,9 +193,9 @@ def _couple(cut, turn, depth, border, step, time, speed_factor, rate, sources, c
             )
             waves = cut.fastest / (2.0 * math.pi * speed)
             extent = change_along(pieces, piece, waves) * (high - low)
-            points, crowded = points_along(pieces, piece, piece, low, high, extent, spindle)
+            points, ends = points_along(pieces, piece, piece, low, high, extent, spindle)
             for q in range(points):
-                x, share = crowd(cut.edge_place[points, q], cut.edge_weight[points, q], crowded)
+                x, share = crowd(cut.edge_place[points, q], cut.edge_weight[points, q], ends)
                 place = low + x * (high - low)
                 length = share * (high - low) * pieces.length[piece]
                 coupling_at(
