@@ -198,7 +198,7 @@ class _Cut:
         return terms, dashpot
 
     def _ends(self):
-        """Arc lengths of tip, top, and where the edge first meets the stock or leaves a full slot."""
+        """Arc lengths of tip, top, and where the edge meets the stock or leaves a full slot."""
         near = 1e-9 * self.edge.length
         ends = [near, self.edge.length - near]
         reach = abs(self.edge.radius - self.cut.radial_depth)
@@ -211,7 +211,7 @@ class _Cut:
         return ends
 
     def border_angles(self, samples=1440):
-        """Spindle angles in a turn at which tip or top changes what it does, or the pattern does."""
+        """Spindle angles in a turn at which tip, top or the pattern of passes changes."""
         angles = []
         grid = np.linspace(0.0, _TURN, samples + 1) + 1e-4
         for tooth in range(self.cut.teeth):
@@ -343,8 +343,10 @@ def multipliers(cut, nodes=10, waves=0.5, longest_angle=0.6, samples=160):
         count = math.ceil((right - left) / longest - SAME)
         inner = np.linspace(left, right, count + 1)
         if cut.exponent < 1.0:
-            # where the chip vanishes the slope of a size effect grows without bound
-            share = (right - left) / count * 0.15 ** np.arange(5, 0, -1)
+            # where the chip vanishes the slope of a size effect grows without bound, that of an
+            # upright edge in time too
+            levels = 5 if any(cut.helix) else 9
+            share = (right - left) / count * 0.15 ** np.arange(levels, 0, -1)
             inner = np.sort(np.concatenate([inner, left + share, right - share]))
         edges += list(inner[1:])
     operator = _monodromy(state, inside, spindle, np.array(edges), GaussPolynomial(nodes))
