@@ -370,16 +370,15 @@ def _turning(rows: list[tuple], owners: list[tuple[int, int, int]]) -> NDArray[n
     """Mark the ends (P, 2) of pieces at which an edge first meets the stock, or last leaves it.
 
     There the spindle angle of entry or exit turns round along the edge, or the edge ends, or it
-    is no more cut all around.
+    is no more cut all around, or the surface of one earlier pass gives way to that of another.
     """
     marks = np.zeros((len(rows), 2), dtype=np.int64)
     place = {owner: i for i, owner in enumerate(owners)}
-    there = {owner[:2] for owner in owners}
     for owner, i in place.items():
         piece, tooth, other = owner
-        marks[i, 0] |= piece > 0 and (piece - 1, tooth) not in there
-        marks[i, 1] |= (piece + 1, tooth) not in there
         following = place.get((piece + 1, tooth, other))
+        marks[i, 0] |= piece > 0 and (piece - 1, tooth, other) not in place
+        marks[i, 1] |= following is None
         if following is None:
             continue
         for arc, end in ((4, 0.0), (5, math.pi)):
