@@ -186,7 +186,8 @@ def make(path=STORE, count=COUNT, seed=SEED):
             continue
         rows.append({"cut": asdict(cut), "spectral_radius": found[0], "change": found[1]})
         print(len(rows), *found, flush=True)
-        path.write_text(json.dumps({"seed": seed, "cases": rows}) + "\n", "utf-8")
+        lines = ",\n".join(json.dumps(row) for row in rows)
+        path.write_text(f'{{"seed": {seed}, "cases": [\n{lines}\n]}}\n', "utf-8")
 
 
 if __name__ == "__main__":
