@@ -37,8 +37,8 @@ _STEP_OF_MANY = 0.25
 #: levels and ratio of the elements towards a singular place
 _LEVELS = 5
 _RATIO = 0.16
-#: the coupling of an upright edge itself is infinite there: the last element, raised to the exponent
-#: of the law, is as short as the ratio raised to this; beyond the most, rounding would eat it
+#: the coupling of an upright edge itself is infinite there: the last element, raised to the
+#: exponent of the law, is as short as the ratio raised to this; beyond the most, rounding eats it
 _UPRIGHT_LEVELS, _MOST_LEVELS = 5.0, 9
 #: an edge that trails by this much from tip to top smears what is singular over an element, rad
 _SMEARED = 0.9
