@@ -37,6 +37,8 @@ _PIECES_A_WAVE = 24
 #: with a size effect a chain on a corner ends where its inclination has grown by this factor: at
 #: the tip the slope of the force law is infinite
 _CHAIN_GROWTH = 3.0
+#: shapes of the columns of a table of no pieces
+_NO_PIECES = (0, 0, 0, (0, 2), (0, 2), (0, 2), (0, 2), (0, 2), (0, 2), (0, 3), (0, 2), 0, 0)
 #: arcs shorter than this are none, rad
 _SHORTEST_ARC = 1e-9
 
@@ -79,21 +81,45 @@ class _Line(NamedTuple):
     length: NDArray[np.float64]  # (L,)
 
 
+def _radii_of_even_arcs(
+    cutter: Cutter, mode: MillingMode, radial_depth: float, turn: float
+) -> NDArray[np.float64]:
+    """Radii at which the arc has grown by even steps, from none to half a turn.
+
+    Where the edge first meets the stock its arc grows steeply, and again where it is no more cut
+    all around.
+    """
+    reach = cutter.radius - radial_depth
+    if mode == "slot" or abs(reach) >= cutter.radius:
+        return np.empty(0)
+    arcs = np.linspace(0.0, math.pi, math.ceil(math.pi / turn) + 1)
+    with np.errstate(divide="ignore"):
+        radius = reach / np.cos(arcs)
+    return radius[radius > 0.0]
+
+
+def _cone_heights(
+    cutter: Cutter, mode: MillingMode, radial_depth: float, turn: float
+) -> list[float]:
+    """Heights of even arcs on a cone on which the edge first meets the stock."""
+    top, slope = corner_height(cutter), math.tan(cutter.edge_angle)
+    start = cutter.radius - cutter.corner_radius * (1.0 - math.sin(cutter.edge_angle))
+    if abs(cutter.radius - radial_depth) <= start:
+        return []
+    radius = _radii_of_even_arcs(cutter, mode, radial_depth, turn)
+    return list(top + (radius[radius > start] - start) * slope)
+
+
 def _corner_angles(
     cutter: Cutter, mode: MillingMode, radial_depth: float, turn: float
 ) -> NDArray[np.float64]:
     """Immersion angles of the piece borders within the corner, rad."""
     count = max(1, math.ceil(cutter.edge_angle / turn))
     angles = np.linspace(0.0, cutter.edge_angle, count + 1)
-    reach = cutter.radius - radial_depth
-    if mode != "slot" and abs(reach) < cutter.radius:
-        # where the edge first meets the stock its arc grows steeply: borders even in the arc
-        arcs = np.linspace(0.0, math.pi, math.ceil(math.pi / turn) + 1)
-        with np.errstate(divide="ignore"):
-            radius = reach / np.cos(arcs)
-        sine = (radius - cutter.radius + cutter.corner_radius) / cutter.corner_radius
-        inside = (sine > 0.0) & (sine < math.sin(cutter.edge_angle)) & (radius > 0.0)
-        angles = np.append(angles, np.arcsin(sine[inside]))
+    radius = _radii_of_even_arcs(cutter, mode, radial_depth, turn)
+    sine = (radius - cutter.radius + cutter.corner_radius) / cutter.corner_radius
+    inside = (sine > 0.0) & (sine < math.sin(cutter.edge_angle))
+    angles = np.append(angles, np.arcsin(sine[inside]))
     angles = np.sort(angles)
     return angles[np.append(True, np.diff(angles) > 1e-6)]
 
@@ -151,7 +177,12 @@ def crossing_heights(cutter: Cutter, deepest: float) -> list[float]:
 
 
 def _borders_of_straight(
-    cutter: Cutter, deepest: float, own_passes: bool, fineness: float
+    cutter: Cutter,
+    deepest: float,
+    mode: MillingMode,
+    radial_depth: float,
+    own_passes: bool,
+    fineness: float,
 ) -> list[float]:
     heights = crossing_heights(cutter, deepest)
     several = len(set(cutter.helix)) > 1
@@ -165,6 +196,7 @@ def _borders_of_straight(
         rate = 1.0 / math.tan(cutter.edge_angle) / cutter.radius
         turn = _PIECE_LAG_OF_PASSES if own_passes else _PIECE_LAG
         heights += _even_heights(fineness * turn / max(rate, slope), deepest)
+        heights += _cone_heights(cutter, mode, radial_depth, fineness * _PIECE_TURN)
     return heights
 
 
@@ -246,7 +278,7 @@ def edge_pieces(
     """
     wave = cutter.serration is not None
     own_passes = wave or np.ptp(cutter.radial_offsets) > 0.0 or np.ptp(cutter.axial_offsets) > 0.0
-    heights = _borders_of_straight(cutter, deepest, own_passes, fineness)
+    heights = _borders_of_straight(cutter, deepest, mode, radial_depth, own_passes, fineness)
     line = _line(cutter, deepest, mode, radial_depth, heights, fineness)
     lag = np.tan(np.asarray(cutter.helix)) / cutter.radius
     rows: list[tuple] = []
@@ -337,19 +369,21 @@ def _chains(
 def _turning(rows: list[tuple], owners: list[tuple[int, int, int]]) -> NDArray[np.int64]:
     """Mark the ends (P, 2) of pieces at which an edge first meets the stock, or last leaves it.
 
-    There the spindle angle of entry or exit turns round along the edge, or the edge ends.
+    There the spindle angle of entry or exit turns round along the edge, or the edge ends, or it
+    is no more cut all around, or the surface of one earlier pass gives way to that of another.
     """
     marks = np.zeros((len(rows), 2), dtype=np.int64)
     place = {owner: i for i, owner in enumerate(owners)}
-    there = {owner[:2] for owner in owners}
     for owner, i in place.items():
         piece, tooth, other = owner
-        marks[i, 0] |= piece > 0 and (piece - 1, tooth) not in there
-        marks[i, 1] |= (piece + 1, tooth) not in there
         following = place.get((piece + 1, tooth, other))
+        marks[i, 0] |= piece > 0 and (piece - 1, tooth, other) not in place
+        marks[i, 1] |= following is None
         if following is None:
             continue
-        for arc in (4, 5):
+        for arc, end in ((4, 0.0), (5, math.pi)):
+            whole = [bool(np.all(np.asarray(rows[k][arc]) == end)) for k in (i, following)]
+            marks[i, 1] |= whole[0] and not whole[1]
             rises = [np.diff(np.asarray(rows[k][arc]) - rows[k][3])[0] for k in (i, following)]
             marks[i, 1] |= rises[0] * rises[1] < 0.0
     return marks
@@ -388,7 +422,8 @@ def _as_arrays(
     count = len(rows)
     columns = [np.array(column, dtype=np.float64) for column in zip(*rows, strict=True)]
     if count == 0:
-        columns = [np.zeros((0, 2))] * 13
+        # the edge does not reach the stock; the shapes are those of one piece
+        columns = [np.zeros(shape) for shape in _NO_PIECES]
     delay = columns[6]
     constant = np.abs(delay[:, 0] - delay[:, 1]) < 1e-12 if count else np.zeros(0, dtype=bool)
     groups: list[float] = []

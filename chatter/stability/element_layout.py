@@ -35,8 +35,11 @@ _LOOKS = (0.5, 0.02, 0.98)
 _FEW_INTERVALS = 12
 _STEP_OF_MANY = 0.25
 #: levels and ratio of the elements towards a singular place
-_MOST_LEVELS = 5
+_LEVELS = 5
 _RATIO = 0.16
+#: the coupling of an upright edge itself is infinite there: the last element, raised to the
+#: exponent of the law, is as short as the ratio raised to this; beyond the most, rounding eats it
+_UPRIGHT_LEVELS, _MOST_LEVELS = 5.0, 9
 #: an edge that trails by this much from tip to top smears what is singular over an element, rad
 _SMEARED = 0.9
 
@@ -100,7 +103,11 @@ def _levels_at(pieces, piece, place, immersion, depth):
         return 0
     lag = abs(pieces.angle[piece, 1] - pieces.angle[piece, 0]) * depth / pieces.thickness[piece]
     smeared = math.log(max(lag / _SMEARED, 1e-12)) / math.log(_RATIO)
-    return min(_MOST_LEVELS, max(1, 1 + math.ceil(smeared)))
+    most = _LEVELS
+    if lag == 0.0:
+        upright = math.ceil(_UPRIGHT_LEVELS / (1.0 + pieces.exponent))
+        most = min(_MOST_LEVELS, max(_LEVELS, upright))
+    return min(most, max(1, 1 + math.ceil(smeared)))
 
 
 @njit(**SINGLE_KERNEL)

@@ -4,7 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from reference.general_cases import STORE, case_dict, load
+from reference import dense_cases
+from reference.dense_cases import case_dict
+from reference.general_cases import STORE, load
 from reference.general_cut import GeneralCut, spectral_radius
 
 from chatter.case import Case
@@ -17,6 +19,8 @@ CASES = load()
 #: drawn with another seed when the code stood; four of them showed faults of the edge pieces
 #: (corners, first contact within an edge, flutes of different helix with runout) that were mended
 UNSEEN = load(STORE.with_name("general_cases_unseen.json"))
+#: three to seven features at once in each
+DENSE = load(dense_cases.STORE)
 RPM = math.pi / 30.0
 X = ((922.0, 0.011, 0.03993, (1.0, 0.0, 0.0)),)
 
@@ -77,7 +81,21 @@ def test_the_cases_are_varied():
     assert sum(cut.variation is not None for cut in cuts) > 2
 
 
-@pytest.mark.parametrize("cases", [CASES, UNSEEN], ids=["seen", "unseen"])
+def test_many_features_act_at_once_in_the_dense_cases():
+    present = [set(dense_cases.features(cut)) for cut, _ in DENSE]
+    assert len(present) >= 50
+    assert min(map(len, present)) >= 3
+    assert sum(len(there) >= 5 for there in present) > 8
+    for name, at_least in {
+        "corner": 25, "cone": 8, "pitch": 25, "helices": 20, "runout": 25, "exponent": 12,
+        "damping": 15, "variation": 5,
+    }.items():  # fmt: skip
+        assert sum(name in there for there in present) >= at_least, name
+    assert sum({"corner", "runout", "exponent"} <= there for there in present) >= 3
+    assert sum({"corner", "cone"} <= there for there in present) >= 3
+
+
+@pytest.mark.parametrize("cases", [CASES, UNSEEN, DENSE], ids=["seen", "unseen", "dense"])
 def test_spectral_radius_of_random_cases_of_any_tool(cases):
     errors = []
     for cut, expected in cases:

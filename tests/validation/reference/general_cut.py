@@ -147,7 +147,7 @@ class _Cut:
         return np.where(inside, chip, -1.0), ahead, phi, kappa
 
     def active(self, tooth, s, spindle):
-        """Pass that left the surface, -1 where there is no cut."""
+        """Pass that left the surface, -1 where there is no cut, at many places or angles."""
         chip = self.chips(tooth, np.atleast_1d(s), spindle)[0]
         least = np.argmin(chip, axis=0)
         return np.where(chip[least, np.arange(chip.shape[1])] > 0.0, least, -1)
@@ -155,16 +155,13 @@ class _Cut:
     def stretches(self, tooth, spindle):
         """(pass, from, to) of the stretches in the cut along an edge."""
         found = self.active(tooth, self.grid, spindle)
-        cuts = [0.0]
-        for i in np.flatnonzero(found[1:] != found[:-1]):
-            low, high = self.grid[i], self.grid[i + 1]
-            for _ in range(46):
-                middle = 0.5 * (low + high)
-                if self.active(tooth, middle, spindle)[0] == found[i]:
-                    low = middle
-                else:
-                    high = middle
-            cuts.append(0.5 * (low + high))
+        changes = np.flatnonzero(found[1:] != found[:-1])
+        low, high = self.grid[changes], self.grid[changes + 1]
+        for _ in range(46 if changes.size else 0):
+            middle = 0.5 * (low + high)
+            same = self.active(tooth, middle, spindle) == found[changes]
+            low, high = np.where(same, middle, low), np.where(same, high, middle)
+        cuts = [0.0, *(0.5 * (low + high))]
         # the profile has a kink where the corner ends
         cuts = sorted([*cuts, self.edge.on_corner, self.edge.length])
         for low, high in itertools.pairwise(cuts):
@@ -201,10 +198,10 @@ class _Cut:
         return terms, dashpot
 
     def _ends(self):
-        """Arc lengths of tip, top, and of what of the edge first meets the stock."""
+        """Arc lengths of tip, top, and where the edge meets the stock or leaves a full slot."""
         near = 1e-9 * self.edge.length
         ends = [near, self.edge.length - near]
-        reach = self.edge.radius - self.cut.radial_depth
+        reach = abs(self.edge.radius - self.cut.radial_depth)
 
         def short(s):
             return float(self.edge.at(np.array([s]))[1][0]) - reach
@@ -214,24 +211,47 @@ class _Cut:
         return ends
 
     def border_angles(self, samples=1440):
-        """Spindle angles in a turn at which tip or top changes what it does."""
+        """Spindle angles in a turn at which tip, top or the pattern of passes changes."""
         angles = []
         grid = np.linspace(0.0, _TURN, samples + 1) + 1e-4
         for tooth in range(self.cut.teeth):
             for s in self._ends():
-                found = [self.active(tooth, s, angle)[0] for angle in grid]
-                for i in range(samples):
-                    if found[i] == found[i + 1]:
-                        continue
-                    low, high = grid[i], grid[i + 1]
-                    for _ in range(44):
-                        middle = 0.5 * (low + high)
-                        if self.active(tooth, s, middle)[0] == found[i]:
-                            low = middle
-                        else:
-                            high = middle
-                    angles.append(0.5 * (low + high) % _TURN)
+                found = self.active(tooth, s, grid)
+                changes = np.flatnonzero(found[1:] != found[:-1])
+                low, high = grid[changes], grid[changes + 1]
+                for _ in range(44):
+                    middle = 0.5 * (low + high)
+                    same = self.active(tooth, s, middle) == found[changes]
+                    low, high = np.where(same, middle, low), np.where(same, high, middle)
+                angles += list(0.5 * (low + high) % _TURN)
+        for angle in self._changes_of_pattern(samples // 2):
+            if not angles or np.min(np.abs(np.array(angles) - angle)) > 1e-6:
+                angles.append(angle)
         return np.array(sorted(angles))
+
+    def _pattern(self, tooth, spindle):
+        """Passes that follow each other along an edge, and that at the end of the corner."""
+        found = self.active(tooth, self.grid, spindle)
+        kept = np.append(True, found[1:] != found[:-1])
+        corner = self.active(tooth, self.edge.on_corner, spindle)
+        return (*found[kept], *corner)
+
+    def _changes_of_pattern(self, samples):
+        """Spindle angles in a turn at which a stretch within an edge comes, goes or passes on."""
+        grid = np.linspace(0.0, _TURN, samples + 1) + 1e-4
+        for tooth in range(self.cut.teeth):
+            found = [self._pattern(tooth, angle) for angle in grid]
+            for i in range(samples):
+                low, high = grid[i], grid[i + 1]
+                if found[i] == found[i + 1]:
+                    continue
+                for _ in range(36):
+                    middle = 0.5 * (low + high)
+                    if self._pattern(tooth, middle) == found[i]:
+                        low = middle
+                    else:
+                        high = middle
+                yield 0.5 * (low + high) % _TURN
 
 
 def _directions(phi, kappa, coefficients):
@@ -299,10 +319,13 @@ def _merged(marks, period):
     return [*edges, period]
 
 
-def multipliers(cut, nodes=10, waves=0.5, longest_angle=0.6):
-    """Return the largest Floquet multipliers over a period: a turn, or that of the variation."""
+def multipliers(cut, nodes=10, waves=0.5, longest_angle=0.6, samples=160):
+    """Return the largest Floquet multipliers over a period: a turn, or that of the variation.
+
+    A stretch of the edge shorter than its length over `samples` may be overlooked.
+    """
     state = _StateSpace(cut)
-    inside, spindle = _Cut(cut), _Spindle(cut)
+    inside, spindle = _Cut(cut, samples), _Spindle(cut)
     angles = inside.border_angles()
     marks = [
         spindle.time(angle + _TURN * turn) for turn in range(spindle.turns) for angle in angles
@@ -320,8 +343,10 @@ def multipliers(cut, nodes=10, waves=0.5, longest_angle=0.6):
         count = math.ceil((right - left) / longest - SAME)
         inner = np.linspace(left, right, count + 1)
         if cut.exponent < 1.0:
-            # where the chip vanishes the slope of a size effect grows without bound
-            share = (right - left) / count * 0.15 ** np.arange(5, 0, -1)
+            # where the chip vanishes the slope of a size effect grows without bound, that of an
+            # upright edge in time too
+            levels = 5 if any(cut.helix) else 9
+            share = (right - left) / count * 0.15 ** np.arange(levels, 0, -1)
             inner = np.sort(np.concatenate([inner, left + share, right - share]))
         edges += list(inner[1:])
     operator = _monodromy(state, inside, spindle, np.array(edges), GaussPolynomial(nodes))
