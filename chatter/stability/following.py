@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 from chatter.stability.crossings import find_crossings
 from chatter.stability.sweep import Progress, no_progress
 
+#: of the columns of the coarse net every so many depths are looked at first, a power of two
+_DEPTH_STRIDE = 4
 #: growth of a peak or valley that the columns beside may have above or below zero
 _NEARLY_ZERO = 0.2
 
@@ -61,8 +63,7 @@ def followed_crossings(
     values = np.full((speed_count, depths.size), np.nan)
     columns = np.unique(np.append(np.arange(0, speed_count, stride), speed_count - 1))
     looked_at = np.zeros(values.shape, dtype=bool)
-    looked_at[columns] = True
-    _look_at(values, columns, looked_at[columns], depths, growth)
+    looked_at[columns] = _look_along(values, columns, depths, growth)
     progress(len(columns), max(speed_count, len(columns) + 1))
     while stride > 1:
         stride //= 2
@@ -78,6 +79,39 @@ def followed_crossings(
         columns = np.sort(np.append(columns, between))
         progress(len(columns) - 1, speed_count)
     return find_crossings(values, depths, growth, tolerance, looked_at, refined)
+
+
+def _look_along(
+    values: NDArray[np.float64],
+    columns: NDArray[np.int64],
+    depths: NDArray[np.float64],
+    growth: Growth,
+) -> NDArray[np.bool_]:
+    """Fill in columns: all depths, but for some of those that lie deep in what is unstable.
+
+    Between two of every few depths that are unstable, with a growth well above what it changes by
+    from the one to the other, growth is taken to follow the line. Returns what has been seen.
+    """
+    last = depths.size - 1
+    step = _DEPTH_STRIDE
+    seen = np.zeros((columns.size, depths.size), dtype=bool)
+    seen[:, ::step] = seen[:, last] = True
+    _look_at(values, columns, seen, depths, growth)
+    while step > 1:
+        step //= 2
+        between = np.arange(step, last, 2 * step)
+        below, above = between - step, np.minimum(between + step, last)
+        a, b = values[columns][:, below], values[columns][:, above]
+        share = (depths[between] - depths[below]) / (depths[above] - depths[below])
+        values[np.ix_(columns, between)] = a + share * (b - a)
+        nearest = np.minimum(np.abs(a), np.abs(b))
+        doubtful = (a <= 0.0) | (b <= 0.0) | (nearest < np.maximum(_NEARLY_ZERO, np.abs(b - a)))
+        wanted = np.zeros(seen.shape, dtype=bool)
+        wanted[:, between] = doubtful & ~seen[:, between]
+        _look_at(values, columns, wanted, depths, growth)
+        seen |= wanted
+    seen |= _widen(values, columns, seen, depths, growth)
+    return seen
 
 
 def _look_at(
