@@ -5,6 +5,8 @@ module             responsibility
 ================== ===================================================================
 steady_cut         power, torque, deflection and location error of the stable cut
 stable_depths      all stable stretches of depth, and what margins leave of them
+width_and_feed     a case and a model at another radial depth and feed
+resolution         how coarse the elements of collocation may be
 limits             what a cut may use, and how much of it a cut uses
 sheet              all speeds and depths at one width and feed
 search             coarse net and refinement

@@ -9,7 +9,8 @@ import numpy as np
 
 from chatter.best_cut.limits import Limits
 from chatter.best_cut.search import Place, rounded
-from chatter.best_cut.sheet import STABILITY, Sheet, at_width_and_feed, model_at, sheet_of
+from chatter.best_cut.sheet import STABILITY, Sheet, sheet_of
+from chatter.best_cut.width_and_feed import at_width_and_feed, model_at
 from chatter.case import Case
 from chatter.model import MillingModel
 

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from chatter.best_cut.candidate import DEEPER, Candidate, Probability, candidate_at
 from chatter.best_cut.limits import Limits
 from chatter.best_cut.search import Place
-from chatter.best_cut.sheet import Sheet, model_at, sheet_of
+from chatter.best_cut.sheet import Sheet, sheet_of
+from chatter.best_cut.width_and_feed import model_at
 from chatter.case import Case
 from chatter.errors import InputError
 from chatter.model import MillingModel, milling_model

@@ -27,7 +27,8 @@ from chatter.best_cut.search import (
     refined,
     starts_of,
 )
-from chatter.best_cut.sheet import Sheet, model_at, sheet_of
+from chatter.best_cut.sheet import Sheet, sheet_of
+from chatter.best_cut.width_and_feed import model_at
 from chatter.case import Case
 from chatter.errors import InputError
 from chatter.model import MillingModel, milling_model
