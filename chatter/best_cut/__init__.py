@@ -10,9 +10,11 @@ resolution         how coarse the elements of collocation may be
 limits             what a cut may use, and how much of it a cut uses
 sheet              all speeds and depths at one width and feed
 search             coarse net and refinement
-robustness         probability of stability of the candidates
+sampled_cuts       a cut at every sample of what is uncertain
+robustness         the best cut around a place that holds with a wanted probability
 confirmation       candidates simulated in the time domain
 study              `optimum`: all of it, one after the other
+records            pieces of a search on disk
 result             what is found: tables, files
 ================== ===================================================================
 """

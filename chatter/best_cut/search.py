@@ -88,8 +88,10 @@ def _part(progress: Progress, number: int, parts: int) -> Progress:
 
 
 def _feed_matters(model: MillingModel) -> bool:
-    """Whether stability may depend on the feed: not if every tooth takes the whole of it, at a
-    stiffness that is the same for any chip."""
+    """Whether stability may depend on the feed.
+
+    Not if every tooth takes the whole of it, at a stiffness that is the same for any chip.
+    """
     shallow = float(model.case.cut.axial_depth)
     return not (model.is_uniform and float(np.max(model.cut(shallow).pieces.exponent)) == 0.0)
 
@@ -140,24 +142,22 @@ def _near(place: Place, other: Place, far: float) -> bool:
 
 
 def refined(
-    model: MillingModel, limits: Limits, start: Place, level_done: Callable[[], None]
+    model: MillingModel, limits: Limits, start: Place, level_done: Callable[[int], None]
 ) -> Place:
-    """Best place around a start, on nets that shrink towards it."""
+    """Best place around a start, on nets that shrink towards it; tells how many are done."""
     best, span = start, 1.0
-    for _ in range(LEVELS):
+    for level in range(LEVELS):
         speeds, depths, widths, feeds = _net_around(best, limits, span)
         for width in widths:
             for feed in feeds:
                 here = model_at(model, float(width), float(feed))
                 best = _better(here, limits, speeds, depths, best)
-        level_done()
+        level_done(level + 1)
         span *= _SHRINK
     return best
 
 
-def _better(
-    here: MillingModel, limits: Limits, speeds: Array, depths: Array, best: Place
-) -> Place:
+def _better(here: MillingModel, limits: Limits, speeds: Array, depths: Array, best: Place) -> Place:
     """Best place of a net at one width and feed if it removes more than the best so far."""
     worth = _worth_a_look(here, limits, speeds, depths, best.removal_rate)
     if worth.size == 0:
@@ -165,7 +165,9 @@ def _better(
     # limits are found between the depths of a net: fine steps need not be looked at one by one
     coarser = np.linspace(worth[0], worth[-1], min(worth.size, _steps_in(worth) + 1))
     net = with_margins(coarser, limits.depth_margin)
-    stable = stable_depths(here.cut(float(net[-1]), waves=limits.waves), limits.looked_at(speeds), net)
+    stable = stable_depths(
+        here.cut(float(net[-1]), waves=limits.waves), limits.looked_at(speeds), net
+    )
     found = best_of(sheet_with(here, limits, speeds, worth, stable))
     return found if found is not None and found.removal_rate > best.removal_rate else best
 

@@ -110,17 +110,34 @@ def sheet_of(
 
 
 def sheet_with(
-    model: MillingModel, limits: Limits, speeds: Array, depths: Array, stable: StableDepths
+    model: MillingModel,
+    limits: Limits,
+    speeds: Array,
+    depths: Array,
+    stable: StableDepths,
+    cuts: SteadyCuts | None = None,
 ) -> Sheet:
-    """Sheet of which the stable depths are known already; else as `sheet_of`."""
+    """Sheet of which the stable depths, and perhaps the steady cuts, are known; else `sheet_of`."""
     kept = _inside_at(stable, speeds, depths, limits.depth_margin, limits.speed_margin)
-    settled = _inside_at(stable, speeds, depths, 0.0, 0.0)
     # a corner or ball may not reach the work: that is no cut
+    kept &= _reached(model, depths)[:, None]
+    if cuts is None:
+        settled = settled_at(model, speeds, depths, stable)
+        cuts = _steady(SteadyModel(model, float(speeds[0])), speeds, depths, settled)
+    return Sheet(model, speeds, depths, stable, kept, cuts, limits.usage(cuts))
+
+
+def settled_at(
+    model: MillingModel, speeds: Array, depths: Array, stable: StableDepths
+) -> NDArray[np.bool_]:
+    """Where (m, n) there is a cut, and it is stable."""
+    settled = _inside_at(stable, speeds, depths, 0.0, 0.0)
+    return settled & _reached(model, depths)[:, None]
+
+
+def _reached(model: MillingModel, depths: Array) -> NDArray[np.bool_]:
     case = model.case
-    reached = removed_section(model.cutter, case.cut.mode, case.width_of_cut, depths) > 0.0
-    kept, settled = kept & reached[:, None], settled & reached[:, None]
-    steady = _steady(SteadyModel(model, float(speeds[0])), speeds, depths, settled)
-    return Sheet(model, speeds, depths, stable, kept, steady, limits.usage(steady))
+    return removed_section(model.cutter, case.cut.mode, case.width_of_cut, depths) > 0.0
 
 
 def with_margins(depths: Array, margin: float) -> Array:

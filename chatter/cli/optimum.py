@@ -42,9 +42,10 @@ def optimum(
     from chatter.best_cut.study import optimum as run_optimum
 
     announce_compilation()
+    folder = output_folder(out, case.stem)
     with progress_bar("search") as progress:
-        found = run_optimum(description, samples, seed, progress)
-    written = found.save(output_folder(out, case.stem))
+        found = run_optimum(description, samples, seed, progress, folder)
+    written = found.save(folder)
     if json:
         print_json(found.summary())
     elif found.best is not None:
