@@ -123,9 +123,9 @@ class Optimum:
         }
 
     def told(self) -> list[str]:
-        """Sentences for the terminal."""
+        """Sentences for the terminal; none where there is no best cut, see `why_nothing`."""
         if self.best is None:
-            return [self.why_nothing]
+            return []
         best = self.best
         place, known = best.place, best.probability
         lines = [

@@ -307,27 +307,22 @@ def _confirmed(search: _Search, candidates: Sequence[Candidate]) -> list[Candida
 def _held_in_time(search: _Search, candidate: Candidate) -> Candidate:
     """Candidate with its check in the time domain; less deep where a limit is missed there.
 
-    A little less is tried first, then the least depth that is tried at all, and the depths between
-    them only where that holds.
+    The least depth that is tried at all tells whether there is one; a limit that is missed, unlike
+    chatter, is mostly held at the first. Depths between them are tried only where it holds.
     """
     first = _simulated(search, candidate)
     if first.time.held:
         return first
-    fails, holds, best = 0, _EASINGS + 1, None
-    for number in (1, _EASINGS):
+    fails, holds, best = 0, _EASINGS + 1, first
+    order = (_EASINGS, 1) if first.time.verdict == "chatter" else (1, _EASINGS)
+    while holds - fails > 1 and fails < _EASINGS:
+        number = next((one for one in order if fails < one < holds), (fails + holds) // 2)
         eased = _eased(search, candidate, number)
-        if eased is not None:
-            holds, best = number, eased
-            break
-        fails = number
-    while best is not None and holds - fails > 1:
-        middle = (fails + holds) // 2
-        eased = _eased(search, candidate, middle)
         if eased is None:
-            fails = middle
+            fails = number
         else:
-            holds, best = middle, eased
-    return first if best is None else best
+            holds, best = number, eased
+    return best
 
 
 def _eased(search: _Search, candidate: Candidate, number: int) -> Candidate | None:
