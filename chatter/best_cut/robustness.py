@@ -13,6 +13,7 @@ from chatter.best_cut.limits import Limits
 from chatter.best_cut.sampled_cuts import SampledCuts, Samples
 from chatter.best_cut.search import Place
 from chatter.best_cut.sheet import Sheet, sheet_of
+from chatter.best_cut.steady_cut import SteadyCuts
 from chatter.best_cut.width_and_feed import model_at
 from chatter.model import MillingModel
 from chatter.monte_carlo.confidence import wilson_interval
@@ -75,17 +76,18 @@ def with_probability(
 def _judged(candidate: Candidate, limits: Limits, sampled: SampledCuts) -> Candidate | None:
     place: Place = candidate.place
     depths = place.axial_depth * np.array([1.0, 1.0 + DEEPER])
-    count = len(sampled.drawn)
-    speeds = np.full(2, place.spindle_speed)
-    outcome = sampled.outcome(np.arange(count), speeds, depths)
-    sure, deeper = outcome.within(limits).mean(axis=0)
+    speeds, count = np.full(2, place.spindle_speed), len(sampled.drawn)
+    everyone = np.arange(count)
+    stable = sampled.stable(everyone, speeds, depths)
+    cuts = sampled.steady(everyone, speeds, depths, stable)
+    sure, deeper = sampled.within(cuts, stable).mean(axis=0)
     if sure < limits.confidence:
         return None
     found = Probability(
-        float(outcome.stable[:, 0].mean()),
+        float(stable[:, 0].mean()),
         float(sure),
         wilson_interval(round(sure * count), count),
-        sampled.quantiles(type(outcome.cuts)(*(values[:, 0] for values in outcome.cuts))),
+        sampled.quantiles(SteadyCuts(*(values[:, 0] for values in cuts))),
     )
     risk = (1.0 - float(sure)) / (1.0 - limits.confidence)
     active = candidate.active + ((CONFIDENCE,) if deeper < limits.confidence else ())

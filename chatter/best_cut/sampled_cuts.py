@@ -10,26 +10,33 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from chatter.best_cut.limits import LIMITED, Limits
 from chatter.best_cut.steady_cut import SteadyCuts, SteadyModel
-from chatter.case import Case
+from chatter.best_cut.width_and_feed import model_at
 from chatter.errors import InputError
 from chatter.model import MillingModel, milling_model
 from chatter.monte_carlo.parameters import UncertainParameter, correlation_of, parameters_of
 from chatter.monte_carlo.sampling import samples
 from chatter.stability import collocation
+from chatter.stability.cut_arrays import CutArrays
 from chatter.stability.sweep import one_thread, sweep
 from chatter.what_if.subject import deviations_of, patched
 
 Array = NDArray[np.float64]
+Result = TypeVar("Result")
 
 #: beginnings of paths that the structure depends on
 _OF_STRUCTURE = ("structure", "machine", "friction", "cut.spindle_speed")
+#: of the cut itself
+_OF_CUT = ("cut.spindle_speed", "cut.axial_depth", "cut.radial_depth", "cut.feed_per_tooth")
+#: limits that need the motion
+_BY_MOTION = ("max_deflection", "max_surface_error")
 #: cuts, and samples, that are looked at together; cuts that are then counted in full together
 _CUTS_AT_ONCE, _SAMPLES_AT_ONCE, _COUNTED_AT_ONCE = 16, 24, 4
 
@@ -40,11 +47,14 @@ class Samples:
 
     Parameters
     ----------
+    model : MillingModel
+        Of the case as it is.
     parameters : tuple of p UncertainParameter
     values : (n, p) array of float
         SI.
     """
 
+    model: MillingModel
     parameters: tuple[UncertainParameter, ...]
     values: Array
 
@@ -56,40 +66,59 @@ class Samples:
         paths = [one.path for one in self.parameters]
         return dict(zip(paths, self.values[number].tolist(), strict=True))
 
-    def ratios(self, number: int, path: str) -> float:
+    def ratio(self, number: int, path: str) -> float:
         """Share of its mean that a sample gives a value; 1 where that is not uncertain."""
         means = {one.path: one.mean for one in self.parameters}
         return self.patch(number)[path] / means[path] if path in means else 1.0
 
+    @cached_property
+    def models(self) -> list[MillingModel]:
+        """Model of every sample; what is uncertain of the cut itself goes with the cut chosen."""
+        # fitted or linearised anew only where it is not the same for all
+        varied = any(one.path.startswith(_OF_STRUCTURE) for one in self.parameters)
+        structure = None if varied else self.model.structure
 
-def samples_of(case: Case, count: int, seed: int) -> Samples | None:
-    """Draw samples of what a case is uncertain of; None where nothing is.
+        def compiled(number: int) -> MillingModel:
+            values = self.patch(number)
+            for path in _OF_CUT:
+                values.pop(path, None)
+            try:
+                return milling_model(patched(self.model.case, values), structure)
+            except InputError as error:
+                told = [f"sample {number + 1}: {text}" for text in error.messages]
+                raise InputError(told) from None
+
+        return each(compiled, np.arange(len(self)))
+
+
+def samples_of(model: MillingModel, count: int, seed: int) -> Samples | None:
+    """Draw samples of what the case of a model is uncertain of; None where nothing is.
 
     Raises
     ------
     InputError
         If correlations contradict one another.
     """
+    case = model.case
     if not deviations_of(case):
         return None
     parameters = parameters_of(case)
-    return Samples(parameters, samples(parameters, count, seed, correlation_of(case, parameters)))
+    drawn = samples(parameters, count, seed, correlation_of(case, parameters))
+    return Samples(model, parameters, drawn)
 
 
-class Outcome(NamedTuple):
-    """What s samples make of n cuts."""
+def each(function: Callable[[int], Result], numbers: NDArray[np.int64]) -> list[Result]:
+    """What a function makes of numbers, in threads."""
 
-    stable: NDArray[np.bool_]  # (s, n)
-    cuts: SteadyCuts  # (s, n) each; nan where not stable, and where no limit asks for them
+    def at(places: NDArray[np.int64]) -> list[Result]:
+        with one_thread():
+            return [function(int(numbers[place])) for place in places]
 
-    def within(self, limits: Limits) -> NDArray[np.bool_]:
-        """Whether (s, n) the cut is stable and keeps all limits."""
-        held = [values <= 1.0 for values in limits.usage(self.cuts).values()]
-        return np.logical_and.reduce([self.stable, *held])
+    return [found for chunk in sweep(at, len(numbers), points_a_chunk=4) for found in chunk]
 
 
 class SampledCuts:
-    """The samples of a case at one width and feed.
+    """Cuts at one width and feed as the samples of a case have them.
 
     Parameters
     ----------
@@ -102,63 +131,70 @@ class SampledCuts:
     """
 
     def __init__(self, model: MillingModel, limits: Limits, drawn: Samples, deepest: float) -> None:
-        self.case, self.limits, self.drawn, self.deepest = model.case, limits, drawn, deepest
-        # fitted or linearised anew only where it is not the same for all
-        varied = any(one.path.startswith(_OF_STRUCTURE) for one in drawn.parameters)
-        self.structure = None if varied else model.structure
-        everyone = np.arange(len(drawn))
-        self.models = self._each(self._compiled, everyone)
-        self.cuts = self._each(self._cut, everyone)
+        self.limits, self.drawn = limits, drawn
+        width, feed = model.case.width_of_cut, model.case.cut.feed_per_tooth
+
+        def at_this_cut(number: int) -> MillingModel:
+            wider = drawn.ratio(number, "cut.radial_depth")
+            faster = drawn.ratio(number, "cut.feed_per_tooth")
+            return model_at(drawn.models[number], width * wider, feed * faster)
+
+        def compiled(number: int) -> CutArrays:
+            depth = deepest * drawn.ratio(number, "cut.axial_depth")
+            return self.models[number].cut(depth * 1.001, waves=limits.waves)
+
+        self.models = [at_this_cut(number) for number in range(len(drawn))]
+        self.cuts = each(compiled, np.arange(len(drawn)))
+        #: how often each sample has refused a cut
         self.refused = np.zeros(len(drawn), dtype=np.int64)
 
-    def _compiled(self, number: int) -> MillingModel:
-        # what is uncertain of the cut itself goes with the cut that is chosen
-        values = self.drawn.patch(number)
-        for path in ("cut.spindle_speed", "cut.axial_depth"):
-            values.pop(path, None)
-        for path in ("cut.radial_depth", "cut.feed_per_tooth"):
-            if path in values:
-                values[path] = self.case.get(path) * self.drawn.ratios(number, path)
-        try:
-            return milling_model(patched(self.case, values), self.structure)
-        except InputError as error:
-            told = [f"sample {number + 1}: {text}" for text in error.messages]
-            raise InputError(told) from None
+    def _own(self, number: int, speeds: Array, depths: Array) -> tuple[Array, Array]:
+        """Speeds and depths as a sample has them."""
+        faster = self.drawn.ratio(number, "cut.spindle_speed")
+        return speeds * faster, depths * self.drawn.ratio(number, "cut.axial_depth")
 
-    def _cut(self, number: int) -> object:
-        depth = self.deepest * self.drawn.ratios(number, "cut.axial_depth")
-        return self.models[number].cut(depth * 1.001, waves=self.limits.waves)
+    def stable(self, numbers: NDArray[np.int64], speeds: Array, depths: Array) -> NDArray[np.bool_]:
+        """Whether (s, n) samples find cuts stable at speeds (n,), rad/s, and depths (n,), m."""
 
-    def outcome(self, numbers: NDArray[np.int64], speeds: Array, depths: Array) -> Outcome:
-        """What some samples make of cuts at speeds (n,), rad/s, and depths (n,), m."""
+        def of_sample(number: int) -> NDArray[np.bool_]:
+            own = self._own(number, speeds, depths)
+            return np.abs(collocation.multipliers(self.cuts[number], *own)) < 1.0
 
-        def of_sample(number: int) -> Outcome:
-            speed = speeds * self.drawn.ratios(number, "cut.spindle_speed")
-            depth = depths * self.drawn.ratios(number, "cut.axial_depth")
-            stable = np.abs(collocation.multipliers(self.cuts[number], speed, depth)) < 1.0
-            return Outcome(stable, self._steady(number, speed, depth, stable))
+        return np.stack(each(of_sample, numbers))
 
-        found = self._each(of_sample, numbers)
-        cuts = (np.stack(values) for values in zip(*(one.cuts for one in found), strict=True))
-        return Outcome(np.stack([one.stable for one in found]), SteadyCuts(*cuts))
-
-    def _steady(
-        self, number: int, speeds: Array, depths: Array, stable: NDArray[np.bool_]
+    def steady(
+        self,
+        numbers: NDArray[np.int64],
+        speeds: Array,
+        depths: Array,
+        stable: NDArray[np.bool_],
     ) -> SteadyCuts:
-        found = SteadyCuts(*np.full((len(SteadyCuts._fields), speeds.size), np.nan))
-        if not self.limits.most or not stable.any():
-            return found
-        model = SteadyModel(self.models[number], float(speeds.min()))
-        moves = any(key in self.limits.most for key in ("max_deflection", "max_surface_error"))
-        for depth in np.unique(depths[stable]):
-            k = np.flatnonzero(stable & (depths == depth))
-            if moves:
-                for values, computed in zip(found, model.cuts(speeds[k], depth), strict=True):
+        """Steady cuts (s, n) of samples; nan where not stable, and what no limit asks for."""
+        row = {int(number): place for place, number in enumerate(numbers)}
+        moves = any(key in self.limits.most for key in _BY_MOTION)
+
+        def of_sample(number: int) -> SteadyCuts:
+            found = SteadyCuts(*np.full((len(SteadyCuts._fields), speeds.size), np.nan))
+            speed, depth = self._own(number, speeds, depths)
+            wanted = stable[row[number]] & bool(self.limits.most)
+            model = SteadyModel(self.models[number], float(speed.min()))
+            for level in np.unique(depth[wanted]):
+                k = np.flatnonzero(wanted & (depth == level))
+                if not moves:
+                    found.torque[k] = model.torques(np.array([level]))[0]
+                    found.power[k] = found.torque[k] * speed[k]
+                    continue
+                for values, computed in zip(found, model.cuts(speed[k], level), strict=True):
                     values[k] = computed
-            else:
-                found.torque[k] = model.torques(np.array([depth]))[0]
-                found.power[k] = found.torque[k] * speeds[k]
-        return found
+            return found
+
+        found = each(of_sample, numbers)
+        return SteadyCuts(*(np.stack(values) for values in zip(*found, strict=True)))
+
+    def within(self, cuts: SteadyCuts, stable: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Whether cuts are stable and keep all limits."""
+        held = [values <= 1.0 for values in self.limits.usage(cuts).values()]
+        return np.logical_and.reduce([stable, *held])
 
     def first_sure(self, speeds: Array, depths: Array) -> int | None:
         """First of n cuts that is stable and keeps its limits with the wanted probability.
@@ -173,17 +209,17 @@ class SampledCuts:
             order = np.argsort(-self.refused, kind="stable")
             hard, others = order[:_SAMPLES_AT_ONCE], order[_SAMPLES_AT_ONCE:]
             lost = np.zeros(speeds.size, dtype=np.int64)
-            left = self._unrefused(hard, group, speeds, depths, lost)
+            left = self._not_lost(hard, group, speeds, depths, lost)
             for start in range(0, left.size, _COUNTED_AT_ONCE):
                 few = left[start : start + _COUNTED_AT_ONCE]
                 for number in range(0, others.size, _SAMPLES_AT_ONCE):
                     some = others[number : number + _SAMPLES_AT_ONCE]
-                    few = self._unrefused(some, few, speeds, depths, lost)
+                    few = self._not_lost(some, few, speeds, depths, lost)
                 if few.size:
                     return int(few[0])
         return None
 
-    def _unrefused(
+    def _not_lost(
         self,
         numbers: NDArray[np.int64],
         group: NDArray[np.int64],
@@ -191,33 +227,35 @@ class SampledCuts:
         depths: Array,
         lost: NDArray[np.int64],
     ) -> NDArray[np.int64]:
-        """Of a group of cuts those that samples leave a chance; counts who refused, and what."""
+        """Of a group of cuts those to which samples leave a chance; counts who refused what."""
         if group.size == 0 or numbers.size == 0:
             return group
-        within = self.outcome(numbers, speeds[group], depths[group]).within(self.limits)
-        self.refused[numbers] += (~within).sum(axis=1)
-        lost[group] += (~within).sum(axis=0)
-        return group[lost[group] <= self._may_refuse]
+        stable = self.stable(numbers, speeds[group], depths[group])
+        left = self._counted(~stable, numbers, group, lost)
+        group, stable = group[left], stable[:, left]
+        if group.size == 0 or not self.limits.most:
+            return group
+        cuts = self.steady(numbers, speeds[group], depths[group], stable)
+        return group[self._counted(stable & ~self.within(cuts, stable), numbers, group, lost)]
 
-    @property
-    def _may_refuse(self) -> int:
+    def _counted(
+        self,
+        refusals: NDArray[np.bool_],
+        numbers: NDArray[np.int64],
+        group: NDArray[np.int64],
+        lost: NDArray[np.int64],
+    ) -> NDArray[np.bool_]:
+        """Add refusals (s, n) up; whether each of the group still has a chance."""
+        self.refused[numbers] += refusals.sum(axis=1)
+        lost[group] += refusals.sum(axis=0)
         count = len(self.drawn)
-        return count - math.ceil(self.limits.confidence * count - 1e-9)
+        return lost[group] <= count - math.ceil(self.limits.confidence * count - 1e-9)
 
     def quantiles(self, cuts: SteadyCuts) -> dict[str, float]:
         """What stable samples of a cut (s,) do not exceed with the confidence, by limit, SI."""
-        found = {}
-        for key in self.limits.most:
-            values = np.abs(getattr(cuts, LIMITED[key]))
-            known = values[np.isfinite(values)]
-            found[key] = (
-                float(np.quantile(known, self.limits.confidence)) if known.size else math.nan
-            )
-        return found
-
-    def _each(self, function: Callable[[int], object], numbers: NDArray[np.int64]) -> list:
-        def at(places: NDArray[np.int64]) -> list:
-            with one_thread():
-                return [function(int(numbers[place])) for place in places]
-
-        return [found for chunk in sweep(at, len(numbers), points_a_chunk=4) for found in chunk]
+        values = {key: np.abs(getattr(cuts, LIMITED[key])) for key in self.limits.most}
+        known = {key: one[np.isfinite(one)] for key, one in values.items()}
+        return {
+            key: float(np.quantile(one, self.limits.confidence)) if one.size else math.nan
+            for key, one in known.items()
+        }

@@ -71,7 +71,7 @@ class _Search:
     ) -> None:
         self.model = milling_model(case)
         self.limits = limits_of(case, self.model)
-        self.drawn = samples_of(case, samples, seed)
+        self.drawn = samples_of(self.model, samples, seed)
         self.kept = KeptPieces(folder, key_of("optimum", fingerprint(case)))
         #: what pieces depend on where something is uncertain
         self.draw = (samples, seed) if self.drawn is not None else None
