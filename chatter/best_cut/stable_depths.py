@@ -30,7 +30,7 @@ _ROUNDING = 1e-9
 #: part of a lobe between them
 _WIDEST_STRIDE, _PART_OF_A_LOBE = 4, 0.3
 #: decay from tooth to tooth, e-folds, beyond which a mode keeps no phase and has no lobes
-_FORGOTTEN = 1.0
+_FORGOTTEN = 1.5
 
 
 @dataclass(frozen=True)
