@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from chatter.cluster import Computing, computing_on
+from chatter.errors import RunError
 from chatter.stability.sweep import Progress
-from chatter.what_if.finished import FinishedPoints
+from chatter.what_if.finished import FinishedPoints, key_of
 
 Item = TypeVar("Item")
 
@@ -59,3 +60,46 @@ def kept_results(
     except KeyboardInterrupt:
         raise store.interrupted(keys, noun) from None
     return [store[key] for key in keys]
+
+
+class KeptPieces:
+    """Pieces of a search that depend on one another, kept on disk as they end.
+
+    Parameters
+    ----------
+    folder : path, optional
+        Keeps finished pieces in points.jsonl there, and reuses those of the same input.
+    base : str
+        Hash of what all pieces depend on.
+    """
+
+    def __init__(self, folder: str | Path | None, base: str) -> None:
+        self._store = FinishedPoints(folder)
+        self._base = base
+        self._finished = 0
+
+    def piece(self, name: str, inputs: Any, compute: Callable[[], Any]) -> Any:
+        """Record of a piece, computed if it is not known yet.
+
+        Parameters
+        ----------
+        name : str
+            Kind of the piece.
+        inputs : object
+            What it depends on besides; `repr` tells it from others.
+        compute : callable
+            What it returns is what JSON knows.
+        """
+        key = key_of(self._base, name, repr(inputs))
+        if key not in self._store:
+            self._store.add(key, compute())
+        self._finished += 1
+        return self._store[key]
+
+    def interrupted(self) -> RunError:
+        """What to raise where the search is interrupted."""
+        kept = f"; they are in {self._store.path}, and the same command goes on from there"
+        return RunError(
+            f"interrupted: {self._finished} pieces of the search are finished"
+            f"{kept if self._store.path and self._finished else ''}"
+        )

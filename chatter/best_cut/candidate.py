@@ -9,7 +9,8 @@ import numpy as np
 
 from chatter.best_cut.limits import Limits
 from chatter.best_cut.search import Place, rounded
-from chatter.best_cut.sheet import STABILITY, Sheet, at_width_and_feed, model_at, sheet_of
+from chatter.best_cut.sheet import STABILITY, Sheet, sheet_of
+from chatter.best_cut.width_and_feed import at_width_and_feed, model_at
 from chatter.case import Case
 from chatter.model import MillingModel
 
@@ -25,17 +26,24 @@ _GIVEN_BACK, _MOST_TIMES = 1e-3, 20
 
 @dataclass(frozen=True)
 class Probability:
-    """Probability that a cut is stable, of samples of the uncertain values.
+    """Probability that a cut is what it must be, of samples of the uncertain values.
 
     Parameters
     ----------
+    stable : float
+        That it is stable.
     value : float
+        That it is stable and keeps all limits of [optimum].
     interval : (float, float)
-        95 % confidence, from the number of samples.
+        95 % confidence of `value`, from the number of samples.
+    quantiles : dict of str to float
+        Key of [optimum] -> what the stable samples do not exceed with the confidence, SI.
     """
 
+    stable: float
     value: float
     interval: tuple[float, float]
+    quantiles: dict[str, float]
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from chatter.model import MillingModel
 from chatter.simulation.result import SimulationResult
 from chatter.simulation.setup import set_up
 from chatter.simulation.simulate import run_setup
+from chatter.stability.sweep import Progress, no_progress
 from chatter.structure import structure_of
 from dynamics.modal import Mode
 
@@ -27,7 +28,9 @@ from dynamics.modal import Mode
 TOLERANCE = 0.03
 
 
-def time_check(model: MillingModel, limits: Limits, candidate: Candidate) -> TimeCheck:
+def time_check(
+    model: MillingModel, limits: Limits, candidate: Candidate, progress: Progress = no_progress
+) -> TimeCheck:
     """Simulate the cut of a candidate from rest, with the delayed chip.
 
     Parameters
@@ -36,10 +39,19 @@ def time_check(model: MillingModel, limits: Limits, candidate: Candidate) -> Tim
         A machine is taken by its modes at the tool point.
     limits : Limits
     candidate : Candidate
+    progress : callable, optional
+        Called with (done, total) steps.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        A run that was cut short shows nothing.
     """
     here = case_at(model.case, candidate.place).patch({"simulation": None, "stock": None})
     setup = set_up(here, _modes(model, here))
-    result, done = run_setup(setup)
+    result, done = run_setup(setup, progress)
+    if result.interrupted:
+        raise KeyboardInterrupt
     verdict = "chatter" if done < setup.resolution.steps else _verdict(result)
     found = _measured(result)
     within = [

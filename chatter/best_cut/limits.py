@@ -9,7 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.best_cut.resolution import most_waves
 from chatter.best_cut.steady_cut import SteadyCuts
+from chatter.best_cut.width_and_feed import model_at
 from chatter.case import Case
 from chatter.case.optimum import Optimum
 from chatter.methods import zero_order_of
@@ -52,6 +54,8 @@ class Limits:
         Key of [optimum] -> what is allowed.
     depth_margin, speed_margin : float
     confidence : float
+    waves : float
+        Chatter waves that an element of collocation holds at the most.
     """
 
     speeds: Array
@@ -62,6 +66,7 @@ class Limits:
     depth_margin: float
     speed_margin: float
     confidence: float
+    waves: float
 
     @property
     def speed_step(self) -> float:
@@ -96,15 +101,20 @@ def limits_of(case: Case, model: MillingModel) -> Limits:
             (section.speed_margin, SPEED_MARGIN),
         )
     ]
+    speeds, depths = _speeds(case, section, margins[1]), _depths(case, section, model)
+    widths = _values(section.widths, case.width_of_cut)
+    feed = case.cut.feed_per_tooth
+    extremes = [model_at(model, float(width), feed) for width in {widths[0], widths[-1]}]
     return Limits(
-        speeds=_speeds(case, section, margins[1]),
-        depths=_depths(case, section, model),
-        widths=_values(section.widths, case.width_of_cut),
+        speeds=speeds,
+        depths=depths,
+        widths=widths,
         feeds=_values(section.feeds, case.cut.feed_per_tooth),
         most={key: value for key, value in given.items() if value is not None},
         depth_margin=margins[0],
         speed_margin=margins[1],
         confidence=section.confidence,
+        waves=min(most_waves(one, speeds, depths) for one in extremes),
     )
 
 

@@ -21,10 +21,17 @@ if TYPE_CHECKING:
 _RPM = 30.0 / math.pi
 #: m^3/s in cm^3/min
 _PER_MINUTE = 6e7
+#: limit -> name of what it limits in a summary, and factor from SI
+_QUANTILE = {
+    "max_power": ("power_W", 1.0),
+    "max_torque": ("torque_Nm", 1.0),
+    "max_deflection": ("deflection_um", 1e6),
+    "max_surface_error": ("surface_error_um", 1e6),
+}
 _COLUMNS = (
     "rank,spindle_speed [rpm],axial_depth [mm],radial_depth [mm],feed_per_tooth [mm],"
     "removal_rate [cm^3/min],power [kW],torque [N m],deflection [um],surface_error [um],"
-    "limit_depth [mm],probability_of_stability,active,verdict_in_time,held_in_time"
+    "limit_depth [mm],probability_of_stability,probability,active,verdict_in_time,held_in_time"
 )
 
 
@@ -82,7 +89,7 @@ class Optimum:
             return "no candidate of the linear search holds all limits in the time domain"
         if self.over_widths:
             return (
-                "no cut that keeps all limits is stable with a probability of "
+                "no cut is stable and keeps all limits with a probability of "
                 f"{self.limits.confidence:.3g}"
             )
         return why_nothing(self.exclusions)
@@ -116,9 +123,9 @@ class Optimum:
         }
 
     def told(self) -> list[str]:
-        """Sentences for the terminal."""
+        """Sentences for the terminal; none where there is no best cut, see `why_nothing`."""
         if self.best is None:
-            return [self.why_nothing]
+            return []
         best = self.best
         place, known = best.place, best.probability
         lines = [
@@ -130,8 +137,9 @@ class Optimum:
         ]
         if known is not None:
             low, high = known.interval
+            what = "stable and within all limits" if self.limits.most else "stable"
             lines.append(
-                f"stable with a probability of {known.value:.1%} (95 % confidence: {low:.1%} to "
+                f"{what} with a probability of {known.value:.1%} (95 % confidence: {low:.1%} to "
                 f"{high:.1%}, {self.samples} samples)"
             )
         limited = ", ".join(best.active) or "nothing that a deeper cut would break at once"
@@ -179,6 +187,7 @@ class Optimum:
                 f"{one.deflection * 1e6:.7g}",
                 f"{one.surface_error * 1e6:.7g}",
                 limit,
+                "" if one.probability is None else f"{one.probability.stable:.6g}",
                 "" if one.probability is None else f"{one.probability.value:.6g}",
                 " ".join(name.replace(" ", "-") for name in one.active),
                 "" if time is None else time.verdict,
@@ -210,12 +219,20 @@ def _summary_of(one: Candidate) -> dict:
         "limit_depth_mm": finite_or_none(one.limit_depth * 1e3),
         "usage": {key: finite_or_none(value) for key, value in one.usage.items()},
         "active": list(one.active),
-        "probability_of_stability": None if known is None else known.value,
+        "probability_of_stability": None if known is None else known.stable,
+        "probability": None if known is None else known.value,
         "confidence_interval_95": None if known is None else list(known.interval),
+        "at_confidence": None
+        if known is None
+        else {_QUANTILE[key][0]: _scaled(key, value) for key, value in known.quantiles.items()},
         "in_time": None
         if time is None
         else {"verdict": time.verdict, "held": time.held, **_numbers(time)},
     }
+
+
+def _scaled(key: str, value: float) -> float | None:
+    return finite_or_none(value * _QUANTILE[key][1])
 
 
 def _numbers(one) -> dict:

@@ -10,8 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.best_cut.limits import Limits
-from chatter.best_cut.sheet import Sheet, model_at, sheet_of
+from chatter.best_cut.sheet import (
+    Sheet,
+    removal_rates,
+    sheet_of,
+    sheet_with,
+    with_margins,
+)
+from chatter.best_cut.stable_depths import StableDepths, stable_depths
+from chatter.best_cut.steady_cut import SteadyModel
+from chatter.best_cut.width_and_feed import model_at
 from chatter.model import MillingModel
+from chatter.stability.sweep import Progress, no_progress
 
 Array = NDArray[np.float64]
 
@@ -24,6 +34,8 @@ _SHRINK = 0.35
 _DEPTH_SPAN, _SPEED_STEPS, _STEPS = 0.5, 2.0, 1.0
 #: points of a refinement
 _SPEEDS, _DEPTHS, _WIDTHS = 7, 25, 3
+#: steps at which stability is looked at there, a share of the deepest depth
+_STABILITY_STEP = 0.03
 
 _RPM = 30.0 / math.pi
 #: speeds are whole revolutions a minute above this, lengths whole micrometres
@@ -40,18 +52,48 @@ class Place(NamedTuple):
     removal_rate: float
 
 
-def coarse_sheets(
-    model: MillingModel, limits: Limits, sheet_done: Callable[[], None]
+def sheets_of_width(
+    model: MillingModel, limits: Limits, width: float, progress: Progress = no_progress
 ) -> list[Sheet]:
-    """Sheets at every width and feed of the coarse net, width by width."""
-    looked_at = limits.looked_at_beyond()
-    sheets = []
-    for width in limits.widths:
-        for feed in limits.feeds:
-            here = model_at(model, float(width), float(feed))
-            sheets.append(sheet_of(here, limits, limits.speeds, limits.depths, looked_at))
-            sheet_done()
+    """Sheets of the coarse net at one width and every feed.
+
+    Parameters
+    ----------
+    model : MillingModel
+    limits : Limits
+    width : float
+        m.
+    progress : callable, optional
+        Called with (done, total) speeds of all feeds.
+    """
+    looked_at, feeds = limits.looked_at_beyond(), limits.feeds
+    sheets: list[Sheet] = []
+    for number, feed in enumerate(feeds):
+        here = model_at(model, width, float(feed))
+        if sheets and not _feed_matters(here):
+            sheets.append(_same_stability(here, limits, sheets[0].stable))
+        else:
+            told = _part(progress, number, feeds.size)
+            sheets.append(sheet_of(here, limits, limits.speeds, limits.depths, looked_at, told))
     return sheets
+
+
+def _same_stability(model: MillingModel, limits: Limits, stable: StableDepths) -> Sheet:
+    return sheet_with(model, limits, limits.speeds, limits.depths, stable)
+
+
+def _part(progress: Progress, number: int, parts: int) -> Progress:
+    """Progress of one of several equal parts."""
+    return lambda done, total: progress(number * total + done, parts * total)
+
+
+def _feed_matters(model: MillingModel) -> bool:
+    """Whether stability may depend on the feed.
+
+    Not if every tooth takes the whole of it, at a stiffness that is the same for any chip.
+    """
+    shallow = float(model.case.cut.axial_depth)
+    return not (model.is_uniform and float(np.max(model.cut(shallow).pieces.exponent)) == 0.0)
 
 
 def best_of(sheet: Sheet) -> Place | None:
@@ -100,23 +142,54 @@ def _near(place: Place, other: Place, far: float) -> bool:
 
 
 def refined(
-    model: MillingModel, limits: Limits, start: Place, sheet_done: Callable[[], None]
+    model: MillingModel, limits: Limits, start: Place, level_done: Callable[[int], None]
 ) -> Place:
-    """Best place around a start, on nets that shrink towards it."""
+    """Best place around a start, on nets that shrink towards it; tells how many are done."""
     best, span = start, 1.0
-    for _ in range(LEVELS):
-        found = []
+    for level in range(LEVELS):
         speeds, depths, widths, feeds = _net_around(best, limits, span)
         for width in widths:
             for feed in feeds:
                 here = model_at(model, float(width), float(feed))
-                looked_at = limits.looked_at(speeds)
-                found.append(best_of(sheet_of(here, limits, speeds, depths, looked_at)))
-        sheet_done()
-        known = [place for place in found if place is not None]
-        best = max([best, *known], key=lambda place: place.removal_rate)
+                best = _better(here, limits, speeds, depths, best)
+        level_done(level + 1)
         span *= _SHRINK
     return best
+
+
+def _better(here: MillingModel, limits: Limits, speeds: Array, depths: Array, best: Place) -> Place:
+    """Best place of a net at one width and feed if it removes more than the best so far."""
+    worth = _worth_a_look(here, limits, speeds, depths, best.removal_rate)
+    if worth.size == 0:
+        return best
+    # limits are found between the depths of a net: fine steps need not be looked at one by one
+    coarser = np.linspace(worth[0], worth[-1], min(worth.size, _steps_in(worth) + 1))
+    net = with_margins(coarser, limits.depth_margin)
+    stable = stable_depths(
+        here.cut(float(net[-1]), waves=limits.waves), limits.looked_at(speeds), net
+    )
+    found = best_of(sheet_with(here, limits, speeds, worth, stable))
+    return found if found is not None and found.removal_rate > best.removal_rate else best
+
+
+def _steps_in(depths: Array) -> int:
+    return math.ceil(float(np.ptp(depths)) / (_STABILITY_STEP * float(depths[-1])))
+
+
+def _worth_a_look(
+    here: MillingModel, limits: Limits, speeds: Array, depths: Array, rate: float
+) -> Array:
+    """Depths at which some speed removes more than a rate, m^3/s, with what the spindle has.
+
+    Removal and the mean torque need no look at stability and motion, which cost by far the most.
+    """
+    more = removal_rates(here, speeds, depths) > rate
+    torque = SteadyModel(here, float(speeds[0])).torques(depths)
+    most = limits.most
+    more &= (torque <= most.get("max_torque", math.inf))[:, None]
+    more &= np.outer(torque, speeds) <= most.get("max_power", math.inf)
+    rows = np.flatnonzero(more.any(axis=1))
+    return depths[rows[0] : rows[-1] + 1] if rows.size else depths[:0]
 
 
 def _net_around(best: Place, limits: Limits, span: float) -> tuple[Array, Array, Array, Array]:

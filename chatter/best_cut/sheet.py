@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from chatter.best_cut.stable_depths import StableDepths, is_inside, stable_depth
 from chatter.best_cut.steady_cut import SteadyCuts, SteadyModel
 from chatter.case import Case
 from chatter.model import MillingModel
+from chatter.stability.sweep import Progress, no_progress
 from cutting.removed_section import removed_section
 
 Array = NDArray[np.float64]
@@ -61,9 +62,7 @@ class Sheet:
     @property
     def removal_rate(self) -> Array:
         """Volume removed per time (m, n), m^3/s."""
-        case, cutter = self.case, self.model.cutter
-        area = removed_section(cutter, case.cut.mode, case.width_of_cut, self.depths)
-        return np.outer(area, self.speeds) * case.cut.feed_per_tooth * cutter.teeth / _TURN
+        return removal_rates(self.model, self.speeds, self.depths)
 
     @property
     def held(self) -> dict[str, NDArray[np.bool_]]:
@@ -76,21 +75,20 @@ class Sheet:
         return np.logical_and.reduce(list(self.held.values()))
 
 
-def at_width_and_feed(case: Case, width: float, feed: float) -> Case:
-    """Case with another radial depth and feed per tooth, m."""
-    values = {"cut.feed_per_tooth": feed}
-    if case.cut.mode != "slot":
-        values["cut.radial_depth"] = width
-    return case.patch({path: value for path, value in values.items() if value != case.get(path)})
-
-
-def model_at(model: MillingModel, width: float, feed: float) -> MillingModel:
-    """Model at another radial depth and feed per tooth, m; its structure is not looked at again."""
-    return replace(model, case=at_width_and_feed(model.case, width, feed))
+def removal_rates(model: MillingModel, speeds: Array, depths: Array) -> Array:
+    """Volume removed per time (m, n), m^3/s, at depths (m,), m, and speeds (n,), rad/s."""
+    case, cutter = model.case, model.cutter
+    area = removed_section(cutter, case.cut.mode, case.width_of_cut, depths)
+    return np.outer(area, speeds) * case.cut.feed_per_tooth * cutter.teeth / _TURN
 
 
 def sheet_of(
-    model: MillingModel, limits: Limits, speeds: Array, depths: Array, looked_at: Array
+    model: MillingModel,
+    limits: Limits,
+    speeds: Array,
+    depths: Array,
+    looked_at: Array,
+    progress: Progress = no_progress,
 ) -> Sheet:
     """Compute a sheet.
 
@@ -103,22 +101,48 @@ def sheet_of(
         rad/s, m, ascending.
     looked_at : (p,) array of float
         Speeds at which stability is computed, with those that the margins need, ascending.
+    progress : callable, optional
+        Called with (done, total) speeds.
     """
-    net = _net(depths, limits.depth_margin)
-    stable = stable_depths(model.cut(float(net[-1])), looked_at, net)
+    net = with_margins(depths, limits.depth_margin)
+    stable = stable_depths(model.cut(float(net[-1]), waves=limits.waves), looked_at, net, progress)
+    return sheet_with(model, limits, speeds, depths, stable)
+
+
+def sheet_with(
+    model: MillingModel,
+    limits: Limits,
+    speeds: Array,
+    depths: Array,
+    stable: StableDepths,
+    cuts: SteadyCuts | None = None,
+) -> Sheet:
+    """Sheet of which the stable depths, and perhaps the steady cuts, are known; else `sheet_of`."""
     kept = _inside_at(stable, speeds, depths, limits.depth_margin, limits.speed_margin)
-    settled = _inside_at(stable, speeds, depths, 0.0, 0.0)
     # a corner or ball may not reach the work: that is no cut
+    kept &= _reached(model, depths)[:, None]
+    if cuts is None:
+        settled = settled_at(model, speeds, depths, stable)
+        cuts = _steady(SteadyModel(model, float(speeds[0])), speeds, depths, settled)
+    return Sheet(model, speeds, depths, stable, kept, cuts, limits.usage(cuts))
+
+
+def settled_at(
+    model: MillingModel, speeds: Array, depths: Array, stable: StableDepths
+) -> NDArray[np.bool_]:
+    """Where (m, n) there is a cut, and it is stable."""
+    settled = _inside_at(stable, speeds, depths, 0.0, 0.0)
+    return settled & _reached(model, depths)[:, None]
+
+
+def _reached(model: MillingModel, depths: Array) -> NDArray[np.bool_]:
     case = model.case
-    reached = removed_section(model.cutter, case.cut.mode, case.width_of_cut, depths) > 0.0
-    kept, settled = kept & reached[:, None], settled & reached[:, None]
-    steady = _steady(SteadyModel(model, float(speeds[0])), speeds, depths, settled)
-    return Sheet(model, speeds, depths, stable, kept, steady, limits.usage(steady))
+    return removed_section(model.cutter, case.cut.mode, case.width_of_cut, depths) > 0.0
 
 
-def _net(depths: Array, margin: float) -> Array:
+def with_margins(depths: Array, margin: float) -> Array:
     """Depths, and others a step apart below and above as far as the margin reaches, m."""
-    step = max(float(np.diff(depths).max()), _STEP_BESIDE * float(depths[-1]))
+    step = max(float(np.diff(depths).max(initial=0.0)), _STEP_BESIDE * float(depths[-1]))
     low, high = depths[0] * (1.0 - margin), _BEYOND * depths[-1] / (1.0 - margin)
     below = np.arange(depths[0] - step, max(low - step, 0.5 * depths[0]), -step)
     above = np.append(np.arange(depths[-1] + step, high, step), high)

@@ -5,6 +5,7 @@ Nothing assumes that stability ends once: a speed has as many stretches as the n
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -14,6 +15,8 @@ from numpy.typing import NDArray
 from chatter.stability import collocation
 from chatter.stability.crossings import find_crossings
 from chatter.stability.cut_arrays import CutArrays
+from chatter.stability.following import followed_crossings
+from chatter.stability.sweep import Progress, no_progress
 
 Array = NDArray[np.float64]
 
@@ -23,6 +26,11 @@ _SMALLEST = 1e-30
 #: depths of a net that are looked at together
 _ROWS_AT_ONCE = 6
 _ROUNDING = 1e-9
+#: speeds from one to the next of those at which all depths are looked at, at the most, and the
+#: part of a lobe between them
+_WIDEST_STRIDE, _PART_OF_A_LOBE = 4, 0.3
+#: decay from tooth to tooth, e-folds, beyond which a mode keeps no phase and has no lobes
+_FORGOTTEN = 1.5
 
 
 @dataclass(frozen=True)
@@ -88,8 +96,10 @@ def is_inside(stretches: Array, depths: Array) -> NDArray[np.bool_]:
     return ((depths[:, None] >= low) & (depths[:, None] <= high)).any(axis=1)
 
 
-def stable_depths(cut: CutArrays, speeds: Array, depths: Array) -> StableDepths:
-    """Stable stretches of depth, by collocation.
+def stable_depths(
+    cut: CutArrays, speeds: Array, depths: Array, progress: Progress = no_progress
+) -> StableDepths:
+    """Stable stretches of depth, by collocation, following the boundary from speed to speed.
 
     Parameters
     ----------
@@ -99,15 +109,34 @@ def stable_depths(cut: CutArrays, speeds: Array, depths: Array) -> StableDepths:
         rad/s, ascending.
     depths : (m,) array of float
         Net on which changes of stability are looked for, m, ascending, > 0: a stretch that fits
-        between two of its depths is not seen.
+        between two of its depths is not seen, nor one between two speeds at which all of them are
+        looked at.
+    progress : callable, optional
+        Called with (done, total) speeds.
     """
+    stride = widest_stride(cut, speeds)
     growth = _growth_at(cut, speeds)
-    place, depth = (
-        part.ravel() for part in np.meshgrid(np.arange(speeds.size), depths, indexing="ij")
-    )
-    net = growth(place, depth).reshape(speeds.size, depths.size)
-    crossings = find_crossings(net, depths, growth, _TOLERANCE)
+    crossings = followed_crossings(speeds.size, depths, growth, _TOLERANCE, stride, progress)
     return StableDepths(speeds, crossings, float(depths[-1]))
+
+
+def widest_stride(cut: CutArrays, speeds: Array) -> int:
+    """Speeds (a power of two) that may be stepped over where all depths are looked at.
+
+    Where a mode does f/(N n) cycles from one tooth to the next, a lobe is as wide as the speed over
+    that number. A mode that has died out by then has none.
+    """
+    if speeds.size < 2:
+        return 1
+    passing = speeds[0] / float(np.max(cut.pieces.group_delay))
+    lasting = cut.damping * cut.natural_frequency < _FORGOTTEN * passing
+    highest = float(cut.natural_frequency[lasting].max(initial=0.0))
+    lobes = max(highest / (2.0 * math.pi * passing), 1.0)
+    step = float(np.max(np.diff(speeds) / speeds[:-1]))
+    stride = 1
+    while 2 * stride <= _WIDEST_STRIDE and 2 * stride * step * lobes <= _PART_OF_A_LOBE:
+        stride *= 2
+    return stride
 
 
 def first_limits(cut: CutArrays, speeds: Array, depths: Array) -> Array:

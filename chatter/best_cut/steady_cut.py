@@ -107,6 +107,13 @@ class SteadyModel:
             surface_error=self._surface_error(motion, depth),
         )
 
+    def torques(self, depths: Array) -> Array:
+        """Mean torque (m,) over a turn at axial depths (m,), N m: motion has no part in it."""
+        mean = np.zeros(1, dtype=np.int64)
+        return np.array(
+            [self.rigid_cut(float(depth), 0).force(mean).torque[0].real for depth in depths]
+        )
+
     def motion(self, speeds: Array, rigid: RigidCut, spectrum: ForceSpectrum) -> Complex:
         """Harmonics u_k (n, k, 3) of the motion of the tool against the work, m."""
         frequency = np.outer(speeds, self.harmonic) / _TURN

@@ -2,28 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from chatter.case import Case
 from chatter.cli.errors import reports_errors
-from chatter.cli.options import (
-    Assignments,
-    CaseFile,
-    Json,
-    OutputFolder,
-    output_folder,
-    patched_case,
-)
-from chatter.cli.report import (
-    announce_compilation,
-    print_json,
-    print_line,
-    print_notes,
-    print_written,
-    progress_bar,
-)
+from chatter.cli.options import Assignments, CaseFile, Json, OutputFolder
+from chatter.cli.search import searched
 from chatter.errors import RunError
+from chatter.stability.sweep import Progress
+
+if TYPE_CHECKING:
+    from chatter.best_cut.result import Optimum
 
 
 @reports_errors
@@ -38,19 +30,12 @@ def optimum(
     json: Json = False,
 ) -> None:
     """Find the cut with the highest removal rate within the limits of [optimum]."""
-    description = patched_case(case, assignments)
-    from chatter.best_cut.study import optimum as run_optimum
 
-    announce_compilation()
-    with progress_bar("search") as progress:
-        found = run_optimum(description, samples, seed, progress)
-    written = found.save(output_folder(out, case.stem))
-    if json:
-        print_json(found.summary())
-    elif found.best is not None:
-        for line in found.told():
-            print_line(line)
-    print_notes(found.notes)
-    print_written(written)
-    if found.best is None:
-        raise RunError(f"{description.name}: {found.why_nothing}")
+    def search(description: Case, progress: Progress, folder: Path) -> Optimum:
+        from chatter.best_cut.study import optimum as run_optimum
+
+        return run_optimum(description, samples, seed, progress, folder)
+
+    found = searched(search, "search", case, assignments, out, json)
+    if found.why_nothing:
+        raise RunError(f"{found.case.name}: {found.why_nothing}")

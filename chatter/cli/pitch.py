@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from chatter.case import Case
 from chatter.cli.errors import reports_errors
-from chatter.cli.options import (
-    Assignments,
-    CaseFile,
-    Json,
-    OutputFolder,
-    output_folder,
-    patched_case,
-)
-from chatter.cli.report import (
-    announce_compilation,
-    print_json,
-    print_line,
-    print_notes,
-    print_written,
-    progress_bar,
-)
+from chatter.cli.options import Assignments, CaseFile, Json, OutputFolder
+from chatter.cli.search import searched
+from chatter.stability.sweep import Progress
+
+if TYPE_CHECKING:
+    from chatter.pitch_angles.result import PitchResult
 
 
 @reports_errors
@@ -29,17 +23,10 @@ def pitch(
     json: Json = False,
 ) -> None:
     """Find pitch angles that raise the limits over the speeds of [pitch_design]."""
-    description = patched_case(case, assignments)
+    searched(_search, "designs", case, assignments, out, json)
+
+
+def _search(description: Case, progress: Progress, folder: Path) -> PitchResult:
     from chatter.pitch_angles.study import pitch as run_pitch
 
-    announce_compilation()
-    with progress_bar("designs") as progress:
-        found = run_pitch(description, progress)
-    written = found.save(output_folder(out, case.stem))
-    if json:
-        print_json(found.summary())
-    else:
-        for line in found.told():
-            print_line(line)
-    print_notes(found.notes)
-    print_written(written)
+    return run_pitch(description, progress, folder)

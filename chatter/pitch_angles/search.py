@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from chatter.best_cut.stable_depths import first_limits
 from chatter.case import Case
+from chatter.kept_results import KeptPieces
 from chatter.model import milling_model
 from chatter.pitch_angles.families import Family
 from chatter.pockets import DEPTH_MARGIN, SPEED_MARGIN
@@ -108,6 +109,8 @@ class PitchSearch:
         Largest pitch, in units of the mean; the smallest is 2 less this.
     evaluated : callable
         Called after every evaluation.
+    kept : KeptPieces
+        Limits that are known already.
     """
 
     def __init__(
@@ -118,18 +121,25 @@ class PitchSearch:
         goal: str,
         largest_chip: float,
         evaluated: Callable[[], None],
+        kept: KeptPieces,
     ) -> None:
         self.case, self.speeds, self.depths = case, speeds, depths
         self.goal, self.largest_chip, self.evaluated = GOALS[goal], largest_chip, evaluated
-        self.teeth = case.tool.teeth
+        self.teeth, self._kept = case.tool.teeth, kept
         self._known: dict[tuple[float, ...], Array] = {}
 
     def limits(self, pitch: Sequence[float], speeds: Array) -> Array:
         """First limits at speeds (n,), m, of pitch angles in deg."""
         angles = [f"{angle:.6g} deg" for angle in pitch]
-        model = milling_model(self.case.patch({"tool.pitch": angles}))
-        deepest = float(self.depths[-1])
-        return np.minimum(first_limits(model.cut(deepest), speeds, self.depths), deepest)
+
+        def compute() -> list[float]:
+            model = milling_model(self.case.patch({"tool.pitch": angles}))
+            deepest = float(self.depths[-1])
+            found = first_limits(model.cut(deepest), speeds, self.depths)
+            return np.minimum(found, deepest).tolist()
+
+        inputs = (angles, speeds.tolist())
+        return np.array(self._kept.piece("limits", inputs, compute), dtype=np.float64)
 
     def design(self, name: str, pitch: Sequence[float]) -> Design:
         """Design of pitch angles (deg), computed once."""

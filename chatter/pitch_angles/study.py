@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from chatter.case import Case
 from chatter.case.optimum import PitchDesign
 from chatter.errors import InputError
+from chatter.kept_results import KeptPieces
 from chatter.methods import zero_order_of
 from chatter.model import MillingModel, milling_model
 from chatter.pitch_angles.families import families
@@ -21,6 +23,8 @@ from chatter.search_range import deepest_depth, spindle_speeds
 from chatter.simulation.cutter import pitch_angles
 from chatter.stability import collocation
 from chatter.stability.sweep import Progress, no_progress
+from chatter.what_if.finished import key_of
+from chatter.what_if.subject import fingerprint
 
 Array = NDArray[np.float64]
 
@@ -31,7 +35,9 @@ FINER = 5
 _RULE_COUNT = 8
 
 
-def pitch(case: Case, progress: Progress = no_progress) -> PitchResult:
+def pitch(
+    case: Case, progress: Progress = no_progress, folder: str | Path | None = None
+) -> PitchResult:
     """Find pitch angles that raise the limits of a tool over a range of speeds.
 
     Parameters
@@ -40,6 +46,9 @@ def pitch(case: Case, progress: Progress = no_progress) -> PitchResult:
         `[pitch_design]` gives speeds, bounds and goal.
     progress : callable, optional
         Called with (done, total) designs.
+    folder : path, optional
+        Keeps the limits of finished designs in points.jsonl there, and reuses those of the same
+        case.
 
     Returns
     -------
@@ -50,10 +59,20 @@ def pitch(case: Case, progress: Progress = no_progress) -> PitchResult:
     ------
     InputError
         If the case lacks something or its tool has one tooth.
+    RunError
+        If it is interrupted; finished designs are in the folder.
     """
     case.require("tool", "material", "cut", "structure")
     if case.tool.teeth < 2:
         raise InputError(f"{case.name}: tool.teeth: one tooth has no pitch to choose")
+    kept = KeptPieces(folder, key_of("pitch", fingerprint(case)))
+    try:
+        return _designed(case, kept, progress)
+    except KeyboardInterrupt:
+        raise kept.interrupted() from None
+
+
+def _designed(case: Case, kept: KeptPieces, progress: Progress) -> PitchResult:
     section = case.pitch_design or PitchDesign()
     model = milling_model(case)
     wide, fine = _speeds(case, section)
@@ -62,7 +81,7 @@ def pitch(case: Case, progress: Progress = no_progress) -> PitchResult:
     done = iter(range(1, 10 * total))
     search = PitchSearch(
         case, wide, _depths(case, section, model), section.goal, section.largest_chip,
-        lambda: progress(min(next(done), total), total),
+        lambda: progress(min(next(done), total), total), kept,
     )  # fmt: skip
     standing = search.design("the case", np.degrees(pitch_angles(case)))
     even = search.design("even", np.full(case.tool.teeth, 360.0 / case.tool.teeth))

@@ -81,7 +81,11 @@ def resolution_of(
             f"{_MOST_STEPS_A_TURN:.0e} are allowed: give simulation.steps, or leave out what is "
             "so fast"
         )
-    steps = _divisible(steps, math.lcm(4, case.tool.teeth))
+    turns = turns_of(case, modes)
+    whole = math.lcm(4, case.tool.teeth)
+    if section is None or not section.steps:
+        steps = _evenly_recorded(steps, turns, whole)
+    steps = _divisible(steps, whole)
     chip = section.chip if section else "delay"
     corner, straight = slice_counts(cutter, case.cut.axial_depth, LARGEST_LAG[chip])
     if section and section.slices and straight:
@@ -91,7 +95,6 @@ def resolution_of(
             f"{case.name}: tool: {corner + straight:.3g} slices would be needed for the lag of the "
             f"helix or the waves of the edge; at most {_MOST_SLICES} are allowed"
         )
-    turns = turns_of(case, modes)
     total = max(1, round(turns * steps))
     return Resolution(steps, (corner, straight), turns, _stride(steps, total))
 
@@ -130,6 +133,17 @@ def turns_of(case: Case, modes: Sequence[Mode]) -> float:
 def _divisible(steps: int, by: int) -> int:
     """Teeth and quarter turns fall on whole steps."""
     return math.ceil(steps / by) * by
+
+
+def _evenly_recorded(steps: int, turns: float, by: int) -> int:
+    """Steps a turn, a few more, that hold a stride which fills the record.
+
+    Of steps with few divisors a long run would record but a few rows a turn, too few to be judged.
+    """
+    rows = math.floor(_MOST_ROWS / turns / by) * by
+    if rows == 0 or rows >= steps:
+        return steps
+    return _divisible(steps, by * math.ceil(steps / rows))
 
 
 def _stride(steps: int, total: int) -> int:

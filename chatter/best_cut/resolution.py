@@ -1,0 +1,53 @@
+"""How coarse the elements of collocation may be for the limits that a search needs."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.model import MillingModel
+from chatter.stability import collocation
+from chatter.stability.cut_arrays import RESOLUTION
+
+Array = NDArray[np.float64]
+
+#: chatter waves in an element that are tried, the most first
+_TRIED = (6.0, 4.0, 3.0, 2.0, 1.4)
+#: growth (logarithm of the spectral radius) may be off by this much: limits move by less than 1e-3
+_ERROR = 2e-5
+#: speeds and depths at which it is compared
+_SPEEDS, _DEPTHS = 6, 5
+_SMALLEST = 1e-30
+
+
+def most_waves(model: MillingModel, speeds: Array, depths: Array) -> float:
+    """Largest number of waves in an element at which stability is the same as for every day.
+
+    The elements for every day resolve the fastest mode. Where slower ones decide, as on a machine
+    whose highest modes hardly take part, far longer elements give the same; that is looked at, at
+    points spread over all speeds and depths.
+
+    Parameters
+    ----------
+    model : MillingModel
+    speeds, depths : (n,), (m,) arrays of float
+        rad/s, m, ascending.
+    """
+    speed, depth = (
+        part.ravel()
+        for part in np.meshgrid(
+            np.geomspace(speeds[0], speeds[-1], _SPEEDS),
+            np.geomspace(max(depths[0], 0.05 * depths[-1]), depths[-1], _DEPTHS),
+        )
+    )
+
+    def growth(waves: float) -> Array:
+        cut = model.cut(float(depths[-1]), waves=waves)
+        found = np.abs(collocation.multipliers(cut, speed, depth))
+        return np.log(np.maximum(found, _SMALLEST))
+
+    known = growth(RESOLUTION[1])
+    for waves in _TRIED:
+        if np.all(np.abs(growth(waves) - known) <= _ERROR):
+            return waves
+    return RESOLUTION[1]
