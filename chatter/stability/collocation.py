@@ -216,7 +216,7 @@ def converged_limit_curve(
 
 
 def _limit_error(limits: LimitCurve, cut: CutArrays, finer: CutArrays) -> float:
-    """Largest relative shift of the limit depth, of some limits, by a finer resolution."""
+    """Largest error of the limit depth, relative, of some limits, by a finer resolution."""
     found = np.flatnonzero(np.isfinite(limits.critical_depth))
     if found.size == 0:
         return 0.0
@@ -228,7 +228,6 @@ def _limit_error(limits: LimitCurve, cut: CutArrays, finer: CutArrays) -> float:
     step = 1e-3 * depth
     left, right = (growth(multipliers(cut, speed, depth + s)) for s in (-step, step))
     slope = np.maximum(np.abs(right - left) / (2.0 * step), 1e-300)
-    shift = np.abs(
-        growth(multipliers(finer, speed, depth)) - growth(multipliers(cut, speed, depth))
-    )
-    return float(np.max(shift / (slope * depth)))
+    # at the limit of the finer cut there would be no growth: what the search leaves counts as well
+    left = np.abs(growth(multipliers(finer, speed, depth)))
+    return float(np.max(left / (slope * depth)))
