@@ -70,6 +70,9 @@ INLINED_KERNEL = {**KERNEL, "forceinline": True}
 SUMMING_KERNEL = {**KERNEL, "fastmath": {"reassoc", "contract", "nsz"}}
 #: functions that compiled code alone calls: no entry for Python, kept on disk within their drivers
 INNER_KERNEL = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+#: the same that allocate nothing: arrays taken out of the tables they are passed need no counting,
+#: which would cost more than what most of them do
+LEAF_KERNEL = {**INNER_KERNEL, "_nrt": False}
 #: functions with one caller, which becomes part of it
 SINGLE_KERNEL = {**INNER_KERNEL, "inline": "always"}
 #: loops over points, called from Python, in several threads at once

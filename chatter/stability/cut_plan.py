@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from chatter.kernels import INNER_KERNEL, SINGLE_KERNEL
+from chatter.kernels import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 from chatter.stability.element_layout import (
     element_before,
     element_counts,
@@ -123,7 +123,7 @@ def _add_source(points, sources, at, place, couplings, which):
     sources.point[at] = near if known in (-2, near) else -1
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def _note(points, layout, angle, sources, first, count, couplings, which):
     """Add a coupling to the motion at an earlier mean angle; returns the number of sources."""
     element, place = element_before(layout, angle)
@@ -138,7 +138,7 @@ def _note(points, layout, angle, sources, first, count, couplings, which):
     return max(count, found + 1)
 
 
-@njit(**SINGLE_KERNEL)
+@njit(**LEAF_KERNEL)
 def _couple(
     pieces, tops, reach, rule, basis, points, layout, turn, speed_factor, angle, sources,
     first_source, row, stiffness, dashpot, groups, part, part_dashpot,

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from chatter.kernels import INNER_KERNEL, SINGLE_KERNEL
+from chatter.kernels import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 from chatter.lanes import LANES, load, spread, store
 from chatter.stability.element_map import ElementMap
 from chatter.stability.element_response import free_response, mode_response
@@ -47,7 +47,7 @@ def motion_of_state(structure):
     return output, 1.0 / largest
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def _add_response(response, row, factor, k, l, of_force):  # noqa: E741
     """Add the response to the force in direction l, seen in direction k, from a row on."""
     points = response.shape[1] - 2
@@ -121,7 +121,7 @@ def _fill_lengths(structure, table, turns, length_cuts, scale, period, rates):
                 _rates_over_length(structure, m, response, rates.of_state[s], rates.of_force[s])
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def _add_row(matrix, row, factor, other, column):
     """Add factor times a row of another matrix to a row of one."""
     for j in range(matrix.shape[1]):
@@ -129,7 +129,7 @@ def _add_row(matrix, row, factor, other, column):
         store(matrix, (row, j), value)
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def _enter_cut(coupling, row, of_force, of_state, matrix, couple):
     """Enter stiffness or dashpots (r, r, 8) at the point whose values begin at a row."""
     rank = coupling.shape[0]
@@ -140,7 +140,7 @@ def _enter_cut(coupling, row, of_force, of_state, matrix, couple):
             _add_row(couple, row + k, factor, of_state, row + l)
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def _enter_own(block, row, of_force, of_state, output, matrix, couple):
     """Enter a source that lies within the very element."""
     rank, width = block.shape[0], block.shape[1]
@@ -156,7 +156,7 @@ def _enter_own(block, row, of_force, of_state, output, matrix, couple):
             _add_row(couple, row + k, weight, of_state, column)
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def _factorise(a):
     """Replace a (n, n, 8) by its factors; the diagonal of the upper one is inverted.
 
@@ -183,7 +183,7 @@ def _side_by_side(numbers, members, first, count, out):
             out[i, lane] = of_lane[first + i]
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def _multiply_all(a, factor):
     """Multiply all of a (n, 8) by a plain factor or by lanes."""
     for i in range(a.shape[0]):

@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from chatter.kernels import INNER_KERNEL, SINGLE_KERNEL
+from chatter.kernels import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 from chatter.stability.spindle_turn import angle_at, time_at
 from cutting.edge_coupling import (
     chip_vanishes,
@@ -69,7 +69,7 @@ class PeriodBorders(NamedTuple):
     period: float  # mean angle, rad
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def is_engaged(pieces, depth, spindle):
     """Tell whether any edge is in the cut at a spindle angle."""
     for piece in range(pieces.bottom.shape[0]):
@@ -84,7 +84,7 @@ def is_engaged(pieces, depth, spindle):
     return False
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def _sort(places, marks):
     """Sort places in ascending order, and their marks with them; nearly sorted ones are quick."""
     for i in range(1, places.shape[0]):
@@ -96,7 +96,7 @@ def _sort(places, marks):
         places[j], marks[j] = place, mark
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def _levels_at(pieces, piece, place, immersion, depth):
     """Levels of smaller elements towards a border; none where the slope of the law is finite."""
     if pieces.exponent == 0.0 or not chip_vanishes(pieces, piece, place, immersion):
@@ -110,7 +110,7 @@ def _levels_at(pieces, piece, place, immersion, depth):
     return min(most, max(1, 1 + math.ceil(smeared)))
 
 
-@njit(**SINGLE_KERNEL)
+@njit(**LEAF_KERNEL)
 def _border_angles(pieces, period, depth, angles, levels):
     """Fill in borders in one period of the tool, in no order (rad), and their levels.
 
@@ -147,7 +147,7 @@ def _border_angles(pieces, period, depth, angles, levels):
     return count
 
 
-@njit(**SINGLE_KERNEL)
+@njit(**LEAF_KERNEL)
 def _distinct(angles, levels, count, period):
     """Sort borders, take equal ones together and return how many are left, one at the least."""
     _sort(angles[:count], levels[:count])
@@ -166,7 +166,7 @@ def _distinct(angles, levels, count, period):
     return kept
 
 
-@njit(**SINGLE_KERNEL)
+@njit(**LEAF_KERNEL)
 def _add_corners(turn, places, marks, n, period):
     """Add the corners of a triangular variation of the speed; returns the number of borders."""
     first, borders = places[0], n
@@ -228,7 +228,7 @@ def period_borders(pieces, tool_period, turn, depth):
     return PeriodBorders(places[: n + 1], marks[: n + 1], engaged, turned, period)
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def speed_step(speed, step):
     """Speed, at most the given one, out of steps of a power of two; rad/s."""
     return 2.0 ** (step * math.floor(math.log2(speed) / step))
@@ -334,7 +334,7 @@ def _shapes(length, number, count, shape):
     return distinct[:shapes], of_cut[:shapes]
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def element_before(layout, angle):
     """Element in the cut that holds a mean angle, counted on over the periods, and the place in it.
 

@@ -18,7 +18,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from chatter.kernels import INNER_KERNEL, SINGLE_KERNEL
+from chatter.kernels import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 from chatter.lanes import LANES, load, spread, store
 from chatter.stability.plan_structure import PlanStructure
 
@@ -40,7 +40,7 @@ class ElementMap(NamedTuple):
     output: NDArray[np.float64]  # motion of the tool point from the state, scaled (r, 2n)
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def _solve(factors, x):
     """Replace x (n, 8) by the solution of the factorised matrix."""
     n = x.shape[0]
@@ -76,7 +76,7 @@ def element_scratch(period):
     )  # fmt: skip
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def _multiply(a, x, first, out):
     """Set out, from its row `first` on, to a (n, m, 8) times x (m, 8)."""
     for i in range(a.shape[0]):
@@ -86,7 +86,7 @@ def _multiply(a, x, first, out):
         store(out, first + i, total)
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def _multiply_add(a, x, first, out):
     """Add a (n, m, 8) times x (m, 8) to out, from its row `first` on."""
     for i in range(a.shape[0]):
@@ -96,7 +96,7 @@ def _multiply_add(a, x, first, out):
         store(out, first + i, total)
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def _copy(source, first, out, start, count):
     """Copy rows (.., 8) from one place to another."""
     for i in range(count):
@@ -126,7 +126,7 @@ def _delayed_force(plan, block, e, motion, force):
                 store(force, i * rank + k, total)
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def _free_motion(free, state, following):
     """Set what follows (2n, 8) to the state after free motion, free (n, 2, 2, 8)."""
     for mode in range(free.shape[0]):
@@ -156,7 +156,7 @@ def _in_cut(couple, factors, of_state, of_force, to_state, output, state, own, f
     _multiply_add(to_state, force, 0, following)
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def apply_element_map(period, vector, out, scratch):
     """Set out to the image of the vector after one period.
 

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from chatter.kernels import INNER_KERNEL, SINGLE_KERNEL
+from chatter.kernels import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 from chatter.lanes import LANES, load, spread, store
 from chatter.stability.element_map import apply_element_map, element_scratch
 from chatter.stability.hessenberg import dominant_pair
@@ -50,7 +50,7 @@ def _start_vectors(period, out, scratch):
     apply_element_map(period, start, out, scratch)
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def _norms(vector, out):
     """Set out (1, 8) to the norms of vectors (D, 8)."""
     total = spread(0.0)

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from chatter.kernels import INNER_KERNEL, SINGLE_KERNEL
+from chatter.kernels import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 
 #: whole numbers before the lists of a structure
 _HEADER = 5
@@ -26,7 +26,7 @@ class PlanStructure(NamedTuple):
     memory: int  # elements before the period that are looked back to
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def _put(part, out, at):
     """Copy an array of one axis into another from a place on; returns the next place."""
     for i in range(part.shape[0]):
@@ -93,9 +93,12 @@ def structure_of_plan(packed):
     )
 
 
-@njit(**INNER_KERNEL)
+@njit(**LEAF_KERNEL)
 def alike(one, other):
     """Tell whether two packed structures are the same: lanes of one map may hold both plans."""
     if one.shape[0] != other.shape[0]:
         return False
-    return np.all(one == other)
+    same = 0
+    while same < one.shape[0] and one[same] == other[same]:
+        same += 1
+    return same == one.shape[0]
