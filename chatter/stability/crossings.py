@@ -26,8 +26,8 @@ _ROOT_SHARE = 0.2
 _MOST_ITERATIONS = 60
 #: steps after which straight lines alone are trusted
 _MOST_CURVED = 8
-#: a root is taken without another look when it moves by this many tolerances
-_UNSEEN = 4.0
+#: a root is taken without another look when it has moved by this share of the tolerance
+_UNSEEN = 0.5
 #: growth on the net may be off by this much
 _DOUBTFUL_GROWTH = 0.05
 #: a peak may rise above the net by this share of its height over the depths beside it
