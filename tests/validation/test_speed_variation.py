@@ -15,7 +15,7 @@ from chatter.methods import by_collocation
 from chatter.model import milling_model
 from chatter.simulation.growth import delayed, motion_of
 from chatter.simulation.setup import set_up
-from chatter.stability.collocation import converged_multiplier
+from chatter.stability.collocation import converged_multiplier, multipliers
 from chatter.stability.sweep import no_progress
 from cutting.edge_pieces import period_angle
 
@@ -238,3 +238,35 @@ def test_what_the_variation_is_good_for(name):
         found = simulated(case, turns, depth)
         assert sign * math.log(wanted) > 0.0
         assert sign * math.log(found) > 0.0
+
+
+# --- slow variation: growth is the mean of that at the speeds gone through ------------------------
+
+TOO_LARGE = pytest.mark.xfail(
+    reason="|mu| over the period is above 1e154: 0 comes out", strict=True
+)
+
+
+@pytest.mark.parametrize(
+    ("depth", "turns", "difference"),
+    [
+        (0.3e-3, 10, 3e-3), (0.55e-3, 10, 3e-3), (0.8e-3, 10, 3e-3),
+        (0.3e-3, 40, 2e-4), (0.55e-3, 40, 2e-4), (0.8e-3, 40, 2e-4),
+        pytest.param(0.8e-3, 300, 2e-5, marks=TOO_LARGE),
+    ],
+)  # fmt: skip
+def test_slow_variation_is_a_mean_over_the_speeds(depth, turns, difference):
+    """The difference falls with the square of the period, as of an adiabatic change."""
+    constant = milling_case("straight", varied=False)
+    mean, amplitude = constant.cut.spindle_speed, 0.05
+    of = {"amplitude": amplitude, "frequency": mean / (2.0 * math.pi * turns)}
+    varied = constant.patch({f"cut.speed_variation.{key}": value for key, value in of.items()})
+    point = np.array([mean]), np.array([depth])
+    radius = float(np.abs(multipliers(milling_model(varied).cut(depth), *point))[0])
+    phase = 2.0 * math.pi * (np.arange(64) + 0.5) / 64
+    speeds = mean * (1.0 + amplitude * np.sin(phase))
+    cut = milling_model(constant).cut(depth)
+    radii = np.abs(multipliers(cut, speeds, np.full(speeds.size, depth)))
+    a_turn = constant.tool.teeth * np.mean(np.log(radii) * speeds / mean)
+    assert radius > 0.0
+    assert math.log(radius) / turns == pytest.approx(a_turn, abs=difference)
