@@ -143,6 +143,11 @@ def by_time(
     """Limits from cuts simulated in the time domain, with all that the simulation holds."""
     from chatter.simulation.limits import time_limit_curve
 
+    if model.case.cut.speed_variation is not None:
+        raise InputError(
+            f"{model.case.name}: cut.speed_variation: limits in the time domain are those of a "
+            'constant speed; "collocation" takes one that varies, `chatter simulate` cuts with it'
+        )
     return time_limit_curve(model.case, model.structure.modes, speeds, depths, progress)
 
 

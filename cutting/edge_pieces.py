@@ -331,7 +331,7 @@ def edge_pieces(
                         cutter.corner_radius if kappa[0] < kappa[1] else 0.0,
                     )
                 )  # fmt: skip
-    turning = _turning(rows, owners)
+    turning = _turning(rows, owners, wave)
     order, chain = _chains(rows, owners, laws[0], apart=wave)
     rows = [rows[i] for i in order]
     feed = feed_per_turn / _TURN
@@ -366,19 +366,24 @@ def _chains(
     return order, np.array([*starts, len(order)], dtype=np.int64)
 
 
-def _turning(rows: list[tuple], owners: list[tuple[int, int, int]]) -> NDArray[np.int64]:
+def _turning(
+    rows: list[tuple], owners: list[tuple[int, int, int]], serrated: bool
+) -> NDArray[np.int64]:
     """Mark the ends (P, 2) of pieces at which an edge first meets the stock, or last leaves it.
 
     There the spindle angle of entry or exit turns round along the edge, or the edge ends, or it
-    is no more cut all around, or the surface of one earlier pass gives way to that of another.
+    is no more cut all around, or the surface of one earlier pass gives way to that of another; not
+    along a serrated edge, on which it does so from wave to wave for a small part each.
     """
     marks = np.zeros((len(rows), 2), dtype=np.int64)
     place = {owner: i for i, owner in enumerate(owners)}
+    there = {owner[: 2 if serrated else 3] for owner in owners}
     for owner, i in place.items():
         piece, tooth, other = owner
         following = place.get((piece + 1, tooth, other))
-        marks[i, 0] |= piece > 0 and (piece - 1, tooth, other) not in place
-        marks[i, 1] |= following is None
+        key = (tooth,) if serrated else (tooth, other)
+        marks[i, 0] |= piece > 0 and (piece - 1, *key) not in there
+        marks[i, 1] |= (piece + 1, *key) not in there
         if following is None:
             continue
         for arc, end in ((4, 0.0), (5, math.pi)):

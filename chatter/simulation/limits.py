@@ -20,6 +20,8 @@ _MOST_DEPTHS = 32
 _DEPTH_TOLERANCE = 5e-4
 #: growth that is out of the chip at once, as a logarithm a period
 _LARGEST_GROWTH = 1.0
+#: growth that stands for that with no cut, where nothing is to be simulated
+_AT_REST = -0.01
 #: the frequency is measured this far beyond the limit
 _BEYOND = 1.005
 
@@ -73,7 +75,10 @@ def time_limit_curve(
     net = _logarithms(growths(case, modes, speed, depth, progress))
 
     def refined(index: NDArray[np.int64], at: NDArray[np.float64]) -> NDArray[np.float64]:
-        return _logarithms(growths(case, modes, speeds[index], at))
+        found = np.full(len(index), _AT_REST)
+        cut = at > 0.0
+        found[cut] = _logarithms(growths(case, modes, speeds[index[cut]], at[cut]))
+        return found
 
     crossings = find_crossings(net.reshape(len(speeds), -1), net_depths, refined, _DEPTH_TOLERANCE)
     first = np.array([found[0] if found.size else np.inf for found in crossings])

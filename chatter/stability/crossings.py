@@ -119,6 +119,36 @@ def find_crossings(
     return [np.sort(limit[brackets.speed == i]) for i in range(net.shape[0])]
 
 
+def moved_crossings(
+    speed: NDArray[np.int64],
+    depth: NDArray[np.float64],
+    reach: float,
+    growth: Growth,
+    tolerance: float,
+) -> NDArray[np.float64]:
+    """Changes of stability next to those of a like problem.
+
+    Parameters
+    ----------
+    speed, depth : (n,) array
+        Those of the like problem; depths in m.
+    reach : float
+        How far they may have moved, relative to their depth.
+    growth : callable
+    tolerance : float
+        Relative to the depth.
+
+    Returns
+    -------
+    (n,) array of float
+        m, nan where stability does not change within reach.
+    """
+    low, high = (1.0 - reach) * depth, (1.0 + reach) * depth
+    brackets = _bracket(speed, low, growth(speed, low), high, growth(speed, high))
+    changes = (brackets.at_low > 0.0) != (brackets.at_high > 0.0)
+    return np.where(changes, _refine(brackets, growth, tolerance), np.nan)
+
+
 def _on_the_net(
     values: NDArray[np.float64],
     seen: NDArray[np.float64],

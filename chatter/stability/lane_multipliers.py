@@ -22,6 +22,10 @@ from chatter.stability.hessenberg import dominant_pair
 _FIRST_LOOK = 3
 _GROWTH = 1.3
 _LARGEST_SPACE = 240
+#: norms above this are not the root of a sum of squares
+_SQUARES_BELOW = 1e150
+#: multiplier of a motion that grows beyond all numbers within a period
+_BEYOND_NUMBERS = 1e300
 
 
 class DominantPairs(NamedTuple):
@@ -59,6 +63,15 @@ def _norms(vector, out):
     store(out, 0, total)
     for lane in range(LANES):
         out[0, lane] = math.sqrt(out[0, lane])
+        if not out[0, lane] < _SQUARES_BELOW:
+            # the squares are too large to be summed up
+            largest = 0.0
+            for i in range(vector.shape[0]):
+                largest = max(largest, abs(vector[i, lane]))
+            squares = 0.0
+            for i in range(vector.shape[0]):
+                squares += (vector[i, lane] / largest) ** 2
+            out[0, lane] = largest * math.sqrt(squares)
 
 
 @njit(**INNER_KERNEL)
@@ -113,6 +126,9 @@ def dominant_pairs(period, tolerance):
     _start_vectors(period, basis[0], scratch)
     norm, before = np.empty((1, LANES)), np.empty((1, LANES))
     _norms(basis[0], norm)
+    for lane in range(LANES):
+        if not norm[0, lane] < np.inf:
+            found.value[lane], found.used[lane] = _BEYOND_NUMBERS, 1
     _divide(basis[0], norm)
     # weakly damped modes keep as many multipliers near the unit circle as there are states
     look = min(_FIRST_LOOK + size, largest)
@@ -145,11 +161,17 @@ def _look(hessenberg, used, largest, regular, norm, before, tolerance, found):
         if before[lane] == 0.0:
             found.used[lane] = used
             continue
+        if not before[lane] < np.inf:
+            found.value[lane], found.used[lane] = _BEYOND_NUMBERS, used
+            continue
         small = np.empty((used, used))
+        # products of what is that large would leave the range of numbers
+        scale = before[lane] if before[lane] > _SQUARES_BELOW**0.5 else 1.0
         for i in range(used):
             for j in range(used):
-                small[i, j] = hessenberg[i, j, lane]
+                small[i, j] = hessenberg[i, j, lane] / scale
         value, coordinates = dominant_pair(small)
+        value *= scale
         residual = norm[lane] * abs(coordinates[used - 1]) / max(abs(value), 1e-300)
         if residual < tolerance or invariant or used == largest:
             found.value[lane], found.used[lane] = value, used

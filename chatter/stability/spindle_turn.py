@@ -11,7 +11,7 @@ from numba import njit
 from chatter.kernels import INLINED_KERNEL, KERNEL
 
 #: the variation may be taken that much faster or slower, as a share, to fit into a period
-_TUNING = 2e-3
+_TUNING = 5e-3
 _MOST_CYCLES = 12
 
 

@@ -122,17 +122,7 @@ def limits(name, tolerance):
     return by_collocation(model, speeds, depths, None, no_progress)
 
 
-#: the stated error, found by the next finer elements, is up to six times too small where the chip
-#: has kinks within the elements and the error falls with their length squared alone
-KINKED = {
-    "serrated", "upright inserts on a cone, at low immersion", "upright inserts with a corner",
-}  # fmt: skip
-NOT_YET = pytest.mark.xfail(reason="the next finer elements share much of the error", strict=True)
-
-
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=NOT_YET if name in KINKED else ()) for name in CUTS]
-)
+@pytest.mark.parametrize("name", CUTS)
 def test_limits_are_as_good_as_stated(name):
     found = {tolerance: limits(name, tolerance) for tolerance in (1e-3, 1e-4)}
     model, deepest = milling_model(case_of(name, 1e-4)), CUTS[name][4]
