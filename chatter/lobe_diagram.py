@@ -27,6 +27,7 @@ from chatter.pockets import DEPTH_MARGIN, SPEED_MARGIN, Pocket, find_pockets
 from chatter.result_files import as_json, finite_or_none, write_results
 from chatter.search_range import axial_depths, deepest_depth, spindle_speeds
 from chatter.speed_groups import natural_frequencies
+from chatter.stability.collocation import LIMIT_ERROR
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.sweep import Progress, no_progress
 from chatter.stability.zero_order import ZeroOrderLimit
@@ -269,7 +270,20 @@ def lobes(
         operating=operating_limit(case, model, limits_of, deepest),
         natural_frequencies=natural_frequencies(model, speeds),
         grid=computed,
-        notes=(*model.notes, *notes_on_steady_cut(model, name)),
+        notes=(
+            *model.notes, *notes_on_steady_cut(model, name), *notes_on_tolerance(case, limits)
+        ),
+    )  # fmt: skip
+
+
+def notes_on_tolerance(case: Case, limits: LimitCurve) -> tuple[str, ...]:
+    """Say where the tolerance on the depths of the limits is not met."""
+    asked = case.lobes.tolerance if case.lobes else LIMIT_ERROR
+    if not limits.error > asked:
+        return ()
+    return (
+        f"the limits are good to {limits.error:.1%} of their depth, not to the {asked:.2%} asked "
+        "for; a lower lobes.tolerance takes finer elements, and longer",
     )
 
 

@@ -26,6 +26,8 @@ FINER = ((10, 0.7), (12, 0.5), (12, 0.3), (12, 0.15))
 DEPTH_TOLERANCE = 1e-6
 #: largest estimated error of limits, relative to their depth
 LIMIT_ERROR = 1e-3
+#: of `FINER` for no more than that: a serrated edge, with kinks everywhere, would take minutes
+_DAILY = 2
 #: limits that are looked at again with finer elements
 _CHECKED = 16
 #: Gauss points of the elements that they are looked at with, and their length over that they had:
@@ -239,7 +241,7 @@ def converged_limit_curve(
     search = _SEARCHED * tolerance
     limits = limit_curve(cut_at(*RESOLUTION), speeds, depths, progress, search)
     limits = limits._replace(error=_limit_error(limits, cut_at, RESOLUTION))
-    for finer in FINER:
+    for finer in FINER if tolerance < LIMIT_ERROR else FINER[:_DAILY]:
         if limits.error <= tolerance:
             break
         limits = _moved_limits(limits, cut_at(*finer), depths, search)
