@@ -167,6 +167,10 @@ METHODS: dict[str, LimitMethod] = {
 AUTO = "auto"
 
 
+#: steps, and speeds they take, to the depth whose couplings stand for a corner; share it may miss
+_SCALE_STEPS, _SPEEDS_FOR_SCALE, _SAME_SCALE = 8, 24, 0.05
+
+
 @radius_by_group
 def radius_by_semi_discretization(
     model: MillingModel,
@@ -263,14 +267,35 @@ def operating_frequency(model: MillingModel, method: str = "collocation") -> flo
 def zero_order_of(model: MillingModel, speeds: NDArray[np.float64]) -> ZeroOrderLimit:
     """Zeroth-order limits of a model at given speeds (rad/s).
 
-    For teeth that are not alike the couplings are those at the depth of the case.
+    For teeth that are not alike the couplings are those at the depth of the case; where the edge is
+    not upright, at about the lowest limit: a corner cuts ever more as the depth grows.
     """
-    delays, means = model.mean_couplings
-    total = means.sum(axis=0)
     if model.is_uniform:
+        total = model.mean_directional
         return zero_order_limit(*model.receptance, total, model.teeth, speeds)
+    couplings = model.mean_couplings
+    cutter = model.cutter
+    if cutter.corner_radius > 0.0 or cutter.edge_angle < 0.5 * np.pi - 1e-9:
+        depth = model.case.cut.axial_depth
+        some = speeds[:: -(-len(speeds) // _SPEEDS_FOR_SCALE)]
+        for _ in range(_SCALE_STEPS):
+            lowest = _zero_order_of_delays(model, couplings, some).lowest_depth
+            if not np.isfinite(lowest) or abs(np.log(lowest / depth)) < _SAME_SCALE:
+                break
+            # half the way: what is cut grows faster than the depth
+            depth = float(np.sqrt(depth * lowest))
+            couplings = model.mean_couplings_at(depth)
+    return _zero_order_of_delays(model, couplings, speeds)
+
+
+def _zero_order_of_delays(
+    model: MillingModel,
+    couplings: tuple[NDArray[np.float64], NDArray[np.float64]],
+    speeds: NDArray[np.float64],
+) -> ZeroOrderLimit:
+    delays, means = couplings
     # of evenly spaced teeth with the same mean: the scale of the lowest limit
-    even = zero_order_limit(*model.receptance, total, model.teeth, speeds)
+    even = zero_order_limit(*model.receptance, means.sum(axis=0), model.teeth, speeds)
     depth, frequency = limits_of_delays(*model.receptance, delays, means, speeds)
     return even._replace(
         critical_depth=depth,

@@ -116,9 +116,11 @@ class MillingModel:
         """Delays (g,), rad, and mean directional matrices (g, r, r), N/m^2, over a turn."""
         if self.is_uniform:
             return np.array([2.0 * np.pi / self.teeth]), mean_over_turn(self.table, self.teeth)[:1]
-        depth = self.case.cut.axial_depth
-        cut = self.cut(depth)
-        delays, means = mean_couplings(cut, depth)
+        return self.mean_couplings_at(self.case.cut.axial_depth)
+
+    def mean_couplings_at(self, depth: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The same where it is not in proportion to the depth (m): an average over that depth."""
+        delays, means = mean_couplings(self.cut(depth), depth)
         return delays, means / depth
 
     @property
