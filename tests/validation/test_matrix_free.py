@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from reference import dense_cases
 from reference.general_cases import case_dict, load
 
 from chatter.case import Case
@@ -95,6 +96,17 @@ def test_radius_of_random_cases_of_any_tool():
         # the reference counts from turn to turn
         repeats = 1 if cut.variation else round(2.0 * math.pi / period_angle(model.cutter))
         errors.append(abs(radius**repeats - expected) / max(1.0, expected))
+    assert max(errors) < 1e-4
+
+
+def test_radius_of_dense_cases_of_any_tool():
+    """Three and more of corner, runout, size effect, helices, pitch, variation at once."""
+    errors = []
+    for cut, expected in load(dense_cases.STORE):
+        model = milling_model(Case.from_dict(dense_cases.case_dict(cut)))
+        found = matrix_free.converged_multiplier(model.stepped_cut(cut.depth), cut.speed, cut.depth)
+        repeats = 1 if cut.variation else round(2.0 * math.pi / period_angle(model.cutter))
+        errors.append(abs(abs(found.value) ** repeats - expected) / max(1.0, expected))
     assert max(errors) < 1e-4
 
 
