@@ -267,7 +267,7 @@ def _refine(brackets: _Brackets, growth: Growth, tolerance: float) -> NDArray[np
 
     Where that leaves the bracket, the Illinois method. Interpolation through a point that has just
     been looked at is far closer to the root than that point: it is taken unseen when it has moved
-    by a few tolerances.
+    by half a tolerance.
     """
     speed = brackets.speed
     low, high = brackets.low.copy(), brackets.high.copy()
