@@ -16,7 +16,8 @@ import numpy as np
 
 from chatter.case import Case
 from chatter.model import milling_model
-from chatter.stability import drivers
+from chatter.stability import collocation, drivers
+from chatter.stability.element_assembly import map_arrays
 
 RPM = math.pi / 30.0
 POINTS = 800
@@ -55,14 +56,15 @@ def case_of(modes, helix_deg=0.0, teeth=2):
 def cost(cut, rpm_from, rpm_to, depth, points=POINTS):
     """Processor time of a point, s, and how many collocation points a period has on average."""
     speeds, depths = np.linspace(rpm_from, rpm_to, points) * RPM, np.full(points, depth)
-    silent = np.zeros(points, dtype=np.bool_)
-    drivers.element_multipliers(cut, speeds[:8], depths[:8], silent[:8])
+    silent, arrays = np.zeros(points, dtype=np.bool_), map_arrays(cut)
+    collocation.multipliers(cut, speeds[:8], depths[:8])
     best = math.inf
     for _ in range(3):
         start = time.process_time()
         for first in range(0, points, 64):
             part = slice(first, first + 64)
-            drivers.element_multipliers(cut, speeds[part], depths[part], silent[part])
+            plans = drivers.cut_plans(cut, speeds[part], depths[part])
+            drivers.element_multipliers(arrays, plans, speeds[part], silent[part])
         best = min(best, time.process_time() - start)
     nodes = drivers.points_of_periods(cut, speeds, depth).mean()
     return best / points, nodes

@@ -75,23 +75,22 @@ def _vectors(found):
 
 
 @njit(**SINGLE_KERNEL)
-def heard_frequencies(structure, points, numbers, members, speeds, period, found, out):
+def heard_frequencies(arrays, plans, members, speeds, period, found, out):
     """Set out (8,) to the chatter frequency (Hz) of the dominant motion of every lane.
 
     Parameters
     ----------
-    structure : Structure
-    points : ElementPoints
-    numbers : list of arrays of float
-        Of all plans.
+    arrays : MapArrays
+    plans : Plans
     members : (8,) array of int
-        Plan of every lane.
+        Point of every lane.
     speeds : (1, 8) array of float
         rad/s.
     period : ElementMap
     found : DominantPairs
     out : (8,) array of float
     """
+    structure, points = arrays.structure, arrays.points
     cuts = period.couple.shape[0]
     rank, count = period.output.shape[0], points.weight.shape[0]
     vectors, image = _vectors(found), np.empty((found.basis.shape[1], LANES))
@@ -102,7 +101,8 @@ def heard_frequencies(structure, points, numbers, members, speeds, period, found
     weighted = np.empty((cuts * count, rank), dtype=np.complex128)
     first = 1 + period.free.shape[0]
     for lane in range(LANES):
-        of_plan, speed = numbers[members[lane]], speeds[0, lane]
+        plan, speed = plans.of_point[members[lane]], speeds[0, lane]
+        of_plan = plans.number[plans.first_number[plan] : plans.first_number[plan + 1]]
         for e in range(cuts):
             start, length = of_plan[first + e] / speed, of_plan[first + cuts + e] / speed
             for i in range(count):

@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 from chatter.stability import drivers
 from chatter.stability.crossings import moved_crossings
 from chatter.stability.cut_arrays import RESOLUTION, CutArrays
+from chatter.stability.element_assembly import MapArrays, map_arrays
+from chatter.stability.first_use import compile_side_by_side
 from chatter.stability.following import followed_crossings
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.limit_search import HeardPoints, growth, limits_at
@@ -81,10 +83,11 @@ def _solved(
     """Multipliers, and chatter frequencies (Hz) of the points listened to, nan elsewhere."""
     if len(speeds) == 0:
         return np.empty(0, dtype=np.complex128), np.empty(0)
-    order = _neighbours_together(cut, speeds, depths)
+    compile_side_by_side(cut)
+    order, arrays = _neighbours_together(cut, speeds, depths), map_arrays(cut)
     parts = sweep(
-        lambda index: drivers.element_multipliers(
-            cut, speeds[order[index]], depths[order[index]], listened[order[index]]
+        lambda index: _solved_together(
+            cut, arrays, speeds[order[index]], depths[order[index]], listened[order[index]]
         ),
         len(speeds),
         progress,
@@ -94,6 +97,17 @@ def _solved(
     multiplier[order] = np.concatenate([part[0] for part in parts])
     frequency[order] = np.concatenate([part[1] for part in parts])
     return multiplier, frequency
+
+
+def _solved_together(
+    cut: CutArrays,
+    arrays: MapArrays,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    listened: NDArray[np.bool_],
+) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+    plans = drivers.cut_plans(cut, speeds, depths)
+    return drivers.element_multipliers(arrays, plans, speeds, listened)
 
 
 def _neighbours_together(

@@ -24,7 +24,7 @@ from chatter.stability.element_layout import (
     period_borders,
     speed_step,
 )
-from chatter.stability.plan_structure import alike, packed_numbers, packed_structure
+from chatter.stability.plan_structure import alike, packed_numbers, packed_plans, packed_structure
 from chatter.stability.spindle_turn import (
     angle_at,
     in_mean_angle,
@@ -279,10 +279,7 @@ def plans_of(cut, speeds, depths):
 
     Returns
     -------
-    structures : list of arrays of int
-    numbers : list of arrays of float
-    of_point : (n,) array of int
-        Place in the lists.
+    Plans
     """
     of_point = np.empty(speeds.shape[0], dtype=np.int64)
     structures = [np.empty(0, dtype=np.int64) for _ in range(0)]
@@ -303,4 +300,4 @@ def plans_of(cut, speeds, depths):
             structures.append(structure)
             numbers.append(filled)
         of_point[i] = len(structures) - 1
-    return structures, numbers, of_point
+    return packed_plans(structures, numbers, of_point)

@@ -9,12 +9,12 @@ from chatter.kernels import DRIVER
 from chatter.lanes import LANES
 from chatter.stability.chatter_frequency import heard_frequencies
 from chatter.stability.cut_plan import plans_of
-from chatter.stability.element_assembly import Structure, build_element_map
+from chatter.stability.element_assembly import build_element_map
 from chatter.stability.element_layout import element_counts, element_layout, period_borders
 from chatter.stability.lane_multipliers import dominant_pairs
 from chatter.stability.multipliers import dominant_multiplier
 from chatter.stability.period_map import advance_step, build_period_map, period_map_by
-from chatter.stability.plan_structure import alike
+from chatter.stability.plan_structure import alike, structure_at
 from chatter.stability.spindle_turn import in_mean_angle, spindle_turn
 
 
@@ -85,7 +85,24 @@ def motion_over_period(period, vector):
 
 
 @njit(**DRIVER)
-def element_multipliers(cut, speeds, depths, listened):
+def cut_plans(cut, speeds, depths):
+    """What the cut couples at n points.
+
+    Parameters
+    ----------
+    cut : CutArrays
+    speeds, depths : (n,) array of float
+        rad/s, m. Neighbours of the same depth cost less.
+
+    Returns
+    -------
+    Plans
+    """
+    return plans_of(cut, speeds, depths)
+
+
+@njit(**DRIVER)
+def element_multipliers(arrays, plans, speeds, listened):
     """Dominant multipliers of n points by collocation.
 
     Points whose plans are alike are treated together, in lanes; what comes out for a point does not
@@ -93,9 +110,11 @@ def element_multipliers(cut, speeds, depths, listened):
 
     Parameters
     ----------
-    cut : CutArrays
-    speeds, depths : (n,) array of float
-        rad/s, m. Neighbours of the same depth cost less.
+    arrays : MapArrays
+    plans : Plans
+        Of the points.
+    speeds : (n,) array of float
+        rad/s.
     listened : (n,) array of bool
         Points at which the chatter frequency is wanted.
 
@@ -109,9 +128,6 @@ def element_multipliers(cut, speeds, depths, listened):
     n = speeds.shape[0]
     multiplier = np.empty(n, dtype=np.complex128)
     frequency = np.full(n, np.nan)
-    structures, numbers, of_point = plans_of(cut, speeds, depths)
-    structure = Structure(cut.natural_frequency, cut.damping, cut.shape, cut.force_gain)
-    damped = cut.pieces.damping[1] > 0.0
     done = np.zeros(n, dtype=np.bool_)
     lanes, members = np.empty(LANES, dtype=np.int64), np.empty(LANES, dtype=np.int64)
     lane_speeds, heard = np.empty((1, LANES)), np.empty(LANES)
@@ -119,11 +135,12 @@ def element_multipliers(cut, speeds, depths, listened):
         if done[first]:
             continue
         count = 0
+        structure = structure_at(plans, first)
         for i in range(first, n):
             if count == LANES:
                 break
-            one, other = of_point[i], of_point[first]
-            if not done[i] and (one == other or alike(structures[one], structures[other])):
+            same = plans.of_point[i] == plans.of_point[first]
+            if not done[i] and (same or alike(structure_at(plans, i), structure)):
                 lanes[count] = i
                 done[i] = True
                 count += 1
@@ -131,17 +148,12 @@ def element_multipliers(cut, speeds, depths, listened):
         for lane in range(LANES):
             # lanes that are left over do what the first does
             point = lanes[lane] if lane < count else first
-            members[lane], lane_speeds[0, lane] = of_point[point], speeds[point]
+            members[lane], lane_speeds[0, lane] = point, speeds[point]
             wanted |= listened[point]
-        period = build_element_map(
-            structure, cut.response, damped, structures[of_point[first]], numbers, members,
-            lane_speeds,
-        )  # fmt: skip
-        found = dominant_pairs(period, cut.resolution.residual)
+        period = build_element_map(arrays, plans, members, lane_speeds)
+        found = dominant_pairs(period, arrays.residual)
         if wanted:
-            heard_frequencies(
-                structure, cut.points, numbers, members, lane_speeds, period, found, heard
-            )
+            heard_frequencies(arrays, plans, members, lane_speeds, period, found, heard)
         for lane in range(count):
             multiplier[lanes[lane]] = found.value[lane]
             if listened[lanes[lane]]:

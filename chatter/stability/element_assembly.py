@@ -10,9 +10,15 @@ from numpy.typing import NDArray
 
 from chatter.kernels import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 from chatter.lanes import LANES, load, spread, store
+from chatter.stability.cut_arrays import CutArrays
 from chatter.stability.element_map import ElementMap
-from chatter.stability.element_response import free_response, mode_response
-from chatter.stability.plan_structure import structure_of_plan
+from chatter.stability.element_response import (
+    ElementPoints,
+    ResponseTable,
+    free_response,
+    mode_response,
+)
+from chatter.stability.plan_structure import structure_at, structure_of_plan
 
 
 class Structure(NamedTuple):
@@ -24,11 +30,32 @@ class Structure(NamedTuple):
     force_gain: NDArray[np.float64]  # 1/kg (n, r)
 
 
+class MapArrays(NamedTuple):
+    """What the map over a period needs to know beside the plans of its points."""
+
+    structure: Structure
+    points: ElementPoints
+    response: ResponseTable
+    damped: bool  # whether the cut has dashpots
+    residual: float  # of the dominant eigenpair, relative, at which its search stops
+
+
 class _Rates(NamedTuple):
     """Velocity at the Gauss points, which dashpots feel; of no lengths where there are none."""
 
     of_state: NDArray[np.float64]  # (S, q, 2n, 8)
     of_force: NDArray[np.float64]  # (S, q, q, 8)
+
+
+def map_arrays(cut: CutArrays) -> MapArrays:
+    """What the map over a period needs to know of a cut."""
+    return MapArrays(
+        Structure(cut.natural_frequency, cut.damping, cut.shape, cut.force_gain),
+        cut.points,
+        cut.response,
+        bool(cut.pieces.damping[1] > 0.0),
+        cut.resolution.residual,
+    )
 
 
 @njit(**INNER_KERNEL)
@@ -174,13 +201,13 @@ def _factorise(a):
                 store(a, (i, j), load(a, (i, j)) - factor * load(a, (k, j)))
 
 
-@njit(**INNER_KERNEL)
-def _side_by_side(numbers, members, first, count, out):
+@njit(**LEAF_KERNEL)
+def _side_by_side(plans, members, first, count, out):
     """Set out (count, 8) to a part of the numbers of the plans of all lanes."""
     for lane in range(LANES):
-        of_lane = numbers[members[lane]]
+        start = plans.first_number[plans.of_point[members[lane]]] + first
         for i in range(count):
-            out[i, lane] = of_lane[first + i]
+            out[i, lane] = plans.number[start + i]
 
 
 @njit(**LEAF_KERNEL)
@@ -191,21 +218,15 @@ def _multiply_all(a, factor):
 
 
 @njit(**SINGLE_KERNEL)
-def build_element_map(structure, table, damped, packed, numbers, members, speeds):
+def build_element_map(arrays, plans, members, speeds):
     """Assemble the elements of one period.
 
     Parameters
     ----------
-    structure : Structure
-    table : ResponseTable
-    damped : bool
-        Whether the cut has dashpots.
-    packed : (i,) array of int
-        Structure of the plans of all lanes.
-    numbers : list of arrays of float
-        Of all plans.
+    arrays : MapArrays
+    plans : Plans
     members : (8,) array of int
-        Plan of every lane.
+        Point of every lane; their plans are alike.
     speeds : (1, 8) array of float
         Mean spindle speed of every lane, rad/s.
 
@@ -213,6 +234,8 @@ def build_element_map(structure, table, damped, packed, numbers, members, speeds
     -------
     ElementMap
     """
+    structure, table = arrays.structure, arrays.response
+    packed = structure_at(plans, members[0])
     plan = structure_of_plan(packed)
     modes, rank = structure.shape.shape
     points = table.coefficient.shape[3] - 2
@@ -221,15 +244,15 @@ def build_element_map(structure, table, damped, packed, numbers, members, speeds
     output, scale = motion_of_state(structure)
     slowness = 1.0 / load(speeds, 0)
     turns = np.empty((lengths, LANES))
-    _side_by_side(numbers, members, 1, lengths, turns)
+    _side_by_side(plans, members, 1, lengths, turns)
     _multiply_all(turns, slowness)
     pairs = cuts * points * rank * rank
     stiffness, dashpot = np.empty((pairs, LANES)), np.empty((pairs, LANES))
     first = 1 + lengths + 2 * cuts
-    _side_by_side(numbers, members, first, pairs, stiffness)
-    _side_by_side(numbers, members, first + pairs, pairs, dashpot)
+    _side_by_side(plans, members, first, pairs, stiffness)
+    _side_by_side(plans, members, first + pairs, pairs, dashpot)
     block = np.empty((sources * rank * (values + rank), LANES))
-    _side_by_side(numbers, members, first + 2 * pairs, block.shape[0], block)
+    _side_by_side(plans, members, first + 2 * pairs, block.shape[0], block)
     _multiply_all(stiffness, 1.0 / scale)
     _multiply_all(dashpot, slowness)
     _multiply_all(block, 1.0 / scale)
@@ -239,7 +262,7 @@ def build_element_map(structure, table, damped, packed, numbers, members, speeds
         np.zeros((cuts, values, values, LANES)), np.zeros((cuts, values, size, LANES)),
         block.reshape((sources, rank, values + rank, LANES)), output,
     )  # fmt: skip
-    rated = lengths if damped else 0
+    rated = lengths if arrays.damped else 0
     rates = _Rates(np.empty((rated, values, size, LANES)), np.zeros((rated, values, values, LANES)))
     _fill_lengths(structure, table, turns, plan.length_cuts, scale, period, rates)
     couplings = (cuts * points, rank, rank, LANES)

@@ -1,4 +1,4 @@
-"""A plan packed into whole numbers that tell its structure and real ones that fill it."""
+"""Plans packed into whole numbers that tell their structure and real ones that fill them."""
 
 from __future__ import annotations
 
@@ -12,6 +12,16 @@ from chatter.kernels import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 
 #: whole numbers before the lists of a structure
 _HEADER = 5
+
+
+class Plans(NamedTuple):
+    """Plans of N points, P distinct ones, one behind the other."""
+
+    structure: NDArray[np.int64]  # see `packed_structure`
+    first_structure: NDArray[np.int64]  # where that of each plan begins (P + 1,)
+    number: NDArray[np.float64]  # see `packed_numbers`
+    first_number: NDArray[np.int64]  # (P + 1,)
+    of_point: NDArray[np.int64]  # plan of each point (N,)
 
 
 class PlanStructure(NamedTuple):
@@ -71,6 +81,41 @@ def packed_numbers(layout, stiffness, dashpot, block, sources):
     at = _put(dashpot.reshape(stiffness.size), out, at)
     _put(block.reshape(block.size)[:kept], out, at)
     return out
+
+
+@njit(**SINGLE_KERNEL)
+def packed_plans(structures, numbers, of_point):
+    """Lay lists of packed plans one behind the other.
+
+    Parameters
+    ----------
+    structures : list of arrays of int
+    numbers : list of arrays of float
+    of_point : (N,) array of int
+        Place in the lists.
+
+    Returns
+    -------
+    Plans
+    """
+    count = len(structures)
+    first_structure = np.zeros(count + 1, dtype=np.int64)
+    first_number = np.zeros(count + 1, dtype=np.int64)
+    for plan in range(count):
+        first_structure[plan + 1] = first_structure[plan] + structures[plan].shape[0]
+        first_number[plan + 1] = first_number[plan] + numbers[plan].shape[0]
+    structure, number = np.empty(first_structure[count], np.int64), np.empty(first_number[count])
+    for plan in range(count):
+        _put(structures[plan], structure, first_structure[plan])
+        _put(numbers[plan], number, first_number[plan])
+    return Plans(structure, first_structure, number, first_number, of_point)
+
+
+@njit(**INNER_KERNEL)
+def structure_at(plans, point):
+    """Packed structure of the plan of a point."""
+    plan = plans.of_point[point]
+    return plans.structure[plans.first_structure[plan] : plans.first_structure[plan + 1]]
 
 
 @njit(**INNER_KERNEL)
