@@ -10,11 +10,10 @@ between the columns of the coarse net, or between two depths where nothing besid
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.stability.brackets import Growth
 from chatter.stability.crossings import find_crossings
 from chatter.stability.sweep import Progress, no_progress
 
@@ -22,9 +21,6 @@ from chatter.stability.sweep import Progress, no_progress
 _DEPTH_STRIDE = 4
 #: growth of a peak or valley that the columns beside may have above or below zero
 _NEARLY_ZERO = 0.2
-
-#: growth at points: (indices of speeds, depths) -> (n,)
-Growth = Callable[[NDArray[np.int64], NDArray[np.float64]], NDArray[np.float64]]
 
 
 def followed_crossings(

@@ -1,0 +1,213 @@
+"""The depth at which growth is zero, in brackets between two depths, all at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: growth at points: (indices of speeds, depths) -> (n,)
+Growth = Callable[[NDArray[np.int64], NDArray[np.float64]], NDArray[np.float64]]
+
+#: growth that is none
+_GROWTH_TOLERANCE = 1e-9
+#: a root is found when the growth left, over its slope, is this share of the tolerance
+_ROOT_SHARE = 0.2
+_MOST_ITERATIONS = 60
+#: steps after which straight lines alone are trusted
+_MOST_CURVED = 8
+#: every so many steps keep off the ends, where one is far steeper than the other, by a share of the
+#: bracket while curves are trusted, later by another
+_KEEP_OFF, _SMALL_SHARE, _LARGE_SHARE = 3, 0.02, 0.5
+#: a root is taken without another look when it has moved by this share of the tolerance
+_UNSEEN = 0.5
+
+
+class Brackets(NamedTuple):
+    """Between two depths of a speed stability changes."""
+
+    speed: NDArray[np.int64]
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+    at_low: NDArray[np.float64]  # growth
+    at_high: NDArray[np.float64]
+    beside: NDArray[np.float64]  # depths next to the two, nan where there is none (2, n)
+    at_beside: NDArray[np.float64]  # (2, n)
+
+
+def bracket(
+    speed: NDArray[np.int64],
+    one: NDArray[np.float64],
+    at_one: NDArray[np.float64],
+    other: NDArray[np.float64],
+    at_other: NDArray[np.float64],
+) -> Brackets:
+    """Brackets between two depths in either order."""
+    swap = other < one
+    return Brackets(
+        speed,
+        np.where(swap, other, one),
+        np.where(swap, one, other),
+        np.where(swap, at_other, at_one),
+        np.where(swap, at_one, at_other),
+        np.full((2, one.size), np.nan),
+        np.full((2, one.size), np.nan),
+    )
+
+
+class _Narrowing:
+    """Brackets that get smaller with every depth that is looked at."""
+
+    def __init__(self, brackets: Brackets) -> None:
+        self.low, self.high = brackets.low.copy(), brackets.high.copy()
+        self.at_low, self.at_high = brackets.at_low.copy(), brackets.at_high.copy()
+        # the Illinois method scales the value of an end down where it is stuck
+        self.scaled_low, self.scaled_high = self.at_low.copy(), self.at_high.copy()
+        self.last_side = np.zeros(self.low.size, dtype=np.int64)
+        self.x = np.stack([self.low, self.high, *brackets.beside])
+        self.y = np.stack([self.at_low, self.at_high, *brackets.at_beside])
+
+    def interpolated(self, k: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Root of brackets k by inverse interpolation through up to four points."""
+        return _inverse_interpolation(self.x[:, k], self.y[:, k], self.low[k])
+
+    def next_look(self, k: NDArray[np.int64], iteration: int) -> NDArray[np.float64]:
+        """Depth to look at in brackets k."""
+        low, high, at_high = self.low[k], self.high[k], self.scaled_high[k]
+        width = high - low
+        straight = high - at_high * width / (at_high - self.scaled_low[k])
+        # interpolation that does not close in gives way
+        curving = iteration < _MOST_CURVED
+        share = _SMALL_SHARE if curving else _LARGE_SHARE
+        margin = (share if iteration % _KEEP_OFF == _KEEP_OFF - 1 else 0.0) * width
+        curved = self.interpolated(k)
+        inside = (curved > low + margin) & (curved < high - margin)
+        return np.clip(np.where(inside & curving, curved, straight), low + margin, high - margin)
+
+    def slope(
+        self, k: NDArray[np.int64], depth: NDArray[np.float64], value: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Slope of growth at a depth within brackets k, on the flatter side: a jump is none."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.fmin(
+                np.abs(value - self.at_low[k]) / (depth - self.low[k]),
+                np.abs(self.at_high[k] - value) / (self.high[k] - depth),
+            )
+
+    def take(
+        self, k: NDArray[np.int64], depth: NDArray[np.float64], value: NDArray[np.float64]
+    ) -> None:
+        """Make a depth within brackets k an end of theirs."""
+        self.x[:, k], self.y[:, k] = _with_point(
+            self.x[:, k], self.y[:, k], self.low[k], self.high[k], depth, value
+        )
+        upper = (value > 0.0) == (self.at_high[k] > 0.0)
+        self.high[k[upper]], self.low[k[~upper]] = depth[upper], depth[~upper]
+        for values in (self.scaled_high, self.at_high):
+            values[k[upper]] = value[upper]
+        for values in (self.scaled_low, self.at_low):
+            values[k[~upper]] = value[~upper]
+        side = np.where(upper, 1, -1)
+        stuck = self.last_side[k] == side
+        self.scaled_low[k[stuck & upper]] *= 0.5
+        self.scaled_high[k[stuck & ~upper]] *= 0.5
+        self.last_side[k] = side
+
+
+def roots_in(brackets: Brackets, growth: Growth, tolerance: float) -> NDArray[np.float64]:
+    """Root in each bracket by inverse interpolation through up to four points, all at once.
+
+    Where that leaves the bracket, the Illinois method. Interpolation through a point that has just
+    been looked at is far closer to the root than that point: it is taken unseen when it has moved
+    by half a tolerance.
+
+    Parameters
+    ----------
+    brackets : Brackets
+    growth : callable
+    tolerance : float
+        Of a root, relative to its depth.
+
+    Returns
+    -------
+    (n,) array of float
+        m; where growth does not change its sign, the end at which it is closer to zero.
+    """
+    narrowing = _Narrowing(brackets)
+    at_low, at_high = brackets.at_low, brackets.at_high
+    root = np.where(np.abs(at_low) < np.abs(at_high), brackets.low, brackets.high)
+    k = np.flatnonzero((at_low > 0.0) != (at_high > 0.0))
+    for iteration in range(_MOST_ITERATIONS):
+        if k.size == 0:
+            break
+        depth = narrowing.next_look(k, iteration)
+        value = growth(brackets.speed[k], depth)
+        close = tolerance * depth * narrowing.slope(k, depth, value)
+        narrowing.take(k, depth, value)
+        low, high = narrowing.low[k], narrowing.high[k]
+        following = narrowing.interpolated(k)
+        within = (following >= low) & (following <= high)
+        root[k] = np.where(within, following, depth)
+        left = np.abs(value)
+        done = (left < _GROWTH_TOLERANCE) | (high - low <= tolerance * high)
+        done |= left <= _ROOT_SHARE * close
+        small = within & (left <= 2.0 * _UNSEEN * close)
+        done |= small & (np.abs(following - depth) <= _UNSEEN * tolerance * depth)
+        k = k[~done]
+    return root
+
+
+def _with_point(
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    low: NDArray[np.float64],
+    high: NDArray[np.float64],
+    place: NDArray[np.float64],
+    value: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Four points a column with a new one in the place of the furthest that is no end."""
+    distance = np.abs(x - place)
+    distance = np.where(np.isfinite(distance), distance, np.inf)
+    distance = np.where((x == low) | (x == high), -1.0, distance)
+    furthest = np.arange(4)[:, None] == np.argmax(distance, axis=0)
+    return np.where(furthest, place, x), np.where(furthest, value, y)
+
+
+def _inverse_interpolation(
+    x: NDArray[np.float64], y: NDArray[np.float64], low: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Place (n,) at which the polynomial x(y) through up to four points has y = 0.
+
+    Parameters
+    ----------
+    x, y : (4, n) array of float
+        nan where there is no point.
+    low : (n,) array of float
+        Point above which y changes its sign. Beside it and the next, those points are taken
+        towards which y goes on in the same sense: elsewhere x is no function of y.
+    """
+    order = np.argsort(np.where(np.isfinite(x), x, np.inf), axis=0)
+    x, y = np.take_along_axis(x, order, axis=0), np.take_along_axis(y, order, axis=0)
+    n = np.arange(x.shape[1])
+    first = np.minimum(np.argmax(x == low, axis=0), 2)
+    sense = np.sign(y[first + 1, n] - y[first, n])
+    with np.errstate(invalid="ignore"):
+        goes_on = sense * np.diff(y, axis=0) > 0.0
+    place = np.arange(4)[:, None]
+    kept = (place == first) | (place == first + 1)
+    for step in (1, 2):
+        for end, further in ((first + step, first + step + 1), (first + 1 - step, first - step)):
+            there = (further >= 0) & (further <= 3)
+            at, interval = np.clip(further, 0, 3), np.clip(np.minimum(end, further), 0, 2)
+            kept[at, n] |= there & goes_on[interval, n] & kept[np.clip(end, 0, 3), n]
+    result = np.zeros(x.shape[1])
+    with np.errstate(invalid="ignore", divide="ignore"):
+        for i in range(4):
+            share = np.ones(x.shape[1])
+            for j in range(4):
+                if j != i:
+                    share *= np.where(kept[i] & kept[j], y[j] / (y[j] - y[i]), 1.0)
+            result += np.where(kept[i], x[i] * share, 0.0)
+    return result
