@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,7 @@ from chatter.stability.spindle_turn import SpeedVariation
 from chatter.structure import Structure, depends_on_speed, structure_at, structure_of
 from cutting.directional import DirectionalTable, directional_table, mean_over_turn
 from cutting.edge_pieces import (
+    EdgePieces,
     crossing_heights,
     edge_pieces,
     period_angle,
@@ -36,6 +37,8 @@ from cutting.tool import Cutter
 
 #: directions of motion weaker than this, relative to the strongest, do not count
 _RANK_TOLERANCE = 1e-9
+#: tools and cuts whose edges are kept in pieces
+_KEPT_PIECES = 64
 
 
 @dataclass(frozen=True)
@@ -185,9 +188,9 @@ class MillingModel:
     ) -> CutArrays:
         """What collocation sees of it, down to a depth (m), at a resolution of the elements."""
         case = self.case
-        pieces = edge_pieces(
+        pieces = _pieces_of(
             self.cutter,
-            list(self.laws),
+            self.laws,
             case.cut.mode,
             case.width_of_cut,
             case.cut.feed_per_tooth * self.teeth,
@@ -219,6 +222,12 @@ class MillingModel:
         """
         lines, full = self.structure.receptance()
         return lines, np.ascontiguousarray(self.basis.T @ full @ self.basis)
+
+
+@lru_cache(maxsize=_KEPT_PIECES)
+def _pieces_of(cutter: Cutter, laws: tuple[ForceLaw, ...], *cut: object) -> EdgePieces:
+    """Pieces of the edges, kept: structures and resolutions change where a tool stays the same."""
+    return edge_pieces(cutter, list(laws), *cut)
 
 
 def viscous(flank: ViscousProcessDamping | Ploughing | None) -> ViscousProcessDamping | None:
