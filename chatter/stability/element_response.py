@@ -9,6 +9,7 @@ a Chebyshev series once a mode, so that any element costs a short sum.
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +18,9 @@ from numpy.typing import NDArray
 
 from chatter.kernels import INNER_KERNEL
 from chatter.lanes import load, spread, store
+
+#: series hold up to at least that omega h, and up to that times a power of two by this step
+_LEAST_REACH, _STEP = 1e-3, 0.125
 
 
 class ElementPoints(NamedTuple):
@@ -38,6 +42,7 @@ class ResponseTable(NamedTuple):
     furthest: NDArray[np.float64]  # omega h up to which the series holds (n,)
 
 
+@lru_cache(maxsize=32)
 def element_points(count: int) -> ElementPoints:
     """Return the start and `count` Gauss points of an element."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
@@ -57,18 +62,26 @@ def _through_gauss_points(nodes: NDArray[np.float64], at: NDArray[np.float64]) -
     return values
 
 
-def _responses(x: NDArray[np.float64], ratio: float, points: ElementPoints) -> NDArray[np.float64]:
-    """Response (len(x), 2p + 2, p + 2) of one mode at omega h = x."""
-    nodes = points.place[1:]
-    count = nodes.size
-    damped = math.sqrt(1.0 - ratio * ratio)
-    inside, weight = np.polynomial.legendre.leggauss(count + 10 + math.ceil(0.6 * float(np.max(x))))
+@lru_cache(maxsize=64)
+def _pushes_before(count: int, order: int) -> list[tuple[float, NDArray, NDArray]]:
+    """Gauss points and the end of an element: place, those before it (n,), force there (n, p)."""
+    nodes = element_points(count).place[1:]
+    inside, weight = np.polynomial.legendre.leggauss(order)
     inside, weight = 0.5 * (inside + 1.0), 0.5 * weight
+    return [
+        (end, end * inside, _through_gauss_points(nodes, end * inside) * (end * weight)[:, None])
+        for end in [*nodes.tolist(), 1.0]
+    ]
+
+
+def _responses(x: NDArray[np.float64], ratio: float, count: int) -> NDArray[np.float64]:
+    """Response (len(x), 2p + 2, p + 2) of one mode at omega h = x, of p points."""
+    damped = math.sqrt(1.0 - ratio * ratio)
     out = np.zeros((x.size, 2 * count + 2, count + 2))
-    ends = np.append(nodes, 1.0)
     rows = np.append(np.arange(count), count)
     velocity_rows = np.append(count + 2 + np.arange(count), count + 1)
-    for end, row, velocity_row in zip(ends, rows, velocity_rows, strict=True):
+    ends = _pushes_before(count, count + 10 + math.ceil(0.6 * float(np.max(x))))
+    for (end, before, force), row, velocity_row in zip(ends, rows, velocity_rows, strict=True):
         decay = np.exp(-ratio * x * end)
         c, s = np.cos(damped * x * end), np.sin(damped * x * end)
         out[:, row, 0] = decay * (c + ratio / damped * s)
@@ -76,15 +89,24 @@ def _responses(x: NDArray[np.float64], ratio: float, points: ElementPoints) -> N
         out[:, velocity_row, 0] = -decay * s / damped
         out[:, velocity_row, 1] = decay * (c - ratio / damped * s)
         # what is left at `end` of a push at each place before it
-        before = end * inside
         span = x[:, None] * (end - before)[None, :]
         fading = np.exp(-ratio * span)
-        shape = _through_gauss_points(nodes, before) * (end * weight)[:, None]
-        place = fading * np.sin(damped * span) / damped
-        speed = fading * (np.cos(damped * span) - ratio / damped * np.sin(damped * span))
-        out[:, row, 2:] = x[:, None] * (place @ shape)
-        out[:, velocity_row, 2:] = x[:, None] * (speed @ shape)
+        sine = fading * np.sin(damped * span) / damped
+        out[:, row, 2:] = x[:, None] * (sine @ force)
+        speed = fading * np.cos(damped * span) - ratio * sine
+        out[:, velocity_row, 2:] = x[:, None] * (speed @ force)
     return out
+
+
+@lru_cache(maxsize=128)
+def _coefficients(ratio: float, reach: float, terms: int, count: int) -> NDArray[np.float64]:
+    """Chebyshev coefficients (terms, 2p + 2, p + 2) of the response of one mode up to a reach."""
+    # Chebyshev points of the first kind; the series follows from the cosine sums
+    angle = math.pi * (np.arange(terms) + 0.5) / terms
+    cosines = np.cos(np.outer(np.arange(terms), angle)) * (2.0 / terms)
+    cosines[0] *= 0.5
+    values = _responses(0.5 * reach * (1.0 + np.cos(angle)), ratio, count)
+    return np.tensordot(cosines, values, axes=1)
 
 
 def response_table(
@@ -107,17 +129,16 @@ def response_table(
     -------
     ResponseTable
     """
-    furthest = np.maximum(natural_frequency * longest, 1e-3)
+    reach = np.maximum(natural_frequency * longest, _LEAST_REACH)
+    # in steps, so that like structures share their series
+    furthest = _LEAST_REACH * 2.0 ** (np.ceil(np.log2(reach / _LEAST_REACH) / _STEP) * _STEP)
     terms = 16 + math.ceil(0.62 * float(furthest.max()))
-    # Chebyshev points of the first kind; the series follows from the cosine sums
-    angle = math.pi * (np.arange(terms) + 0.5) / terms
-    cosines = np.cos(np.outer(np.arange(terms), angle)) * (2.0 / terms)
-    cosines[0] *= 0.5
-    tables = []
-    for reach, ratio in zip(furthest, damping, strict=True):
-        values = _responses(0.5 * reach * (1.0 + np.cos(angle)), float(ratio), points)
-        tables.append(np.tensordot(cosines, values, axes=1))
-    return ResponseTable(np.ascontiguousarray(np.stack(tables)), furthest)
+    count = points.weight.size
+    tables = [
+        _coefficients(float(ratio), float(own), terms, count)
+        for own, ratio in zip(furthest, damping, strict=True)
+    ]
+    return ResponseTable(np.stack(tables), furthest)
 
 
 @njit(**INNER_KERNEL)
