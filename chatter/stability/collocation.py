@@ -20,6 +20,7 @@ from chatter.stability.following import followed_crossings
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.limit_search import HeardPoints, growth, limits_at
 from chatter.stability.multiplier import Multiplier
+from chatter.stability.spindle_turn import spindle_turn
 from chatter.stability.sweep import Progress, no_progress, sweep
 
 #: resolutions of a single point, one after the other until two agree
@@ -36,6 +37,9 @@ _CHECKED = 16
 #: so fine that where the chip has kinks, and errors fall but as the square, a tenth is left
 _CHECK = (12, 0.3)
 _ALLOWANCE = 1.1
+#: the frequency of a varying speed may be moved by this share for a single point, and while limits
+#: are first looked for
+_POINT_TUNING, _LOOSE_TUNING = 1e-3, 2e-2
 #: finer elements move a limit by no more than some of its errors, relative to its depth
 _REACH, _LARGEST_REACH = 4.0, 0.1
 #: limits are searched to this share of the largest error
@@ -137,10 +141,11 @@ def converged_multiplier(
         On |mu|, relative to max(1, |mu|).
     """
     point = np.array([speed]), np.array([depth])
-    cut = cut_at(*RESOLUTION)
+    # the same period of a varying speed at all resolutions
+    cut = _tuned(cut_at(*RESOLUTION), _POINT_TUNING)
     value, error = complex(multipliers(cut, *point)[0]), np.inf
     for finer in FINER:
-        cut = cut_at(*finer)
+        cut = _tuned(cut_at(*finer), _POINT_TUNING)
         better = complex(multipliers(cut, *point)[0])
         error = abs(abs(better) - abs(value))
         value = better
@@ -253,17 +258,38 @@ def converged_limit_curve(
         With the estimated error.
     """
     search = _SEARCHED * tolerance
-    limits = limit_curve(cut_at(*RESOLUTION), speeds, depths, progress, search)
-    limits = limits._replace(error=_limit_error(limits, cut_at, RESOLUTION))
+    # shorter periods of a varying speed: what that moves is moved back by finer cuts
+    cut = _tuned(cut_at(*RESOLUTION), _LOOSE_TUNING)
+    limits = limit_curve(cut, speeds, depths, progress, search)
+    limits = limits._replace(error=_limit_error(limits, cut, cut_at, RESOLUTION))
     for finer in FINER if tolerance < LIMIT_ERROR else FINER[:_DAILY]:
         if limits.error <= tolerance:
             break
-        limits = _moved_limits(limits, cut_at(*finer), depths, search)
-        limits = limits._replace(error=_limit_error(limits, cut_at, finer))
+        cut = cut_at(*finer)
+        limits = _moved_limits(limits, cut, depths, search)
+        limits = limits._replace(error=_limit_error(limits, cut, cut_at, finer))
     return limits
 
 
-def _limit_error(limits: LimitCurve, cut_at: CutAt, resolution: tuple[int, float]) -> float:
+def _tuned(cut: CutArrays, tuning: float) -> CutArrays:
+    """The cut with the frequency of a varying speed moved by no more than a share."""
+    return cut._replace(variation=cut.variation._replace(tuning=tuning))
+
+
+def _rates(
+    cut: CutArrays, speeds: NDArray[np.float64], depths: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Growth at points for each period of the tool, which the period of a cut may hold many of."""
+    grown = growth(multipliers(cut, speeds, depths))
+    if cut.variation.amplitude == 0.0:
+        return grown
+    turns = [spindle_turn(cut.variation, float(speed), cut.period_angle) for speed in speeds]
+    return grown / np.array([turn.patterns for turn in turns])
+
+
+def _limit_error(
+    limits: LimitCurve, cut: CutArrays, cut_at: CutAt, resolution: tuple[int, float]
+) -> float:
     """Largest error of the limit depth, relative, of some limits, by a far finer resolution."""
     found = np.flatnonzero(np.isfinite(limits.critical_depth))
     if found.size == 0:
@@ -273,10 +299,10 @@ def _limit_error(limits: LimitCurve, cut_at: CutAt, resolution: tuple[int, float
         np.unique(np.geomspace(1, found.size, min(found.size, _CHECKED)).astype(int) - 1)
     ]
     speed, depth = limits.spindle_speed[picked], limits.critical_depth[picked]
-    cut, finer = cut_at(*resolution), cut_at(_CHECK[0], _CHECK[1] * resolution[1])
+    finer = cut_at(_CHECK[0], _CHECK[1] * resolution[1])
     step = 1e-3 * depth
-    left, right = (growth(multipliers(cut, speed, depth + s)) for s in (-step, step))
+    left, right = (_rates(cut, speed, depth + s) for s in (-step, step))
     slope = np.maximum(np.abs(right - left) / (2.0 * step), 1e-300)
     # at the limit of the finer cut there would be no growth: what the search leaves counts as well
-    left = np.abs(growth(multipliers(finer, speed, depth)))
+    left = np.abs(_rates(finer, speed, depth))
     return float(_ALLOWANCE * np.max(left / (slope * depth)))

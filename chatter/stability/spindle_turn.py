@@ -10,9 +10,8 @@ from numba import njit
 
 from chatter.kernels import INLINED_KERNEL, KERNEL
 
-#: the variation may be taken that much faster or slower, as a share, to fit into a period
-_TUNING = 5e-3
-_MOST_CYCLES = 12
+#: variations in a period
+_MOST_CYCLES = 40
 
 
 class SpeedVariation(NamedTuple):
@@ -21,6 +20,7 @@ class SpeedVariation(NamedTuple):
     amplitude: float  # share of the mean; 0 for none
     frequency: float  # Hz
     triangle: int  # 1 for a triangle, 0 for a sine
+    tuning: float  # by that share it may be taken faster or slower to fit into a period
 
 
 class SpindleTurn(NamedTuple):
@@ -59,7 +59,7 @@ def spindle_turn(variation, speed, pattern):
         error = abs(whole / (cycles * a_cycle) - 1.0)
         if error < 0.5 * best_error:
             best, best_error = cycles, error
-        if best_error < _TUNING:
+        if best_error < variation.tuning:
             break
     patterns = int(max(1.0, np.round(best * a_cycle)))
     frequency = best * speed / (patterns * pattern)
