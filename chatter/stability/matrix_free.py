@@ -72,17 +72,13 @@ def stepped_cut(
     reach = np.linalg.norm(cut.shape, axis=1) * np.linalg.norm(cut.force_gain, axis=1)
     # the stiffest that the contact can make a mode
     fastest = math.hypot(cut.resolution.fastest, math.sqrt(stiffness * float(reach.max())))
-    return SteppedCut(
-        cut.natural_frequency, cut.damping, cut.shape, cut.force_gain, cut.basis, cut.pieces,
-        cut.period_angle, cut.variation, fastest, cut.resolution.stiffening,
-        np.array([*contact[:2], max(full_at, 1e-12)]), cut.edge_place, cut.edge_weight,
-    )  # fmt: skip
+    return SteppedCut(cut, fastest, np.array([*contact[:2], max(full_at, 1e-12)]))
 
 
 def _dominant(plan: StepPlan) -> _Dominant:
     """Multiplier of largest magnitude and the motion that belongs to it."""
     modes, rank = plan.shape.shape
-    nodes = 2 * plan.length_of.size
+    nodes = 2 * plan.kind.size
     dimension = 2 * modes + 2 * rank * nodes
     most = min(dimension, _MOST_FUNCTIONS)
     basis, hessenberg = np.zeros((most + 1, dimension)), np.zeros((most + 1, most))
@@ -102,9 +98,7 @@ def _dominant(plan: StepPlan) -> _Dominant:
         value, vector = value.conjugate(), vector.conj()
     function = vector @ basis[:known]
     motion = function[2 * modes :].reshape(nodes, 2, rank)[:, 0]
-    start, end = plan.border[:-1], plan.border[1:]
-    time = np.stack([start, 0.5 * (start + end)], axis=1).ravel()
-    return _Dominant(value, motion, time, float(end[-1] - start[0]))
+    return _Dominant(value, motion, plan.time[:-1], float(plan.time[-1] - plan.time[0]))
 
 
 def multipliers(
@@ -199,7 +193,7 @@ def converged_multiplier(
                 refinement >= _FINEST or _steps_a_turn(cut, speed, 2 * refinement) > _MOST_STEPS
             )
             if error <= tolerance * max(1.0, abs(value)) or finest:
-                return Multiplier(complex(value), plan.length_of.size, float(error))
+                return Multiplier(complex(value), plan.kind.size, float(error))
         coarse, refinement = fine, 2 * refinement
 
 
@@ -212,7 +206,7 @@ def chatter_frequency(cut: SteppedCut, speed: float, depth: float) -> float:
     found = _dominant(_plan(cut, speed, depth, 1))
     base = np.log(complex(found.value) if found.value != 0.0 else 1e-300) / found.period
     line = 2.0 * np.pi / found.period
-    highest = _HIGHEST * float(cut.natural_frequency.max())
+    highest = _HIGHEST * float(cut.cut.natural_frequency.max())
     harmonic = np.arange(-math.ceil(highest / line) - 1, math.ceil(highest / line) + 2)
     s = base + 1j * line * harmonic
     time = np.append(found.time, found.time[0] + found.period)
@@ -277,5 +271,5 @@ def _limit_error(cut: SteppedCut, limits: LimitCurve) -> float:
 @njit(**DRIVER)
 def steps_a_period(cut, speed, depth, refinement):
     """Steps in a period."""
-    turn = spindle_turn(cut.variation, speed, cut.period_angle)
-    return period_steps(cut, turn, depth, STEPS_A_WAVE, refinement).shape[0] - 1
+    turn = spindle_turn(cut.cut.variation, speed, cut.cut.period_angle)
+    return period_steps(cut, turn, depth, STEPS_A_WAVE, refinement).power.shape[0]

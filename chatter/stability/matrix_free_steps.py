@@ -1,8 +1,11 @@
-"""Steps of the matrix-free method over a period, and the exact answer of the modes over one step.
+"""Steps of the matrix-free method over a period.
 
 Steps end where a tip or a top of an edge enters or leaves, and where a triangular variation of the
-speed has its corners, so that all is smooth inside them. Over a step the cutting force is the line
-through its values at the two Gauss points; the modes answer to that and to their state exactly.
+speed has its corners, so that all is smooth inside them. Where a size effect makes the slope of the
+force law infinite, at a vanishing chip, the force f is like t^(p-1) in the time t from the border,
+and the integral of f dt is taken over s, with t = h s^k: f dt/ds is like s^(k p - 1), smooth for
+the right k (a graded mesh: Brunner 2004, Collocation Methods for Volterra Integral and Related
+Functional Differential Equations, chapter 6; here the force is drawn along with the mesh).
 """
 
 from __future__ import annotations
@@ -15,49 +18,69 @@ from numba import njit
 from numpy.typing import NDArray
 
 from chatter.kernels import KERNEL
-from chatter.stability.spindle_turn import SpeedVariation, angle_at, time_at
-from cutting.edge_coupling import chip_vanishes, part_below, share_of_height
-from cutting.edge_pieces import EdgePieces
+from chatter.stability.cut_arrays import CutArrays
+from chatter.stability.matrix_free_answer import PLACES
+from chatter.stability.spindle_turn import angle_at, time_at
+from cutting.edge_coupling import chip_at, part_below, share_of_height
 
-#: Gauss points of a step, and where the motion is kept besides: its middle and its end
-_ROOT = math.sqrt(3.0) / 6.0
-PLACES = np.array([0.5 - _ROOT, 0.5 + _ROOT, 0.5, 1.0])
 #: borders closer than this share of the period are the same
 _SAME = 1e-10
-#: levels and ratio of the steps towards a place where the slope of the force law is infinite
-_LEVELS = 6
-_RATIO = 0.2
+#: steps that one is drawn out into towards a vanishing chip
+_DRAWN = 6
+#: a chip has as good as vanished below this share of the feed
+_THIN = 0.1
+#: sides of a border on which a chip vanishes
+_BEFORE, _AFTER = 1, 2
 #: a step turns the spindle by no more than this over the steps a wave, rad
 _ANGLE_A_WAVE = 3.0
-#: below this angle of a mode in a step the series holds more digits than the closed form
-_SERIES_BELOW = 1.5
-_TERMS = 40
 
 
 class SteppedCut(NamedTuple):
-    """A milling cut with speed and depth left open; n modes, r directions of motion."""
+    """A milling cut with speed and depth left open, and what the steps need besides."""
 
-    natural_frequency: NDArray[np.float64]  # rad/s (n,)
-    damping: NDArray[np.float64]  # ratio (n,)
-    shape: NDArray[np.float64]  # displacement per modal coordinate (n, r)
-    force_gain: NDArray[np.float64]  # modal acceleration per force, 1/kg (n, r)
-    basis: NDArray[np.float64]  # directions of motion (3, r)
-    pieces: EdgePieces
-    period_angle: float  # after which the tool looks the same again, rad
-    variation: SpeedVariation
+    cut: CutArrays
     fastest: float  # vibration that steps resolve, with no cut, rad/s
-    stiffening: float  # by which its square grows with depth, rad^2/s^2/m
     contact: NDArray[np.float64]  # stiffness N/m, damping N s/m, share at which it is whole (3,)
-    edge_place: NDArray[np.float64]  # Gauss points on [0, 1], row q for q of them (17, 16)
-    edge_weight: NDArray[np.float64]  # (17, 16)
+
+
+class Steps(NamedTuple):
+    """N steps; at the share x of one the time is anchor + span s^power, s = low + x (high - low).
+
+    A plain step has power 1 and goes from 0 to 1.
+    """
+
+    node: NDArray[np.float64]  # starts and middles of the steps and the end, s (2 N + 1,)
+    anchor: NDArray[np.float64]  # s (N,)
+    span: NDArray[np.float64]  # s, below zero before a border (N,)
+    power: NDArray[np.float64]  # (N,)
+    low: NDArray[np.float64]  # (N,)
+    high: NDArray[np.float64]  # (N,)
+
+
+@njit(**KERNEL)
+def _sides_of_thin_chip(pieces, piece, place, immersion, side, end):
+    """Sides of the border of an arc on which the slope of the force law is infinite, or nearly."""
+    if pieces.exponent == 0.0:
+        return 0
+    low, high = pieces.immersion[piece, 0], pieces.immersion[piece, 1]
+    kappa = low + place * (high - low)
+    # at the very tip of a corner the chip is nothing at any angle
+    sk = max(math.sin(kappa), 1e-9)
+    height = share_of_height(pieces, piece, place)
+    chip = chip_at(pieces, piece, height, math.sin(immersion), sk, math.cos(kappa))
+    if chip >= _THIN * sk * pieces.feed * pieces.delay[piece, 0]:
+        return 0
+    if pieces.turning[piece, end] == 1:
+        return _BEFORE + _AFTER
+    return _AFTER if side == 0 else _BEFORE
 
 
 @njit(**KERNEL)
 def _border_angles(cut, depth):
-    """Borders in one period of the tool (rad), unsorted, and 1 for each that is singular."""
+    """Borders in one period of the tool (rad), unsorted, and the sides with a thin chip of each."""
     pieces, period = cut.pieces, cut.period_angle
     angles = np.empty(4 * pieces.bottom.shape[0] + 1)
-    singular = np.zeros(angles.shape[0], dtype=np.int64)
+    sides = np.zeros(angles.shape[0], dtype=np.int64)
     count = 0
     lowest = pieces.bottom[0]
     for piece in range(pieces.bottom.shape[0]):
@@ -79,12 +102,11 @@ def _border_angles(cut, depth):
                 immersed = arc[0] + place * (arc[1] - arc[0])
                 angle = immersed - lag
                 angles[count] = angle - period * math.floor(angle / period)
-                if pieces.exponent != 0.0 and chip_vanishes(pieces, piece, place, immersed):
-                    singular[count] = 1
+                sides[count] = _sides_of_thin_chip(pieces, piece, place, immersed, side, end)
                 count += 1
     if count == 0:
         count, angles[0] = 1, 0.0
-    return angles[:count], singular[:count]
+    return angles[:count], sides[:count]
 
 
 @njit(**KERNEL)
@@ -101,7 +123,7 @@ def _sort(times, flags):
 @njit(**KERNEL)
 def _border_times(cut, turn, depth):
     """Border times over the whole period, ascending (s), and their flags."""
-    angles, singular = _border_angles(cut, depth)
+    angles, sides = _border_angles(cut, depth)
     per_tool = angles.shape[0]
     corners = 2 * turn.cycles if turn.triangle == 1 and turn.amplitude > 0.0 else 0
     times = np.empty(turn.patterns * per_tool + corners)
@@ -111,7 +133,7 @@ def _border_times(cut, turn, depth):
         if i < turn.patterns * per_tool:
             pattern, k = i // per_tool, i % per_tool
             times[i] = time_at(turn, angles[k] + pattern * cut.period_angle)
-            flags[i] = singular[k]
+            flags[i] = sides[k]
         else:
             times[i] = (0.25 + 0.5 * (i - turn.patterns * per_tool)) / turn.frequency
         times[i] -= period * math.floor(times[i] / period)
@@ -123,12 +145,61 @@ def _border_times(cut, turn, depth):
         wrapped = kept > 0 and out[0] + period - times[i] <= _SAME * period
         if again or wrapped:
             same = kept - 1 if again else 0
-            marks[same] = max(marks[same], flags[i])
+            marks[same] |= flags[i]
             continue
         out[kept], marks[kept] = times[i], flags[i]
         kept += 1
     out[kept], marks[kept] = out[0] + period, marks[0]
     return out[: kept + 1], marks[: kept + 1]
+
+
+@njit(**KERNEL)
+def _empty_steps(count):
+    """Room for steps."""
+    return Steps(
+        np.empty(2 * count + 1), np.empty(count), np.empty(count), np.empty(count),
+        np.empty(count), np.empty(count),
+    )  # fmt: skip
+
+
+@njit(**KERNEL)
+def step_time(steps, step, share):
+    """Time at a share of a step, s."""
+    s = steps.low[step] + share * (steps.high[step] - steps.low[step])
+    if steps.power[step] != 1.0:
+        s **= steps.power[step]
+    return steps.anchor[step] + steps.span[step] * s
+
+
+@njit(**KERNEL)
+def _add_steps(steps, count, anchor, span, power, number):
+    """Divide the time between a border and that beyond its span; returns the number of steps."""
+    for i in range(number):
+        k = count + i
+        steps.anchor[k], steps.span[k], steps.power[k] = anchor, span, power
+        if power == 1.0:
+            steps.anchor[k], steps.span[k] = anchor + span * i / number, span / number
+            steps.low[k], steps.high[k] = 0.0, 1.0
+        elif span > 0.0:
+            steps.low[k], steps.high[k] = i / number, (i + 1) / number
+        else:
+            steps.low[k], steps.high[k] = (number - i) / number, (number - i - 1) / number
+    return count + number
+
+
+@njit(**KERNEL)
+def _plain_counts(cut, turn, depth, borders, steps_a_wave):
+    """Steps (I,) that each interval between borders needs."""
+    arrays = cut.cut
+    stiffened = cut.fastest**2 + arrays.resolution.stiffening * depth
+    longest = 2.0 * math.pi / (steps_a_wave * math.sqrt(stiffened))
+    counts = np.empty(borders.shape[0] - 1, dtype=np.int64)
+    for i in range(counts.shape[0]):
+        turned = angle_at(turn, borders[i + 1]) - angle_at(turn, borders[i])
+        need = (borders[i + 1] - borders[i]) / longest
+        need = max(need, turned * steps_a_wave / _ANGLE_A_WAVE)
+        counts[i] = max(1, math.ceil(need - 1e-9))
+    return counts
 
 
 @njit(**KERNEL)
@@ -148,97 +219,43 @@ def period_steps(cut, turn, depth, steps_a_wave, refinement):
 
     Returns
     -------
-    (N + 1,) array of float
-        Borders of the steps, s.
+    Steps
     """
-    borders, singular = _border_times(cut, turn, depth)
-    longest = 2.0 * math.pi / (steps_a_wave * math.sqrt(cut.fastest**2 + cut.stiffening * depth))
-    counts = np.empty(borders.shape[0] - 1, dtype=np.int64)
-    total = 0
-    for i in range(counts.shape[0]):
-        turned = angle_at(turn, borders[i + 1]) - angle_at(turn, borders[i])
-        need = (borders[i + 1] - borders[i]) / longest
-        need = max(need, turned * steps_a_wave / _ANGLE_A_WAVE)
-        counts[i] = max(1, math.ceil(need - 1e-9))
-        total += counts[i]
-    ends = np.empty(refinement * (total + 2 * _LEVELS * counts.shape[0]) + 1)
+    borders, sides = _border_times(cut.cut, turn, depth)
+    counts = _plain_counts(cut, turn, depth, borders, steps_a_wave)
+    steps = _empty_steps(refinement * (np.sum(counts) + 2 * _DRAWN * counts.shape[0]))
+    # k p whole: 4 for a law that is nearly linear, less where k would be large
+    p = 1.0 + cut.cut.pieces.exponent
+    power = math.ceil(4.0 * p) / p
     count = 0
-    ends[0] = borders[0]
     for i in range(counts.shape[0]):
-        step = (borders[i + 1] - borders[i]) / counts[i]
-        marks = np.empty(counts[i] + 2 * _LEVELS)
-        n = 0
-        for level in range(_LEVELS if singular[i] == 1 else 0, 0, -1):
-            marks[n] = borders[i] + 0.5 * step * _RATIO**level
-            n += 1
-        for k in range(1, counts[i]):
-            marks[n] = borders[i] + k * step
-            n += 1
-        for level in range(1, _LEVELS + 1 if singular[i + 1] == 1 else 1):
-            marks[n] = borders[i + 1] - 0.5 * step * _RATIO**level
-            n += 1
-        marks[n] = borders[i + 1]
-        for k in range(n + 1):
-            low = ends[count]
-            for part in range(1, refinement + 1):
-                ends[count + 1] = low + (marks[k] - low) * part / refinement
-                count += 1
-    return ends[: count + 1]
+        low, high = borders[i], borders[i + 1]
+        after, before = sides[i] & _AFTER != 0, sides[i + 1] & _BEFORE != 0
+        if after and before and counts[i] == 1:
+            counts[i] = 2
+        step = (high - low) / counts[i]
+        plain = counts[i]
+        if after:
+            count = _add_steps(steps, count, low, step, power, _DRAWN * refinement)
+            plain -= 1
+            low = low + step
+        if before:
+            plain -= 1
+        if plain > 0:
+            count = _add_steps(steps, count, low, plain * step, 1.0, plain * refinement)
+        if before:
+            count = _add_steps(steps, count, high, -step, power, _DRAWN * refinement)
+    return _with_nodes(steps, count, borders[-1])
 
 
 @njit(**KERNEL)
-def _ramp(angle, damping, s):
-    """Answer of y'' + 2 zeta a y' + a^2 y = s, at rest at zero: y, y', y'' at s.
-
-    y' is the answer to a step of force, y'' that to an impulse.
-    """
-    if angle > _SERIES_BELOW:
-        root = math.sqrt(1.0 - damping * damping)
-        fade = math.exp(-damping * angle * s)
-        sine, cosine = fade * math.sin(root * angle * s), fade * math.cos(root * angle * s)
-        impulse = sine / (root * angle)
-        step = (1.0 - cosine - damping / root * sine) / angle**2
-        return (s - impulse - 2.0 * damping * angle * step) / angle**2, step, impulse
-    before, last = 0.0, 1.0 / 6.0
-    power = s
-    ramp, step, impulse = last * power * s * s, 3.0 * last * power * s, 6.0 * last * power
-    for k in range(2, _TERMS):
-        following = -2.0 * damping * angle * (k + 1) * last - angle * angle * before
-        following /= (k + 2) * (k + 1)
-        power *= s
-        impulse += (k + 2) * (k + 1) * following * power
-        step += (k + 2) * following * power * s
-        ramp += following * power * s * s
-        before, last = last, following
-    return ramp, step, impulse
-
-
-@njit(**KERNEL)
-def mode_answer(frequency, damping, length, out):
-    """Answer of one mode at the places of a step.
-
-    Parameters
-    ----------
-    frequency, damping : float
-        rad/s and ratio.
-    length : float
-        Of the step, s.
-    out : (4, 2, 4) array of float
-        For each of `PLACES` the coordinate x and x'/omega from x and x'/omega at the start and
-        the accelerations at the two Gauss points. Overwritten.
-    """
-    angle = frequency * length
-    root = math.sqrt(1.0 - damping * damping)
-    first, second = PLACES[0], PLACES[1]
-    for p in range(4):
-        s = PLACES[p]
-        fade = math.exp(-damping * angle * s)
-        sine, cosine = fade * math.sin(root * angle * s), fade * math.cos(root * angle * s)
-        out[p, 0, 0], out[p, 0, 1] = cosine + damping / root * sine, sine / root
-        out[p, 1, 0], out[p, 1, 1] = -sine / root, cosine - damping / root * sine
-        ramp, step, impulse = _ramp(angle, damping, s)
-        scale = length * length / (second - first)
-        rate = length / frequency / (second - first)
-        out[p, 0, 2], out[p, 0, 3] = scale * (second * step - ramp), scale * (ramp - first * step)
-        out[p, 1, 2] = rate * (second * impulse - step)
-        out[p, 1, 3] = rate * (step - first * impulse)
+def _with_nodes(steps, count, end):
+    """The steps that are there, with their starts and middles."""
+    node = np.empty(2 * count + 1)
+    for k in range(count):
+        node[2 * k], node[2 * k + 1] = step_time(steps, k, 0.0), step_time(steps, k, PLACES[2])
+    node[2 * count] = end
+    return Steps(
+        node, steps.anchor[:count], steps.span[:count], steps.power[:count],
+        steps.low[:count], steps.high[:count],
+    )  # fmt: skip

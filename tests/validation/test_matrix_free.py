@@ -19,7 +19,7 @@ from chatter.methods import (
 from chatter.model import milling_model
 from chatter.simulation.limits import growths
 from chatter.stability import collocation, matrix_free, sweep
-from chatter.stability.matrix_free_steps import PLACES, mode_answer
+from chatter.stability.matrix_free_answer import PLACES, mode_answer
 from chatter.stability.sweep import no_progress
 from cutting.edge_pieces import period_angle
 
