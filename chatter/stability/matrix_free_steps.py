@@ -5,7 +5,9 @@ speed has its corners, so that all is smooth inside them. Where a size effect ma
 force law infinite, at a vanishing chip, the force f is like t^(p-1) in the time t from the border,
 and the integral of f dt is taken over s, with t = h s^k: f dt/ds is like s^(k p - 1), smooth for
 the right k (a graded mesh: Brunner 2004, Collocation Methods for Volterra Integral and Related
-Functional Differential Equations, chapter 6; here the force is drawn along with the mesh).
+Functional Differential Equations, chapter 6; here the force is drawn along with the mesh). So it is
+where an edge, on a cone or a corner, enters or leaves nearly all at once: what is engaged then is
+like the root of the time.
 """
 
 from __future__ import annotations
@@ -25,12 +27,16 @@ from cutting.edge_coupling import chip_at, part_below, share_of_height
 
 #: borders closer than this share of the period are the same
 _SAME = 1e-10
-#: steps that one is drawn out into towards a vanishing chip
-_DRAWN = 6
+#: steps that one is drawn out into towards a vanishing chip, and towards a root of the time
+_DRAWN, _DRAWN_ROOT = 6, 3
+#: an edge enters nearly all at once where it does so in a share of the time that it takes elsewhere
+_FLAT = 0.5
+#: power for a root: f dt/ds is like s^2
+_POWER_OF_ROOT = 2.0
 #: a chip has as good as vanished below this share of the feed
 _THIN = 0.1
-#: sides of a border on which a chip vanishes
-_BEFORE, _AFTER = 1, 2
+#: sides of a border on which a chip vanishes, and on which engagement is a root of the time
+_BEFORE, _AFTER, _ROOT_BEFORE, _ROOT_AFTER = 1, 2, 4, 8
 #: a step turns the spindle by no more than this over the steps a wave, rad
 _ANGLE_A_WAVE = 3.0
 
@@ -76,6 +82,32 @@ def _sides_of_thin_chip(pieces, piece, place, immersion, side, end):
 
 
 @njit(**KERNEL)
+def _rise(pieces, piece, side):
+    """Angle by which the edge enters (side 0) or leaves later at the high end of a piece, rad."""
+    arc = pieces.entry[piece] if side == 0 else pieces.exit[piece]
+    return arc[1] - arc[0] - (pieces.angle[piece, 1] - pieces.angle[piece, 0])
+
+
+@njit(**KERNEL)
+def _sides_of_root(pieces, piece, side, end):
+    """Side of a border on which the edge enters or leaves nearly all at once, if any.
+
+    There the angle of entry or exit has, along the edge, its least or largest value near by.
+    """
+    chain = 0
+    while pieces.chain[chain + 1] <= piece:
+        chain += 1
+    total, length = 0.0, 0.0
+    for other in range(pieces.chain[chain], pieces.chain[chain + 1]):
+        total += abs(_rise(pieces, other, side))
+        length += pieces.length[other]
+    rise = _rise(pieces, piece, side)
+    if abs(rise) * length >= _FLAT * total * pieces.length[piece]:
+        return 0
+    return _ROOT_AFTER if (rise > 0.0) == (end == 0) else _ROOT_BEFORE
+
+
+@njit(**KERNEL)
 def _border_angles(cut, depth):
     """Borders in one period of the tool (rad), unsorted, and the sides with a thin chip of each."""
     pieces, period = cut.pieces, cut.period_angle
@@ -103,6 +135,7 @@ def _border_angles(cut, depth):
                 angle = immersed - lag
                 angles[count] = angle - period * math.floor(angle / period)
                 sides[count] = _sides_of_thin_chip(pieces, piece, place, immersed, side, end)
+                sides[count] |= _sides_of_root(pieces, piece, side, end)
                 count += 1
     if count == 0:
         count, angles[0] = 1, 0.0
@@ -188,6 +221,18 @@ def _add_steps(steps, count, anchor, span, power, number):
 
 
 @njit(**KERNEL)
+def _drawn_out(pieces, sides, thin, root):
+    """Power of the time and number of the steps beside a border; none for plain steps."""
+    if sides & thin != 0:
+        p = 1.0 + pieces.exponent
+        # k p whole: 4 for a law that is nearly linear, less where k would be large
+        return math.ceil(4.0 * p) / p, _DRAWN
+    if sides & root != 0:
+        return _POWER_OF_ROOT, _DRAWN_ROOT
+    return 1.0, 0
+
+
+@njit(**KERNEL)
 def _plain_counts(cut, turn, depth, borders, steps_a_wave):
     """Steps (I,) that each interval between borders needs."""
     arrays = cut.cut
@@ -224,27 +269,24 @@ def period_steps(cut, turn, depth, steps_a_wave, refinement):
     borders, sides = _border_times(cut.cut, turn, depth)
     counts = _plain_counts(cut, turn, depth, borders, steps_a_wave)
     steps = _empty_steps(refinement * (np.sum(counts) + 2 * _DRAWN * counts.shape[0]))
-    # k p whole: 4 for a law that is nearly linear, less where k would be large
-    p = 1.0 + cut.cut.pieces.exponent
-    power = math.ceil(4.0 * p) / p
     count = 0
     for i in range(counts.shape[0]):
         low, high = borders[i], borders[i + 1]
-        after, before = sides[i] & _AFTER != 0, sides[i + 1] & _BEFORE != 0
-        if after and before and counts[i] == 1:
-            counts[i] = 2
+        power, drawn = _drawn_out(cut.cut.pieces, sides[i], _AFTER, _ROOT_AFTER)
+        power_before, drawn_before = _drawn_out(
+            cut.cut.pieces, sides[i + 1], _BEFORE, _ROOT_BEFORE
+        )
+        plain = counts[i] - min(1, drawn) - min(1, drawn_before)
+        if plain < 0:
+            plain, counts[i] = 0, 2
         step = (high - low) / counts[i]
-        plain = counts[i]
-        if after:
-            count = _add_steps(steps, count, low, step, power, _DRAWN * refinement)
-            plain -= 1
-            low = low + step
-        if before:
-            plain -= 1
+        if drawn > 0:
+            count = _add_steps(steps, count, low, step, power, drawn * refinement)
+            low += step
         if plain > 0:
             count = _add_steps(steps, count, low, plain * step, 1.0, plain * refinement)
-        if before:
-            count = _add_steps(steps, count, high, -step, power, _DRAWN * refinement)
+        if drawn_before > 0:
+            count = _add_steps(steps, count, high, -step, power_before, drawn_before * refinement)
     return _with_nodes(steps, count, borders[-1])
 
 
