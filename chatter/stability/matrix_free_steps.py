@@ -64,21 +64,16 @@ class Steps(NamedTuple):
 
 
 @njit(**KERNEL)
-def _sides_of_thin_chip(pieces, piece, place, immersion, side, end):
-    """Sides of the border of an arc on which the slope of the force law is infinite, or nearly."""
-    if pieces.exponent == 0.0:
-        return 0
+def _is_thin(pieces, piece, place, immersion):
+    """Tell whether the slope of the force law is infinite, or nearly, at the border of an arc."""
     low, high = pieces.immersion[piece, 0], pieces.immersion[piece, 1]
     kappa = low + place * (high - low)
     # at the very tip of a corner the chip is nothing at any angle
     sk = max(math.sin(kappa), 1e-9)
     height = share_of_height(pieces, piece, place)
     chip = chip_at(pieces, piece, height, math.sin(immersion), sk, math.cos(kappa))
-    if chip >= _THIN * sk * pieces.feed * pieces.delay[piece, 0]:
-        return 0
-    if pieces.turning[piece, end] == 1:
-        return _BEFORE + _AFTER
-    return _AFTER if side == 0 else _BEFORE
+    thin = chip < _THIN * sk * pieces.feed * pieces.delay[piece, 0]
+    return thin and pieces.exponent != 0.0
 
 
 @njit(**KERNEL)
@@ -89,16 +84,27 @@ def _rise(pieces, piece, side):
 
 
 @njit(**KERNEL)
+def _follows(pieces, piece):
+    """Tell whether a piece goes on where that before it in the table ends."""
+    apart = abs(pieces.angle[piece - 1, 1] - pieces.angle[piece, 0])
+    apart += abs(pieces.entry[piece - 1, 1] - pieces.entry[piece, 0])
+    apart += abs(pieces.exit[piece - 1, 1] - pieces.exit[piece, 0])
+    return apart < _SAME and pieces.bottom[piece] > pieces.bottom[piece - 1]
+
+
+@njit(**KERNEL)
 def _sides_of_root(pieces, piece, side, end):
     """Side of a border on which the edge enters or leaves nearly all at once, if any.
 
     There the angle of entry or exit has, along the edge, its least or largest value near by.
     """
-    chain = 0
-    while pieces.chain[chain + 1] <= piece:
-        chain += 1
+    first, last = piece, piece
+    while first > 0 and _follows(pieces, first):
+        first -= 1
+    while last + 1 < pieces.bottom.shape[0] and _follows(pieces, last + 1):
+        last += 1
     total, length = 0.0, 0.0
-    for other in range(pieces.chain[chain], pieces.chain[chain + 1]):
+    for other in range(first, last + 1):
         total += abs(_rise(pieces, other, side))
         length += pieces.length[other]
     rise = _rise(pieces, piece, side)
@@ -134,8 +140,14 @@ def _border_angles(cut, depth):
                 immersed = arc[0] + place * (arc[1] - arc[0])
                 angle = immersed - lag
                 angles[count] = angle - period * math.floor(angle / period)
-                sides[count] = _sides_of_thin_chip(pieces, piece, place, immersed, side, end)
-                sides[count] |= _sides_of_root(pieces, piece, side, end)
+                sides[count] = _sides_of_root(pieces, piece, side, end)
+                if _is_thin(pieces, piece, place, immersed):
+                    # a place that enters is in the cut after it, one that leaves before; where the
+                    # edge is flat, what is left of it next to it counts too
+                    turned_round = pieces.turning[piece, end] == 1
+                    after = side == 0 or turned_round or sides[count] == _ROOT_AFTER
+                    before = side == 1 or turned_round or sides[count] == _ROOT_BEFORE
+                    sides[count] = _AFTER * after + _BEFORE * before
                 count += 1
     if count == 0:
         count, angles[0] = 1, 0.0
@@ -273,9 +285,7 @@ def period_steps(cut, turn, depth, steps_a_wave, refinement):
     for i in range(counts.shape[0]):
         low, high = borders[i], borders[i + 1]
         power, drawn = _drawn_out(cut.cut.pieces, sides[i], _AFTER, _ROOT_AFTER)
-        power_before, drawn_before = _drawn_out(
-            cut.cut.pieces, sides[i + 1], _BEFORE, _ROOT_BEFORE
-        )
+        power_before, drawn_before = _drawn_out(cut.cut.pieces, sides[i + 1], _BEFORE, _ROOT_BEFORE)
         plain = counts[i] - min(1, drawn) - min(1, drawn_before)
         if plain < 0:
             plain, counts[i] = 0, 2
