@@ -11,6 +11,7 @@ time, of order four; nothing is shared with collocation but the couplings of the
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -38,7 +39,7 @@ _EXTRAPOLATED = (1, 2)
 _ORDER = 4
 #: a correction beyond this share means that two multipliers have changed places
 _LARGEST_CORRECTION = 0.05
-_MOST_STEPS, _FINEST = 100_000, 16
+_MOST_STEPS, _FINEST, _FINEST_PIECES = 100_000, 16, 8
 #: residual of the dominant eigenpair, relative to its magnitude, at which the iteration stops
 _RESIDUAL = 1e-9
 #: functions beyond the states at the first look, growth from look to look, and the most
@@ -47,6 +48,10 @@ _FIRST_LOOK, _GROWTH, _MOST_FUNCTIONS = 6, 1.3, 320
 _CHECKED = 12
 #: harmonics looked at for the chatter frequency reach this far beyond the highest mode
 _HIGHEST = 2.0
+
+
+#: a cut at a fineness of its edges
+CutAt = Callable[[float], SteppedCut]
 
 
 class _Dominant(NamedTuple):
@@ -170,31 +175,43 @@ def _extrapolated(
 
 
 def converged_multiplier(
-    cut: SteppedCut, speed: float, depth: float, tolerance: float = 2e-5
+    cut_at: CutAt, speed: float, depth: float, tolerance: float = 2e-5
 ) -> Multiplier:
     """Dominant multiplier at one point, its steps halved until the estimated error is small.
 
+    With the steps the pieces of the edge are halved. The estimate is what the extrapolation adds to
+    the finer steps, and a third of what the finer pieces change: chords of an edge are of second
+    order.
+
     Parameters
     ----------
-    cut : SteppedCut
+    cut_at : callable
+        The cut at a fineness: factor on the pieces of its edges, see `cutting.edge_pieces`.
     speed, depth : float
         rad/s, m.
     tolerance : float
         On |mu|, relative to max(1, |mu|).
     """
-    coarse, refinement, error = None, 1, math.inf
+
+    def plain(cut: SteppedCut, refinement: int) -> NDArray[np.complex128]:
+        return np.array([_dominant(_plan(cut, speed, depth, refinement)).value])
+
+    refinement, cut = 1, cut_at(1.0)
+    coarse = plain(cut, refinement)
     while True:
+        before = cut
+        if refinement < _FINEST_PIECES:
+            cut = cut_at(0.5 / refinement)
+        resolved = coarse if _same_pieces(cut, before) else plain(cut, refinement)
+        refinement *= 2
         plan = _plan(cut, speed, depth, refinement)
         fine = np.array([_dominant(plan).value])
-        if coarse is not None:
-            value = _extrapolated(np.array([coarse, fine]), (1, 2))[0]
-            error = abs(abs(value) - abs(fine[0]))
-            finest = (
-                refinement >= _FINEST or _steps_a_turn(cut, speed, 2 * refinement) > _MOST_STEPS
-            )
-            if error <= tolerance * max(1.0, abs(value)) or finest:
-                return Multiplier(complex(value), plan.kind.size, float(error))
-        coarse, refinement = fine, 2 * refinement
+        value = _extrapolated(np.array([resolved, fine]), (1, 2))[0]
+        error = abs(abs(value) - abs(fine[0])) + abs(abs(resolved[0]) - abs(coarse[0])) / 3.0
+        finest = refinement >= _FINEST or _steps_a_turn(cut, speed, 2 * refinement) > _MOST_STEPS
+        if error <= tolerance * max(1.0, abs(value)) or finest:
+            return Multiplier(complex(value), plan.kind.size, float(error))
+        coarse = fine
 
 
 def chatter_frequency(cut: SteppedCut, speed: float, depth: float) -> float:
@@ -219,12 +236,16 @@ def chatter_frequency(cut: SteppedCut, speed: float, depth: float) -> float:
 
 
 def limit_curve(
-    cut: SteppedCut,
+    cut_at: CutAt,
     speeds: NDArray[np.float64],
     depths: NDArray[np.float64],
     progress: Progress = no_progress,
 ) -> LimitCurve:
-    """Limits of stability at every spindle speed; see `limit_search`."""
+    """Limits of stability at every spindle speed; see `limit_search`.
+
+    `cut_at` gives the cut at a fineness of its edges; the finer one only judges the error.
+    """
+    cut = cut_at(1.0)
 
     def plain(
         points: NDArray[np.int64], depth: NDArray[np.float64], report: Progress
@@ -252,11 +273,18 @@ def limit_curve(
     deepest, finer = float(depths[-1]), _EXTRAPOLATED[-1]
     steps = np.array([steps_a_period(cut, float(v), deepest, finer) for v in speeds])
     limits = limit_curve_by(PointMethod(plain, refined, heard), speeds, depths, steps, progress)
-    return limits._replace(error=_limit_error(cut, limits))
+    return limits._replace(error=_limit_error(cut, cut_at(0.5), limits))
 
 
-def _limit_error(cut: SteppedCut, limits: LimitCurve) -> float:
-    """Largest relative shift of some limits by what the extrapolation adds to the finer steps."""
+def _same_pieces(cut: SteppedCut, other: SteppedCut) -> bool:
+    return cut.cut.pieces.bottom.shape == other.cut.pieces.bottom.shape
+
+
+def _limit_error(cut: SteppedCut, fine_edges: SteppedCut, limits: LimitCurve) -> float:
+    """Largest relative shift of some limits, see `converged_multiplier`.
+
+    By what the extrapolation adds to the finer steps, and by shorter pieces of the edges.
+    """
     found = np.flatnonzero(np.isfinite(limits.critical_depth))
     picked = found[:: max(1, found.size // _CHECKED)]
     if not picked.size:
@@ -264,8 +292,15 @@ def _limit_error(cut: SteppedCut, limits: LimitCurve) -> float:
     speed, depth = limits.spindle_speed[picked], limits.critical_depth[picked]
     at = growth(multipliers(cut, speed, depth))
     finer = growth(multipliers(cut, speed, depth, refinements=_EXTRAPOLATED[1:]))
+    off = np.abs(at - finer)
+    if not _same_pieces(cut, fine_edges):
+        # all of it: the limits are those of the longer pieces
+        coarse, other = (
+            growth(multipliers(c, speed, depth, refinements=_PLAIN)) for c in (cut, fine_edges)
+        )
+        off += np.abs(coarse - other) * 4.0 / 3.0
     slope = (growth(multipliers(cut, speed, 1.001 * depth)) - at) / (1e-3 * depth)
-    return float(np.max(np.abs(at - finer) / np.maximum(np.abs(slope) * depth, 1e-300)))
+    return float(np.max(off / np.maximum(np.abs(slope) * depth, 1e-300)))
 
 
 @njit(**DRIVER)
