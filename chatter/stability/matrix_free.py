@@ -223,7 +223,7 @@ def chatter_frequency(cut: SteppedCut, speed: float, depth: float) -> float:
     found = _dominant(_plan(cut, speed, depth, 1))
     base = np.log(complex(found.value) if found.value != 0.0 else 1e-300) / found.period
     line = 2.0 * np.pi / found.period
-    highest = _HIGHEST * float(cut.cut.natural_frequency.max())
+    highest = _HIGHEST * float(cut.arrays.natural_frequency.max())
     harmonic = np.arange(-math.ceil(highest / line) - 1, math.ceil(highest / line) + 2)
     s = base + 1j * line * harmonic
     time = np.append(found.time, found.time[0] + found.period)
@@ -277,7 +277,7 @@ def limit_curve(
 
 
 def _same_pieces(cut: SteppedCut, other: SteppedCut) -> bool:
-    return cut.cut.pieces.bottom.shape == other.cut.pieces.bottom.shape
+    return cut.arrays.pieces.bottom.shape == other.arrays.pieces.bottom.shape
 
 
 def _limit_error(cut: SteppedCut, fine_edges: SteppedCut, limits: LimitCurve) -> float:
@@ -306,5 +306,5 @@ def _limit_error(cut: SteppedCut, fine_edges: SteppedCut, limits: LimitCurve) ->
 @njit(**DRIVER)
 def steps_a_period(cut, speed, depth, refinement):
     """Steps in a period."""
-    turn = spindle_turn(cut.cut.variation, speed, cut.cut.period_angle)
+    turn = spindle_turn(cut.arrays.variation, speed, cut.arrays.period_angle)
     return period_steps(cut, turn, depth, STEPS_A_WAVE, refinement).power.shape[0]

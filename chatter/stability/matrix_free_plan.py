@@ -153,7 +153,7 @@ def step_plan(stepped, speed, depth, steps_a_wave, refinement):
     -------
     StepPlan
     """
-    cut, rate = stepped.cut, stepped.fastest
+    cut, rate = stepped.arrays, stepped.fastest
     turn = spindle_turn(cut.variation, speed, cut.period_angle)
     steps = period_steps(stepped, turn, depth, steps_a_wave, refinement)
     count = steps.power.shape[0]

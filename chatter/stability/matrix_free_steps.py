@@ -44,7 +44,7 @@ _ANGLE_A_WAVE = 3.0
 class SteppedCut(NamedTuple):
     """A milling cut with speed and depth left open, and what the steps need besides."""
 
-    cut: CutArrays
+    arrays: CutArrays
     fastest: float  # vibration that steps resolve, with no cut, rad/s
     contact: NDArray[np.float64]  # stiffness N/m, damping N s/m, share at which it is whole (3,)
 
@@ -247,7 +247,7 @@ def _drawn_out(pieces, sides, thin, root):
 @njit(**KERNEL)
 def _plain_counts(cut, turn, depth, borders, steps_a_wave):
     """Steps (I,) that each interval between borders needs."""
-    arrays = cut.cut
+    arrays = cut.arrays
     stiffened = cut.fastest**2 + arrays.resolution.stiffening * depth
     longest = 2.0 * math.pi / (steps_a_wave * math.sqrt(stiffened))
     counts = np.empty(borders.shape[0] - 1, dtype=np.int64)
@@ -278,14 +278,16 @@ def period_steps(cut, turn, depth, steps_a_wave, refinement):
     -------
     Steps
     """
-    borders, sides = _border_times(cut.cut, turn, depth)
+    borders, sides = _border_times(cut.arrays, turn, depth)
     counts = _plain_counts(cut, turn, depth, borders, steps_a_wave)
     steps = _empty_steps(refinement * (np.sum(counts) + 2 * _DRAWN * counts.shape[0]))
     count = 0
     for i in range(counts.shape[0]):
         low, high = borders[i], borders[i + 1]
-        power, drawn = _drawn_out(cut.cut.pieces, sides[i], _AFTER, _ROOT_AFTER)
-        power_before, drawn_before = _drawn_out(cut.cut.pieces, sides[i + 1], _BEFORE, _ROOT_BEFORE)
+        power, drawn = _drawn_out(cut.arrays.pieces, sides[i], _AFTER, _ROOT_AFTER)
+        power_before, drawn_before = _drawn_out(
+            cut.arrays.pieces, sides[i + 1], _BEFORE, _ROOT_BEFORE
+        )
         plain = counts[i] - min(1, drawn) - min(1, drawn_before)
         if plain < 0:
             plain, counts[i] = 0, 2
