@@ -82,7 +82,10 @@ def by_matrix_free(
     progress: Progress,
 ) -> LimitCurve:
     """Limits from initial functions propagated in time, of any tool."""
-    return matrix_free.limit_curve(model.stepped_cut(float(depths[-1])), speeds, depths, progress)
+    deepest = float(depths[-1])
+    return matrix_free.limit_curve(
+        lambda fineness: model.stepped_cut(deepest, fineness), speeds, depths, progress
+    )
 
 
 @limits_by_group
@@ -240,7 +243,9 @@ def operating_multiplier(model: MillingModel, method: str, steps: int | None) ->
     cut = model.case.cut
     speed, depth = cut.spindle_speed, cut.axial_depth
     if method == "matrix-free":
-        return matrix_free.converged_multiplier(model.stepped_cut(depth), speed, depth)
+        return matrix_free.converged_multiplier(
+            lambda fineness: model.stepped_cut(depth, fineness), speed, depth
+        )
     if method != "semi-discretization":
         return collocation.converged_multiplier(
             lambda points, waves: model.cut(depth, points, waves), speed, depth

@@ -210,12 +210,15 @@ class MillingModel:
         period = period_angle(self.cutter)
         return cut_arrays(self._modes, self.basis, pieces, period, variation, points, waves)
 
-    def stepped_cut(self, deepest: float) -> SteppedCut:
-        """What the matrix-free method sees of it, down to a depth (m), with the contact."""
-        contact = self.case.contact
+    def stepped_cut(self, deepest: float, fineness: float = 1.0) -> SteppedCut:
+        """What the matrix-free method sees of it, down to a depth (m), with the contact.
+
+        The pieces of the edges are shorter by the factor `fineness`.
+        """
+        contact, cut = self.case.contact, self.cut(deepest, waves=fineness)
         if contact is None:
-            return stepped_cut(self.cut(deepest))
-        return stepped_cut(self.cut(deepest), (contact.stiffness, contact.damping, contact.full_at))
+            return stepped_cut(cut)
+        return stepped_cut(cut, (contact.stiffness, contact.damping, contact.full_at))
 
     @cached_property
     def receptance(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:

@@ -11,6 +11,7 @@ time, of order four; nothing is shared with collocation but the couplings of the
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -38,7 +39,7 @@ _EXTRAPOLATED = (1, 2)
 _ORDER = 4
 #: a correction beyond this share means that two multipliers have changed places
 _LARGEST_CORRECTION = 0.05
-_MOST_STEPS, _FINEST = 100_000, 16
+_MOST_STEPS, _FINEST, _FINEST_PIECES = 100_000, 16, 8
 #: residual of the dominant eigenpair, relative to its magnitude, at which the iteration stops
 _RESIDUAL = 1e-9
 #: functions beyond the states at the first look, growth from look to look, and the most
@@ -47,6 +48,10 @@ _FIRST_LOOK, _GROWTH, _MOST_FUNCTIONS = 6, 1.3, 320
 _CHECKED = 12
 #: harmonics looked at for the chatter frequency reach this far beyond the highest mode
 _HIGHEST = 2.0
+
+
+#: a cut at a fineness of its edges
+CutAt = Callable[[float], SteppedCut]
 
 
 class _Dominant(NamedTuple):
@@ -72,17 +77,13 @@ def stepped_cut(
     reach = np.linalg.norm(cut.shape, axis=1) * np.linalg.norm(cut.force_gain, axis=1)
     # the stiffest that the contact can make a mode
     fastest = math.hypot(cut.resolution.fastest, math.sqrt(stiffness * float(reach.max())))
-    return SteppedCut(
-        cut.natural_frequency, cut.damping, cut.shape, cut.force_gain, cut.basis, cut.pieces,
-        cut.period_angle, cut.variation, fastest, cut.resolution.stiffening,
-        np.array([*contact[:2], max(full_at, 1e-12)]), cut.edge_place, cut.edge_weight,
-    )  # fmt: skip
+    return SteppedCut(cut, fastest, np.array([*contact[:2], max(full_at, 1e-12)]))
 
 
 def _dominant(plan: StepPlan) -> _Dominant:
     """Multiplier of largest magnitude and the motion that belongs to it."""
     modes, rank = plan.shape.shape
-    nodes = 2 * plan.length_of.size
+    nodes = 2 * plan.kind.size
     dimension = 2 * modes + 2 * rank * nodes
     most = min(dimension, _MOST_FUNCTIONS)
     basis, hessenberg = np.zeros((most + 1, dimension)), np.zeros((most + 1, most))
@@ -102,9 +103,7 @@ def _dominant(plan: StepPlan) -> _Dominant:
         value, vector = value.conjugate(), vector.conj()
     function = vector @ basis[:known]
     motion = function[2 * modes :].reshape(nodes, 2, rank)[:, 0]
-    start, end = plan.border[:-1], plan.border[1:]
-    time = np.stack([start, 0.5 * (start + end)], axis=1).ravel()
-    return _Dominant(value, motion, time, float(end[-1] - start[0]))
+    return _Dominant(value, motion, plan.time[:-1], float(plan.time[-1] - plan.time[0]))
 
 
 def multipliers(
@@ -176,31 +175,43 @@ def _extrapolated(
 
 
 def converged_multiplier(
-    cut: SteppedCut, speed: float, depth: float, tolerance: float = 2e-5
+    cut_at: CutAt, speed: float, depth: float, tolerance: float = 2e-5
 ) -> Multiplier:
     """Dominant multiplier at one point, its steps halved until the estimated error is small.
 
+    With the steps the pieces of the edge are halved. The estimate is what the extrapolation adds to
+    the finer steps, and a third of what the finer pieces change: chords of an edge are of second
+    order.
+
     Parameters
     ----------
-    cut : SteppedCut
+    cut_at : callable
+        The cut at a fineness: factor on the pieces of its edges, see `cutting.edge_pieces`.
     speed, depth : float
         rad/s, m.
     tolerance : float
         On |mu|, relative to max(1, |mu|).
     """
-    coarse, refinement, error = None, 1, math.inf
+
+    def plain(cut: SteppedCut, refinement: int) -> NDArray[np.complex128]:
+        return np.array([_dominant(_plan(cut, speed, depth, refinement)).value])
+
+    refinement, cut = 1, cut_at(1.0)
+    coarse = plain(cut, refinement)
     while True:
+        before = cut
+        if refinement < _FINEST_PIECES:
+            cut = cut_at(0.5 / refinement)
+        resolved = coarse if _same_pieces(cut, before) else plain(cut, refinement)
+        refinement *= 2
         plan = _plan(cut, speed, depth, refinement)
         fine = np.array([_dominant(plan).value])
-        if coarse is not None:
-            value = _extrapolated(np.array([coarse, fine]), (1, 2))[0]
-            error = abs(abs(value) - abs(fine[0]))
-            finest = (
-                refinement >= _FINEST or _steps_a_turn(cut, speed, 2 * refinement) > _MOST_STEPS
-            )
-            if error <= tolerance * max(1.0, abs(value)) or finest:
-                return Multiplier(complex(value), plan.length_of.size, float(error))
-        coarse, refinement = fine, 2 * refinement
+        value = _extrapolated(np.array([resolved, fine]), (1, 2))[0]
+        error = abs(abs(value) - abs(fine[0])) + abs(abs(resolved[0]) - abs(coarse[0])) / 3.0
+        finest = refinement >= _FINEST or _steps_a_turn(cut, speed, 2 * refinement) > _MOST_STEPS
+        if error <= tolerance * max(1.0, abs(value)) or finest:
+            return Multiplier(complex(value), plan.kind.size, float(error))
+        coarse = fine
 
 
 def chatter_frequency(cut: SteppedCut, speed: float, depth: float) -> float:
@@ -212,7 +223,7 @@ def chatter_frequency(cut: SteppedCut, speed: float, depth: float) -> float:
     found = _dominant(_plan(cut, speed, depth, 1))
     base = np.log(complex(found.value) if found.value != 0.0 else 1e-300) / found.period
     line = 2.0 * np.pi / found.period
-    highest = _HIGHEST * float(cut.natural_frequency.max())
+    highest = _HIGHEST * float(cut.arrays.natural_frequency.max())
     harmonic = np.arange(-math.ceil(highest / line) - 1, math.ceil(highest / line) + 2)
     s = base + 1j * line * harmonic
     time = np.append(found.time, found.time[0] + found.period)
@@ -225,12 +236,16 @@ def chatter_frequency(cut: SteppedCut, speed: float, depth: float) -> float:
 
 
 def limit_curve(
-    cut: SteppedCut,
+    cut_at: CutAt,
     speeds: NDArray[np.float64],
     depths: NDArray[np.float64],
     progress: Progress = no_progress,
 ) -> LimitCurve:
-    """Limits of stability at every spindle speed; see `limit_search`."""
+    """Limits of stability at every spindle speed; see `limit_search`.
+
+    `cut_at` gives the cut at a fineness of its edges; the finer one only judges the error.
+    """
+    cut = cut_at(1.0)
 
     def plain(
         points: NDArray[np.int64], depth: NDArray[np.float64], report: Progress
@@ -258,11 +273,18 @@ def limit_curve(
     deepest, finer = float(depths[-1]), _EXTRAPOLATED[-1]
     steps = np.array([steps_a_period(cut, float(v), deepest, finer) for v in speeds])
     limits = limit_curve_by(PointMethod(plain, refined, heard), speeds, depths, steps, progress)
-    return limits._replace(error=_limit_error(cut, limits))
+    return limits._replace(error=_limit_error(cut, cut_at(0.5), limits))
 
 
-def _limit_error(cut: SteppedCut, limits: LimitCurve) -> float:
-    """Largest relative shift of some limits by what the extrapolation adds to the finer steps."""
+def _same_pieces(cut: SteppedCut, other: SteppedCut) -> bool:
+    return cut.arrays.pieces.bottom.shape == other.arrays.pieces.bottom.shape
+
+
+def _limit_error(cut: SteppedCut, fine_edges: SteppedCut, limits: LimitCurve) -> float:
+    """Largest relative shift of some limits, see `converged_multiplier`.
+
+    By what the extrapolation adds to the finer steps, and by shorter pieces of the edges.
+    """
     found = np.flatnonzero(np.isfinite(limits.critical_depth))
     picked = found[:: max(1, found.size // _CHECKED)]
     if not picked.size:
@@ -270,12 +292,19 @@ def _limit_error(cut: SteppedCut, limits: LimitCurve) -> float:
     speed, depth = limits.spindle_speed[picked], limits.critical_depth[picked]
     at = growth(multipliers(cut, speed, depth))
     finer = growth(multipliers(cut, speed, depth, refinements=_EXTRAPOLATED[1:]))
+    off = np.abs(at - finer)
+    if not _same_pieces(cut, fine_edges):
+        # all of it: the limits are those of the longer pieces
+        coarse, other = (
+            growth(multipliers(c, speed, depth, refinements=_PLAIN)) for c in (cut, fine_edges)
+        )
+        off += np.abs(coarse - other) * 4.0 / 3.0
     slope = (growth(multipliers(cut, speed, 1.001 * depth)) - at) / (1e-3 * depth)
-    return float(np.max(np.abs(at - finer) / np.maximum(np.abs(slope) * depth, 1e-300)))
+    return float(np.max(off / np.maximum(np.abs(slope) * depth, 1e-300)))
 
 
 @njit(**DRIVER)
 def steps_a_period(cut, speed, depth, refinement):
     """Steps in a period."""
-    turn = spindle_turn(cut.variation, speed, cut.period_angle)
-    return period_steps(cut, turn, depth, STEPS_A_WAVE, refinement).shape[0] - 1
+    turn = spindle_turn(cut.arrays.variation, speed, cut.arrays.period_angle)
+    return period_steps(cut, turn, depth, STEPS_A_WAVE, refinement).power.shape[0]

@@ -17,7 +17,7 @@ def _propagate(plan, function, out, motion, force, free):
     `motion` (4 N + 1, 2, r) holds the nodes of the period before and of this one; `force` (2, r)
     and `free` (2, 2, r) are scratch.
     """
-    steps = plan.length_of.shape[0]
+    steps = plan.kind.shape[0]
     modes, rank = plan.shape.shape
     kept = 2 * steps
     place = 2 * modes
@@ -30,7 +30,7 @@ def _propagate(plan, function, out, motion, force, free):
         out[i] = function[i]
     _note_motion(plan, out, motion[kept])
     for step in range(steps):
-        answer = plan.answer[plan.length_of[step]]
+        answer = plan.answer[plan.kind[step]]
         for p in range(2):
             for k in range(rank):
                 force[p, k] = 0.0
@@ -133,7 +133,7 @@ def _scale_to_one(function):
 @njit(**DRIVER)
 def first_function(plan, basis):
     """Set the first row of `basis` to a fixed function, run through one period, of length 1."""
-    steps = plan.length_of.shape[0]
+    steps = plan.kind.shape[0]
     modes, rank = plan.shape.shape
     seed = 20261121
     start = np.zeros(basis.shape[1])
@@ -163,7 +163,7 @@ def extend_space(plan, basis, hessenberg, first, last):
     int
         Functions whose image is known: less than `last` where the space closes.
     """
-    steps = plan.length_of.shape[0]
+    steps = plan.kind.shape[0]
     rank = plan.shape.shape[1]
     motion = np.empty((4 * steps + 1, 2, rank))
     force, free = np.empty((2, rank)), np.empty((2, 2, rank))

@@ -1,8 +1,13 @@
-"""Steps of the matrix-free method over a period, and the exact answer of the modes over one step.
+"""Steps of the matrix-free method over a period.
 
 Steps end where a tip or a top of an edge enters or leaves, and where a triangular variation of the
-speed has its corners, so that all is smooth inside them. Over a step the cutting force is the line
-through its values at the two Gauss points; the modes answer to that and to their state exactly.
+speed has its corners, so that all is smooth inside them. Where a size effect makes the slope of the
+force law infinite, at a vanishing chip, the force f is like t^(p-1) in the time t from the border,
+and the integral of f dt is taken over s, with t = h s^k: f dt/ds is like s^(k p - 1), smooth for
+the right k (a graded mesh: Brunner 2004, Collocation Methods for Volterra Integral and Related
+Functional Differential Equations, chapter 6; here the force is drawn along with the mesh). So it is
+where an edge, on a cone or a corner, enters or leaves nearly all at once: what is engaged then is
+like the root of the time.
 """
 
 from __future__ import annotations
@@ -15,49 +20,105 @@ from numba import njit
 from numpy.typing import NDArray
 
 from chatter.kernels import KERNEL
-from chatter.stability.spindle_turn import SpeedVariation, angle_at, time_at
-from cutting.edge_coupling import chip_vanishes, part_below, share_of_height
-from cutting.edge_pieces import EdgePieces
+from chatter.stability.cut_arrays import CutArrays
+from chatter.stability.matrix_free_answer import PLACES
+from chatter.stability.spindle_turn import angle_at, time_at
+from cutting.edge_coupling import chip_at, part_below, share_of_height
 
-#: Gauss points of a step, and where the motion is kept besides: its middle and its end
-_ROOT = math.sqrt(3.0) / 6.0
-PLACES = np.array([0.5 - _ROOT, 0.5 + _ROOT, 0.5, 1.0])
 #: borders closer than this share of the period are the same
 _SAME = 1e-10
-#: levels and ratio of the steps towards a place where the slope of the force law is infinite
-_LEVELS = 6
-_RATIO = 0.2
+#: steps that one is drawn out into towards a vanishing chip, and towards a root of the time
+_DRAWN, _DRAWN_ROOT = 6, 3
+#: an edge enters nearly all at once where it does so in a share of the time that it takes elsewhere
+_FLAT = 0.5
+#: power for a root: f dt/ds is like s^2
+_POWER_OF_ROOT = 2.0
+#: a chip has as good as vanished below this share of the feed
+_THIN = 0.1
+#: sides of a border on which a chip vanishes, and on which engagement is a root of the time
+_BEFORE, _AFTER, _ROOT_BEFORE, _ROOT_AFTER = 1, 2, 4, 8
 #: a step turns the spindle by no more than this over the steps a wave, rad
 _ANGLE_A_WAVE = 3.0
-#: below this angle of a mode in a step the series holds more digits than the closed form
-_SERIES_BELOW = 1.5
-_TERMS = 40
 
 
 class SteppedCut(NamedTuple):
-    """A milling cut with speed and depth left open; n modes, r directions of motion."""
+    """A milling cut with speed and depth left open, and what the steps need besides."""
 
-    natural_frequency: NDArray[np.float64]  # rad/s (n,)
-    damping: NDArray[np.float64]  # ratio (n,)
-    shape: NDArray[np.float64]  # displacement per modal coordinate (n, r)
-    force_gain: NDArray[np.float64]  # modal acceleration per force, 1/kg (n, r)
-    basis: NDArray[np.float64]  # directions of motion (3, r)
-    pieces: EdgePieces
-    period_angle: float  # after which the tool looks the same again, rad
-    variation: SpeedVariation
+    arrays: CutArrays
     fastest: float  # vibration that steps resolve, with no cut, rad/s
-    stiffening: float  # by which its square grows with depth, rad^2/s^2/m
     contact: NDArray[np.float64]  # stiffness N/m, damping N s/m, share at which it is whole (3,)
-    edge_place: NDArray[np.float64]  # Gauss points on [0, 1], row q for q of them (17, 16)
-    edge_weight: NDArray[np.float64]  # (17, 16)
+
+
+class Steps(NamedTuple):
+    """N steps; at the share x of one the time is anchor + span s^power, s = low + x (high - low).
+
+    A plain step has power 1 and goes from 0 to 1.
+    """
+
+    node: NDArray[np.float64]  # starts and middles of the steps and the end, s (2 N + 1,)
+    anchor: NDArray[np.float64]  # s (N,)
+    span: NDArray[np.float64]  # s, below zero before a border (N,)
+    power: NDArray[np.float64]  # (N,)
+    low: NDArray[np.float64]  # (N,)
+    high: NDArray[np.float64]  # (N,)
+
+
+@njit(**KERNEL)
+def _is_thin(pieces, piece, place, immersion):
+    """Tell whether the slope of the force law is infinite, or nearly, at the border of an arc."""
+    low, high = pieces.immersion[piece, 0], pieces.immersion[piece, 1]
+    kappa = low + place * (high - low)
+    # at the very tip of a corner the chip is nothing at any angle
+    sk = max(math.sin(kappa), 1e-9)
+    height = share_of_height(pieces, piece, place)
+    chip = chip_at(pieces, piece, height, math.sin(immersion), sk, math.cos(kappa))
+    thin = chip < _THIN * sk * pieces.feed * pieces.delay[piece, 0]
+    return thin and pieces.exponent != 0.0
+
+
+@njit(**KERNEL)
+def _rise(pieces, piece, side):
+    """Angle by which the edge enters (side 0) or leaves later at the high end of a piece, rad."""
+    arc = pieces.entry[piece] if side == 0 else pieces.exit[piece]
+    return arc[1] - arc[0] - (pieces.angle[piece, 1] - pieces.angle[piece, 0])
+
+
+@njit(**KERNEL)
+def _follows(pieces, piece):
+    """Tell whether a piece goes on where that before it in the table ends."""
+    apart = abs(pieces.angle[piece - 1, 1] - pieces.angle[piece, 0])
+    apart += abs(pieces.entry[piece - 1, 1] - pieces.entry[piece, 0])
+    apart += abs(pieces.exit[piece - 1, 1] - pieces.exit[piece, 0])
+    return apart < _SAME and pieces.bottom[piece] > pieces.bottom[piece - 1]
+
+
+@njit(**KERNEL)
+def _sides_of_root(pieces, piece, side, end):
+    """Side of a border on which the edge enters or leaves nearly all at once, if any.
+
+    There the angle of entry or exit has, along the edge, its least or largest value near by.
+    """
+    first, last = piece, piece
+    while first > 0 and _follows(pieces, first):
+        first -= 1
+    while last + 1 < pieces.bottom.shape[0] and _follows(pieces, last + 1):
+        last += 1
+    total, length = 0.0, 0.0
+    for other in range(first, last + 1):
+        total += abs(_rise(pieces, other, side))
+        length += pieces.length[other]
+    rise = _rise(pieces, piece, side)
+    if abs(rise) * length >= _FLAT * total * pieces.length[piece]:
+        return 0
+    return _ROOT_AFTER if (rise > 0.0) == (end == 0) else _ROOT_BEFORE
 
 
 @njit(**KERNEL)
 def _border_angles(cut, depth):
-    """Borders in one period of the tool (rad), unsorted, and 1 for each that is singular."""
+    """Borders in one period of the tool (rad), unsorted, and the sides with a thin chip of each."""
     pieces, period = cut.pieces, cut.period_angle
     angles = np.empty(4 * pieces.bottom.shape[0] + 1)
-    singular = np.zeros(angles.shape[0], dtype=np.int64)
+    sides = np.zeros(angles.shape[0], dtype=np.int64)
     count = 0
     lowest = pieces.bottom[0]
     for piece in range(pieces.bottom.shape[0]):
@@ -79,12 +140,18 @@ def _border_angles(cut, depth):
                 immersed = arc[0] + place * (arc[1] - arc[0])
                 angle = immersed - lag
                 angles[count] = angle - period * math.floor(angle / period)
-                if pieces.exponent != 0.0 and chip_vanishes(pieces, piece, place, immersed):
-                    singular[count] = 1
+                sides[count] = _sides_of_root(pieces, piece, side, end)
+                if _is_thin(pieces, piece, place, immersed):
+                    # a place that enters is in the cut after it, one that leaves before; where the
+                    # edge is flat, what is left of it next to it counts too
+                    turned_round = pieces.turning[piece, end] == 1
+                    after = side == 0 or turned_round or sides[count] == _ROOT_AFTER
+                    before = side == 1 or turned_round or sides[count] == _ROOT_BEFORE
+                    sides[count] = _AFTER * after + _BEFORE * before
                 count += 1
     if count == 0:
         count, angles[0] = 1, 0.0
-    return angles[:count], singular[:count]
+    return angles[:count], sides[:count]
 
 
 @njit(**KERNEL)
@@ -101,7 +168,7 @@ def _sort(times, flags):
 @njit(**KERNEL)
 def _border_times(cut, turn, depth):
     """Border times over the whole period, ascending (s), and their flags."""
-    angles, singular = _border_angles(cut, depth)
+    angles, sides = _border_angles(cut, depth)
     per_tool = angles.shape[0]
     corners = 2 * turn.cycles if turn.triangle == 1 and turn.amplitude > 0.0 else 0
     times = np.empty(turn.patterns * per_tool + corners)
@@ -111,7 +178,7 @@ def _border_times(cut, turn, depth):
         if i < turn.patterns * per_tool:
             pattern, k = i // per_tool, i % per_tool
             times[i] = time_at(turn, angles[k] + pattern * cut.period_angle)
-            flags[i] = singular[k]
+            flags[i] = sides[k]
         else:
             times[i] = (0.25 + 0.5 * (i - turn.patterns * per_tool)) / turn.frequency
         times[i] -= period * math.floor(times[i] / period)
@@ -123,12 +190,73 @@ def _border_times(cut, turn, depth):
         wrapped = kept > 0 and out[0] + period - times[i] <= _SAME * period
         if again or wrapped:
             same = kept - 1 if again else 0
-            marks[same] = max(marks[same], flags[i])
+            marks[same] |= flags[i]
             continue
         out[kept], marks[kept] = times[i], flags[i]
         kept += 1
     out[kept], marks[kept] = out[0] + period, marks[0]
     return out[: kept + 1], marks[: kept + 1]
+
+
+@njit(**KERNEL)
+def _empty_steps(count):
+    """Room for steps."""
+    return Steps(
+        np.empty(2 * count + 1), np.empty(count), np.empty(count), np.empty(count),
+        np.empty(count), np.empty(count),
+    )  # fmt: skip
+
+
+@njit(**KERNEL)
+def step_time(steps, step, share):
+    """Time at a share of a step, s."""
+    s = steps.low[step] + share * (steps.high[step] - steps.low[step])
+    if steps.power[step] != 1.0:
+        s **= steps.power[step]
+    return steps.anchor[step] + steps.span[step] * s
+
+
+@njit(**KERNEL)
+def _add_steps(steps, count, anchor, span, power, number):
+    """Divide the time between a border and that beyond its span; returns the number of steps."""
+    for i in range(number):
+        k = count + i
+        steps.anchor[k], steps.span[k], steps.power[k] = anchor, span, power
+        if power == 1.0:
+            steps.anchor[k], steps.span[k] = anchor + span * i / number, span / number
+            steps.low[k], steps.high[k] = 0.0, 1.0
+        elif span > 0.0:
+            steps.low[k], steps.high[k] = i / number, (i + 1) / number
+        else:
+            steps.low[k], steps.high[k] = (number - i) / number, (number - i - 1) / number
+    return count + number
+
+
+@njit(**KERNEL)
+def _drawn_out(pieces, sides, thin, root):
+    """Power of the time and number of the steps beside a border; none for plain steps."""
+    if sides & thin != 0:
+        p = 1.0 + pieces.exponent
+        # k p whole: 4 for a law that is nearly linear, less where k would be large
+        return math.ceil(4.0 * p) / p, _DRAWN
+    if sides & root != 0:
+        return _POWER_OF_ROOT, _DRAWN_ROOT
+    return 1.0, 0
+
+
+@njit(**KERNEL)
+def _plain_counts(cut, turn, depth, borders, steps_a_wave):
+    """Steps (I,) that each interval between borders needs."""
+    arrays = cut.arrays
+    stiffened = cut.fastest**2 + arrays.resolution.stiffening * depth
+    longest = 2.0 * math.pi / (steps_a_wave * math.sqrt(stiffened))
+    counts = np.empty(borders.shape[0] - 1, dtype=np.int64)
+    for i in range(counts.shape[0]):
+        turned = angle_at(turn, borders[i + 1]) - angle_at(turn, borders[i])
+        need = (borders[i + 1] - borders[i]) / longest
+        need = max(need, turned * steps_a_wave / _ANGLE_A_WAVE)
+        counts[i] = max(1, math.ceil(need - 1e-9))
+    return counts
 
 
 @njit(**KERNEL)
@@ -148,97 +276,40 @@ def period_steps(cut, turn, depth, steps_a_wave, refinement):
 
     Returns
     -------
-    (N + 1,) array of float
-        Borders of the steps, s.
+    Steps
     """
-    borders, singular = _border_times(cut, turn, depth)
-    longest = 2.0 * math.pi / (steps_a_wave * math.sqrt(cut.fastest**2 + cut.stiffening * depth))
-    counts = np.empty(borders.shape[0] - 1, dtype=np.int64)
-    total = 0
-    for i in range(counts.shape[0]):
-        turned = angle_at(turn, borders[i + 1]) - angle_at(turn, borders[i])
-        need = (borders[i + 1] - borders[i]) / longest
-        need = max(need, turned * steps_a_wave / _ANGLE_A_WAVE)
-        counts[i] = max(1, math.ceil(need - 1e-9))
-        total += counts[i]
-    ends = np.empty(refinement * (total + 2 * _LEVELS * counts.shape[0]) + 1)
+    borders, sides = _border_times(cut.arrays, turn, depth)
+    counts = _plain_counts(cut, turn, depth, borders, steps_a_wave)
+    steps = _empty_steps(refinement * (np.sum(counts) + 2 * _DRAWN * counts.shape[0]))
     count = 0
-    ends[0] = borders[0]
     for i in range(counts.shape[0]):
-        step = (borders[i + 1] - borders[i]) / counts[i]
-        marks = np.empty(counts[i] + 2 * _LEVELS)
-        n = 0
-        for level in range(_LEVELS if singular[i] == 1 else 0, 0, -1):
-            marks[n] = borders[i] + 0.5 * step * _RATIO**level
-            n += 1
-        for k in range(1, counts[i]):
-            marks[n] = borders[i] + k * step
-            n += 1
-        for level in range(1, _LEVELS + 1 if singular[i + 1] == 1 else 1):
-            marks[n] = borders[i + 1] - 0.5 * step * _RATIO**level
-            n += 1
-        marks[n] = borders[i + 1]
-        for k in range(n + 1):
-            low = ends[count]
-            for part in range(1, refinement + 1):
-                ends[count + 1] = low + (marks[k] - low) * part / refinement
-                count += 1
-    return ends[: count + 1]
+        low, high = borders[i], borders[i + 1]
+        power, drawn = _drawn_out(cut.arrays.pieces, sides[i], _AFTER, _ROOT_AFTER)
+        power_before, drawn_before = _drawn_out(
+            cut.arrays.pieces, sides[i + 1], _BEFORE, _ROOT_BEFORE
+        )
+        plain = counts[i] - min(1, drawn) - min(1, drawn_before)
+        if plain < 0:
+            plain, counts[i] = 0, 2
+        step = (high - low) / counts[i]
+        if drawn > 0:
+            count = _add_steps(steps, count, low, step, power, drawn * refinement)
+            low += step
+        if plain > 0:
+            count = _add_steps(steps, count, low, plain * step, 1.0, plain * refinement)
+        if drawn_before > 0:
+            count = _add_steps(steps, count, high, -step, power_before, drawn_before * refinement)
+    return _with_nodes(steps, count, borders[-1])
 
 
 @njit(**KERNEL)
-def _ramp(angle, damping, s):
-    """Answer of y'' + 2 zeta a y' + a^2 y = s, at rest at zero: y, y', y'' at s.
-
-    y' is the answer to a step of force, y'' that to an impulse.
-    """
-    if angle > _SERIES_BELOW:
-        root = math.sqrt(1.0 - damping * damping)
-        fade = math.exp(-damping * angle * s)
-        sine, cosine = fade * math.sin(root * angle * s), fade * math.cos(root * angle * s)
-        impulse = sine / (root * angle)
-        step = (1.0 - cosine - damping / root * sine) / angle**2
-        return (s - impulse - 2.0 * damping * angle * step) / angle**2, step, impulse
-    before, last = 0.0, 1.0 / 6.0
-    power = s
-    ramp, step, impulse = last * power * s * s, 3.0 * last * power * s, 6.0 * last * power
-    for k in range(2, _TERMS):
-        following = -2.0 * damping * angle * (k + 1) * last - angle * angle * before
-        following /= (k + 2) * (k + 1)
-        power *= s
-        impulse += (k + 2) * (k + 1) * following * power
-        step += (k + 2) * following * power * s
-        ramp += following * power * s * s
-        before, last = last, following
-    return ramp, step, impulse
-
-
-@njit(**KERNEL)
-def mode_answer(frequency, damping, length, out):
-    """Answer of one mode at the places of a step.
-
-    Parameters
-    ----------
-    frequency, damping : float
-        rad/s and ratio.
-    length : float
-        Of the step, s.
-    out : (4, 2, 4) array of float
-        For each of `PLACES` the coordinate x and x'/omega from x and x'/omega at the start and
-        the accelerations at the two Gauss points. Overwritten.
-    """
-    angle = frequency * length
-    root = math.sqrt(1.0 - damping * damping)
-    first, second = PLACES[0], PLACES[1]
-    for p in range(4):
-        s = PLACES[p]
-        fade = math.exp(-damping * angle * s)
-        sine, cosine = fade * math.sin(root * angle * s), fade * math.cos(root * angle * s)
-        out[p, 0, 0], out[p, 0, 1] = cosine + damping / root * sine, sine / root
-        out[p, 1, 0], out[p, 1, 1] = -sine / root, cosine - damping / root * sine
-        ramp, step, impulse = _ramp(angle, damping, s)
-        scale = length * length / (second - first)
-        rate = length / frequency / (second - first)
-        out[p, 0, 2], out[p, 0, 3] = scale * (second * step - ramp), scale * (ramp - first * step)
-        out[p, 1, 2] = rate * (second * impulse - step)
-        out[p, 1, 3] = rate * (step - first * impulse)
+def _with_nodes(steps, count, end):
+    """The steps that are there, with their starts and middles."""
+    node = np.empty(2 * count + 1)
+    for k in range(count):
+        node[2 * k], node[2 * k + 1] = step_time(steps, k, 0.0), step_time(steps, k, PLACES[2])
+    node[2 * count] = end
+    return Steps(
+        node, steps.anchor[:count], steps.span[:count], steps.power[:count],
+        steps.low[:count], steps.high[:count],
+    )  # fmt: skip

@@ -1,11 +1,14 @@
 """The matrix-free method against exact values, the independent reference and collocation."""
 
+import itertools
 import math
 
 import numpy as np
 import pytest
 from reference import dense_cases
 from reference.general_cases import case_dict, load
+from reference.general_cut import GeneralCut, spectral_radius
+from scipy.integrate import quad
 
 from chatter.case import Case
 from chatter.errors import RunError
@@ -19,12 +22,18 @@ from chatter.methods import (
 from chatter.model import milling_model
 from chatter.simulation.limits import growths
 from chatter.stability import collocation, matrix_free, sweep
-from chatter.stability.matrix_free_steps import PLACES, mode_answer
+from chatter.stability.matrix_free_answer import PLACES, drawn_answer, mode_answer
 from chatter.stability.sweep import no_progress
 from cutting.edge_pieces import period_angle
 
 RPM = math.pi / 30.0
 CASES = load()
+
+
+def converged(model, speed, depth, *tolerance):
+    return matrix_free.converged_multiplier(
+        lambda fineness: model.stepped_cut(depth, fineness), speed, depth, *tolerance
+    )
 
 
 def model_of(tool, cut, modes=None, **sections):
@@ -104,10 +113,57 @@ def test_radius_of_dense_cases_of_any_tool():
     errors = []
     for cut, expected in load(dense_cases.STORE):
         model = milling_model(Case.from_dict(dense_cases.case_dict(cut)))
-        found = matrix_free.converged_multiplier(model.stepped_cut(cut.depth), cut.speed, cut.depth)
+        found = converged(model, cut.speed, cut.depth)
         repeats = 1 if cut.variation else round(2.0 * math.pi / period_angle(model.cutter))
         errors.append(abs(abs(found.value) ** repeats - expected) / max(1.0, expected))
     assert max(errors) < 1e-4
+
+
+def general_cut(**changes):
+    """Two straight teeth, two modes; see `reference.general_cut`."""
+    modes = (922.0, 0.011, 0.03993, (1.0, 0.0, 0.0)), (750.0, 0.02, 0.05, (0.0, 1.0, 0.0))
+    given = {
+        "diameter": 16e-3, "pitch": (math.pi,) * 2, "helix": (0.0,) * 2, "mode": "up",
+        "radial_depth": 1.6e-3, "coefficients": (6e8, 2e8, 1e8), "modes": modes,
+        "speed": 9000.0 * RPM, "depth": 1e-3,
+    }  # fmt: skip
+    return GeneralCut(**(given | changes))
+
+
+def radius_a_turn(cut):
+    """Spectral radius over a turn and its estimated error, the steps and the edge refined."""
+    found = converged(milling_model(Case.from_dict(case_dict(cut))), cut.speed, cut.depth)
+    return abs(found.value) ** cut.teeth, cut.teeth * found.error
+
+
+@pytest.mark.parametrize(("angle", "mode", "share"), [(30.0, "down", 0.03), (45.0, "up", 0.1)])
+def test_flat_cones_that_hardly_touch(angle, mode, share):
+    """The arc grows steeply along the edge; chords of it alone would be 4e-4 off."""
+    cut = general_cut(
+        pitch=(2.0 * math.pi / 3.0,) * 3, helix=(math.radians(30.0),) * 3, mode=mode,
+        radial_depth=share * 16e-3, edge_angle=math.radians(angle), depth=2e-3,
+    )  # fmt: skip
+    exact = spectral_radius(cut, nodes=8, waves=0.7, samples=400)
+    radius, error = radius_a_turn(cut)
+    assert abs(radius - exact) < 1e-4 * max(1.0, exact)
+    assert abs(radius - exact) < 2.0 * error + 1e-5
+
+
+@pytest.mark.parametrize(
+    ("exponent", "changes"),
+    [
+        (0.5, {}),
+        (0.6, {}),
+        (0.8, {"mode": "slot", "radial_depth": 16e-3}),
+        # a flat tip that enters and leaves all at once
+        (0.8, {"corner_radius": 4e-3, "helix": (0.6,) * 2, "mode": "slot", "radial_depth": 16e-3}),
+    ],
+)  # fmt: skip
+def test_a_size_effect_where_chips_vanish(exponent, changes):
+    cut = general_cut(exponent=exponent, **changes)
+    exact = spectral_radius(cut, nodes=10, waves=0.7)
+    radius, _ = radius_a_turn(cut)
+    assert radius == pytest.approx(exact, rel=3e-5)
 
 
 @pytest.mark.parametrize(
@@ -121,7 +177,7 @@ def test_radius_of_dense_cases_of_any_tool():
 )
 def test_published_multipliers(mode, rpm, depth_mm, immersion, exact):
     model = model_of({}, {"mode": mode, "radial_depth": immersion * 16e-3})
-    found = matrix_free.converged_multiplier(model.stepped_cut(5e-3), rpm * RPM, depth_mm * 1e-3)
+    found = converged(model, rpm * RPM, depth_mm * 1e-3)
     assert abs(found.value) == pytest.approx(exact, rel=2e-6)
     assert abs(abs(found.value) - exact) <= found.error < 2e-5
 
@@ -190,7 +246,7 @@ def test_too_many_vibrations_are_refused():
     with pytest.raises(RunError, match="raise the lowest spindle speed"):
         matrix_free.multipliers(cut, np.array([0.1]), np.array([1e-3]))
     # few enough for two resolutions, too many for all: what is there is told with its error
-    found = matrix_free.converged_multiplier(cut, 6.0, 1e-3, 1e-15)
+    found = converged(TOOLS["uniform"], 6.0, 1e-3, 1e-15)
     assert 0.0 < found.error < 1e-3
 
 
@@ -215,6 +271,52 @@ def test_a_mode_answers_exactly_to_a_line(angle):
         v = b / omega**2 + fade * (rate[0] * c + rate[1] * s)
         found = row @ np.concatenate([start, forces])
         assert found == pytest.approx([x, v / omega], rel=1e-7, abs=1e-9)
+
+
+def answer_to_infinite_force(mode, exponent, span, count):
+    """State of a mode after `count` steps drawn towards |t|^(p-1) exp(t) at time zero."""
+    place, weight = np.zeros((17, 16)), np.zeros((17, 16))
+    for order in range(1, 17):
+        nodes, weights = np.polynomial.legendre.leggauss(order)
+        place[order, :order], weight[order, :order] = 0.5 * (nodes + 1.0), 0.5 * weights
+    power = math.ceil(4.0 * exponent) / exponent
+    state, out = np.zeros(2), np.empty((4, 2, 4))
+    marks = np.linspace(0.0, 1.0, count + 1)[:: 1 if span > 0.0 else -1]
+    for low, high in itertools.pairwise(marks):
+        drawn_answer(*mode, (place, weight), (span, power, low, high), out)
+        times = span * (low + PLACES[:2] * (high - low)) ** power
+        forces = np.abs(times) ** (exponent - 1.0) * np.exp(times)
+        state = out[3] @ np.concatenate([state, forces])
+    return state
+
+
+@pytest.mark.parametrize("exponent", [0.3, 0.6, 0.95])
+@pytest.mark.parametrize("span", [0.3, -0.3])
+def test_a_mode_answers_to_a_force_that_is_infinite_at_a_border(exponent, span):
+    """Against quadrature with that very weight, before and after the border; of order four."""
+    omega, zeta = 3.0, 0.05
+    root, end = math.sqrt(1.0 - zeta**2), max(span, 0.0)
+
+    def smooth(t, velocity):
+        angle = omega * (end - t)
+        wave = math.sin(root * angle) / root
+        if velocity:
+            wave = math.cos(root * angle) - zeta * wave
+        return math.exp(t - zeta * angle) * wave / omega
+
+    powers = (exponent - 1.0, 0.0) if span > 0.0 else (0.0, exponent - 1.0)
+    exact = np.array(
+        [
+            quad(smooth, *sorted([0.0, span]), (part,), weight="alg", wvar=powers)[0]
+            for part in (False, True)
+        ]
+    )
+    errors = [
+        np.abs(answer_to_infinite_force((omega, zeta), exponent, span, count) / exact - 1.0).max()
+        for count in (6, 12)
+    ]
+    assert errors[0] < 1e-3
+    assert errors[0] / errors[1] > 12.0
 
 
 # --- contact of tool and work ---------------------------------------------------------------------
