@@ -197,8 +197,11 @@ def limit_curve(
         return growth(multipliers(cut, speeds[points], depth))
 
     near_limits = _near_limits(cut, speeds)
+    # over the long periods of a varying speed listening costs more than a point does
+    varied = cut.variation.amplitude > 0.0
+    refined = growth_at if varied else near_limits.growth
     crossings = followed_crossings(
-        len(speeds), depths, growth_at, tolerance, stride, progress, near_limits.growth
+        len(speeds), depths, growth_at, tolerance, stride, progress, refined
     )
     steps = drivers.points_of_periods(cut, speeds, float(depths[-1]))
     return limits_at(near_limits.nearest, speeds, crossings, steps)
