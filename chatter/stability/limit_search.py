@@ -64,6 +64,8 @@ class HeardPoints:
         self, point: NDArray[np.int64], depth: NDArray[np.float64]
     ) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
         """Multipliers and chatter frequencies next to points, one to a speed."""
+        if self._point.size == 0:
+            return self._at(point, depth)
         best = np.full(len(point), -1, dtype=np.int64)
         distance = self._NEAR * depth
         place = np.searchsorted(point, self._point)
