@@ -37,8 +37,8 @@ from cutting.tool import Cutter
 
 #: directions of motion weaker than this, relative to the strongest, do not count
 _RANK_TOLERANCE = 1e-9
-#: share by which the frequency of a varying speed may be moved, at elements of a wave and of none
-_TUNING, _LEAST_TUNING = 3e-3, 5e-4
+#: share by which the frequency of a varying speed may be moved, to fit into a period
+_TUNING = 1e-3
 #: tools and cuts whose edges are kept in pieces
 _KEPT_PIECES = 64
 
@@ -203,9 +203,8 @@ class MillingModel:
         varied = case.cut.speed_variation
         variation = SpeedVariation(0.0, 1.0, 0, 0.0)
         if varied is not None:
-            tuning = max(_TUNING * waves**3, _LEAST_TUNING)
             variation = SpeedVariation(
-                varied.amplitude, varied.frequency, int(varied.shape == "triangle"), tuning
+                varied.amplitude, varied.frequency, int(varied.shape == "triangle"), _TUNING
             )
         period = period_angle(self.cutter)
         return cut_arrays(self._modes, self.basis, pieces, period, variation, points, waves)

@@ -37,9 +37,9 @@ _CHECKED = 16
 #: so fine that where the chip has kinks, and errors fall but as the square, a tenth is left
 _CHECK = (12, 0.3)
 _ALLOWANCE = 1.1
-#: the frequency of a varying speed may be moved by this share for a single point, and while limits
-#: are first looked for
-_POINT_TUNING, _LOOSE_TUNING = 1e-3, 2e-2
+#: the frequency of a varying speed may be moved by this share while limits are first looked for,
+#: and where they are looked at again
+_LOOSE_TUNING, _CHECK_TUNING = 2e-2, 5e-4
 #: finer elements move a limit by no more than some of its errors, relative to its depth
 _REACH, _LARGEST_REACH = 4.0, 0.1
 #: limits are searched to this share of the largest error
@@ -141,11 +141,10 @@ def converged_multiplier(
         On |mu|, relative to max(1, |mu|).
     """
     point = np.array([speed]), np.array([depth])
-    # the same period of a varying speed at all resolutions
-    cut = _tuned(cut_at(*RESOLUTION), _POINT_TUNING)
+    cut = cut_at(*RESOLUTION)
     value, error = complex(multipliers(cut, *point)[0]), np.inf
     for finer in FINER:
-        cut = _tuned(cut_at(*finer), _POINT_TUNING)
+        cut = cut_at(*finer)
         better = complex(multipliers(cut, *point)[0])
         error = abs(abs(better) - abs(value))
         value = better
@@ -298,11 +297,11 @@ def _limit_error(
     if found.size == 0:
         return 0.0
     # the slowest speeds have the most waves in a cut: none of them is left out
-    picked = found[
-        np.unique(np.geomspace(1, found.size, min(found.size, _CHECKED)).astype(int) - 1)
-    ]
+    picked = found
+    if found.size > _CHECKED:
+        picked = found[np.unique(np.geomspace(1, found.size, _CHECKED).round().astype(int) - 1)]
     speed, depth = limits.spindle_speed[picked], limits.critical_depth[picked]
-    finer = cut_at(_CHECK[0], _CHECK[1] * resolution[1])
+    finer = _tuned(cut_at(_CHECK[0], _CHECK[1] * resolution[1]), _CHECK_TUNING)
     step = 1e-3 * depth
     left, right = (_rates(cut, speed, depth + s) for s in (-step, step))
     slope = np.maximum(np.abs(right - left) / (2.0 * step), 1e-300)
