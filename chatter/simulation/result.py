@@ -16,7 +16,7 @@ from chatter.errors import InputError
 from chatter.judgement import CutRecord, Judgement, judge
 from chatter.result_files import as_json, finite_or_none, write_results
 from chatter.simulation.carved import carving_notes
-from chatter.simulation.divergence import divergence
+from chatter.simulation.divergence import Divergence, divergence
 from chatter.simulation.finish import Finish, finish_of
 from chatter.simulation.setup import Setup
 from cutting.dexel_stock import DexelStock
@@ -112,9 +112,7 @@ class SimulationResult:
         if self.why_not_judged:
             return None
         found = judge(self._cut_record())
-        if self.setup.spindle.amplitude == 0.0:
-            return found
-        return self._judged_by_divergence(found)
+        return self._judged_by_divergence(found) if self._divergence else found
 
     @cached_property
     def why_not_judged(self) -> str:
@@ -133,7 +131,16 @@ class SimulationResult:
             self._cut_record()
         except InputError as error:
             return str(error)
+        if self._divergence is not None and not self._divergence.verdict:
+            return self._divergence.reason
         return ""
+
+    @cached_property
+    def _divergence(self) -> Divergence | None:
+        """How small pushes go on under a varying speed; None where the speed is constant."""
+        if self.setup.spindle.amplitude == 0.0:
+            return None
+        return divergence(self.case, self.setup.modes)
 
     def _cut_record(self) -> CutRecord:
         cutter, slices = self.setup.cutter, self.setup.slices
@@ -154,15 +161,16 @@ class SimulationResult:
 
     def _judged_by_divergence(self, found: Judgement) -> Judgement:
         """Verdict under a varying speed, where no turn is like the next."""
-        apart = divergence(self.case, self.setup.modes)
+        apart = self._divergence
+        assert apart is not None
         a_turn = math.expm1(min(apart.rate, 50.0))
         return replace(
             found,
-            verdict="stable" if apart.stable else "chatter",
+            verdict=apart.verdict,
             confidence=min(1.0, 0.5 + 10.0 * abs(a_turn)),
-            reason=f"a small push at the start changes by {a_turn:+.1%} a turn",
+            reason=apart.reason,
             bifurcation="none" if apart.stable else "unknown",
-            chatter_frequency=math.nan if apart.stable else apart.frequency,
+            chatter_frequency=apart.frequency,
             growth_rate=apart.rate * self.setup.spindle.speed / (2.0 * math.pi),
         )
 
