@@ -41,6 +41,8 @@ _LEAST_PERIODS = 1.0
 _ERRORS = 2.0
 #: a run that tells nothing is repeated, so often: faster taken hold of by this, or longer watched
 _TRIES, _FASTER, _LONGER = 3, 3, 4
+#: forced vibration that is large, as a share of the feed per tooth
+_LARGE = 0.5
 #: the run from rest is where the other one is: within this share of the motion
 _SAME = 0.05
 
@@ -91,13 +93,14 @@ def divergence(case: Case, modes: tuple[Mode, ...]) -> Divergence:
         Of its structure.
     """
     hold, watch, period = _lengths(case, modes)
+    feed = case.cut.feed_per_tooth
     if watch < _LEAST_PERIODS * period:
         return Divergence(
             "",
             f"a period of the variation takes {period:.4g} turns, more than the {watch} that can "
             "be watched",
         )
-    found = _judged(follow(case, modes, hold, watch, period))
+    found = _judged(follow(case, modes, hold, watch, period), feed)
     for _ in range(_TRIES):
         if found.verdict:
             break
@@ -105,7 +108,7 @@ def divergence(case: Case, modes: tuple[Mode, ...]) -> Divergence:
             watch *= _LONGER
         else:
             hold = max(hold // _FASTER, 1)
-        found = _judged(follow(case, modes, hold, watch, period))
+        found = _judged(follow(case, modes, hold, watch, period), feed)
     return found
 
 
@@ -126,7 +129,7 @@ def _lengths(case: Case, modes: tuple[Mode, ...]) -> tuple[int, int, float]:
     return hold, watch, period
 
 
-def _judged(found: Exponents) -> Divergence:
+def _judged(found: Exponents, feed: float) -> Divergence:
     """Verdict of a run; one that is empty where it must be run in another way."""
     grown = found.growth(found.hold, _GROWN)
     if grown:
@@ -136,13 +139,15 @@ def _judged(found: Exponents) -> Divergence:
     settled, error = found.settled_rate()
     grown = found.growth(0, _GROWN)
     if grown:
+        error = error if math.isfinite(error) else 0.0
         if settled + _ERRORS * error > -_NEUTRAL:
             return _chatter(found, *grown, "while the cut takes hold a small push grows by")
         return _COME_BACK
     if settled >= -_SUSTAINED:
         says = "a small push on the forced motion changes by"
         return _chatter(found, *found.watched_last, says)
-    if settled + _ERRORS * error >= -_SUSTAINED:
+    unsure = error if math.isfinite(error) else max(_NEUTRAL + settled, 0.0)
+    if settled + _ERRORS * unsure >= -_SUSTAINED:
         return _UNCERTAIN
     if not found.from_rest_alike(_SAME, _SUSTAINED):
         return Divergence(
@@ -152,7 +157,11 @@ def _judged(found: Exponents) -> Divergence:
             found.frequency_of_rest(*found.watched_last),
         )
     share = f" by {-math.expm1(settled):.1%} a turn" if math.isfinite(settled) else " at once"
-    return Divergence("stable", f"a small push on the forced motion dies out{share}", settled)
+    reason = f"a small push on the forced motion dies out{share}"
+    swing = found.swing[slice(*found.watched_last)].max() / feed
+    if swing > _LARGE:
+        reason += f"; forced vibration of {swing:.2g} feeds per tooth lets teeth leave the cut"
+    return Divergence("stable", reason, settled)
 
 
 def _chatter(found: Exponents, begin: int, end: int, says: str) -> Divergence:

@@ -60,6 +60,8 @@ class Exponents:
         The difference in every turn as it was followed, m, and that of the run from rest.
     step : float
         From sample to sample of them, s.
+    swing : (n,) array of float
+        Half the range of the motion in every turn, of the axis that moves most, m.
     left : bool
         True where a run has left the range of the model.
     """
@@ -74,6 +76,7 @@ class Exponents:
     motion: list[Array]
     rest: list[Array]
     step: float
+    swing: Array
     left: bool
 
     def growth(self, first: int, least: float) -> tuple[int, int] | None:
@@ -124,14 +127,14 @@ class Exponents:
     def settled_rate(self) -> tuple[float, float]:
         """Growth when the start has died out, logarithm a turn, and its standard error.
 
-        The rate is -inf where nothing moves.
+        The rate is -inf where nothing moves; the error is inf where it cannot be told.
         """
         begin, end = self.watched_last
         if self.still[begin : end + 1].all():
             return -math.inf, 0.0
         # parts of whole periods, so that what goes up and down within one is no error
         parts = min(_PARTS, math.floor((end - begin) / max(self.period, _LEAST_LAG)))
-        error = 0.0
+        error = math.inf
         if parts >= _FEWEST_PARTS:
             length = round(math.floor((end - begin) / parts / self.period) * self.period)
             places = end - np.arange(parts + 1) * length
@@ -184,7 +187,7 @@ def follow(case: Case, modes: tuple[Mode, ...], hold: int, watch: int, period: f
     stride = _stride(leader.bins, a_second / max(frequencies))
     least = 2.0 * math.pi * min(frequencies) * leader.setup.step * _STILL
     pushed.push(push)
-    found: list[tuple[float, float, bool, float, Array, Array]] = []
+    found: list[tuple[float, float, bool, float, float, Array, Array]] = []
     scale, left = 0.0, False
     for turn in range(hold + watch):
         motion, beside, other = leader.turn(), pushed.turn(), rest.turn()
@@ -199,12 +202,15 @@ def follow(case: Case, modes: tuple[Mode, ...], hold: int, watch: int, period: f
         size = math.log(max(moving, least * apart)) + scale
         with np.errstate(invalid="ignore", divide="ignore"):
             away = float(np.nan_to_num(_moving(other) / _moving(motion), nan=math.inf))
-        found.append((size, scale, still, away, difference[::stride], other[::stride]))
+        swing = 0.5 * float(np.ptp(motion, axis=0).max())
+        found.append((size, scale, still, away, swing, difference[::stride], other[::stride]))
         pushed.come_closer(leader, push / apart)
         scale += math.log(apart / push)
         if turn < hold:
             pushed.push((-1.0) ** turn * _RENEWED * push)
-    size, scales, still, away, motions, others = zip(*found, strict=True) if found else ((),) * 6
+    size, scales, still, away, swing, motions, others = (
+        zip(*found, strict=True) if found else ((),) * 7
+    )
     return Exponents(
         hold=hold,
         period=period,
@@ -216,6 +222,7 @@ def follow(case: Case, modes: tuple[Mode, ...], hold: int, watch: int, period: f
         motion=list(motions),
         rest=list(others),
         step=stride * leader.setup.step,
+        swing=np.array(swing),
         left=left,
     )
 
