@@ -33,7 +33,7 @@ _NEUTRAL = 0.02
 #: of the slowest mode and periods of the variation in them
 _LEAST_TURNS = (40, 40)
 _TIME_CONSTANTS = (12.0, 6.0)
-_PERIODS = (4.0, 3.0)
+_PERIODS = (4.0, 5.0)
 #: steps of a run, at the most, and periods that must be watched all the same
 _MOST_STEPS = 6_000_000
 _LEAST_PERIODS = 1.0
@@ -41,8 +41,9 @@ _LEAST_PERIODS = 1.0
 _ERRORS = 2.0
 #: a run that tells nothing is repeated, so often: faster taken hold of by this, or longer watched
 _TRIES, _FASTER, _LONGER = 3, 3, 4
-#: forced vibration that is large, as a share of the feed per tooth
-_LARGE = 0.5
+#: forced vibration that is large, as a share of the feed per tooth; and by which it may be larger
+#: than small vibration would have it
+_LARGE, _TOO_LARGE = 0.5, 4.0
 #: the run from rest is where the other one is: within this share of the motion
 _SAME = 0.05
 
@@ -80,6 +81,11 @@ _COME_BACK = Divergence(
     "vibration grew while the cut took hold and died out when it had: whether the motion that it "
     "has come to is that of a stable cut cannot be told",
 )
+_FAR_MORE = Divergence(
+    "",
+    "the cut has settled in a motion that repeats, but far larger than the forced vibration while "
+    "it took hold: whether it is chatter cannot be told",
+)
 
 
 def divergence(case: Case, modes: tuple[Mode, ...]) -> Divergence:
@@ -102,7 +108,7 @@ def divergence(case: Case, modes: tuple[Mode, ...]) -> Divergence:
         )
     found = _judged(follow(case, modes, hold, watch, period), feed)
     for _ in range(_TRIES):
-        if found.verdict:
+        if found.verdict or found is _FAR_MORE:
             break
         if found is _UNCERTAIN:
             watch *= _LONGER
@@ -160,6 +166,8 @@ def _judged(found: Exponents, feed: float) -> Divergence:
     reason = f"a small push on the forced motion dies out{share}"
     swing = found.swing[slice(*found.watched_last)].max() / feed
     if swing > _LARGE:
+        if swing * feed > _TOO_LARGE * found.swing_of_small_motion(_LARGE * feed):
+            return _FAR_MORE
         reason += f"; forced vibration of {swing:.2g} feeds per tooth lets teeth leave the cut"
     return Divergence("stable", reason, settled)
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.case import Case
-from chatter.simulation.followed_run import FollowedRun
+from chatter.simulation.followed_run import FollowedRun, share_held
 from dynamics.modal import Mode
 
 Array = NDArray[np.float64]
@@ -32,6 +32,8 @@ _SETTLING = 1.0 / 3.0
 _ROUNDING = 1e-12
 #: samples that show a frequency, at the least
 _LEAST_SAMPLES = 16
+#: share of the cutting force from which on the motion tells of that in the full cut
+_SHOWN_SHARE = 0.1
 #: turns whose motion is looked at for its frequency, at the most
 _MOST_TURNS = 100
 
@@ -149,6 +151,25 @@ class Exponents:
             return True
         logarithm = np.log(np.maximum(apart, 1e-300))
         return float(np.polyfit(np.arange(len(apart)), logarithm, 1)[0]) < -slope
+
+    def swing_of_small_motion(self, small: float) -> float:
+        """Half the range that the motion would have in the full cut by that of small motion, m.
+
+        Parameters
+        ----------
+        small : float
+            Half the range, m, up to which forced vibration grows with the force alone.
+
+        Returns
+        -------
+        float
+            Largest of all turns while the cut takes hold; nan where none is small.
+        """
+        turns = min(self.hold, len(self.swing))
+        share = share_held((np.arange(turns) + 1.0) / max(self.hold, 1))
+        swing = self.swing[:turns]
+        shown = (share > _SHOWN_SHARE) & (swing < small)
+        return float((swing[shown] / share[shown]).max()) if shown.any() else math.nan
 
     def frequency(self, begin: int, end: int) -> float:
         """Strongest line of the difference between two turns, Hz."""
