@@ -38,7 +38,7 @@ _PERIODS = (4.0, 5.0)
 _MOST_STEPS = 6_000_000
 _LEAST_PERIODS = 1.0
 #: standard errors by which a rate must be below another one
-_ERRORS = 2.0
+_ERRORS = 4.0
 #: a run that tells nothing is repeated, so often: faster taken hold of by this, or longer watched
 _TRIES, _FASTER, _LONGER = 3, 3, 4
 #: forced vibration that is large, as a share of the feed per tooth; and by which it may be larger
