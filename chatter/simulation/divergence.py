@@ -23,6 +23,9 @@ from chatter.simulation.exponents import Exponents, follow
 from chatter.simulation.setup import set_up
 from dynamics.modal import Mode
 
+#: half the range of a motion, as a share of the feed per tooth, from which on teeth may leave the
+#: cut; chatter that is full moves by more
+LARGE_SWING = 0.25
 #: growth of a push, as a logarithm, that no beating and no change of shape explains
 _GROWN = 3.0
 #: a push that shrinks by less than this share a turn stays
@@ -72,6 +75,11 @@ class Divergence:
     def stable(self) -> bool:
         """True where the push is forgotten."""
         return self.verdict == "stable"
+
+    @property
+    def grows(self) -> bool:
+        """True where the forced motion itself loses small pushes no more."""
+        return self.verdict == "chatter" and not self.rate < -_SUSTAINED
 
 
 #: what a run says that must be watched for longer, and one that must take hold faster

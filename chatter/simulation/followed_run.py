@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 
 from chatter.case import Case
 from chatter.simulation.engine import COLUMNS, Record, run
-from chatter.simulation.growth import delayed
-from chatter.simulation.setup import set_up
+from chatter.simulation.setup import delayed, set_up
 from chatter.simulation.spindle import prescribed
 from cutting.tool_point import tool_point
 from dynamics.modal import Mode

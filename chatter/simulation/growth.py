@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.case import Case
+from chatter.simulation.divergence import LARGE_SWING, divergence
 from chatter.simulation.engine import COLUMNS, Record, run
-from chatter.simulation.setup import Setup, set_up
+from chatter.simulation.setup import Setup, delayed, set_up
 from chatter.simulation.spindle import prescribed
 from cutting.tool_point import tool_point
 from dynamics.modal import Mode
@@ -105,15 +106,15 @@ def growth_of(case: Case, modes: tuple[Mode, ...]) -> Growth:
         return Growth(complex(math.inf), period, math.nan)
     watched = motion[ramp * per_period : whole * per_period]
     watched = watched.reshape(whole - ramp, per_period, 3)
-    return _fitted(watched, period, case.cut.feed_per_tooth)
-
-
-def delayed(case: Case) -> Case:
-    """Return the case with the delayed chip and the steady engagement of [cut]."""
-    settings = case.simulation
-    if settings is not None:
-        settings = settings.model_copy(update={"chip": "delay", "path": None})
-    return case.model_copy(update={"simulation": settings, "stock": None})
+    feed = case.cut.feed_per_tooth
+    found = _fitted(watched, period, feed)
+    swing = 0.5 * float(np.ptp(watched[watched.shape[0] // 2 :], axis=(0, 1)).max())
+    if found.radius < 1.0 and swing > LARGE_SWING * feed:
+        # chatter that is full may repeat, or waver, from period to period
+        apart = divergence(case, modes)
+        if apart.grows:
+            return Growth(complex(math.inf), period, apart.frequency)
+    return found
 
 
 def motion_of(

@@ -16,7 +16,7 @@ from chatter.errors import InputError
 from chatter.judgement import CutRecord, Judgement, judge
 from chatter.result_files import as_json, finite_or_none, write_results
 from chatter.simulation.carved import carving_notes
-from chatter.simulation.divergence import Divergence, divergence
+from chatter.simulation.divergence import LARGE_SWING, Divergence, divergence
 from chatter.simulation.finish import Finish, finish_of
 from chatter.simulation.setup import Setup
 from cutting.dexel_stock import DexelStock
@@ -111,8 +111,20 @@ class SimulationResult:
         """Chatter or not; None where that cannot be told, see `why_not_judged`."""
         if self.why_not_judged:
             return None
-        found = judge(self._cut_record())
-        return self._judged_by_divergence(found) if self._divergence else found
+        if self._divergence is None:
+            return self._judged_by_record
+        if not self._varies and self._divergence.stable:
+            return self._judged_by_record
+        return self._judged_by_divergence(self._judged_by_record)
+
+    @cached_property
+    def _judged_by_record(self) -> Judgement:
+        """Verdict of the record alone: whether the motion repeats."""
+        return judge(self._cut_record())
+
+    @property
+    def _varies(self) -> bool:
+        return self.setup.spindle.amplitude != 0.0
 
     @cached_property
     def why_not_judged(self) -> str:
@@ -137,10 +149,27 @@ class SimulationResult:
 
     @cached_property
     def _divergence(self) -> Divergence | None:
-        """How small pushes go on under a varying speed; None where the speed is constant."""
-        if self.setup.spindle.amplitude == 0.0:
-            return None
+        """How small pushes go on; None where the record alone tells.
+
+        It does at a constant speed, unless it repeats and is so large that teeth leave the cut:
+        chatter that is full may repeat too, above all from turn to turn.
+        """
+        if not self._varies:
+            settled = self.displacement[self.settled]
+            swing = 0.5 * float(np.ptp(settled, axis=0).max())
+            if swing <= LARGE_SWING * self.case.cut.feed_per_tooth or not self._steady:
+                return None
+            if self._judged_by_record.verdict != "stable":
+                return None
         return divergence(self.case, self.setup.modes)
+
+    @property
+    def _steady(self) -> bool:
+        """Whether the cut is that of [cut] all along, on modes that are known."""
+        structure, section = self.case.structure, self.case.simulation
+        bent = section is not None and section.path is not None
+        on_machine = structure is not None and structure.machine is not None
+        return self.case.stock is None and not bent and not on_machine
 
     def _cut_record(self) -> CutRecord:
         cutter, slices = self.setup.cutter, self.setup.slices
@@ -160,7 +189,7 @@ class SimulationResult:
         )
 
     def _judged_by_divergence(self, found: Judgement) -> Judgement:
-        """Verdict under a varying speed, where no turn is like the next."""
+        """Verdict by small pushes, where the record does not tell."""
         apart = self._divergence
         assert apart is not None
         a_turn = math.expm1(min(apart.rate, 50.0))
