@@ -147,3 +147,50 @@ def test_growth_of_a_mode_across_the_feed():
     )
     radius = chatter.check(case).spectral_radius
     assert growth_of(case, modes_of(case)[0]).radius == pytest.approx(radius, rel=2e-3)
+
+
+#: teeth that differ, so that the cut repeats from turn to turn alone; depths of which the last is
+#: twice the limit or more
+REPEATING = {
+    "variable helix": (
+        {"teeth": 3, "diameter": "8 mm", "helix": ["27.6 deg", "23.6 deg", "27.6 deg"]},
+        {"mode": "slot", "spindle_speed": 431.554},
+        [(1135.25, 0.0108, 7.453e6), (1438.78, 0.01265, 8.16e6)],
+        ("0.5 mm", "1.268 mm"),
+    ),
+    "runout": (
+        {
+            "teeth": 5,
+            "diameter": "8 mm",
+            "helix": "23.5 deg",
+            "runout": {"offset": "4.97 um", "angle": "251 deg"},
+        },
+        {"mode": "down", "radial_depth": "6 mm", "spindle_speed": 60.133},
+        [(331.18, 0.01456, 4.606e6), (395.02, 0.01447, 7.027e6)],
+        ("0.55 mm", "0.899 mm"),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", list(REPEATING))
+def test_full_chatter_that_nearly_repeats_is_chatter_at_a_constant_speed(name):
+    """The record alone may take it for a transient that dies out slowly."""
+    tool, cut, modes, depths = REPEATING[name]
+    structure = [
+        {"frequency": f, "damping": d, "stiffness": k, "direction": axis}
+        for (f, d, k), axis in zip(modes, ([1, 0, 0], [0, 1, 0]), strict=True)
+    ]
+    case = chatter.Case.from_dict(
+        {
+            "tool": tool,
+            "material": {"Ktc": "800 MPa", "Krc": "340 MPa", "Kac": "100 MPa"},
+            "cut": cut | {"feed_per_tooth": "0.1 mm", "axial_depth": "1 mm"},
+            "structure": {"mode": structure},
+        }
+    )
+    for depth, verdict in zip(depths, ("stable", "chatter"), strict=True):
+        here = case.patch({"cut.axial_depth": depth})
+        assert chatter.check(here).stable == (verdict == "stable")
+        assert chatter.simulate(here).judgement.verdict == verdict
+        radius = growth_of(here, modes_of(here)[0]).radius
+        assert (radius < 1.0) == (verdict == "stable")
