@@ -76,11 +76,6 @@ class Divergence:
         """True where the push is forgotten."""
         return self.verdict == "stable"
 
-    @property
-    def grows(self) -> bool:
-        """True where the forced motion itself loses small pushes no more."""
-        return self.verdict == "chatter" and not self.rate < -_SUSTAINED
-
 
 #: what a run says that must be watched for longer, and one that must take hold faster
 _UNCERTAIN = Divergence("", "whether a small push dies out or stays cannot be told")

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.case import Case
-from chatter.simulation.divergence import LARGE_SWING, divergence
 from chatter.simulation.engine import COLUMNS, Record, run
 from chatter.simulation.setup import Setup, delayed, set_up
 from chatter.simulation.spindle import prescribed
@@ -106,15 +105,7 @@ def growth_of(case: Case, modes: tuple[Mode, ...]) -> Growth:
         return Growth(complex(math.inf), period, math.nan)
     watched = motion[ramp * per_period : whole * per_period]
     watched = watched.reshape(whole - ramp, per_period, 3)
-    feed = case.cut.feed_per_tooth
-    found = _fitted(watched, period, feed)
-    swing = 0.5 * float(np.ptp(watched[watched.shape[0] // 2 :], axis=(0, 1)).max())
-    if found.radius < 1.0 and swing > LARGE_SWING * feed:
-        # chatter that is full may repeat, or waver, from period to period
-        apart = divergence(case, modes)
-        if apart.grows:
-            return Growth(complex(math.inf), period, apart.frequency)
-    return found
+    return _fitted(watched, period, case.cut.feed_per_tooth)
 
 
 def motion_of(
