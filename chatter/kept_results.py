@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
@@ -63,7 +64,7 @@ def kept_results(
 
 
 class KeptPieces:
-    """Pieces of a search that depend on one another, kept on disk as they end.
+    """Pieces of a search that depend on one another, kept on disk as they end; for threads too.
 
     Parameters
     ----------
@@ -77,6 +78,7 @@ class KeptPieces:
         self._store = FinishedPoints(folder)
         self._base = base
         self._finished = 0
+        self._lock = threading.Lock()
 
     def piece(self, name: str, inputs: Any, compute: Callable[[], Any]) -> Any:
         """Record of a piece, computed if it is not known yet.
@@ -92,7 +94,11 @@ class KeptPieces:
         """
         key = key_of(self._base, name, repr(inputs))
         if key not in self._store:
-            self._store.add(key, compute())
+            record = compute()
+            with self._lock:
+                # another thread may have come to the same piece
+                if key not in self._store:
+                    self._store.add(key, record)
         self._finished += 1
         return self._store[key]
 

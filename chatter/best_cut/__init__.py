@@ -13,6 +13,9 @@ search             coarse net and refinement
 sampled_cuts       a cut at every sample of what is uncertain
 robustness         the best cut around a place that holds with a wanted probability
 confirmation       candidates simulated in the time domain
+kept_search        what all pieces of a search share: pieces on disk, progress
+candidates         candidates in round numbers, robust where something is uncertain
+held_in_time       candidates confirmed side by side, less deep where a limit is missed
 study              `optimum`: all of it, one after the other
 records            pieces of a search on disk
 result             what is found: tables, files

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.best_cut.resolution import most_waves
+from chatter.best_cut.resolution import most_waves, telling
 from chatter.best_cut.steady_cut import SteadyCuts
 from chatter.best_cut.width_and_feed import model_at
 from chatter.case import Case
@@ -89,8 +89,17 @@ class Limits:
         return {key: np.abs(getattr(cuts, LIMITED[key])) / most for key, most in self.most.items()}
 
 
-def limits_of(case: Case, model: MillingModel) -> Limits:
-    """Ranges and limits that a case gives, completed where it is silent."""
+def limits_of(case: Case, model: MillingModel, sampled: Sequence[MillingModel] = ()) -> Limits:
+    """Ranges and limits that a case gives, completed where it is silent.
+
+    Parameters
+    ----------
+    case : Case
+    model : MillingModel
+        Of the case as it is.
+    sampled : sequence of MillingModel, optional
+        Of the samples of what is uncertain: elements are as short as these need them too.
+    """
     section = case.optimum or Optimum()
     uncertain = bool(deviations_of(case))
     given = {key: getattr(section, key) for key in LIMITED}
@@ -104,7 +113,11 @@ def limits_of(case: Case, model: MillingModel) -> Limits:
     speeds, depths = _speeds(case, section, margins[1]), _depths(case, section, model)
     widths = _values(section.widths, case.width_of_cut)
     feed = case.cut.feed_per_tooth
-    extremes = [model_at(model, float(width), feed) for width in {widths[0], widths[-1]}]
+    extremes = [
+        model_at(one, float(width), feed)
+        for one in (model, *telling(sampled))
+        for width in {widths[0], widths[-1]}
+    ]
     return Limits(
         speeds=speeds,
         depths=depths,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -51,3 +53,36 @@ def most_waves(model: MillingModel, speeds: Array, depths: Array) -> float:
         if np.all(np.abs(growth(waves) - known) <= _ERROR):
             return waves
     return RESOLUTION[1]
+
+
+def telling(models: Sequence[MillingModel]) -> list[MillingModel]:
+    """Of models of one case with other values, those whose fast modes differ most.
+
+    Parameters
+    ----------
+    models : sequence of MillingModel
+
+    Returns
+    -------
+    list of MillingModel
+        The one with the fastest mode, and those whose fastest mode takes part most and least: by
+        the share of its response at resonance in that of the liveliest mode.
+    """
+
+    def highest(model: MillingModel) -> float:
+        return max((mode.frequency for mode in model.structure.modes), default=0.0)
+
+    def share(model: MillingModel) -> float:
+        modes = model.structure.modes
+        if not modes:
+            return 0.0
+        lively = [1.0 / (mode.stiffness * mode.damping) for mode in modes]
+        fastest = max(range(len(modes)), key=lambda place: modes[place].frequency)
+        return lively[fastest] / max(lively)
+
+    if not models:
+        return []
+    shares = [share(model) for model in models]
+    fastest = int(np.argmax([highest(model) for model in models]))
+    places = {fastest, int(np.argmax(shares)), int(np.argmin(shares))}
+    return [models[place] for place in sorted(places)]

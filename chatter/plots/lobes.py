@@ -199,7 +199,11 @@ def draw_chatter_frequency(axes: Axes, diagram: LobeDiagram) -> None:
     axes.set_xlabel("spindle speed [rpm]")
     axes.set_ylabel("chatter\nfrequency [Hz]")
     style.finish(axes)
-    axes.legend(loc="best", fontsize=7.5, framealpha=0.85, ncols=3)
+    # above the panel: within it there are points everywhere
+    axes.legend(
+        loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=7.5, frameon=False, ncols=3,
+        borderaxespad=0.1,
+    )  # fmt: skip
 
 
 def _frequency_range(heard: NDArray[np.float64]) -> tuple[float, float]:
@@ -208,4 +212,4 @@ def _frequency_range(heard: NDArray[np.float64]) -> tuple[float, float]:
         return 0.0, 1.0
     low, high = float(finite.min()), float(finite.max())
     room = max(0.15 * (high - low), 0.02 * high)
-    return max(0.0, low - room), high + 1.6 * room
+    return max(0.0, low - room), high + room

@@ -77,8 +77,9 @@ def draw_sheet(axes: Axes, found: Optimum) -> None:
     for key, usage in sheet.usage.items():
         name, colour, line = _BOUNDARIES[key]
         known = np.ma.masked_invalid(usage)
-        reached = bool(known.count()) and known.min() < 1.0 < known.max()
-        label = f"limit of {name}" if reached else f"limit of {name}: not met"
+        shown = known[depth <= top]
+        reached = bool(shown.count()) and shown.min() < 1.0 < shown.max()
+        label = f"{name} limit" + ("" if reached else f": {_elsewhere(known, shown)}")
         handles.append(_handle(colour, line, label))
         if reached:
             axes.contour(
@@ -101,6 +102,15 @@ def draw_sheet(axes: Axes, found: Optimum) -> None:
     axes.set_xlabel("spindle speed [rpm]")
     axes.set_ylabel("axial depth [mm]")
     style.finish(axes)
+
+
+def _elsewhere(known: np.ma.MaskedArray, shown: np.ma.MaskedArray) -> str:
+    """Say why a limit has no boundary in the picture."""
+    if not shown.count():
+        return "no stable cut here"
+    if shown.min() >= 1.0:
+        return "exceeded everywhere"
+    return "never reached" if known.max() <= 1.0 else "reached only deeper"
 
 
 def _top(found: Optimum) -> float:

@@ -1,56 +1,98 @@
-"""Whether two runs that begin almost alike stay apart: a verdict that needs no period.
+"""Whether small pushes on the forced motion of a cut die out: a verdict that needs no period.
 
-Under a varying spindle speed no turn is like the next one, so that turns cannot be compared. A
-stable cut forgets how it began: a small push at the start dies out. What does not is chatter.
+Under a varying spindle speed no turn is like the next one, so that turns cannot be compared. What
+tells chatter from forced vibration is how a small push on the forced motion goes on. Full chatter
+must not be asked for it: its cycle attracts too, and forgets a push as a stable cut does.
+
+So the cut takes hold of the structure slowly, and the tool keeps to the forced motion until that
+becomes unstable. Beside it goes a run that is pushed a little; the difference of both is brought
+back to its first size after every turn, and the factors are kept (Benettin, Galgani, Giorgilli and
+Strelcyn 1980, Meccanica 15: largest characteristic exponent). As long as the tool has not left the
+forced motion, growth over whole periods of the variation is growth of chatter, whatever follows
+when it is full. A third run starts from rest in the full cut, to see whether it comes to the same
+motion.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-
-import numpy as np
-from numpy.typing import NDArray
+from dataclasses import dataclass
 
 from chatter.case import Case
-from chatter.simulation.growth import delayed, motion_of
+from chatter.simulation.exponents import Exponents, follow
 from chatter.simulation.setup import set_up
 from dynamics.modal import Mode
 
-#: the push moves the tool by this share of the feed
-_PUSH = 1e-5
-#: turns that are looked at, at the most
-_MOST_TURNS = 300.0
-#: a difference that shrinks by less than this share a turn stays
+#: half the range of a motion, as a share of the feed per tooth, from which on teeth may leave the
+#: cut; chatter that is full moves by more
+LARGE_SWING = 0.25
+#: growth of a push, as a logarithm, that no beating and no change of shape explains
+_GROWN = 3.0
+#: a push that shrinks by less than this share a turn stays
 _SUSTAINED = 0.004
-#: differences below this share of the largest are rounding
-_ROUNDING = 1e-6
-_LEAST_TURNS = 8
+#: a cycle that chatter has settled in is nearly neutral: growth before it and this rate are chatter
+_NEUTRAL = 0.02
+#: turns in which the cut takes hold, and that are watched after that, at the least; time constants
+#: of the slowest mode and periods of the variation in them
+_LEAST_TURNS = (40, 40)
+_TIME_CONSTANTS = (12.0, 6.0)
+_PERIODS = (4.0, 5.0)
+#: steps of a run, at the most, and periods that must be watched all the same
+_MOST_STEPS = 6_000_000
+_LEAST_PERIODS = 1.0
+#: standard errors by which a rate must be below another one
+_ERRORS = 4.0
+#: a run that tells nothing is repeated, so often: faster taken hold of by this, or longer watched
+_TRIES, _FASTER, _LONGER = 3, 3, 4
+#: forced vibration that is large, as a share of the feed per tooth; and by which it may be larger
+#: than small vibration would have it
+_LARGE, _TOO_LARGE = 0.5, 4.0
+#: the run from rest is where the other one is: within this share of the motion
+_SAME = 0.05
 
 
 @dataclass(frozen=True)
 class Divergence:
-    """How the difference of two runs develops.
+    """How a small push on the forced motion develops.
 
     Parameters
     ----------
+    verdict : str
+        ``"stable"``, ``"chatter"``, or empty where it cannot be told.
+    reason : str
     rate : float
-        Logarithm a turn; -inf where it is gone at once.
+        Growth of the push, logarithm a turn; -inf where it is gone at once, nan if not known.
     frequency : float
-        Strongest line of the difference, Hz.
+        Strongest line of what grows, Hz; nan where nothing does.
     """
 
-    rate: float
-    frequency: float
+    verdict: str
+    reason: str
+    rate: float = math.nan
+    frequency: float = math.nan
 
     @property
     def stable(self) -> bool:
         """True where the push is forgotten."""
-        return self.rate < -_SUSTAINED
+        return self.verdict == "stable"
+
+
+#: what a run says that must be watched for longer, and one that must take hold faster
+_UNCERTAIN = Divergence("", "whether a small push dies out or stays cannot be told")
+_COME_BACK = Divergence(
+    "",
+    "vibration grew while the cut took hold and died out when it had: whether the motion that it "
+    "has come to is that of a stable cut cannot be told",
+)
+_FAR_MORE = Divergence(
+    "",
+    "the cut has settled in a motion that repeats, but far larger than the forced vibration while "
+    "it took hold: whether it is chatter cannot be told",
+)
 
 
 def divergence(case: Case, modes: tuple[Mode, ...]) -> Divergence:
-    """Run a case twice, the second time pushed a little, and follow the difference.
+    """Push a cut on its forced motion, and follow how the push goes on.
 
     Parameters
     ----------
@@ -59,37 +101,81 @@ def divergence(case: Case, modes: tuple[Mode, ...]) -> Divergence:
     modes : tuple of Mode
         Of its structure.
     """
-    setups = [set_up(delayed(case), modes) for _ in range(2)]
-    limit = min(setups[0].resolution.turns, _MOST_TURNS)
-    setups = [replace(setup, resolution=replace(setup.resolution, turns=limit)) for setup in setups]
-    pushes = (0.0, _PUSH * case.cut.feed_per_tooth)
-    (first, done), (second, also_done) = (
-        motion_of(setup, setup.resolution.steps, push=push)
-        for setup, push in zip(setups, pushes, strict=True)
-    )
-    count = max(min(done, also_done), 0)
-    difference = second[:count] - first[:count]
-    bins = setups[0].resolution.steps_a_turn
-    turns = count // bins
-    if turns < _LEAST_TURNS:
-        # one of them has left the range of the model
-        return Divergence(math.inf, math.nan)
-    size = np.sqrt(np.mean(difference[: turns * bins].reshape(turns, -1) ** 2, axis=1))
-    alive = np.flatnonzero(size < _ROUNDING * size.max())
-    end = int(alive[0]) if alive.size else turns
-    begin = end // 3
-    if end - begin < 3:
-        return Divergence(-math.inf, math.nan)
-    rate = float(np.polyfit(np.arange(begin, end), np.log(size[begin:end]), 1)[0])
-    window = difference[begin * bins : end * bins]
-    return Divergence(rate, _strongest(window, setups[0].step))
+    hold, watch, period = _lengths(case, modes)
+    feed = case.cut.feed_per_tooth
+    if watch < _LEAST_PERIODS * period:
+        return Divergence(
+            "",
+            f"a period of the variation takes {period:.4g} turns, more than the {watch} that can "
+            "be watched",
+        )
+    found = _judged(follow(case, modes, hold, watch, period), feed)
+    for _ in range(_TRIES):
+        if found.verdict or found is _FAR_MORE:
+            break
+        if found is _UNCERTAIN:
+            watch *= _LONGER
+        else:
+            hold = max(hold // _FASTER, 1)
+        found = _judged(follow(case, modes, hold, watch, period), feed)
+    return found
 
 
-def _strongest(signal: NDArray[np.float64], step: float) -> float:
-    """Frequency of the strongest line of (n, 3) samples, Hz, between the lines of the FFT."""
-    window = np.hanning(len(signal))[:, None]
-    amplitude = np.linalg.norm(np.fft.rfft(signal * window, axis=0), axis=1)
-    peak = int(np.clip(np.argmax(amplitude[1:]) + 1, 1, len(amplitude) - 2))
-    low, middle, high = np.log(np.maximum(amplitude[peak - 1 : peak + 2], 1e-300))
-    shift = 0.5 * (low - high) / (low - 2.0 * middle + high)
-    return float((peak + shift) / (len(signal) * step))
+def _lengths(case: Case, modes: tuple[Mode, ...]) -> tuple[int, int, float]:
+    """Turns in which the cut takes hold and that are watched, and turns of a period."""
+    setup = set_up(case, modes)
+    bins = setup.resolution.steps_a_turn
+    a_second = setup.spindle.speed / (2.0 * math.pi)
+    slowest = max(1.0 / (mode.damping * mode.natural_frequency) for mode in setup.modes)
+    period = a_second / setup.spindle.frequency if setup.spindle.amplitude else 1.0
+    wanted = [
+        max(least, constants * slowest * a_second, periods * period)
+        for least, constants, periods in zip(_LEAST_TURNS, _TIME_CONSTANTS, _PERIODS, strict=True)
+    ]
+    most = _MOST_STEPS / bins
+    share = min(1.0, most / sum(wanted))
+    hold, watch = (math.ceil(share * turns) for turns in wanted)
+    return hold, watch, period
+
+
+def _judged(found: Exponents, feed: float) -> Divergence:
+    """Verdict of a run; one that is empty where it must be run in another way."""
+    grown = found.growth(found.hold, _GROWN)
+    if grown:
+        return _chatter(found, *grown, "a small push on the forced motion grows by")
+    if found.left:
+        return Divergence("chatter", "the tool is thrown out of the cut", math.inf)
+    settled, error = found.settled_rate()
+    grown = found.growth(0, _GROWN)
+    if grown:
+        error = error if math.isfinite(error) else 0.0
+        if settled + _ERRORS * error > -_NEUTRAL:
+            return _chatter(found, *grown, "while the cut takes hold a small push grows by")
+        return _COME_BACK
+    if settled >= -_SUSTAINED:
+        says = "a small push on the forced motion changes by"
+        return _chatter(found, *found.watched_last, says)
+    unsure = error if math.isfinite(error) else max(_NEUTRAL + settled, 0.0)
+    if settled + _ERRORS * unsure >= -_SUSTAINED:
+        return _UNCERTAIN
+    if not found.from_rest_alike(_SAME, _SUSTAINED):
+        return Divergence(
+            "chatter",
+            "the cut from rest stays away from its forced motion, on which small pushes die out",
+            settled,
+            found.frequency_of_rest(*found.watched_last),
+        )
+    share = f" by {-math.expm1(settled):.1%} a turn" if math.isfinite(settled) else " at once"
+    reason = f"a small push on the forced motion dies out{share}"
+    swing = found.swing[slice(*found.watched_last)].max() / feed
+    if swing > _LARGE:
+        if swing * feed > _TOO_LARGE * found.swing_of_small_motion(_LARGE * feed):
+            return _FAR_MORE
+        reason += f"; forced vibration of {swing:.2g} feeds per tooth lets teeth leave the cut"
+    return Divergence("stable", reason, settled)
+
+
+def _chatter(found: Exponents, begin: int, end: int, says: str) -> Divergence:
+    rate = found.rate(begin, end)
+    reason = f"{says} {math.expm1(min(rate, 50.0)):+.1%} a turn"
+    return Divergence("chatter", reason, rate, found.frequency(begin, end))

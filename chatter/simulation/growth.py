@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from chatter.case import Case
 from chatter.simulation.engine import COLUMNS, Record, run
-from chatter.simulation.setup import Setup, set_up
+from chatter.simulation.setup import Setup, delayed, set_up
 from chatter.simulation.spindle import prescribed
 from cutting.tool_point import tool_point
 from dynamics.modal import Mode
@@ -33,9 +33,9 @@ _LARGEST_DIFFERENCE = 0.1
 _SMALLEST_DIFFERENCE = 1e-7
 #: periods that a fit needs at the least
 _LEAST_FITTED = 10
-#: samples of a difference, shapes that differences are made of, the weakest of them that counts,
+#: moments of a difference, shapes that differences are made of, the weakest of them that counts,
 #: and the share in the last difference that a multiplier must have
-_FEATURES = 96
+_FEATURES = 32
 _MOST_SHAPES = 8
 _WEAKEST_SHAPE = 1e-3
 _LEAST_SHARE = 0.02
@@ -108,14 +108,6 @@ def growth_of(case: Case, modes: tuple[Mode, ...]) -> Growth:
     return _fitted(watched, period, case.cut.feed_per_tooth)
 
 
-def delayed(case: Case) -> Case:
-    """Return the case with the delayed chip and the steady engagement of [cut]."""
-    settings = case.simulation
-    if settings is not None:
-        settings = settings.model_copy(update={"chip": "delay", "path": None})
-    return case.model_copy(update={"simulation": settings, "stock": None})
-
-
 def motion_of(
     setup: Setup, steps: int, ramp: int = 0, push: float = 0.0
 ) -> tuple[NDArray[np.float64], int]:
@@ -171,19 +163,21 @@ def _fitted(periods: NDArray[np.float64], period: float, feed: float) -> Growth:
         return Growth(0j, period, math.nan)
     # what other modes have left of the start dies out first
     begin = first + min((end - first) // 3, end - first - _LEAST_FITTED)
-    multiplier = _dominant(flat[begin:end])
+    multiplier = _dominant(difference[begin:end])
     frequency = _frequency(difference[begin:end], multiplier, period)
     return Growth(multiplier, period, frequency)
 
 
 def _dominant(differences: NDArray[np.float64]) -> complex:
-    """Largest multiplier that takes the rows (k, n) of differences from each to the next.
+    """Largest multiplier that takes the differences (k, n, 3) of periods from each to the next.
 
     Dynamic mode decomposition (Schmid 2010, J. Fluid Mech. 656): the map from row to row is
     fitted within the few shapes that the rows are made of; several multipliers of nearly the same
     size, as of like modes in x and y, are so told apart.
     """
+    # in time, so that no direction of the motion is left out
     samples = differences[:, :: max(1, differences.shape[1] // _FEATURES)]
+    samples = samples.reshape(len(samples), -1)
     weight = 1.0 / np.linalg.norm(samples[:-1], axis=1)[:, None]
     before, after = samples[:-1] * weight, samples[1:] * weight
     left, size, right = np.linalg.svd(before, full_matrices=False)

@@ -16,7 +16,7 @@ from chatter.errors import InputError
 from chatter.judgement import CutRecord, Judgement, judge
 from chatter.result_files import as_json, finite_or_none, write_results
 from chatter.simulation.carved import carving_notes
-from chatter.simulation.divergence import divergence
+from chatter.simulation.divergence import LARGE_SWING, Divergence, divergence
 from chatter.simulation.finish import Finish, finish_of
 from chatter.simulation.setup import Setup
 from cutting.dexel_stock import DexelStock
@@ -111,10 +111,20 @@ class SimulationResult:
         """Chatter or not; None where that cannot be told, see `why_not_judged`."""
         if self.why_not_judged:
             return None
-        found = judge(self._cut_record())
-        if self.setup.spindle.amplitude == 0.0:
-            return found
-        return self._judged_by_divergence(found)
+        if self._divergence is None:
+            return self._judged_by_record
+        if not self._varies and self._divergence.stable:
+            return self._judged_by_record
+        return self._judged_by_divergence(self._judged_by_record)
+
+    @cached_property
+    def _judged_by_record(self) -> Judgement:
+        """Verdict of the record alone: whether the motion repeats."""
+        return judge(self._cut_record())
+
+    @property
+    def _varies(self) -> bool:
+        return self.setup.spindle.amplitude != 0.0
 
     @cached_property
     def why_not_judged(self) -> str:
@@ -133,7 +143,33 @@ class SimulationResult:
             self._cut_record()
         except InputError as error:
             return str(error)
+        if self._divergence is not None and not self._divergence.verdict:
+            return self._divergence.reason
         return ""
+
+    @cached_property
+    def _divergence(self) -> Divergence | None:
+        """How small pushes go on; None where the record alone tells.
+
+        It does at a constant speed, unless it repeats and is so large that teeth leave the cut:
+        chatter that is full may repeat too, above all from turn to turn.
+        """
+        if not self._varies:
+            settled = self.displacement[self.settled]
+            swing = 0.5 * float(np.ptp(settled, axis=0).max())
+            if swing <= LARGE_SWING * self.case.cut.feed_per_tooth or not self._steady:
+                return None
+            if self._judged_by_record.verdict != "stable":
+                return None
+        return divergence(self.case, self.setup.modes)
+
+    @property
+    def _steady(self) -> bool:
+        """Whether the cut is that of [cut] all along, on modes that are known."""
+        structure, section = self.case.structure, self.case.simulation
+        bent = section is not None and section.path is not None
+        on_machine = structure is not None and structure.machine is not None
+        return self.case.stock is None and not bent and not on_machine
 
     def _cut_record(self) -> CutRecord:
         cutter, slices = self.setup.cutter, self.setup.slices
@@ -153,16 +189,17 @@ class SimulationResult:
         )
 
     def _judged_by_divergence(self, found: Judgement) -> Judgement:
-        """Verdict under a varying speed, where no turn is like the next."""
-        apart = divergence(self.case, self.setup.modes)
+        """Verdict by small pushes, where the record does not tell."""
+        apart = self._divergence
+        assert apart is not None
         a_turn = math.expm1(min(apart.rate, 50.0))
         return replace(
             found,
-            verdict="stable" if apart.stable else "chatter",
+            verdict=apart.verdict,
             confidence=min(1.0, 0.5 + 10.0 * abs(a_turn)),
-            reason=f"a small push at the start changes by {a_turn:+.1%} a turn",
+            reason=apart.reason,
             bifurcation="none" if apart.stable else "unknown",
-            chatter_frequency=math.nan if apart.stable else apart.frequency,
+            chatter_frequency=apart.frequency,
             growth_rate=apart.rate * self.setup.spindle.speed / (2.0 * math.pi),
         )
 

@@ -107,6 +107,14 @@ def set_up(case: Case, modes: tuple[Mode, ...] | None = None) -> Setup:
     return compiled(case, cutter, modes, resolution, notes)
 
 
+def delayed(case: Case) -> Case:
+    """Return the case with the delayed chip and the steady engagement of [cut]."""
+    settings = case.simulation
+    if settings is not None:
+        settings = settings.model_copy(update={"chip": "delay", "path": None})
+    return case.model_copy(update={"simulation": settings, "stock": None})
+
+
 def check_case(case: Case) -> None:
     """Refuse a case that lacks what a simulation needs, or whose numbers cannot be meant."""
     case.require("tool", "material", "cut")

@@ -13,8 +13,9 @@ from reference.turning import delay_of_a_spindle, spectral_radius
 from chatter.case import Case
 from chatter.methods import by_collocation
 from chatter.model import milling_model
+from chatter.simulation.divergence import divergence
 from chatter.simulation.growth import delayed, motion_of
-from chatter.simulation.setup import set_up
+from chatter.simulation.setup import modes_of, set_up
 from chatter.stability.collocation import converged_multiplier, multipliers
 from chatter.stability.sweep import no_progress
 from cutting.edge_pieces import period_angle
@@ -238,6 +239,68 @@ def test_what_the_variation_is_good_for(name):
         found = simulated(case, turns, depth)
         assert sign * math.log(wanted) > 0.0
         assert sign * math.log(found) > 0.0
+
+
+# --- the verdict of `simulate`: chatter that is full is chatter -----------------------------------
+
+
+def verdict_of(case, depth):
+    case = case.patch({"cut.axial_depth": depth})
+    return divergence(case, modes_of(case)[0])
+
+
+@pytest.mark.parametrize(
+    "name", ["bull nose with runout", "straight", "one mode, two teeth", "process damping"]
+)
+def test_verdict_of_a_simulated_cut(name):
+    """Full chatter attracts, and forgets a push: small vibration before it tells."""
+    case, turns = milling_case(name), CUTS[name][4][1]
+    limit = first_limit(case)
+    for share in (0.8, 0.95):
+        found = verdict_of(case, share * limit)
+        wanted = math.log(predicted(case, turns, share * limit)) / turns
+        assert found.verdict == "stable"
+        assert found.rate == pytest.approx(wanted, abs=0.03)
+    for share in (1.1, 1.25, 2.0, 4.0):
+        found = verdict_of(case, share * limit)
+        assert found.verdict == "chatter"
+        assert found.rate > 0.0
+        if share < 1.2:
+            # growth that begins while the cut takes hold is less than in the full cut
+            wanted = math.log(predicted(case, turns, share * limit)) / turns
+            assert found.rate < 1.1 * wanted
+
+
+def test_verdict_where_speed_varies_slowly():
+    """Within a period of 25 turns chatter comes and goes."""
+    case = milling_case("straight")
+    frequency = case.cut.spindle_speed / (2.0 * math.pi * 25)
+    case = case.patch({"cut.speed_variation.frequency": frequency})
+    limit = first_limit(case)
+    for share, verdict in ((0.9, "stable"), (1.1, "chatter"), (2.0, "chatter")):
+        assert verdict_of(case, share * limit).verdict == verdict
+
+
+def test_a_run_from_rest_that_does_not_come_to_the_forced_motion_chatters():
+    """Small pushes die out below the limit, but the jump into the full cut is none."""
+    speed = 406.5
+    variation = {"amplitude": 0.136, "frequency": speed / (20.0 * math.pi), "shape": "sine"}
+    case = Case.from_dict(
+        {
+            "tool": end_mill(4, 12e-3),
+            "material": {"Ktc": "800 MPa", "Krc": "396 MPa", "Kac": "100 MPa"},
+            "cut": {
+                "mode": "slot", "spindle_speed": speed, "feed_per_tooth": 1e-4,
+                "axial_depth": 1e-3, "speed_variation": variation,
+            },
+            "structure": {"mode": [mode(1332.0, 0.02156, 1.2413e7, "x")]},
+        }
+    )  # fmt: skip
+    depth = 0.8 * first_limit(case)
+    found = verdict_of(case, depth)
+    assert found.verdict == "chatter"
+    assert "from rest" in found.reason
+    assert found.rate == pytest.approx(math.log(predicted(case, 10, depth)) / 10, abs=0.02)
 
 
 # --- slow variation: growth is the mean of that at the speeds gone through ------------------------

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from cuts import MODES, end_mill
 
+from chatter.best_cut.limits import limits_of
 from chatter.best_cut.resolution import most_waves
+from chatter.best_cut.sampled_cuts import samples_of
 from chatter.best_cut.stable_depths import first_limits, stable_depths, widest_stride
 from chatter.model import milling_model
 from chatter.stability import collocation
@@ -32,6 +34,24 @@ def test_a_fast_mode_that_hardly_takes_part_needs_no_short_elements():
     limited = np.isfinite(exact)
     assert limited.any()
     assert np.array_equal(limited, np.isfinite(found))
+    assert found[limited] == pytest.approx(exact[limited], rel=1e-3)
+
+
+def test_elements_are_as_short_as_the_samples_need_them():
+    fast = {**ON_A_MACHINE[2], "stiffness": "400 +- 150 N/um"}
+    section = {"speeds": {"from": "500 rpm", "to": "2500 rpm"}, "depths": {"to": "10 mm"}}
+    case = end_mill({"structure.mode": [*ON_A_MACHINE[:2], fast], "optimum": section})
+    model = milling_model(case)
+    sampled = samples_of(model, 200, 1).models
+    stiffest = max(sampled, key=lambda one: one.structure.modes[2].stiffness)
+    nominal, limits = limits_of(case, model), limits_of(case, model, sampled)
+    assert limits.waves < nominal.waves
+    speeds = np.linspace(500.0, 2500.0, 30) * RPM
+    depths = np.linspace(0.0, 10e-3, 41)[1:]
+    exact = first_limits(stiffest.cut(10e-3, *collocation.FINER[1]), speeds, depths)
+    found = first_limits(stiffest.cut(10e-3, waves=limits.waves), speeds, depths)
+    limited = np.isfinite(exact)
+    assert limited.any()
     assert found[limited] == pytest.approx(exact[limited], rel=1e-3)
 
 
