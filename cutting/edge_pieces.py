@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from cutting.edge_passes import GAUSS, Edges, piece_borders
 from cutting.engagement import MillingMode, slice_engagement
 from cutting.force_law import ExponentialLaw, ForceLaw
 from cutting.ploughing import Ploughing
@@ -33,7 +34,7 @@ _PIECE_TURN = math.radians(1.2)
 #: arcs change from piece to piece
 _PIECE_LAG = 0.03
 _PIECE_LAG_OF_PASSES = 0.006
-_PIECES_A_WAVE = 24
+_PIECES_A_WAVE = 4
 #: with a size effect a chain on a corner ends where its inclination has grown by this factor: at
 #: the tip the slope of the force law is infinite
 _CHAIN_GROWTH = 3.0
@@ -200,53 +201,6 @@ def _borders_of_straight(
     return heights
 
 
-def _passes(
-    rise: NDArray[np.float64], inset: NDArray[np.float64], entry: float, leave: float
-) -> list[tuple[int, float, float]]:
-    """Arcs (pass, entry, exit) in which each earlier pass is the one that left the surface.
-
-    The chip against pass k is rise[k] sin(phi) - inset[k]; the thinnest counts, and below zero
-    there is none.
-    """
-    sines = [0.0, 1.0]
-    for k in range(rise.size):
-        if rise[k] > 0.0:
-            sines.append(inset[k] / rise[k])
-        for m in range(k):
-            if rise[k] != rise[m]:
-                sines.append((inset[k] - inset[m]) / (rise[k] - rise[m]))
-    turns = np.arcsin([s for s in sines if 0.0 <= s <= 1.0])
-    marks = np.concatenate([turns, math.pi - turns, [entry, leave]])
-    marks = np.unique(marks[(marks >= entry) & (marks <= leave)])
-    arcs: list[tuple[int, float, float]] = []
-    for low, high in itertools.pairwise(marks):
-        if high - low < _SHORTEST_ARC:
-            continue
-        chip = rise * math.sin(0.5 * (low + high)) - inset
-        k = int(np.argmin(chip))
-        if chip[k] <= 0.0:
-            continue
-        if arcs and arcs[-1][0] == k and low - arcs[-1][2] < _SHORTEST_ARC:
-            arcs[-1] = (k, arcs[-1][1], high)
-        else:
-            arcs.append((k, low, high))
-    return arcs
-
-
-def _arcs_of_passes(
-    rise: NDArray[np.float64], inset: NDArray[np.float64], arcs: NDArray[np.float64]
-) -> list[tuple[int, tuple[float, float], tuple[float, float]]]:
-    """Arcs (pass, entries, exits) at both ends of a piece from those at ends and middle.
-
-    Rows of `rise`, `inset` and `arcs` are the low end, the high end and the middle. Where the ends
-    do not see the same passes, the arcs are those of the middle all along.
-    """
-    low, high, middle = (_passes(rise[i], inset[i], *arcs[i]) for i in range(3))
-    if [k for k, _, _ in low] != [k for k, _, _ in high] or len(low) != len(middle):
-        return [(k, (first, first), (last, last)) for k, first, last in middle]
-    return [(a[0], (a[1], b[1]), (a[2], b[2])) for a, b in zip(low, high, strict=True)]
-
-
 def edge_pieces(
     cutter: Cutter,
     laws: list[ForceLaw],
@@ -280,6 +234,27 @@ def edge_pieces(
     own_passes = wave or np.ptp(cutter.radial_offsets) > 0.0 or np.ptp(cutter.axial_offsets) > 0.0
     heights = _borders_of_straight(cutter, deepest, mode, radial_depth, own_passes, fineness)
     line = _line(cutter, deepest, mode, radial_depth, heights, fineness)
+    slopes = [_reference_slope(law) for law in laws]
+    if own_passes:
+        edges = Edges(cutter, mode, radial_depth, feed_per_turn)
+        rows, owners = _rows_of_passes(edges, line, slopes, fineness)
+    else:
+        rows, owners = _rows_of_one_pass(cutter, line, mode, radial_depth, slopes)
+    turning = _turning(rows, owners, wave)
+    order, chain = _chains(rows, owners, laws[0], apart=wave)
+    rows = [rows[i] for i in order]
+    feed = feed_per_turn / _TURN
+    return _as_arrays(rows, turning[order], chain, cutter, laws[0], flank, feed)
+
+
+def _rows_of_one_pass(
+    cutter: Cutter,
+    line: _Line,
+    mode: MillingMode,
+    radial_depth: float,
+    slopes: list[NDArray[np.float64]],
+) -> tuple[list[tuple], list[tuple[int, int, int]]]:
+    """Pieces of teeth that each cut what the one before them has left."""
     lag = np.tan(np.asarray(cutter.helix)) / cutter.radius
     rows: list[tuple] = []
     owners: list[tuple[int, int, int]] = []
@@ -294,48 +269,86 @@ def edge_pieces(
         arc = _arc_of_piece(entry[ends], leave[ends])
         if arc is None:
             continue
-        waves = np.zeros((cutter.teeth, 3))
-        if wave:
-            heights_of = np.array([*line.height[ends], middle])
-            waves = np.array(
-                [
-                    cutter.serration.radius_change(heights_of, tooth, cutter.teeth)
-                    for tooth in range(cutter.teeth)
-                ]
-            )
-        turned = np.array([*kappa, 0.5 * (kappa[0] + kappa[1])])
-        radial, axial = cutter.radial_offsets[:, None] + waves, cutter.axial_offsets[:, None]
-        offset = radial * np.sin(turned) + axial * np.cos(turned)
         earlier, ahead = earlier_passes(angle[:, 2:])
-        arcs = np.stack([*arc.T, arc.mean(axis=1)])
         for tooth in range(cutter.teeth):
-            order, alpha = earlier[tooth, 0], ahead[tooth, 0]
+            other = int(earlier[tooth, 0, 0])
             # flutes of different helix are not as far ahead at the ends as in the middle
-            apart = angle[order] - angle[tooth]
-            gaps = alpha + (apart - apart[:, 2:]).T
-            rise = np.sin(turned)[:, None] * feed_per_turn * gaps / _TURN
-            inset = (offset[order] - offset[tooth]).T
-            found = [(0, arc[0], arc[1])]
-            if own_passes:
-                found = _arcs_of_passes(rise, inset, arcs)
-            for k, first, last in found:
-                other = order[k]
-                owners.append((piece, tooth, int(other)))
-                rows.append(
-                    (
-                        line.height[piece], line.height[piece + 1] - line.height[piece],
-                        line.length[piece], angle[tooth, :2], first, last,
-                        gaps[:2, k], kappa, line.radius[ends], _reference_slope(laws[tooth]),
-                        radial[other, :2] - radial[tooth, :2],
-                        cutter.axial_offsets[other] - cutter.axial_offsets[tooth],
-                        cutter.corner_radius if kappa[0] < kappa[1] else 0.0,
-                    )
-                )  # fmt: skip
-    turning = _turning(rows, owners, wave)
-    order, chain = _chains(rows, owners, laws[0], apart=wave)
-    rows = [rows[i] for i in order]
-    feed = feed_per_turn / _TURN
-    return _as_arrays(rows, turning[order], chain, cutter, laws[0], flank, feed)
+            apart = angle[other] - angle[tooth]
+            gaps = ahead[tooth, 0, 0] + apart - apart[2]
+            owners.append((piece, tooth, other))
+            rows.append(
+                (
+                    line.height[piece], line.height[piece + 1] - line.height[piece],
+                    line.length[piece], angle[tooth, :2], arc[0], arc[1], gaps[:2], kappa,
+                    line.radius[ends], slopes[tooth], (0.0, 0.0), 0.0,
+                    cutter.corner_radius if kappa[0] < kappa[1] else 0.0,
+                )
+            )  # fmt: skip
+    return rows, owners
+
+
+def _rows_of_passes(
+    edges: Edges, line: _Line, slopes: list[NDArray[np.float64]], fineness: float
+) -> tuple[list[tuple], list[tuple[int, int, int]]]:
+    """Pieces of teeth for each of which the earlier pass is found that left the surface."""
+    borders = np.concatenate([[0.0], np.cumsum(line.length)])
+    rows: list[tuple] = []
+    owners: list[tuple[int, int, int]] = []
+    for tooth in range(edges.cutter.teeth):
+        found, of_tooth = _rows_of_tooth(edges, tooth, slopes[tooth], borders, fineness)
+        rows += found
+        owners += of_tooth
+    return rows, owners
+
+
+def _rows_of_tooth(
+    edges: Edges, tooth: int, slope: NDArray[np.float64], borders: NDArray[np.float64],
+    fineness: float,
+) -> tuple[list[tuple], list[tuple[int, int, int]]]:  # fmt: skip
+    """The same of one tooth.
+
+    What bends along a piece is the line through its values at two Gauss points: so the area in
+    the cut, and all that is linear along it, is right to the fourth order.
+    """
+    places = piece_borders(edges, tooth, borders, fineness)
+    low, high = places[:-1], places[1:]
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    own = np.full(middle.size, tooth)
+    inner = (middle - GAUSS * half, middle + GAUSS * half)
+    at_ends, at_middle = edges.profile(places), edges.profile(middle)
+    radial = _through(*(edges.radial(edges.profile(place).height) for place in inner))
+    angle, between = edges.angle(at_ends.height), edges.angle(at_middle.height)
+    ahead = edges.ahead(own, at_middle.height)
+    one, other, central = (edges.arcs(own, place) for place in (*inner, middle))
+    alike = np.all(one.kind == other.kind, axis=1)
+    ends = np.where(
+        alike[:, None, None], _through(one.angle, other.angle), central.angle[..., None]
+    )
+    met = np.where(alike[:, None], one.tooth, central.tooth)
+    axial, corner = edges.cutter.axial_offsets, edges.cutter.corner_radius
+    rows: list[tuple] = []
+    owners: list[tuple[int, int, int]] = []
+    for piece, arc in zip(*np.nonzero(met >= 0), strict=True):
+        k, pair = int(met[piece, arc]), slice(piece, piece + 2)
+        apart = angle[pair, k] - angle[pair, tooth]
+        gaps = ahead[piece, k] + apart - (between[piece, k] - between[piece, tooth])
+        owners.append((int(piece), tooth, k))
+        rows.append(
+            (
+                at_ends.height[piece], at_ends.height[piece + 1] - at_ends.height[piece],
+                high[piece] - low[piece], angle[pair, tooth],
+                ends[piece, arc], ends[piece, arc + 1], gaps, at_ends.immersion[pair],
+                at_ends.radius[pair], slope, radial[piece, k] - radial[piece, tooth],
+                axial[k] - axial[tooth], corner if middle[piece] < edges.on_corner else 0.0,
+            )
+        )  # fmt: skip
+    return rows, owners
+
+
+def _through(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values (..., 2) at the ends of lines through those at two Gauss points."""
+    middle, rise = 0.5 * (one + other), 0.5 / GAUSS * (other - one)
+    return np.stack([middle - rise, middle + rise], axis=-1)
 
 
 def _chains(
