@@ -33,8 +33,12 @@ _MOST_CHANGES = 12
 #: places looked at within a wave of a serrated edge, and between two borders
 _LOOKS_A_WAVE = 64
 _LOOKS = 4
+#: share of the distance of two borders by which the first look is beside one
+_BESIDE = 1e-6
 #: pieces between two changes at the fineness 1
-_PIECES = 4
+_PIECES = 7
+#: of a wave, between two changes: shorter ones take fewer pieces
+_LONG = 0.2
 #: Gauss points of two on [-1, 1] lie at these
 GAUSS = 1.0 / math.sqrt(3.0)
 
@@ -91,6 +95,14 @@ class Edges:
         across = math.cos(angle) if angle < 0.5 * math.pi else 0.0
         radius = cutter.radius - corner + corner * np.sin(np.where(corner, kappa, 0.0))
         return Profile(height, radius + beyond * across, kappa)
+
+    def place(self, height: float) -> float:
+        """Length of edge from the tip to a height, m."""
+        corner, angle = self.cutter.corner_radius, self.cutter.edge_angle
+        top = corner * (1.0 - math.cos(angle))
+        if height < top:
+            return corner * math.acos(1.0 - height / corner)
+        return self.on_corner + (height - top) / math.sin(angle)
 
     def angle(self, height: Array) -> Array:
         """Place on the tool of every tooth (P, N), rad."""
@@ -178,7 +190,8 @@ def _looks(borders: Array, cutter: Cutter) -> Array:
     places = []
     for low, high in itertools.pairwise(borders):
         count = max(_LOOKS, math.ceil((high - low) / spacing))
-        places.append(low + (high - low) * (np.arange(count) + 0.5) / count)
+        shares = np.concatenate([[_BESIDE], np.arange(1, count) / count, [1.0 - _BESIDE]])
+        places.append(low + (high - low) * shares)
     return np.concatenate(places)
 
 
@@ -235,10 +248,15 @@ def piece_borders(edges: Edges, tooth: int, borders: Array, fineness: float) -> 
     group = np.cumsum(np.append(0, np.diff(places) > same))
     places = np.array([places[group == g][-1] for g in range(group[-1] + 1)])
     marks = np.array([marks[group == g].any() for g in range(group[-1] + 1)])
-    count = math.ceil(_PIECES / math.sqrt(fineness))
+    count = _PIECES / math.sqrt(fineness)
+    long = borders[-1]
+    if edges.cutter.serration is not None:
+        long = min(long, _LONG * edges.cutter.serration.wavelength)
     pieces = [places[:1]]
     for i in range(places.size - 1):
-        part = _graded(count, bool(marks[i]), bool(marks[i + 1]))
+        # errors of a short one matter less
+        share = min(1.0, (places[i + 1] - places[i]) / long) ** 0.25
+        part = _graded(math.ceil(count * share), bool(marks[i]), bool(marks[i + 1]))
         pieces.append(places[i] + (places[i + 1] - places[i]) * part[1:])
     return np.concatenate(pieces)
 
@@ -246,7 +264,7 @@ def piece_borders(edges: Edges, tooth: int, borders: Array, fineness: float) -> 
 def _graded(count: int, low: bool, high: bool) -> Array:
     """Borders of pieces on [0, 1], close together at the ends that are changes."""
     if not (low or high):
-        count = max(1, count // 2)
+        count = max(1, count // _PIECES)
     part = np.linspace(0.0, 1.0, count + 1)
     if low and high:
         return part * part * (3.0 - 2.0 * part)

@@ -30,10 +30,10 @@ from cutting.tool import Cutter, corner_height
 _TURN = 2.0 * math.pi
 #: a corner turns by this much within a piece, and its arc changes by it, rad
 _PIECE_TURN = math.radians(1.2)
-#: an edge trails, or a cone widens, by this much within a piece, rad; less where runout makes the
-#: arcs change from piece to piece
+#: the same where the earlier passes are looked for: the arcs are taken at two places within
+_PIECE_TURN_OF_PASSES = math.radians(2.5)
+#: an edge trails, or a cone widens, by this much within a piece, rad
 _PIECE_LAG = 0.03
-_PIECE_LAG_OF_PASSES = 0.006
 _PIECES_A_WAVE = 4
 #: with a size effect a chain on a corner ends where its inclination has grown by this factor: at
 #: the tip the slope of the force law is infinite
@@ -131,14 +131,14 @@ def _line(
     mode: MillingMode,
     radial_depth: float,
     heights: list[float],
-    fineness: float,
+    turn: float,
 ) -> _Line:
     corner = cutter.corner_radius
     height, radius = [0.0], [cutter.radius - corner]
     immersion: list[tuple[float, float]] = []
     length: list[float] = []
     if corner > 0.0:
-        angles = _corner_angles(cutter, mode, radial_depth, fineness * _PIECE_TURN)
+        angles = _corner_angles(cutter, mode, radial_depth, turn)
         height = list(corner * (1.0 - np.cos(angles)))
         radius = list(cutter.radius - corner + corner * np.sin(angles))
         immersion = list(itertools.pairwise(angles))
@@ -183,6 +183,7 @@ def _borders_of_straight(
     mode: MillingMode,
     radial_depth: float,
     own_passes: bool,
+    turn: float,
     fineness: float,
 ) -> list[float]:
     heights = crossing_heights(cutter, deepest)
@@ -195,9 +196,8 @@ def _borders_of_straight(
     if cutter.edge_angle < 0.5 * math.pi - 1e-9:
         # the radius, and with it the arc, changes along a cone
         rate = 1.0 / math.tan(cutter.edge_angle) / cutter.radius
-        turn = _PIECE_LAG_OF_PASSES if own_passes else _PIECE_LAG
-        heights += _even_heights(fineness * turn / max(rate, slope), deepest)
-        heights += _cone_heights(cutter, mode, radial_depth, fineness * _PIECE_TURN)
+        heights += _even_heights(fineness * _PIECE_LAG / max(rate, slope), deepest)
+        heights += _cone_heights(cutter, mode, radial_depth, turn)
     return heights
 
 
@@ -232,16 +232,18 @@ def edge_pieces(
     """
     wave = cutter.serration is not None
     own_passes = wave or np.ptp(cutter.radial_offsets) > 0.0 or np.ptp(cutter.axial_offsets) > 0.0
-    heights = _borders_of_straight(cutter, deepest, mode, radial_depth, own_passes, fineness)
-    line = _line(cutter, deepest, mode, radial_depth, heights, fineness)
+    turn = fineness * (_PIECE_TURN_OF_PASSES if own_passes else _PIECE_TURN)
+    heights = _borders_of_straight(cutter, deepest, mode, radial_depth, own_passes, turn, fineness)
+    line = _line(cutter, deepest, mode, radial_depth, heights, turn)
     slopes = [_reference_slope(law) for law in laws]
     if own_passes:
         edges = Edges(cutter, mode, radial_depth, feed_per_turn)
-        rows, owners = _rows_of_passes(edges, line, slopes, fineness)
+        rows, owners = _rows_of_passes(edges, line, deepest, slopes, fineness)
     else:
         rows, owners = _rows_of_one_pass(cutter, line, mode, radial_depth, slopes)
     turning = _turning(rows, owners, wave)
-    order, chain = _chains(rows, owners, laws[0], apart=wave)
+    sized = isinstance(laws[0], ExponentialLaw) and laws[0].exponent < 1.0
+    order, chain = _chains(rows, owners, sized=sized, apart=wave and sized)
     rows = [rows[i] for i in order]
     feed = feed_per_turn / _TURN
     return _as_arrays(rows, turning[order], chain, cutter, laws[0], flank, feed)
@@ -288,10 +290,17 @@ def _rows_of_one_pass(
 
 
 def _rows_of_passes(
-    edges: Edges, line: _Line, slopes: list[NDArray[np.float64]], fineness: float
+    edges: Edges,
+    line: _Line,
+    deepest: float,
+    slopes: list[NDArray[np.float64]],
+    fineness: float,
 ) -> tuple[list[tuple], list[tuple[int, int, int]]]:
     """Pieces of teeth for each of which the earlier pass is found that left the surface."""
     borders = np.concatenate([[0.0], np.cumsum(line.length)])
+    # the line runs on to the end of the corner
+    borders = np.minimum(borders, edges.place(deepest))
+    borders = np.append(borders[borders < borders[-1]], borders[-1])
     rows: list[tuple] = []
     owners: list[tuple[int, int, int]] = []
     for tooth in range(edges.cutter.teeth):
@@ -352,11 +361,12 @@ def _through(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np
 
 
 def _chains(
-    rows: list[tuple], owners: list[tuple[int, int, int]], law: ForceLaw, apart: bool
+    rows: list[tuple], owners: list[tuple[int, int, int]], sized: bool, apart: bool
 ) -> tuple[list[int], NDArray[np.int64]]:
     """Order of the pieces along chains, and the first place of each chain and the end (C + 1,).
 
-    A serrated edge is not smooth from piece to piece: every piece is a chain apart.
+    The chip on a serrated edge is not smooth from piece to piece: with a size effect every piece is
+    a chain apart.
     """
     met: dict[tuple[int, int, int], int] = {}
     keys = []
@@ -365,7 +375,6 @@ def _chains(
         met[owner] = met.get(owner, -1) + 1
         keys.append((tooth, other, met[owner], piece))
     order = sorted(range(len(rows)), key=lambda i: keys[i])
-    sized = isinstance(law, ExponentialLaw) and law.exponent < 1.0
     starts: list[int] = []
     lowest = 0.0  # inclination at the start of the chain
     for place, i in enumerate(order):
@@ -400,10 +409,14 @@ def _turning(
         if following is None:
             continue
         for arc, end in ((4, 0.0), (5, math.pi)):
-            whole = [bool(np.all(np.asarray(rows[k][arc]) == end)) for k in (i, following)]
-            marks[i, 1] |= whole[0] and not whole[1]
-            rises = [np.diff(np.asarray(rows[k][arc]) - rows[k][3])[0] for k in (i, following)]
-            marks[i, 1] |= rises[0] * rises[1] < 0.0
+            one, next_one = rows[i][arc], rows[following][arc]
+            whole = one[0] == one[1] == end
+            marks[i, 1] |= whole and not next_one[0] == next_one[1] == end
+            angle, next_angle = rows[i][3], rows[following][3]
+            rise = (one[1] - one[0]) - (angle[1] - angle[0])
+            marks[i, 1] |= (
+                rise * ((next_one[1] - next_one[0]) - (next_angle[1] - next_angle[0])) < 0.0
+            )
     return marks
 
 
