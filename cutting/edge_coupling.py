@@ -140,8 +140,15 @@ def chip_at(pieces, piece, height, sine, sine_of_edge, cosine_of_edge):
     """
     # flutes of different helix leave each other more or less of the feed from height to height
     first, last = pieces.delay[piece, 0], pieces.delay[piece, 1]
+    rise = pieces.feed * (first + height * (last - first))
+    vanishing = pieces.vanishing[piece]
+    if vanishing > 0:
+        # the waves bend along the piece, and the chip must end just where the arc does
+        arc = pieces.entry if vanishing == 1 else pieces.exit
+        border = arc[piece, 0] + height * (arc[piece, 1] - arc[piece, 0])
+        return sine_of_edge * rise * (sine - math.sin(border))
     low, high = pieces.inset[piece, 0], pieces.inset[piece, 1]
-    radial = pieces.feed * (first + height * (last - first)) * sine - (low + height * (high - low))
+    radial = rise * sine - (low + height * (high - low))
     return sine_of_edge * radial - cosine_of_edge * pieces.axial_inset[piece]
 
 

@@ -34,12 +34,12 @@ _PIECE_TURN = math.radians(1.2)
 _PIECE_TURN_OF_PASSES = math.radians(2.5)
 #: an edge trails, or a cone widens, by this much within a piece, rad
 _PIECE_LAG = 0.03
-_PIECES_A_WAVE = 4
+_PIECES_A_WAVE = 8
 #: with a size effect a chain on a corner ends where its inclination has grown by this factor: at
 #: the tip the slope of the force law is infinite
 _CHAIN_GROWTH = 3.0
 #: shapes of the columns of a table of no pieces
-_NO_PIECES = (0, 0, 0, (0, 2), (0, 2), (0, 2), (0, 2), (0, 2), (0, 2), (0, 3), (0, 2), 0, 0)
+_NO_PIECES = (0, 0, 0, (0, 2), (0, 2), (0, 2), (0, 2), (0, 2), (0, 2), (0, 3), (0, 2), 0, 0, 0)
 #: arcs shorter than this are none, rad
 _SHORTEST_ARC = 1e-9
 
@@ -62,6 +62,7 @@ class EdgePieces(NamedTuple):
     cutting: NDArray[np.float64]  # slope at the reference chip: tangential .. axial, N/m^2 (P, 3)
     inset: NDArray[np.float64]  # by which the earlier edge reaches further out, m (P, 2)
     axial_inset: NDArray[np.float64]  # and further towards the work, m (P,)
+    vanishing: NDArray[np.int64]  # a wavy edge whose chip ends with its arc: 1 entry, 2 exit (P,)
     feed: float  # by which the work moves for an angle turned, m/rad
     exponent: float  # of the slope: slope = cutting (chip/reference)^exponent, 0 for a linear law
     reference: float  # m
@@ -283,7 +284,7 @@ def _rows_of_one_pass(
                     line.height[piece], line.height[piece + 1] - line.height[piece],
                     line.length[piece], angle[tooth, :2], arc[0], arc[1], gaps[:2], kappa,
                     line.radius[ends], slopes[tooth], (0.0, 0.0), 0.0,
-                    cutter.corner_radius if kappa[0] < kappa[1] else 0.0,
+                    cutter.corner_radius if kappa[0] < kappa[1] else 0.0, 0,
                 )
             )  # fmt: skip
     return rows, owners
@@ -334,6 +335,9 @@ def _rows_of_tooth(
         alike[:, None, None], _through(one.angle, other.angle), central.angle[..., None]
     )
     met = np.where(alike[:, None], one.tooth, central.tooth)
+    vanishing = np.zeros_like(met)
+    if edges.cutter.serration is not None:
+        vanishing = _where_chip_vanishes(np.where(alike[:, None], one.kind, central.kind))
     axial, corner = edges.cutter.axial_offsets, edges.cutter.corner_radius
     rows: list[tuple] = []
     owners: list[tuple[int, int, int]] = []
@@ -349,9 +353,22 @@ def _rows_of_tooth(
                 ends[piece, arc], ends[piece, arc + 1], gaps, at_ends.immersion[pair],
                 at_ends.radius[pair], slope, radial[piece, k] - radial[piece, tooth],
                 axial[k] - axial[tooth], corner if middle[piece] < edges.on_corner else 0.0,
+                vanishing[piece, arc] if middle[piece] > edges.on_corner else 0,
             )
         )  # fmt: skip
     return rows, owners
+
+
+def _where_chip_vanishes(kind: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Tell for each arc (P, W) whether its chip is none at its entry (1), at its exit (2), or not.
+
+    For a chip against the surface of one pass it is so where the arc borders on air.
+    """
+    air = np.pad(kind, ((0, 0), (1, 1)), constant_values=-1) // 4 == 0
+    inner = np.pad(kind, ((0, 0), (1, 1)), constant_values=-1) % 4 >= 2
+    begins = inner[:, 1:-1] & (air[:, :-2] | (np.arange(kind.shape[1]) == 0))
+    ends = air[:, 2:] & inner[:, 2:]
+    return np.where(begins, 1, np.where(ends, 2, 0))
 
 
 def _through(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -477,7 +494,8 @@ def _as_arrays(
         bottom=columns[0], thickness=columns[1], length=columns[2], angle=columns[3],
         entry=columns[4], exit=columns[5], delay=delay, immersion=columns[7], radius=columns[8],
         group=group, group_delay=np.array(groups), cutting=columns[9], feed=feed,
-        inset=columns[10], axial_inset=columns[11], corner=columns[12], exponent=exponent,
+        inset=columns[10], axial_inset=columns[11], corner=columns[12],
+        vanishing=columns[13].astype(np.int64), exponent=exponent,
         reference=reference, damping=damping, turning=turning, chain=chain,
         outline=np.array([cutter.radius, cutter.corner_radius, cutter.edge_angle]),
     )  # fmt: skip
