@@ -36,7 +36,7 @@ _LOOKS = 4
 #: share of the distance of two borders by which the first look is beside one
 _BESIDE = 1e-6
 #: pieces between two changes at the fineness 1
-_PIECES = 7
+_PIECES = 10
 #: of a wave, between two changes: shorter ones take fewer pieces
 _LONG = 0.2
 #: Gauss points of two on [-1, 1] lie at these

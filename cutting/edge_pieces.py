@@ -62,7 +62,7 @@ class EdgePieces(NamedTuple):
     cutting: NDArray[np.float64]  # slope at the reference chip: tangential .. axial, N/m^2 (P, 3)
     inset: NDArray[np.float64]  # by which the earlier edge reaches further out, m (P, 2)
     axial_inset: NDArray[np.float64]  # and further towards the work, m (P,)
-    vanishing: NDArray[np.int64]  # a wavy edge whose chip ends with its arc: 1 entry, 2 exit (P,)
+    vanishing: NDArray[np.int64]  # 1, 2: there is no chip at the entry, at the exit (P,)
     feed: float  # by which the work moves for an angle turned, m/rad
     exponent: float  # of the slope: slope = cutting (chip/reference)^exponent, 0 for a linear law
     reference: float  # m
@@ -335,9 +335,7 @@ def _rows_of_tooth(
         alike[:, None, None], _through(one.angle, other.angle), central.angle[..., None]
     )
     met = np.where(alike[:, None], one.tooth, central.tooth)
-    vanishing = np.zeros_like(met)
-    if edges.cutter.serration is not None:
-        vanishing = _where_chip_vanishes(np.where(alike[:, None], one.kind, central.kind))
+    vanishing = _where_chip_vanishes(np.where(alike[:, None], one.kind, central.kind))
     axial, corner = edges.cutter.axial_offsets, edges.cutter.corner_radius
     rows: list[tuple] = []
     owners: list[tuple[int, int, int]] = []
@@ -353,7 +351,7 @@ def _rows_of_tooth(
                 ends[piece, arc], ends[piece, arc + 1], gaps, at_ends.immersion[pair],
                 at_ends.radius[pair], slope, radial[piece, k] - radial[piece, tooth],
                 axial[k] - axial[tooth], corner if middle[piece] < edges.on_corner else 0.0,
-                vanishing[piece, arc] if middle[piece] > edges.on_corner else 0,
+                vanishing[piece, arc],
             )
         )  # fmt: skip
     return rows, owners

@@ -19,7 +19,7 @@ from .dense_cases import converged_radius
 from .general_cases import _crosses
 
 SEED = 20261123
-COUNTS = {"axial": 24, "serrated": 16}
+COUNTS = {"axial": 16, "serrated": 24, "sized": 4}
 STORE = Path(__file__).with_name("setting_cases.json")
 #: agreement of two resolutions of the reference, relative to max(1, |mu|)
 _AGREEMENT = 3e-5
@@ -56,6 +56,16 @@ def serrated_cut(rng):
     return replace(cut, depth=depth, serration=(wave, wavelength), variation=None)
 
 
+def sized_cut(rng):
+    """One cut of an upright serrated edge in a material of a size effect: few waves, few teeth."""
+    cut = serrated_cut(rng)
+    depth = min(cut.depth, 1.2 * cut.serration[1])
+    return replace(
+        cut, depth=depth, corner_radius=0.0, edge_angle=0.5 * np.pi, offsets=(),
+        helix=(cut.helix[0],) * cut.teeth, exponent=float(rng.uniform(0.65, 0.95)),
+    )  # fmt: skip
+
+
 def axial_cuts(rng):
     """Yield cuts whose chips the axial errors change."""
     while True:
@@ -72,6 +82,14 @@ def serrated_cuts(rng):
             yield cut
 
 
+def sized_cuts(rng):
+    """Yield serrated cuts with a size effect, of two or three teeth."""
+    while True:
+        cut = sized_cut(rng)
+        if cut.teeth < 4 and any(cut.helix):
+            yield cut
+
+
 def case_dict(cut):
     """Return the case that describes the same problem."""
     case = dense_cases.case_dict(cut)
@@ -83,11 +101,14 @@ def case_dict(cut):
     return case
 
 
+_KINDS = {"axial": axial_cuts, "serrated": serrated_cuts, "sized": sized_cuts}
+
+
 def make(path=STORE, counts=None, seed=SEED):
     """Write the cases with converged multipliers; run as a module to make the file anew."""
     counts = counts or COUNTS
     rows = []
-    for kind, cuts in (("axial", axial_cuts), ("serrated", serrated_cuts)):
+    for kind, cuts in _KINDS.items():
         wanted = len(rows) + counts[kind]
         for cut in cuts(np.random.default_rng(seed)):
             if len(rows) >= wanted:
