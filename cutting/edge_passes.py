@@ -37,6 +37,8 @@ _LOOKS = 4
 _BESIDE = 1e-6
 #: pieces between two changes at the fineness 1
 _PIECES = 10
+#: fewer by this where nothing changes
+_SMOOTHER = 5
 #: of a wave, between two changes: shorter ones take fewer pieces
 _LONG = 0.2
 #: Gauss points of two on [-1, 1] lie at these
@@ -254,8 +256,9 @@ def piece_borders(edges: Edges, tooth: int, borders: Array, fineness: float) -> 
         long = min(long, _LONG * edges.cutter.serration.wavelength)
     pieces = [places[:1]]
     for i in range(places.size - 1):
+        share = (places[i + 1] - places[i]) / long
         # errors of a short one matter less
-        share = min(1.0, (places[i + 1] - places[i]) / long) ** 0.25
+        share = share**0.25 if share < 1.0 else share**0.75
         part = _graded(math.ceil(count * share), bool(marks[i]), bool(marks[i + 1]))
         pieces.append(places[i] + (places[i + 1] - places[i]) * part[1:])
     return np.concatenate(pieces)
@@ -264,7 +267,7 @@ def piece_borders(edges: Edges, tooth: int, borders: Array, fineness: float) -> 
 def _graded(count: int, low: bool, high: bool) -> Array:
     """Borders of pieces on [0, 1], close together at the ends that are changes."""
     if not (low or high):
-        count = max(1, count // _PIECES)
+        count = max(1, count // _SMOOTHER)
     part = np.linspace(0.0, 1.0, count + 1)
     if low and high:
         return part * part * (3.0 - 2.0 * part)

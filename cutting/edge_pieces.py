@@ -34,7 +34,6 @@ _PIECE_TURN = math.radians(1.2)
 _PIECE_TURN_OF_PASSES = math.radians(2.5)
 #: an edge trails, or a cone widens, by this much within a piece, rad
 _PIECE_LAG = 0.03
-_PIECES_A_WAVE = 8
 #: with a size effect a chain on a corner ends where its inclination has grown by this factor: at
 #: the tip the slope of the force law is infinite
 _CHAIN_GROWTH = 3.0
@@ -190,9 +189,7 @@ def _borders_of_straight(
     heights = crossing_heights(cutter, deepest)
     several = len(set(cutter.helix)) > 1
     slope = max(abs(math.tan(helix)) for helix in cutter.helix) / cutter.radius
-    if cutter.serration is not None:
-        heights += _even_heights(fineness * cutter.serration.wavelength / _PIECES_A_WAVE, deepest)
-    elif own_passes and several:
+    if own_passes and several and cutter.serration is None:
         heights += _even_heights(fineness * _PIECE_LAG / slope, deepest)
     if cutter.edge_angle < 0.5 * math.pi - 1e-9:
         # the radius, and with it the arc, changes along a cone
