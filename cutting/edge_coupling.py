@@ -124,15 +124,15 @@ def first_and_last_turn(pieces, piece, top, spindle):
 
 
 @register_jitable(**INLINED)
-def chip_at(pieces, piece, height, sine, sine_of_edge, cosine_of_edge):
+def chip_at(pieces, piece, place, height, sine, sine_of_edge, cosine_of_edge):
     """Chip of a rigid tool, m, below zero where the edge misses.
 
     Parameters
     ----------
     pieces : EdgePieces
     piece : int
-    height : float
-        Share of the height of the piece.
+    place, height : float
+        Share of the length and of the height of the piece.
     sine : float
         Of the immersion angle.
     sine_of_edge, cosine_of_edge : float
@@ -140,8 +140,15 @@ def chip_at(pieces, piece, height, sine, sine_of_edge, cosine_of_edge):
     """
     # flutes of different helix leave each other more or less of the feed from height to height
     first, last = pieces.delay[piece, 0], pieces.delay[piece, 1]
+    rise = pieces.feed * (first + height * (last - first))
+    vanishing = pieces.vanishing[piece]
+    if vanishing > 0:
+        # what bends along the piece is taken for straight, and the chip must end with the arc
+        arc = pieces.entry if vanishing == 1 else pieces.exit
+        border = arc[piece, 0] + place * (arc[piece, 1] - arc[piece, 0])
+        return sine_of_edge * rise * (sine - math.sin(border))
     low, high = pieces.inset[piece, 0], pieces.inset[piece, 1]
-    radial = pieces.feed * (first + height * (last - first)) * sine - (low + height * (high - low))
+    radial = rise * sine - (low + height * (high - low))
     return sine_of_edge * radial - cosine_of_edge * pieces.axial_inset[piece]
 
 
@@ -153,7 +160,7 @@ def chip_vanishes(pieces, piece, place, immersion):
     # at the very tip of a corner the chip is nothing at any angle
     sk = max(math.sin(kappa), 1e-9)
     height = share_of_height(pieces, piece, place)
-    chip = chip_at(pieces, piece, height, math.sin(immersion), sk, math.cos(kappa))
+    chip = chip_at(pieces, piece, place, height, math.sin(immersion), sk, math.cos(kappa))
     return chip < 1e-3 * sk * pieces.feed * pieces.delay[piece, 0]
 
 
@@ -189,7 +196,7 @@ def coupling_at(pieces, piece, place, spindle, weight, speed_factor, basis, stif
         sk, ck = math.sin(kappa + place * bend), math.cos(kappa + place * bend)
     size = weight
     if pieces.exponent != 0.0:
-        chip = chip_at(pieces, piece, height, s, sk, ck)
+        chip = chip_at(pieces, piece, place, height, s, sk, ck)
         chip = max(chip, 1e-9 * pieces.reference)
         size *= math.exp(pieces.exponent * math.log(chip / pieces.reference))
     kt, kr, ka = pieces.cutting[piece, 0], pieces.cutting[piece, 1], pieces.cutting[piece, 2]

@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from cutting.edge_passes import GAUSS, Edges, piece_borders
 from cutting.engagement import MillingMode, slice_engagement
 from cutting.force_law import ExponentialLaw, ForceLaw
 from cutting.ploughing import Ploughing
@@ -29,16 +30,15 @@ from cutting.tool import Cutter, corner_height
 _TURN = 2.0 * math.pi
 #: a corner turns by this much within a piece, and its arc changes by it, rad
 _PIECE_TURN = math.radians(1.2)
-#: an edge trails, or a cone widens, by this much within a piece, rad; less where runout makes the
-#: arcs change from piece to piece
+#: the same where the earlier passes are looked for: the arcs are taken at two places within
+_PIECE_TURN_OF_PASSES = math.radians(2.5)
+#: an edge trails, or a cone widens, by this much within a piece, rad
 _PIECE_LAG = 0.03
-_PIECE_LAG_OF_PASSES = 0.006
-_PIECES_A_WAVE = 24
 #: with a size effect a chain on a corner ends where its inclination has grown by this factor: at
 #: the tip the slope of the force law is infinite
 _CHAIN_GROWTH = 3.0
 #: shapes of the columns of a table of no pieces
-_NO_PIECES = (0, 0, 0, (0, 2), (0, 2), (0, 2), (0, 2), (0, 2), (0, 2), (0, 3), (0, 2), 0, 0)
+_NO_PIECES = (0, 0, 0, (0, 2), (0, 2), (0, 2), (0, 2), (0, 2), (0, 2), (0, 3), (0, 2), 0, 0, 0)
 #: arcs shorter than this are none, rad
 _SHORTEST_ARC = 1e-9
 
@@ -61,6 +61,7 @@ class EdgePieces(NamedTuple):
     cutting: NDArray[np.float64]  # slope at the reference chip: tangential .. axial, N/m^2 (P, 3)
     inset: NDArray[np.float64]  # by which the earlier edge reaches further out, m (P, 2)
     axial_inset: NDArray[np.float64]  # and further towards the work, m (P,)
+    vanishing: NDArray[np.int64]  # 1, 2: there is no chip at the entry, at the exit (P,)
     feed: float  # by which the work moves for an angle turned, m/rad
     exponent: float  # of the slope: slope = cutting (chip/reference)^exponent, 0 for a linear law
     reference: float  # m
@@ -130,14 +131,14 @@ def _line(
     mode: MillingMode,
     radial_depth: float,
     heights: list[float],
-    fineness: float,
+    turn: float,
 ) -> _Line:
     corner = cutter.corner_radius
     height, radius = [0.0], [cutter.radius - corner]
     immersion: list[tuple[float, float]] = []
     length: list[float] = []
     if corner > 0.0:
-        angles = _corner_angles(cutter, mode, radial_depth, fineness * _PIECE_TURN)
+        angles = _corner_angles(cutter, mode, radial_depth, turn)
         height = list(corner * (1.0 - np.cos(angles)))
         radius = list(cutter.radius - corner + corner * np.sin(angles))
         immersion = list(itertools.pairwise(angles))
@@ -182,69 +183,20 @@ def _borders_of_straight(
     mode: MillingMode,
     radial_depth: float,
     own_passes: bool,
+    turn: float,
     fineness: float,
 ) -> list[float]:
     heights = crossing_heights(cutter, deepest)
     several = len(set(cutter.helix)) > 1
     slope = max(abs(math.tan(helix)) for helix in cutter.helix) / cutter.radius
-    if cutter.serration is not None:
-        heights += _even_heights(fineness * cutter.serration.wavelength / _PIECES_A_WAVE, deepest)
-    elif own_passes and several:
+    if own_passes and several and cutter.serration is None:
         heights += _even_heights(fineness * _PIECE_LAG / slope, deepest)
     if cutter.edge_angle < 0.5 * math.pi - 1e-9:
         # the radius, and with it the arc, changes along a cone
         rate = 1.0 / math.tan(cutter.edge_angle) / cutter.radius
-        turn = _PIECE_LAG_OF_PASSES if own_passes else _PIECE_LAG
-        heights += _even_heights(fineness * turn / max(rate, slope), deepest)
-        heights += _cone_heights(cutter, mode, radial_depth, fineness * _PIECE_TURN)
+        heights += _even_heights(fineness * _PIECE_LAG / max(rate, slope), deepest)
+        heights += _cone_heights(cutter, mode, radial_depth, turn)
     return heights
-
-
-def _passes(
-    rise: NDArray[np.float64], inset: NDArray[np.float64], entry: float, leave: float
-) -> list[tuple[int, float, float]]:
-    """Arcs (pass, entry, exit) in which each earlier pass is the one that left the surface.
-
-    The chip against pass k is rise[k] sin(phi) - inset[k]; the thinnest counts, and below zero
-    there is none.
-    """
-    sines = [0.0, 1.0]
-    for k in range(rise.size):
-        if rise[k] > 0.0:
-            sines.append(inset[k] / rise[k])
-        for m in range(k):
-            if rise[k] != rise[m]:
-                sines.append((inset[k] - inset[m]) / (rise[k] - rise[m]))
-    turns = np.arcsin([s for s in sines if 0.0 <= s <= 1.0])
-    marks = np.concatenate([turns, math.pi - turns, [entry, leave]])
-    marks = np.unique(marks[(marks >= entry) & (marks <= leave)])
-    arcs: list[tuple[int, float, float]] = []
-    for low, high in itertools.pairwise(marks):
-        if high - low < _SHORTEST_ARC:
-            continue
-        chip = rise * math.sin(0.5 * (low + high)) - inset
-        k = int(np.argmin(chip))
-        if chip[k] <= 0.0:
-            continue
-        if arcs and arcs[-1][0] == k and low - arcs[-1][2] < _SHORTEST_ARC:
-            arcs[-1] = (k, arcs[-1][1], high)
-        else:
-            arcs.append((k, low, high))
-    return arcs
-
-
-def _arcs_of_passes(
-    rise: NDArray[np.float64], inset: NDArray[np.float64], arcs: NDArray[np.float64]
-) -> list[tuple[int, tuple[float, float], tuple[float, float]]]:
-    """Arcs (pass, entries, exits) at both ends of a piece from those at ends and middle.
-
-    Rows of `rise`, `inset` and `arcs` are the low end, the high end and the middle. Where the ends
-    do not see the same passes, the arcs are those of the middle all along.
-    """
-    low, high, middle = (_passes(rise[i], inset[i], *arcs[i]) for i in range(3))
-    if [k for k, _, _ in low] != [k for k, _, _ in high] or len(low) != len(middle):
-        return [(k, (first, first), (last, last)) for k, first, last in middle]
-    return [(a[0], (a[1], b[1]), (a[2], b[2])) for a, b in zip(low, high, strict=True)]
 
 
 def edge_pieces(
@@ -278,8 +230,31 @@ def edge_pieces(
     """
     wave = cutter.serration is not None
     own_passes = wave or np.ptp(cutter.radial_offsets) > 0.0 or np.ptp(cutter.axial_offsets) > 0.0
-    heights = _borders_of_straight(cutter, deepest, mode, radial_depth, own_passes, fineness)
-    line = _line(cutter, deepest, mode, radial_depth, heights, fineness)
+    turn = fineness * (_PIECE_TURN_OF_PASSES if own_passes else _PIECE_TURN)
+    heights = _borders_of_straight(cutter, deepest, mode, radial_depth, own_passes, turn, fineness)
+    line = _line(cutter, deepest, mode, radial_depth, heights, turn)
+    slopes = [_reference_slope(law) for law in laws]
+    if own_passes:
+        edges = Edges(cutter, mode, radial_depth, feed_per_turn)
+        rows, owners = _rows_of_passes(edges, line, deepest, slopes, fineness)
+    else:
+        rows, owners = _rows_of_one_pass(cutter, line, mode, radial_depth, slopes)
+    turning = _turning(rows, owners, wave)
+    sized = isinstance(laws[0], ExponentialLaw) and laws[0].exponent < 1.0
+    order, chain = _chains(rows, owners, sized=sized, apart=wave and sized)
+    rows = [rows[i] for i in order]
+    feed = feed_per_turn / _TURN
+    return _as_arrays(rows, turning[order], chain, cutter, laws[0], flank, feed)
+
+
+def _rows_of_one_pass(
+    cutter: Cutter,
+    line: _Line,
+    mode: MillingMode,
+    radial_depth: float,
+    slopes: list[NDArray[np.float64]],
+) -> tuple[list[tuple], list[tuple[int, int, int]]]:
+    """Pieces of teeth that each cut what the one before them has left."""
     lag = np.tan(np.asarray(cutter.helix)) / cutter.radius
     rows: list[tuple] = []
     owners: list[tuple[int, int, int]] = []
@@ -294,56 +269,116 @@ def edge_pieces(
         arc = _arc_of_piece(entry[ends], leave[ends])
         if arc is None:
             continue
-        waves = np.zeros((cutter.teeth, 3))
-        if wave:
-            heights_of = np.array([*line.height[ends], middle])
-            waves = np.array(
-                [
-                    cutter.serration.radius_change(heights_of, tooth, cutter.teeth)
-                    for tooth in range(cutter.teeth)
-                ]
-            )
-        turned = np.array([*kappa, 0.5 * (kappa[0] + kappa[1])])
-        radial, axial = cutter.radial_offsets[:, None] + waves, cutter.axial_offsets[:, None]
-        offset = radial * np.sin(turned) + axial * np.cos(turned)
         earlier, ahead = earlier_passes(angle[:, 2:])
-        arcs = np.stack([*arc.T, arc.mean(axis=1)])
         for tooth in range(cutter.teeth):
-            order, alpha = earlier[tooth, 0], ahead[tooth, 0]
+            other = int(earlier[tooth, 0, 0])
             # flutes of different helix are not as far ahead at the ends as in the middle
-            apart = angle[order] - angle[tooth]
-            gaps = alpha + (apart - apart[:, 2:]).T
-            rise = np.sin(turned)[:, None] * feed_per_turn * gaps / _TURN
-            inset = (offset[order] - offset[tooth]).T
-            found = [(0, arc[0], arc[1])]
-            if own_passes:
-                found = _arcs_of_passes(rise, inset, arcs)
-            for k, first, last in found:
-                other = order[k]
-                owners.append((piece, tooth, int(other)))
-                rows.append(
-                    (
-                        line.height[piece], line.height[piece + 1] - line.height[piece],
-                        line.length[piece], angle[tooth, :2], first, last,
-                        gaps[:2, k], kappa, line.radius[ends], _reference_slope(laws[tooth]),
-                        radial[other, :2] - radial[tooth, :2],
-                        cutter.axial_offsets[other] - cutter.axial_offsets[tooth],
-                        cutter.corner_radius if kappa[0] < kappa[1] else 0.0,
-                    )
-                )  # fmt: skip
-    turning = _turning(rows, owners, wave)
-    order, chain = _chains(rows, owners, laws[0], apart=wave)
-    rows = [rows[i] for i in order]
-    feed = feed_per_turn / _TURN
-    return _as_arrays(rows, turning[order], chain, cutter, laws[0], flank, feed)
+            apart = angle[other] - angle[tooth]
+            gaps = ahead[tooth, 0, 0] + apart - apart[2]
+            owners.append((piece, tooth, other))
+            rows.append(
+                (
+                    line.height[piece], line.height[piece + 1] - line.height[piece],
+                    line.length[piece], angle[tooth, :2], arc[0], arc[1], gaps[:2], kappa,
+                    line.radius[ends], slopes[tooth], (0.0, 0.0), 0.0,
+                    cutter.corner_radius if kappa[0] < kappa[1] else 0.0, 0,
+                )
+            )  # fmt: skip
+    return rows, owners
+
+
+def _rows_of_passes(
+    edges: Edges,
+    line: _Line,
+    deepest: float,
+    slopes: list[NDArray[np.float64]],
+    fineness: float,
+) -> tuple[list[tuple], list[tuple[int, int, int]]]:
+    """Pieces of teeth for each of which the earlier pass is found that left the surface."""
+    borders = np.concatenate([[0.0], np.cumsum(line.length)])
+    # the line runs on to the end of the corner
+    borders = np.minimum(borders, edges.place(deepest))
+    borders = np.append(borders[borders < borders[-1]], borders[-1])
+    rows: list[tuple] = []
+    owners: list[tuple[int, int, int]] = []
+    for tooth in range(edges.cutter.teeth):
+        found, of_tooth = _rows_of_tooth(edges, tooth, slopes[tooth], borders, fineness)
+        rows += found
+        owners += of_tooth
+    return rows, owners
+
+
+def _rows_of_tooth(
+    edges: Edges, tooth: int, slope: NDArray[np.float64], borders: NDArray[np.float64],
+    fineness: float,
+) -> tuple[list[tuple], list[tuple[int, int, int]]]:  # fmt: skip
+    """The same of one tooth.
+
+    What bends along a piece is the line through its values at two Gauss points: so the area in
+    the cut, and all that is linear along it, is right to the fourth order.
+    """
+    places = piece_borders(edges, tooth, borders, fineness)
+    low, high = places[:-1], places[1:]
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    own = np.full(middle.size, tooth)
+    inner = (middle - GAUSS * half, middle + GAUSS * half)
+    at_ends, at_middle = edges.profile(places), edges.profile(middle)
+    radial = _through(*(edges.radial(edges.profile(place).height) for place in inner))
+    angle, between = edges.angle(at_ends.height), edges.angle(at_middle.height)
+    ahead = edges.ahead(own, at_middle.height)
+    one, other, central = (edges.arcs(own, place) for place in (*inner, middle))
+    alike = np.all(one.kind == other.kind, axis=1)
+    ends = np.where(
+        alike[:, None, None], _through(one.angle, other.angle), central.angle[..., None]
+    )
+    met = np.where(alike[:, None], one.tooth, central.tooth)
+    vanishing = _where_chip_vanishes(np.where(alike[:, None], one.kind, central.kind))
+    axial, corner = edges.cutter.axial_offsets, edges.cutter.corner_radius
+    rows: list[tuple] = []
+    owners: list[tuple[int, int, int]] = []
+    for piece, arc in zip(*np.nonzero(met >= 0), strict=True):
+        k, pair = int(met[piece, arc]), slice(piece, piece + 2)
+        apart = angle[pair, k] - angle[pair, tooth]
+        gaps = ahead[piece, k] + apart - (between[piece, k] - between[piece, tooth])
+        owners.append((int(piece), tooth, k))
+        rows.append(
+            (
+                at_ends.height[piece], at_ends.height[piece + 1] - at_ends.height[piece],
+                high[piece] - low[piece], angle[pair, tooth],
+                ends[piece, arc], ends[piece, arc + 1], gaps, at_ends.immersion[pair],
+                at_ends.radius[pair], slope, radial[piece, k] - radial[piece, tooth],
+                axial[k] - axial[tooth], corner if middle[piece] < edges.on_corner else 0.0,
+                vanishing[piece, arc],
+            )
+        )  # fmt: skip
+    return rows, owners
+
+
+def _where_chip_vanishes(kind: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Tell for each arc (P, W) whether its chip is none at its entry (1), at its exit (2), or not.
+
+    For a chip against the surface of one pass it is so where the arc borders on air.
+    """
+    air = np.pad(kind, ((0, 0), (1, 1)), constant_values=-1) // 4 == 0
+    inner = np.pad(kind, ((0, 0), (1, 1)), constant_values=-1) % 4 >= 2
+    begins = inner[:, 1:-1] & (air[:, :-2] | (np.arange(kind.shape[1]) == 0))
+    ends = air[:, 2:] & inner[:, 2:]
+    return np.where(begins, 1, np.where(ends, 2, 0))
+
+
+def _through(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values (..., 2) at the ends of lines through those at two Gauss points."""
+    middle, rise = 0.5 * (one + other), 0.5 / GAUSS * (other - one)
+    return np.stack([middle - rise, middle + rise], axis=-1)
 
 
 def _chains(
-    rows: list[tuple], owners: list[tuple[int, int, int]], law: ForceLaw, apart: bool
+    rows: list[tuple], owners: list[tuple[int, int, int]], sized: bool, apart: bool
 ) -> tuple[list[int], NDArray[np.int64]]:
     """Order of the pieces along chains, and the first place of each chain and the end (C + 1,).
 
-    A serrated edge is not smooth from piece to piece: every piece is a chain apart.
+    The chip on a serrated edge is not smooth from piece to piece: with a size effect every piece is
+    a chain apart.
     """
     met: dict[tuple[int, int, int], int] = {}
     keys = []
@@ -352,7 +387,6 @@ def _chains(
         met[owner] = met.get(owner, -1) + 1
         keys.append((tooth, other, met[owner], piece))
     order = sorted(range(len(rows)), key=lambda i: keys[i])
-    sized = isinstance(law, ExponentialLaw) and law.exponent < 1.0
     starts: list[int] = []
     lowest = 0.0  # inclination at the start of the chain
     for place, i in enumerate(order):
@@ -387,10 +421,14 @@ def _turning(
         if following is None:
             continue
         for arc, end in ((4, 0.0), (5, math.pi)):
-            whole = [bool(np.all(np.asarray(rows[k][arc]) == end)) for k in (i, following)]
-            marks[i, 1] |= whole[0] and not whole[1]
-            rises = [np.diff(np.asarray(rows[k][arc]) - rows[k][3])[0] for k in (i, following)]
-            marks[i, 1] |= rises[0] * rises[1] < 0.0
+            one, next_one = rows[i][arc], rows[following][arc]
+            whole = one[0] == one[1] == end
+            marks[i, 1] |= whole and not next_one[0] == next_one[1] == end
+            angle, next_angle = rows[i][3], rows[following][3]
+            rise = (one[1] - one[0]) - (angle[1] - angle[0])
+            marks[i, 1] |= (
+                rise * ((next_one[1] - next_one[0]) - (next_angle[1] - next_angle[0])) < 0.0
+            )
     return marks
 
 
@@ -451,7 +489,8 @@ def _as_arrays(
         bottom=columns[0], thickness=columns[1], length=columns[2], angle=columns[3],
         entry=columns[4], exit=columns[5], delay=delay, immersion=columns[7], radius=columns[8],
         group=group, group_delay=np.array(groups), cutting=columns[9], feed=feed,
-        inset=columns[10], axial_inset=columns[11], corner=columns[12], exponent=exponent,
+        inset=columns[10], axial_inset=columns[11], corner=columns[12],
+        vanishing=columns[13].astype(np.int64), exponent=exponent,
         reference=reference, damping=damping, turning=turning, chain=chain,
         outline=np.array([cutter.radius, cutter.corner_radius, cutter.edge_angle]),
     )  # fmt: skip

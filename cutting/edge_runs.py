@@ -129,7 +129,7 @@ def _chip_at_place(pieces, piece, place, spindle):
     sine = math.sin(spindle + pieces.angle[piece, 0] + height * turned)
     low, high = pieces.immersion[piece, 0], pieces.immersion[piece, 1]
     kappa = low + place * (high - low)
-    return chip_at(pieces, piece, height, sine, math.sin(kappa), math.cos(kappa))
+    return chip_at(pieces, piece, place, height, sine, math.sin(kappa), math.cos(kappa))
 
 
 @register_jitable(**INLINED)

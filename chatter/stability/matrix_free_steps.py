@@ -71,7 +71,7 @@ def _is_thin(pieces, piece, place, immersion):
     # at the very tip of a corner the chip is nothing at any angle
     sk = max(math.sin(kappa), 1e-9)
     height = share_of_height(pieces, piece, place)
-    chip = chip_at(pieces, piece, height, math.sin(immersion), sk, math.cos(kappa))
+    chip = chip_at(pieces, piece, place, height, math.sin(immersion), sk, math.cos(kappa))
     thin = chip < _THIN * sk * pieces.feed * pieces.delay[piece, 0]
     return thin and pieces.exponent != 0.0
 

@@ -1,13 +1,14 @@
 """Collocation against random cases of any tool, solved by the independent reference."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from reference import dense_cases
-from reference.dense_cases import case_dict
+from reference import dense_cases, setting_cases
 from reference.general_cases import STORE, load
 from reference.general_cut import GeneralCut, spectral_radius
+from reference.setting_cases import case_dict
 
 from chatter.case import Case
 from chatter.model import milling_model
@@ -21,6 +22,8 @@ CASES = load()
 UNSEEN = load(STORE.with_name("general_cases_unseen.json"))
 #: three to seven features at once in each
 DENSE = load(dense_cases.STORE)
+#: axial errors of teeth on corners and cones; serrated edges
+SETTINGS = load(setting_cases.STORE)
 RPM = math.pi / 30.0
 X = ((922.0, 0.011, 0.03993, (1.0, 0.0, 0.0)),)
 
@@ -95,7 +98,72 @@ def test_many_features_act_at_once_in_the_dense_cases():
     assert sum({"corner", "cone"} <= there for there in present) >= 3
 
 
-@pytest.mark.parametrize("cases", [CASES, UNSEEN, DENSE], ids=["seen", "unseen", "dense"])
+def test_the_settings_are_varied():
+    cuts = [cut for cut, _ in SETTINGS]
+    axial = [cut for cut in cuts if cut.axial]
+    assert len(axial) >= 12
+    assert sum(bool(cut.offsets) for cut in axial) > 4
+    assert sum(cut.corner_radius > 0.0 for cut in axial) > 4
+    assert sum(max(cut.axial) - min(cut.axial) > cut.feed for cut in axial) > 3
+    waved = [cut for cut in cuts if cut.serration]
+    assert len(waved) >= 20
+    # from waves that every tooth cuts to those of which a tooth takes only the crest
+    heights = [cut.serration[0] / cut.feed / cut.teeth for cut in waved]
+    assert min(heights) < 0.15
+    assert sum(height > 1.5 for height in heights) > 5
+    assert sum(cut.exponent < 1.0 for cut in waved) >= 1
+
+
+def shallow(**changes):
+    """A cut of three teeth near its limit."""
+    cut = GeneralCut(
+        12e-3, (2.0 * math.pi / 3.0,) * 3, (0.5,) * 3, "down", 4e-3, (8e8, 3e8, 1e8), X,
+        7000 * RPM, 2e-3,
+    )  # fmt: skip
+    return replace(cut, **changes)
+
+
+def product_radius(cut):
+    """Spectral radius over a turn by the product."""
+    model = milling_model(Case.from_dict(case_dict(cut)))
+    radius = abs(multipliers(model.cut(cut.depth, 12, 0.3), *np.array([[cut.speed], [cut.depth]])))
+    return over_the_period_of_the_reference(model, cut, radius[0])
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        # along the normal of a cone, 60 degrees, an axial error counts cos 60, a radial one sin 60
+        (
+            shallow(edge_angle=math.pi / 3.0, axial=(6e-5, -3e-5, 0.0)),
+            shallow(
+                edge_angle=math.pi / 3.0,
+                offsets=(6e-5 / math.sqrt(3.0), -3e-5 / math.sqrt(3.0), 0.0),
+            ),
+        ),
+        # a tool that is moved as a whole is the same tool
+        (shallow(corner_radius=3e-3, axial=(5e-5,) * 3), shallow(corner_radius=3e-3)),
+    ],
+    ids=["cone", "moved"],
+)  # fmt: skip
+def test_setting_errors_that_are_the_same(one, other):
+    expected = spectral_radius(other)
+    assert spectral_radius(one) == pytest.approx(expected, rel=2e-6)
+    assert product_radius(one) == pytest.approx(expected, rel=2e-5)
+
+
+def test_teeth_on_waves_far_longer_than_the_edge_have_each_its_own_radius():
+    heights = tuple(-5e-5 * (1.0 - math.cos(math.tau * tooth / 3.0)) for tooth in range(3))
+    own = spectral_radius(shallow(offsets=heights))
+    assert own != pytest.approx(spectral_radius(shallow()), rel=0.05)
+    assert spectral_radius(shallow(serration=(1e-4, 1e3))) == pytest.approx(own, rel=1e-5)
+    # the longest wave that a case may have still rises along the edge
+    assert product_radius(shallow(serration=(1e-4, 2.0))) == pytest.approx(own, rel=3e-3)
+
+
+@pytest.mark.parametrize(
+    "cases", [CASES, UNSEEN, DENSE, SETTINGS], ids=["seen", "unseen", "dense", "settings"]
+)
 def test_spectral_radius_of_random_cases_of_any_tool(cases):
     errors = []
     for cut, expected in cases:

@@ -12,6 +12,13 @@ an upright edge) and n = (sin k sin phi, sin k cos phi, -cos k) the normal of th
 
 per length of edge, h the least over all earlier passes within a turn, inset what the earlier edge
 stands further out than this one along the normal. A point at height z trails by z tan(helix)/R.
+
+Runout, setting errors and serrations move an edge bodily from its nominal line, and the chip is to
+the first order in them, as it is in feed and vibration: a tooth that is moved by d stands n . d
+further out. One set further down along the axis (axial error a, d = (0, 0, -a)) thus by a cos k,
+and nothing on an upright edge; one further out by r sin k. A serrated edge lies deeper by
+(depth/2)(1 - cos(2 pi (z/wavelength + tooth/teeth))) at the height z; its length, its inclination
+and the directions of its forces are taken to be those of the nominal edge.
 """
 
 from __future__ import annotations
@@ -23,11 +30,14 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigvals
 from scipy.optimize import brentq
+from scipy.sparse.linalg import eigs
 
 from .collocation import SAME, GaussPolynomial
 from .milling import Mode
 
 _TURN = 2.0 * math.pi
+#: of larger matrices only the largest eigenvalues are looked for
+_DENSE = 900
 
 
 @dataclass(frozen=True)
@@ -36,7 +46,9 @@ class GeneralCut:
 
     `profile` gives (height, radius, immersion angle, arc length rate) along the edge through
     `corner_radius` and `edge_angle`; `offsets` are the radial deviations of the teeth, runout
-    included; `variation` is (amplitude, cycles a period, turns a period, triangle).
+    included, `axial` those along the axis, positive further down; `serration` is (depth from
+    crest to valley, wavelength); `variation` is (amplitude, cycles a period, turns a period,
+    triangle).
     """
 
     diameter: float
@@ -57,6 +69,8 @@ class GeneralCut:
     process_damping: float = 0.0
     friction: float = 0.0
     variation: tuple[float, int, int, bool] | None = None
+    axial: tuple[float, ...] = ()
+    serration: tuple[float, float] | None = None
 
     @property
     def teeth(self):
@@ -122,14 +136,25 @@ class _Cut:
         self.cut, self.edge = cut, _Edge(cut)
         self.start = np.concatenate([[0.0], np.cumsum(cut.pitch)[:-1]])
         self.offsets = np.array(cut.offsets if cut.offsets else (0.0,) * cut.teeth)
+        self.axial = np.array(cut.axial if cut.axial else (0.0,) * cut.teeth)
         self.slope = np.tan(np.array(cut.helix)) / (0.5 * cut.diameter)
         self.grid = np.linspace(0.0, self.edge.length, samples + 1)
         if cut.corner_radius:
             self.grid = self.edge.length * np.linspace(0.0, 1.0, samples + 1)
-        if not any(cut.helix) and not cut.corner_radius and cut.edge_angle == 0.5 * math.pi:
+        upright = not any(cut.helix) and not cut.corner_radius
+        if upright and cut.edge_angle == 0.5 * math.pi and not cut.serration:
             self.grid = np.array([0.0, self.edge.length])
         count = 24 if cut.exponent < 1.0 else 12
         self.nodes, self.weights = np.polynomial.legendre.leggauss(count)
+
+    def outwards(self, height, kappa):
+        """How far every edge stands out from the nominal one along the normal (N, k), m."""
+        radial = np.repeat(self.offsets[:, None], np.size(height), axis=1)
+        if self.cut.serration:
+            depth, wavelength = self.cut.serration
+            share = np.arange(self.cut.teeth)[:, None] / self.cut.teeth
+            radial -= 0.5 * depth * (1.0 - np.cos(_TURN * (height / wavelength + share)))
+        return radial * np.sin(kappa) + self.axial[:, None] * np.cos(kappa)
 
     def chips(self, tooth, s, spindle):
         """Static chips against every pass (N, k), angles to them (N, k), rotation angle, kappa."""
@@ -141,16 +166,18 @@ class _Cut:
         feed_a_turn = self.cut.feed * self.cut.teeth
         sine = np.sin(kappa)
         chip = sine * feed_a_turn * ahead / _TURN * np.sin(phi)
-        chip = chip - sine * (self.offsets[:, None] - self.offsets[tooth])
+        out = self.outwards(height, kappa)
+        chip = chip - (out - out[tooth])
         entry, leave = self.edge.arc(radius)
         inside = (entry < phi) & (phi < leave)
-        return np.where(inside, chip, -1.0), ahead, phi, kappa
+        return np.where(inside, chip, -np.inf), ahead, phi, kappa
 
     def active(self, tooth, s, spindle):
-        """Pass that left the surface, -1 where there is no cut, at many places or angles."""
+        """Pass that left the surface at many places or angles; -1 in the air, -2 off the stock."""
         chip = self.chips(tooth, np.atleast_1d(s), spindle)[0]
         least = np.argmin(chip, axis=0)
-        return np.where(chip[least, np.arange(chip.shape[1])] > 0.0, least, -1)
+        thinnest = chip[least, np.arange(chip.shape[1])]
+        return np.where(thinnest > 0.0, least, np.where(np.isneginf(thinnest), -2, -1))
 
     def stretches(self, tooth, spindle):
         """(pass, from, to) of the stretches in the cut along an edge."""
@@ -170,32 +197,34 @@ class _Cut:
                 if which >= 0:
                     yield which, low, high
 
+    def _along(self, low, high):
+        """Places and weights of the quadrature over a stretch."""
+        # even in s where all is even in s, and dense at the ends with a size effect
+        x, weight = 0.5 * (self.nodes + 1.0), 0.5 * self.weights
+        if self.grid.size == 2:
+            x, weight = np.array([0.5]), np.array([1.0])
+        elif self.cut.exponent < 1.0:
+            weight = weight * 30.0 * (x * (1.0 - x)) ** 2
+            x = x**3 * (10.0 - 15.0 * x + 6.0 * x * x)
+        return low + (high - low) * x, (high - low) * weight
+
     def couplings(self, spindle):
-        """[(angle since the pass, matrix (3, 3))] and dashpot (3, 3) times the cutting speed."""
-        cut, terms, dashpot = self.cut, [], np.zeros((3, 3))
+        """Angles since the passes (k,), matrices (k, 3, 3), and dashpot (3, 3) times the speed."""
+        cut, delays, matrices = self.cut, [np.empty(0)], [np.empty((0, 3, 3))]
+        dashpot = np.zeros((3, 3))
         for tooth in range(cut.teeth):
             for which, low, high in self.stretches(tooth, spindle):
-                # even in s where all is even in s, and dense at the ends with a size effect
-                x, weight = 0.5 * (self.nodes + 1.0), 0.5 * self.weights
-                if self.grid.size == 2:
-                    x, weight = np.array([0.5]), np.array([1.0])
-                elif cut.exponent < 1.0:
-                    weight = weight * 30.0 * (x * (1.0 - x)) ** 2
-                    x = x**3 * (10.0 - 15.0 * x + 6.0 * x * x)
-                s = low + (high - low) * x
+                s, size = self._along(low, high)
                 chip, ahead, phi, kappa = self.chips(tooth, s, spindle)
-                size = (high - low) * weight
                 ratio = np.maximum(chip[which], 1e-14) / cut.reference_chip
                 slope = cut.exponent * ratio ** (cut.exponent - 1.0)
-                for i in range(s.size):
-                    normal, push = _directions(phi[i], kappa[i], cut.coefficients)
-                    matrix = size[i] * slope[i] * np.outer(push, normal)
-                    terms.append((float(ahead[which, i]), matrix))
-                    if cut.process_damping:
-                        c = cut.process_damping
-                        _, push = _directions(phi[i], kappa[i], (cut.friction * c, c, 0.0))
-                        dashpot += size[i] * np.outer(push, normal)
-        return terms, dashpot
+                normal, push = _directions(phi, kappa, cut.coefficients)
+                delays.append(np.broadcast_to(ahead[which], s.shape))
+                matrices.append(np.einsum("k,ik,jk->kij", size * slope, push, normal))
+                c = cut.process_damping
+                _, push = _directions(phi, kappa, (cut.friction * c, c, 0.0))
+                dashpot += np.einsum("k,ik,jk->ij", size, push, normal)
+        return np.concatenate(delays), np.concatenate(matrices), dashpot
 
     def _ends(self):
         """Arc lengths of tip, top, and where the edge meets the stock or leaves a full slot."""
@@ -242,20 +271,26 @@ class _Cut:
         for tooth in range(self.cut.teeth):
             found = [self._pattern(tooth, angle) for angle in grid]
             for i in range(samples):
-                low, high = grid[i], grid[i + 1]
-                if found[i] == found[i + 1]:
-                    continue
-                for _ in range(36):
-                    middle = 0.5 * (low + high)
-                    if self._pattern(tooth, middle) == found[i]:
-                        low = middle
-                    else:
-                        high = middle
-                yield 0.5 * (low + high) % _TURN
+                low, before = grid[i], found[i]
+                while before != found[i + 1]:
+                    low, high = self._first_change(tooth, low, grid[i + 1], before)
+                    yield 0.5 * (low + high) % _TURN
+                    low, before = high, self._pattern(tooth, high)
+
+    def _first_change(self, tooth, low, high, before):
+        """Angles close to each other between which the pattern of an edge changes first."""
+        for _ in range(36):
+            middle = 0.5 * (low + high)
+            if self._pattern(tooth, middle) == before:
+                low = middle
+            else:
+                high = middle
+        return low, high
 
 
 def _directions(phi, kappa, coefficients):
-    s, c, sk, ck = math.sin(phi), math.cos(phi), math.sin(kappa), math.cos(kappa)
+    """Normal of the edge and force on the tool per chip and length, (3, k) each."""
+    s, c, sk, ck = np.sin(phi), np.cos(phi), np.sin(kappa), np.cos(kappa)
     kt, kr, ka = coefficients
     plane = ka * ck - kr * sk
     return (
@@ -333,10 +368,10 @@ def multipliers(cut, nodes=10, waves=0.5, longest_angle=0.6, samples=160):
     if cut.variation and cut.variation[3]:
         marks += [(0.25 + 0.5 * k) / spindle.rate for k in range(2 * cut.variation[1])]
     highest = max(mode[0] for mode in cut.modes)
-    delays = [a for angle in np.linspace(0, _TURN, 200) for a, _ in inside.couplings(angle)[0]]
+    delays = np.concatenate([inside.couplings(angle)[0] for angle in np.linspace(0, _TURN, 200)])
     slowest = 1.0 + (cut.variation[0] if cut.variation else 0.0)
     longest = min(
-        waves / highest, longest_angle / cut.speed, 0.95 * min(delays) / (cut.speed * slowest)
+        waves / highest, longest_angle / cut.speed, 0.95 * np.min(delays) / (cut.speed * slowest)
     )
     edges = [0.0]
     for left, right in itertools.pairwise(_merged(marks, spindle.period)):
@@ -350,12 +385,23 @@ def multipliers(cut, nodes=10, waves=0.5, longest_angle=0.6, samples=160):
             inner = np.sort(np.concatenate([inner, left + share, right - share]))
         edges += list(inner[1:])
     operator = _monodromy(state, inside, spindle, np.array(edges), GaussPolynomial(nodes))
-    values = eigvals(operator)
+    values = _largest_eigenvalues(operator)
     return values[np.argsort(-np.abs(values), kind="stable")]
 
 
+def _largest_eigenvalues(operator):
+    """All eigenvalues of a small matrix, six of the largest of a large one."""
+    if len(operator) <= _DENSE:
+        return eigvals(operator)
+    start = np.cos(np.arange(len(operator)))
+    return eigs(operator, k=6, v0=start, tol=1e-12, return_eigenvectors=False)
+
+
 class _StateSpace:
-    """x' = (free + force (K observed + D rate)) x - force K_d observed x(t - delay)."""
+    """x' = (free + force (K observed + D rate)) x - force K_d observed x(t - delay).
+
+    What is observed is the motion in the r directions `basis` (3, r) that the modes span.
+    """
 
     def __init__(self, cut):
         modes = [Mode(*mode) for mode in cut.modes]
@@ -366,10 +412,17 @@ class _StateSpace:
         self.free = np.block(
             [[zero, np.diag(omega)], [-np.diag(omega), -2.0 * np.diag(damping * omega)]]
         )
-        none = np.zeros((3, len(modes)))
-        self.observed = np.hstack([shapes.T / omega, none])
-        self.rate = np.hstack([none, shapes.T])
-        self.force = np.vstack([none.T, shapes])
+        directions, size, _ = np.linalg.svd(shapes.T)
+        self.basis = directions[:, : np.sum(size > 1e-12 * size[0])]
+        seen = self.basis.T @ shapes.T
+        none = np.zeros_like(seen)
+        self.observed = np.hstack([seen / omega, none])
+        self.rate = np.hstack([none, seen])
+        self.force = np.vstack([none.T, seen.T])
+
+    def seen(self, matrix):
+        """Matrices (..., 3, 3) between force and motion as (..., r, r)."""
+        return self.basis.T @ matrix @ self.basis
 
 
 def _monodromy(state, inside, spindle, edges, polynomial):
@@ -379,7 +432,8 @@ def _monodromy(state, inside, spindle, edges, polynomial):
     # no delay is longer than a turn at the lowest speed
     slowest = inside.cut.speed * (1.0 - (inside.cut.variation[0] if inside.cut.variation else 0.0))
     periods = math.ceil(_TURN / slowest / period - 1e-9)
-    block = (count + 1) * 3
+    rank = state.basis.shape[1]
+    block = (count + 1) * rank
     width = size + periods * intervals * block
     current, rows_of_state = [], np.eye(size, width)
 
@@ -392,11 +446,10 @@ def _monodromy(state, inside, spindle, edges, polynomial):
         left, right = edges[interval], edges[interval + 1]
         weights = polynomial.values_at(min(max((local - left) / (right - left), 0.0), 1.0))
         if turn == 0:
-            return np.tensordot(weights, current[interval].reshape(count + 1, 3, width), axes=1)
+            return np.tensordot(weights, current[interval].reshape(count + 1, rank, width), axes=1)
         first = size + ((-turn - 1) * intervals + interval) * block
-        rows = np.zeros((3, width))
-        for q, weight in enumerate(weights):
-            rows[:, first + 3 * q : first + 3 * q + 3] = weight * np.eye(3)
+        rows = np.zeros((rank, width))
+        rows[:, first : first + block] = np.kron(weights, np.eye(rank))
         return rows
 
     for left, right in itertools.pairwise(edges):
@@ -406,20 +459,17 @@ def _monodromy(state, inside, spindle, edges, polynomial):
         for node in range(count):
             time = left + length * polynomial.points[node + 1]
             angle = spindle.angle(time)
-            terms, dashpot = inside.couplings(angle)
-            present = state.free + state.force @ (
-                sum((m for _, m in terms), np.zeros((3, 3))) @ state.observed
-            )
+            delays, matrices, dashpot = inside.couplings(angle)
+            delays, alike = np.unique(np.round(delays, 13), return_inverse=True)
+            couplings = np.zeros((len(delays), rank, rank))
+            np.add.at(couplings, alike, state.seen(matrices))
+            present = state.free + state.force @ couplings.sum(axis=0) @ state.observed
             speed = spindle.speed_at(time) * inside.edge.top_radius
-            present = present + state.force @ (dashpot / speed) @ state.rate
+            present = present + state.force @ (state.seen(dashpot) / speed) @ state.rate
             rows = slice(node * size, (node + 1) * size)
             matrix[rows, rows] -= present
-            alike = {}
-            for delay, m in terms:
-                key = round(delay, 13)
-                alike[key] = alike.get(key, 0.0) + m
-            for delay, m in alike.items():
-                right_side[rows] -= state.force @ m @ earlier(spindle.time(angle - delay))
+            for delay, coupling in zip(delays, couplings, strict=True):
+                right_side[rows] -= state.force @ coupling @ earlier(spindle.time(angle - delay))
         nodes = np.linalg.solve(matrix, right_side)
         solution = np.concatenate([rows_of_state[None], nodes.reshape(count, size, width)])
         current.append(np.einsum("qd,pdw->pqw", state.observed, solution).reshape(block, width))
