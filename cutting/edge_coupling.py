@@ -14,8 +14,8 @@ _TURN = 2.0 * math.pi
 INLINED = {"error_model": "numpy", "forceinline": True, "_nrt": False}
 #: Newton steps to the place at which an edge on a corner crosses the border of its arc
 _PLACE_STEPS = 6
-#: of the reference chip: as far as rounding lets a chip vanish. The slope of a size effect is infinite
-#: there, its integral is not: what lies below the least chip is lost to the power of the exponent
+#: of the reference chip: as far as rounding lets a chip vanish. The slope of a size effect is
+#: infinite there, its integral is not: what lies below is lost to the power of the exponent
 _LEAST_CHIP = 1e-16
 
 
