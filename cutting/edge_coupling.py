@@ -14,6 +14,9 @@ _TURN = 2.0 * math.pi
 INLINED = {"error_model": "numpy", "forceinline": True, "_nrt": False}
 #: Newton steps to the place at which an edge on a corner crosses the border of its arc
 _PLACE_STEPS = 6
+#: of the reference chip: as far as rounding lets a chip vanish. The slope of a size effect is
+#: infinite there, its integral is not: what lies below is lost to the power of the exponent
+_LEAST_CHIP = 1e-16
 
 
 @register_jitable(**INLINED)
@@ -197,7 +200,7 @@ def coupling_at(pieces, piece, place, spindle, weight, speed_factor, basis, stif
     size = weight
     if pieces.exponent != 0.0:
         chip = chip_at(pieces, piece, place, height, s, sk, ck)
-        chip = max(chip, 1e-9 * pieces.reference)
+        chip = max(chip, _LEAST_CHIP * pieces.reference)
         size *= math.exp(pieces.exponent * math.log(chip / pieces.reference))
     kt, kr, ka = pieces.cutting[piece, 0], pieces.cutting[piece, 1], pieces.cutting[piece, 2]
     for coupling in range(2):

@@ -258,9 +258,7 @@ def _rows_of_one_pass(
     lag = np.tan(np.asarray(cutter.helix)) / cutter.radius
     rows: list[tuple] = []
     owners: list[tuple[int, int, int]] = []
-    entry, leave = slice_engagement(
-        mode, radial_depth, cutter.radius, np.maximum(line.radius, 1e-12)
-    )
+    entry, leave = _arcs_at_borders(cutter, line, mode, radial_depth)
     for piece in range(line.length.size):
         ends = slice(piece, piece + 2)
         middle = 0.5 * (line.height[piece] + line.height[piece + 1])
@@ -430,6 +428,36 @@ def _turning(
                 rise * ((next_one[1] - next_one[0]) - (next_angle[1] - next_angle[0])) < 0.0
             )
     return marks
+
+
+def _arcs_at_borders(
+    cutter: Cutter, line: _Line, mode: MillingMode, radial_depth: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Entry and exit (L + 1,) at the borders of the pieces, rad, of which each piece has the mean.
+
+    Within a piece the arc follows a chord, which all along lies on one side of it. At a border the
+    arc is taken off by the mean distance (Simpson) on both sides of it: what a force is short of
+    falls with the fourth power of the length of the pieces, not the second.
+    """
+
+    def arcs(radius: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        return slice_engagement(mode, radial_depth, cutter.radius, np.maximum(radius, 1e-12))
+
+    bent = line.immersion[:, 0] < line.immersion[:, 1]
+    on_corner = cutter.corner_radius * (1.0 - np.sin(line.immersion.mean(axis=1)))
+    straight = 0.5 * (line.radius[:-1] + line.radius[1:])
+    middle = arcs(np.where(bent, cutter.radius - on_corner, straight))
+    ends = arcs(line.radius)
+    inside = (ends[1] - ends[0] > _SHORTEST_ARC) & (ends[1] - ends[0] < math.pi - _SHORTEST_ARC)
+    both = inside[:-1] & inside[1:]
+    for at_ends, at_middle in zip(ends, middle, strict=True):
+        apart = np.zeros(line.length.size)
+        chord = 0.5 * (at_ends[:-1][both] + at_ends[1:][both])
+        apart[both] = (at_middle[both] - chord) * 2.0 / 3.0
+        beside = np.append(both, False).astype(float) + np.append(False, both)
+        shift = np.append(apart, 0.0) + np.append(0.0, apart)
+        at_ends[inside] += shift[inside] / np.maximum(beside[inside], 1.0)
+    return ends
 
 
 def _arc_of_piece(

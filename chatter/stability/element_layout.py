@@ -39,7 +39,7 @@ _LEVELS = 5
 _RATIO = 0.16
 #: the coupling of an upright edge itself is infinite there: the last element, raised to the
 #: exponent of the law, is as short as the ratio raised to this; beyond the most, rounding eats it
-_UPRIGHT_LEVELS, _MOST_LEVELS = 5.0, 9
+_UPRIGHT_LEVELS, _MOST_LEVELS = 5.0, 18
 #: an edge that trails by this much from tip to top smears what is singular over an element, rad
 _SMEARED = 0.9
 

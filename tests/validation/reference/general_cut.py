@@ -216,7 +216,7 @@ class _Cut:
             for which, low, high in self.stretches(tooth, spindle):
                 s, size = self._along(low, high)
                 chip, ahead, phi, kappa = self.chips(tooth, s, spindle)
-                ratio = np.maximum(chip[which], 1e-14) / cut.reference_chip
+                ratio = np.maximum(chip[which], 1e-24) / cut.reference_chip
                 slope = cut.exponent * ratio ** (cut.exponent - 1.0)
                 normal, push = _directions(phi, kappa, cut.coefficients)
                 delays.append(np.broadcast_to(ahead[which], s.shape))
