@@ -22,9 +22,9 @@ from chatter.stability.mean_couplings import mean_couplings
 from chatter.stability.spindle_turn import SpeedVariation
 from chatter.structure import Structure, depends_on_speed, structure_at, structure_of
 from cutting.directional import DirectionalTable, directional_table, mean_over_turn
+from cutting.edge_line import crossing_heights
 from cutting.edge_pieces import (
     EdgePieces,
-    crossing_heights,
     edge_pieces,
     period_angle,
     small_vibration_coefficient,
