@@ -34,4 +34,5 @@ def followed_limits(
         May raise to give up.
     """
     cut = model.cut(float(depths[-1]), _POINTS, _WAVES)
+    cut = collocation.tuned(cut, collocation.LOOSE_TUNING)
     return collocation.limit_curve(cut, speeds, depths, progress, _TOLERANCE, _STRIDE)

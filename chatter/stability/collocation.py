@@ -39,7 +39,7 @@ _CHECK = (12, 0.3)
 _ALLOWANCE = 1.1
 #: the frequency of a varying speed may be moved by this share while limits are first looked for,
 #: and where they are looked at again
-_LOOSE_TUNING, _CHECK_TUNING = 2e-2, 5e-4
+LOOSE_TUNING, _CHECK_TUNING = 2e-2, 5e-4
 #: finer elements move a limit by no more than some of its errors, relative to its depth
 _REACH, _LARGEST_REACH = 4.0, 0.1
 #: limits are searched to this share of the largest error
@@ -261,7 +261,7 @@ def converged_limit_curve(
     """
     search = _SEARCHED * tolerance
     # shorter periods of a varying speed: what that moves is moved back by finer cuts
-    cut = _tuned(cut_at(*RESOLUTION), _LOOSE_TUNING)
+    cut = tuned(cut_at(*RESOLUTION), LOOSE_TUNING)
     limits = limit_curve(cut, speeds, depths, progress, search)
     limits = limits._replace(error=_limit_error(limits, cut, cut_at, RESOLUTION))
     for finer in FINER if tolerance < LIMIT_ERROR else FINER[:_DAILY]:
@@ -273,7 +273,7 @@ def converged_limit_curve(
     return limits
 
 
-def _tuned(cut: CutArrays, tuning: float) -> CutArrays:
+def tuned(cut: CutArrays, tuning: float) -> CutArrays:
     """The cut with the frequency of a varying speed moved by no more than a share."""
     return cut._replace(variation=cut.variation._replace(tuning=tuning))
 
@@ -301,7 +301,7 @@ def _limit_error(
     if found.size > _CHECKED:
         picked = found[np.unique(np.geomspace(1, found.size, _CHECKED).round().astype(int) - 1)]
     speed, depth = limits.spindle_speed[picked], limits.critical_depth[picked]
-    finer = _tuned(cut_at(_CHECK[0], _CHECK[1] * resolution[1]), _CHECK_TUNING)
+    finer = tuned(cut_at(_CHECK[0], _CHECK[1] * resolution[1]), _CHECK_TUNING)
     step = 1e-3 * depth
     left, right = (_rates(cut, speed, depth + s) for s in (-step, step))
     slope = np.maximum(np.abs(right - left) / (2.0 * step), 1e-300)
