@@ -4,6 +4,10 @@ The cut takes hold of the structure slowly, so that the tool comes close to its 
 without being thrown out of the chip; what is left of the start then dies out or grows. Its
 multiplier follows from how the differences between successive periods follow each other: they are
 free of the periodic motion.
+
+Full chatter has a multiplier of 1 too, and so has a forced motion about to lose its stability. They
+are told apart by a cut that takes hold more slowly: what is left of the start is then smaller in
+the same measure, chatter is as large as before.
 """
 
 from __future__ import annotations
@@ -39,6 +43,11 @@ _FEATURES = 32
 _MOST_SHAPES = 8
 _WEAKEST_SHAPE = 1e-3
 _LEAST_SHARE = 0.02
+#: a multiplier below 1 by no more than this may be that of full chatter; such a cut takes hold again,
+#: slower by a factor, and what is left of the start is less than this share of what it was
+_NEARLY_NEUTRAL = 0.005
+_SLOWER = 4
+_LEFT_OF_START = 0.5
 
 
 @dataclass(frozen=True)
@@ -48,7 +57,8 @@ class Growth:
     Parameters
     ----------
     multiplier : complex
-        Over a period; of magnitude inf where the tool leaves the chip at once.
+        Over a period; of magnitude inf where the tool leaves the chip at once, and where chatter
+        is full: how small vibration grew before that is not known.
     period : float
         s.
     frequency : float
@@ -91,21 +101,45 @@ def growth_of(case: Case, modes: tuple[Mode, ...]) -> Growth:
         If the case cannot be simulated.
     """
     setup = set_up(delayed(case), modes)
-    bins = setup.resolution.steps_a_turn
-    a_turn = periods_a_turn(setup)
-    per_period = bins // a_turn
-    period = per_period * setup.step
+    period = setup.resolution.steps_a_turn // periods_a_turn(setup) * setup.step
     slowest = max(1.0 / (mode.damping * mode.natural_frequency) for mode in setup.modes)
     wanted = max(_RAMP_PERIODS + _WATCHED_PERIODS, math.ceil(_TIME_CONSTANTS * slowest / period))
     count = min(wanted, _MOST_PERIODS)
     ramp = count // 4
-    motion, done = motion_of(setup, count * per_period, ramp * per_period)
-    whole = done // per_period
-    if whole < ramp + _LEAST_FITTED:
+    periods = _watched(setup, ramp, count - ramp)
+    if len(periods) < _LEAST_FITTED:
         return Growth(complex(math.inf), period, math.nan)
-    watched = motion[ramp * per_period : whole * per_period]
-    watched = watched.reshape(whole - ramp, per_period, 3)
-    return _fitted(watched, period, case.cut.feed_per_tooth)
+    found = _fitted(periods, period, case.cut.feed_per_tooth)
+    if not 1.0 - _NEARLY_NEUTRAL < found.radius < 1.0:
+        return found
+    slower = _watched(set_up(delayed(case), modes), _SLOWER * ramp, count - ramp)
+    if _as_large(slower, periods):
+        return Growth(complex(math.inf), period, found.frequency)
+    return found
+
+
+def _watched(setup: Setup, ramp: int, count: int) -> NDArray[np.float64]:
+    """Motion (k, n, 3), m, over `count` periods after those in which the cut takes hold.
+
+    There are fewer where the tool leaves the range of the model.
+    """
+    samples = setup.resolution.steps_a_turn // periods_a_turn(setup)
+    motion, done = motion_of(setup, (ramp + count) * samples, ramp * samples)
+    whole = max(done // samples, ramp)
+    return motion[ramp * samples : whole * samples].reshape(whole - ramp, samples, 3)
+
+
+def _as_large(slower: NDArray[np.float64], periods: NDArray[np.float64]) -> bool:
+    """Tell full chatter, which is as large (k, n, 3) in a cut that takes hold more slowly.
+
+    Vibration along the cycle of full chatter neither grows nor dies out, so that the multiplier is
+    1 but for an error, which may put it below 1. A stable forced motion nearly as neutral is
+    disturbed by the cut taking hold alone, in inverse proportion to the time that this takes.
+    """
+    if len(slower) < len(periods):
+        return True
+    size, before = (float(np.linalg.norm(np.diff(part, axis=0))) for part in (slower, periods))
+    return size > _LEFT_OF_START * before
 
 
 def motion_of(

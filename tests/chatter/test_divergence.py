@@ -194,3 +194,30 @@ def test_full_chatter_that_nearly_repeats_is_chatter_at_a_constant_speed(name):
         assert chatter.simulate(here).judgement.verdict == verdict
         radius = growth_of(here, modes_of(here)[0]).radius
         assert (radius < 1.0) == (verdict == "stable")
+
+
+def test_the_cycle_of_full_chatter_is_not_taken_for_a_cut_about_to_be_stable():
+    """Its own multiplier is 1 but for the error of the measurement, here to the stable side."""
+    modes = [
+        {"frequency": f, "damping": d, "stiffness": k, "direction": [0, 1, 0]}
+        for f, d, k in ((1377.647, 0.0439617, 3.017075e6), (1553.227, 0.0440356, 2.314619e6))
+    ]
+    case = chatter.Case.from_dict(
+        {
+            "tool": {
+                "teeth": 3,
+                "diameter": "16 mm",
+                "helix": ["39.9 deg", "35.9 deg", "39.9 deg"],
+            },
+            "material": {"Ktc": "800 MPa", "Krc": "432 MPa", "Kac": "100 MPa"},
+            "cut": {
+                "mode": "slot",
+                "spindle_speed": 825.20338,
+                "feed_per_tooth": "0.1 mm",
+                "axial_depth": "1.77 mm",
+            },
+            "structure": {"mode": modes},
+        }
+    )
+    assert chatter.check(case).spectral_radius > 2.5
+    assert growth_of(case, modes_of(case)[0]).radius > 1.0
