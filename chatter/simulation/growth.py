@@ -43,9 +43,11 @@ _FEATURES = 32
 _MOST_SHAPES = 8
 _WEAKEST_SHAPE = 1e-3
 _LEAST_SHARE = 0.02
-#: a multiplier below 1 by no more than this may be that of full chatter; such a cut takes hold again,
-#: slower by a factor, and what is left of the start is less than this share of what it was
-_NEARLY_NEUTRAL = 0.005
+#: a multiplier below 1 by no more than this may be that of full chatter; such a cut takes hold
+#: again, slower by a factor, and what is left of the start is less than this share of what it was.
+#: Chatter on the way that dies out in the full cut is not in proportion: where it is mistaken, the
+#: limit is wrong by this at the most, over the growth per relative depth
+_NEARLY_NEUTRAL = 0.001
 _SLOWER = 4
 _LEFT_OF_START = 0.5
 
