@@ -147,8 +147,10 @@ def chip_at(pieces, piece, place, height, sine, sine_of_edge, cosine_of_edge):
     vanishing = pieces.vanishing[piece]
     if vanishing > 0:
         # what bends along the piece is taken for straight, and the chip must end with the arc
-        arc = pieces.entry if vanishing == 1 else pieces.exit
-        border = arc[piece, 0] + place * (arc[piece, 1] - arc[piece, 0])
+        begin, end = pieces.entry[piece, 0], pieces.entry[piece, 1]
+        if vanishing == 2:
+            begin, end = pieces.exit[piece, 0], pieces.exit[piece, 1]
+        border = begin + place * (end - begin)
         return sine_of_edge * rise * (sine - math.sin(border))
     low, high = pieces.inset[piece, 0], pieces.inset[piece, 1]
     radial = rise * sine - (low + height * (high - low))

@@ -26,6 +26,7 @@ from chatter.stability.element_layout import (
 )
 from chatter.stability.plan_structure import alike, packed_numbers, packed_plans, packed_structure
 from chatter.stability.spindle_turn import (
+    STEADY_TURN,
     angle_at,
     in_mean_angle,
     speed_at,
@@ -285,9 +286,11 @@ def plans_of(cut, speeds, depths):
     structures = [np.empty(0, dtype=np.int64) for _ in range(0)]
     numbers = [np.empty(0) for _ in range(0)]
     constant = cut.variation.amplitude == 0.0
+    turn = STEADY_TURN
     counts, speed, borders = np.empty(0, dtype=np.int64), 0.0, empty_borders()
     for i in range(speeds.shape[0]):
-        turn = in_mean_angle(spindle_turn(cut.variation, speeds[i], cut.period_angle))
+        if not constant:
+            turn = in_mean_angle(spindle_turn(cut.variation, speeds[i], cut.period_angle))
         beside = constant and i > 0 and depths[i] == depths[i - 1]
         if not beside:
             borders = period_borders(cut.pieces, cut.period_angle, turn, depths[i])

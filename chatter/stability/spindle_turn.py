@@ -34,6 +34,10 @@ class SpindleTurn(NamedTuple):
     cycles: int  # of the variation in a period of the cut
 
 
+#: at a constant speed, in mean angle
+STEADY_TURN = SpindleTurn(1.0, 0.0, 1.0, 0, 1, 1)
+
+
 @njit(**KERNEL)
 def spindle_turn(variation, speed, pattern):
     """Fit a whole number of variations into a whole number of tool periods.
