@@ -9,6 +9,8 @@ at batches of points, which the sweep spreads over the threads.
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -92,7 +94,9 @@ def find_crossings(
     parts = [_on_the_net(values, seen, edges, growth), *_between(seen, edges, growth)]
     brackets = Brackets(*(np.concatenate(field, axis=-1) for field in zip(*parts, strict=True)))
     limit = roots_in(brackets, refined or growth, tolerance)
-    return [np.sort(limit[brackets.speed == i]) for i in range(net.shape[0])]
+    order = np.lexsort((limit, brackets.speed))
+    first = np.searchsorted(brackets.speed[order], np.arange(net.shape[0] + 1))
+    return [limit[order[low:high]] for low, high in itertools.pairwise(first.tolist())]
 
 
 def moved_crossings(
