@@ -7,7 +7,6 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from functools import lru_cache
 from typing import TypeVar
 
 import numpy as np
@@ -33,12 +32,11 @@ _alone = threading.local()
 @contextmanager
 def one_thread() -> Iterator[None]:
     """Let sweeps of this thread use one thread: what surrounds it keeps the others busy."""
-    before = getattr(_alone, "wanted", False)
     _alone.wanted = True
     try:
         yield
     finally:
-        _alone.wanted = before
+        _alone.wanted = False
 
 
 def worker_count() -> int:
@@ -81,35 +79,18 @@ def sweep(
         for first in range(0, count, points_a_chunk)
     ]
     results: list[Result] = []
-    if len(chunks) == 1 or worker_count() == 1:
-        for chunk in chunks:
-            results.append(function(chunk))
-            progress(int(chunk[-1]) + 1, count)
+    if len(chunks) == 1:
+        # a thread would take longer to start
+        results.append(function(chunks[0]))
+        progress(count, count)
         return results
-    futures = [_threads(worker_count()).submit(_worked, function, chunk) for chunk in chunks]
-    try:
-        for chunk, future in zip(chunks, futures, strict=True):
-            results.append(future.result())
-            progress(int(chunk[-1]) + 1, count)
-    except BaseException:
-        for future in futures:
-            future.cancel()
-        raise
+    with ThreadPoolExecutor(max_workers=worker_count()) as pool:
+        futures = [pool.submit(function, chunk) for chunk in chunks]
+        try:
+            for chunk, future in zip(chunks, futures, strict=True):
+                results.append(future.result())
+                progress(int(chunk[-1]) + 1, count)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
     return results
-
-
-@lru_cache(maxsize=1)
-def _threads(count: int) -> ThreadPoolExecutor:
-    """Threads of all sweeps: a fast diagram is over before new ones would have started."""
-    return ThreadPoolExecutor(max_workers=count, thread_name_prefix="sweep")
-
-
-# threads do not live on in a process that is forked off
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_threads.cache_clear)
-
-
-def _worked(function: Callable[[NDArray[np.int64]], Result], chunk: NDArray[np.int64]) -> Result:
-    """Work on a chunk in a thread of the sweeps; a sweep within it must not wait for those."""
-    with one_thread():
-        return function(chunk)
