@@ -27,7 +27,7 @@ from chatter.pockets import DEPTH_MARGIN, SPEED_MARGIN, Pocket, find_pockets
 from chatter.result_files import as_json, finite_or_none, write_results
 from chatter.search_range import axial_depths, deepest_depth, spindle_speeds
 from chatter.speed_groups import natural_frequencies
-from chatter.stability.collocation import LIMIT_ERROR
+from chatter.stability.converged_limits import LIMIT_ERROR
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.sweep import Progress, no_progress
 from chatter.stability.zero_order import ZeroOrderLimit

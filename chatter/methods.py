@@ -18,6 +18,7 @@ from chatter.speed_groups import (
     zero_order_by_group,
 )
 from chatter.stability import collocation, matrix_free, multi_frequency, semi_discretization
+from chatter.stability.converged_limits import LIMIT_ERROR, converged_limit_curve
 from chatter.stability.cut_arrays import CutArrays
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.multiplier import Multiplier
@@ -69,8 +70,8 @@ def by_collocation(
         return model.cut(float(depths[-1]), points, waves)
 
     lobes = model.case.lobes
-    tolerance = lobes.tolerance if lobes else collocation.LIMIT_ERROR
-    return collocation.converged_limit_curve(cut_at, speeds, depths, progress, tolerance)
+    tolerance = lobes.tolerance if lobes else LIMIT_ERROR
+    return converged_limit_curve(cut_at, speeds, depths, progress, tolerance)
 
 
 @limits_by_group

@@ -9,6 +9,7 @@ from chatter.model import MillingModel
 from chatter.stability import collocation
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.sweep import Progress
+from chatter.stability.varying_speed import LOOSE_TUNING, tuned
 
 #: points an element and waves of the highest mode in one, enough for a picture
 _POINTS, _WAVES = 6, 1.0
@@ -34,5 +35,5 @@ def followed_limits(
         May raise to give up.
     """
     cut = model.cut(float(depths[-1]), _POINTS, _WAVES)
-    cut = collocation.tuned(cut, collocation.LOOSE_TUNING)
+    cut = tuned(cut, LOOSE_TUNING)
     return collocation.limit_curve(cut, speeds, depths, progress, _TOLERANCE, _STRIDE)

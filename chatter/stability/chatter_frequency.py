@@ -1,64 +1,29 @@
-"""Frequency that is heard of the dominant motion of a cut."""
+"""Frequency that is heard of the dominant motion of a cut, eight points at once."""
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
-from chatter.kernels import INNER_KERNEL, SINGLE_KERNEL
-from chatter.lanes import LANES
+from chatter.kernels import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
+from chatter.lanes import LANES, load, spread, store
 from chatter.stability.element_map import apply_element_map, element_scratch
 
 #: harmonics looked at, up to this factor beyond the highest mode
 _HIGHEST = 2.0
 
 
-@njit(**SINGLE_KERNEL)
-def _amplitude(structure, s, force):
-    """Displacement of the tool point under a force exp(s t), squared."""
-    modes, rank = structure.shape.shape
-    motion = np.zeros(rank, dtype=np.complex128)
-    for m in range(modes):
-        w, zeta = structure.natural_frequency[m], structure.damping[m]
-        push = complex(0.0, 0.0)
-        for k in range(rank):
-            push += structure.force_gain[m, k] * force[k]
-        push /= s * s + 2.0 * zeta * w * s + w * w
-        for k in range(rank):
-            motion[k] += structure.shape[m, k] * push
-    total = 0.0
-    for k in range(rank):
-        total += motion[k].real ** 2 + motion[k].imag ** 2
-    return total
+class _Turning(NamedTuple):
+    """exp(-(sigma + i omega) t) at N times, and what takes it to the next harmonic (N, 8)."""
 
-
-@njit(**SINGLE_KERNEL)
-def _loudest(structure, value, time, weighted, period):
-    """Frequency (Hz) at which a motion is largest whose force at n times is weighted (n, r).
-
-    The force is taken apart into exp((sigma + i omega_l) t) over the period, and drives the
-    structure at each omega_l.
-    """
-    base = np.log(value if value != 0.0 else complex(1e-300, 0.0)) / period
-    line = 2.0 * math.pi / period
-    order = math.ceil(_HIGHEST * structure.natural_frequency.max() / line) + 1
-    step = np.exp(complex(0.0, -line) * time)
-    now = np.exp(-(base - complex(0.0, order * line)) * time)
-    force = np.empty(weighted.shape[1], dtype=np.complex128)
-    best, loudest = -1.0, 0.0
-    for harmonic in range(-order, order + 1):
-        force[:] = 0.0
-        for i in range(time.shape[0]):
-            for k in range(force.shape[0]):
-                force[k] += now[i] * weighted[i, k]
-            now[i] *= step[i]
-        s = base + complex(0.0, harmonic * line)
-        amplitude = _amplitude(structure, s, force)
-        if amplitude > best:
-            best, loudest = amplitude, abs(s.imag)
-    return loudest / (2.0 * math.pi)
+    real: NDArray[np.float64]
+    imaginary: NDArray[np.float64]
+    real_step: NDArray[np.float64]
+    imaginary_step: NDArray[np.float64]
 
 
 @njit(**INNER_KERNEL)
@@ -72,6 +37,123 @@ def _vectors(found):
                 vectors[0, i, lane] += c.real * found.basis[j, i, lane]
                 vectors[1, i, lane] += c.imag * found.basis[j, i, lane]
     return vectors
+
+
+@njit(**INNER_KERNEL)
+def _weighted(points, plans, members, speeds, lengths, real, imaginary):
+    """Times (N, 8) of all points in the cut and forces there times weights (2, N r, 8)."""
+    cuts, values, _ = real.shape
+    count = points.weight.shape[0]
+    rank = values // count
+    time, force = np.empty((cuts * count, LANES)), np.empty((2, cuts * values, LANES))
+    for lane in range(LANES):
+        plan, speed = plans.of_point[members[lane]], speeds[0, lane]
+        of_plan = plans.number[plans.first_number[plan] : plans.first_number[plan + 1]]
+        first = 1 + lengths
+        for e in range(cuts):
+            start, length = of_plan[first + e] / speed, of_plan[first + cuts + e] / speed
+            for i in range(count):
+                time[e * count + i, lane] = start + length * points.place[i + 1]
+                weight = length * points.weight[i]
+                for k in range(i * rank, (i + 1) * rank):
+                    force[0, e * values + k, lane] = weight * real[e, k, lane]
+                    force[1, e * values + k, lane] = weight * imaginary[e, k, lane]
+    return time, force
+
+
+@njit(**INNER_KERNEL)
+def _turning(time, base, line, lowest):
+    """Values at the lowest harmonic; base (8,) complex, line (8,) rad/s."""
+    out = _Turning(
+        np.empty(time.shape), np.empty(time.shape), np.empty(time.shape), np.empty(time.shape)
+    )
+    for i in range(time.shape[0]):
+        for lane in range(LANES):
+            t = time[i, lane]
+            now = np.exp(-(base[lane] + complex(0.0, lowest * line[lane])) * t)
+            out.real[i, lane], out.imaginary[i, lane] = now.real, now.imag
+            out.real_step[i, lane] = math.cos(line[lane] * t)
+            out.imaginary_step[i, lane] = -math.sin(line[lane] * t)
+    return out
+
+
+@njit(**LEAF_KERNEL)
+def _force_at_harmonic(turning, force, rank, out):
+    """Set out (2, r, 8) to the force at a harmonic, and go on to the next."""
+    for k in range(rank):
+        store(out, (0, k), spread(0.0))
+        store(out, (1, k), spread(0.0))
+    for i in range(turning.real.shape[0]):
+        a, b = load(turning.real, i), load(turning.imaginary, i)
+        for k in range(rank):
+            x, y = load(force, (0, i * rank + k)), load(force, (1, i * rank + k))
+            store(out, (0, k), load(out, (0, k)) + (a * x - b * y))
+            store(out, (1, k), load(out, (1, k)) + (a * y + b * x))
+        c, d = load(turning.real_step, i), load(turning.imaginary_step, i)
+        store(turning.real, i, a * c - b * d)
+        store(turning.imaginary, i, a * d + b * c)
+
+
+@njit(**LEAF_KERNEL)
+def _amplitudes(structure, sigma, omega, force, motion, out):
+    """Set out (1, 8) to the displacement of the tool point, squared, under a force exp(s t).
+
+    s = sigma + i omega, (1, 8) each; force (2, r, 8); motion (2, r, 8) is scratch.
+    """
+    modes, rank = structure.shape.shape
+    re, im = load(sigma, 0), load(omega, 0)
+    for k in range(rank):
+        store(motion, (0, k), spread(0.0))
+        store(motion, (1, k), spread(0.0))
+    for m in range(modes):
+        w, twice = structure.natural_frequency[m], 2.0 * structure.damping[m]
+        below = re * re - im * im + twice * w * re + w * w
+        beside = 2.0 * re * im + twice * w * im
+        size = below * below + beside * beside
+        x, y = spread(0.0), spread(0.0)
+        for k in range(rank):
+            x += structure.force_gain[m, k] * load(force, (0, k))
+            y += structure.force_gain[m, k] * load(force, (1, k))
+        real, imaginary = (x * below + y * beside) / size, (y * below - x * beside) / size
+        for k in range(rank):
+            store(motion, (0, k), load(motion, (0, k)) + structure.shape[m, k] * real)
+            store(motion, (1, k), load(motion, (1, k)) + structure.shape[m, k] * imaginary)
+    total = spread(0.0)
+    for k in range(rank):
+        x, y = load(motion, (0, k)), load(motion, (1, k))
+        total += x * x + y * y
+    store(out, 0, total)
+
+
+@njit(**SINGLE_KERNEL)
+def _loudest(structure, base, line, time, force, out):
+    """Set out (8,) to the frequency (Hz) at which a motion is largest.
+
+    The force is taken apart into exp((sigma + i omega_l) t) over the period, and drives the
+    structure at each omega_l.
+    """
+    rank = structure.shape.shape[1]
+    orders = np.empty(LANES, dtype=np.int64)
+    highest = _HIGHEST * structure.natural_frequency.max()
+    for lane in range(LANES):
+        orders[lane] = math.ceil(highest / line[lane]) + 1
+    order = orders.max()
+    turning = _turning(time, base, line, -order)
+    at_harmonic, motion = np.empty((2, rank, LANES)), np.empty((2, rank, LANES))
+    sigma, omega, amplitude = np.empty((1, LANES)), np.empty((1, LANES)), np.empty((1, LANES))
+    best = np.full(LANES, -1.0)
+    for lane in range(LANES):
+        sigma[0, lane] = base[lane].real
+    for harmonic in range(-order, order + 1):
+        _force_at_harmonic(turning, force, rank, at_harmonic)
+        for lane in range(LANES):
+            omega[0, lane] = base[lane].imag + harmonic * line[lane]
+        _amplitudes(structure, sigma, omega, at_harmonic, motion, amplitude)
+        for lane in range(LANES):
+            # what a lane hears does not depend on its neighbours
+            if abs(harmonic) <= orders[lane] and amplitude[0, lane] > best[lane]:
+                best[lane] = amplitude[0, lane]
+                out[lane] = abs(omega[0, lane]) / (2.0 * math.pi)
 
 
 @njit(**SINGLE_KERNEL)
@@ -90,26 +172,19 @@ def heard_frequencies(arrays, plans, members, speeds, period, found, out):
     found : DominantPairs
     out : (8,) array of float
     """
-    structure, points = arrays.structure, arrays.points
-    cuts = period.couple.shape[0]
-    rank, count = period.output.shape[0], points.weight.shape[0]
     vectors, image = _vectors(found), np.empty((found.basis.shape[1], LANES))
     real, imaginary = element_scratch(period), element_scratch(period)
     apply_element_map(period, vectors[0], image, real)
     apply_element_map(period, vectors[1], image, imaginary)
-    time = np.empty(cuts * count)
-    weighted = np.empty((cuts * count, rank), dtype=np.complex128)
-    first = 1 + period.free.shape[0]
+    time, force = _weighted(
+        arrays.points, plans, members, speeds, period.free.shape[0], real.force, imaginary.force
+    )
+    base, line = np.empty(LANES, dtype=np.complex128), np.empty(LANES)
     for lane in range(LANES):
-        plan, speed = plans.of_point[members[lane]], speeds[0, lane]
-        of_plan = plans.number[plans.first_number[plan] : plans.first_number[plan + 1]]
-        for e in range(cuts):
-            start, length = of_plan[first + e] / speed, of_plan[first + cuts + e] / speed
-            for i in range(count):
-                row = e * count + i
-                time[row] = start + length * points.place[i + 1]
-                for k in range(rank):
-                    at = i * rank + k
-                    force = complex(real.force[e, at, lane], imaginary.force[e, at, lane])
-                    weighted[row, k] = length * points.weight[i] * force
-        out[lane] = _loudest(structure, found.value[lane], time, weighted, of_plan[0] / speed)
+        plan = plans.of_point[members[lane]]
+        lasting = plans.number[plans.first_number[plan]] / speeds[0, lane]
+        value = found.value[lane]
+        base[lane] = np.log(value if value != 0.0 else complex(1e-300, 0.0)) / lasting
+        line[lane] = 2.0 * math.pi / lasting
+        out[lane] = 0.0
+    _loudest(arrays.structure, base, line, time, force, out)

@@ -86,7 +86,7 @@ def _stiffening(modes: tuple[NDArray[np.float64], ...], pieces: EdgePieces) -> f
 
 
 @lru_cache(maxsize=1)
-def _edge_runss() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _edge_rules() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Places and weights of the Gauss quadratures of all orders on [0, 1], a row an order."""
     place = np.zeros((MOST_POINTS + 1, MOST_POINTS))
     weight = np.zeros_like(place)
@@ -124,7 +124,7 @@ def cut_arrays(
     natural_frequency, damping, shape, force_gain = modes
     fastest = _CHATTER_ABOVE_NATURAL * relevant_frequency(*modes)
     longest = waves * 2.0 * math.pi / fastest
-    place, weight = _edge_runss()
+    place, weight = _edge_rules()
     of_element = element_points(points)
     # no better than the elements are
     residual = max(_SMALLEST_RESIDUAL, 10.0 ** (4.0 - 1.5 * points))

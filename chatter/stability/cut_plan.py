@@ -20,10 +20,9 @@ from chatter.stability.element_layout import (
     element_before,
     element_counts,
     element_layout,
-    empty_borders,
-    period_borders,
     speed_step,
 )
+from chatter.stability.period_borders import empty_borders, period_borders
 from chatter.stability.plan_structure import alike, packed_numbers, packed_plans, packed_structure
 from chatter.stability.spindle_turn import (
     STEADY_TURN,
@@ -286,19 +285,19 @@ def plans_of(cut, speeds, depths):
     structures = [np.empty(0, dtype=np.int64) for _ in range(0)]
     numbers = [np.empty(0) for _ in range(0)]
     constant = cut.variation.amplitude == 0.0
-    turn = STEADY_TURN
+    turn, period = STEADY_TURN, cut.period_angle
     counts, speed, borders = np.empty(0, dtype=np.int64), 0.0, empty_borders()
     for i in range(speeds.shape[0]):
         if not constant:
-            turn = in_mean_angle(spindle_turn(cut.variation, speeds[i], cut.period_angle))
+            turn = in_mean_angle(spindle_turn(cut.variation, speeds[i], period))
         beside = constant and i > 0 and depths[i] == depths[i - 1]
         if not beside:
-            borders = period_borders(cut.pieces, cut.period_angle, turn, depths[i])
-        needed = element_counts(cut.resolution, borders, speeds[i], depths[i])
+            borders = period_borders(cut.pieces, period, depths[i])
+        needed = element_counts(cut.resolution, borders, turn, period, speeds[i], depths[i])
         resolved = speed_step(speeds[i], _SPEED_STEP)
         if not (beside and speed == resolved and alike(needed, counts)):
             counts, speed = needed, resolved
-            layout = element_layout(borders, counts)
+            layout = element_layout(borders, counts, turn, period)
             structure, filled = cut_plan(cut, turn, layout, speed, depths[i])
             structures.append(structure)
             numbers.append(filled)

@@ -10,9 +10,10 @@ from chatter.lanes import LANES
 from chatter.stability.chatter_frequency import heard_frequencies
 from chatter.stability.cut_plan import plans_of
 from chatter.stability.element_assembly import build_element_map
-from chatter.stability.element_layout import element_counts, element_layout, period_borders
+from chatter.stability.element_layout import element_counts, element_layout
 from chatter.stability.lane_multipliers import dominant_pairs
 from chatter.stability.multipliers import dominant_multiplier
+from chatter.stability.period_borders import period_borders
 from chatter.stability.period_map import advance_step, build_period_map, period_map_by
 from chatter.stability.plan_structure import alike, structure_at
 from chatter.stability.spindle_turn import in_mean_angle, spindle_turn
@@ -164,10 +165,11 @@ def element_multipliers(arrays, plans, speeds, listened):
 @njit(**DRIVER)
 def points_of_periods(cut, speeds, depth):
     """Collocation points in a period (n,) at n speeds."""
-    out = np.empty(speeds.shape[0], dtype=np.int64)
+    out, period = np.empty(speeds.shape[0], dtype=np.int64), cut.period_angle
+    borders = period_borders(cut.pieces, period, depth)
     for i in range(speeds.shape[0]):
-        turn = in_mean_angle(spindle_turn(cut.variation, speeds[i], cut.period_angle))
-        borders = period_borders(cut.pieces, cut.period_angle, turn, depth)
-        layout = element_layout(borders, element_counts(cut.resolution, borders, speeds[i], depth))
+        turn = in_mean_angle(spindle_turn(cut.variation, speeds[i], period))
+        counts = element_counts(cut.resolution, borders, turn, period, speeds[i], depth)
+        layout = element_layout(borders, counts, turn, period)
         out[i] = layout.cut_start.shape[0] * cut.points.weight.shape[0]
     return out

@@ -21,6 +21,8 @@ from chatter.stability.hessenberg import dominant_pair
 #: dimension of the Krylov space beyond the state at the first look, and how it grows
 _FIRST_LOOK = 3
 _GROWTH = 1.3
+#: over a period of so many elements a look costs far less than another vector
+_MANY_ELEMENTS = 60
 _LARGEST_SPACE = 240
 #: norms above this are not the root of a sum of squares
 _SQUARES_BELOW = 1e150
@@ -132,6 +134,9 @@ def dominant_pairs(period, tolerance):
     _divide(basis[0], norm)
     # weakly damped modes keep as many multipliers near the unit circle as there are states
     look = min(_FIRST_LOOK + size, largest)
+    growth = _GROWTH
+    if period.plan.cut.shape[0] > _MANY_ELEMENTS:
+        look, growth = min(2, largest), 1.0
     for k in range(largest):
         apply_element_map(period, basis[k], basis[k + 1], scratch)
         _norms(basis[k + 1], before)
@@ -140,7 +145,7 @@ def dominant_pairs(period, tolerance):
         store(hessenberg, (k + 1, k), load(norm, 0))
         regular = k + 1 in (look, largest)
         if regular:
-            look = min(largest, math.ceil(look * _GROWTH))
+            look = min(largest, max(look + 1, math.ceil(look * growth)))
         if _look(hessenberg, k + 1, largest, regular, norm[0], before[0], tolerance, found):
             break
         _divide(basis[k + 1], norm)

@@ -10,6 +10,8 @@ from numba import njit
 
 from chatter.kernels import INLINED_KERNEL, KERNEL
 
+#: of the angle, the last that matters on the way to a time
+_SMALL_STEP = 1e-9
 #: variations in a period
 _MOST_CYCLES = 40
 
@@ -21,6 +23,7 @@ class SpeedVariation(NamedTuple):
     frequency: float  # Hz
     triangle: int  # 1 for a triangle, 0 for a sine
     tuning: float  # by that share it may be taken faster or slower to fit into a period
+    beyond: int  # 1 for the whole number of tool periods next to the one that fits best
 
 
 class SpindleTurn(NamedTuple):
@@ -66,6 +69,9 @@ def spindle_turn(variation, speed, pattern):
         if best_error < variation.tuning:
             break
     patterns = int(max(1.0, np.round(best * a_cycle)))
+    if variation.beyond == 1:
+        # on the other side of the true ratio
+        patterns += 1 if best * a_cycle > patterns or patterns == 1 else -1
     frequency = best * speed / (patterns * pattern)
     return SpindleTurn(speed, variation.amplitude, frequency, variation.triangle, patterns, best)
 
@@ -120,9 +126,11 @@ def time_at(turn, angle):
     time = angle / turn.speed
     if turn.amplitude == 0.0:
         return time
+    time -= (angle_at(turn, time) - angle) / turn.speed
     for _ in range(60):
         step = (angle_at(turn, time) - angle) / speed_at(turn, time)
         time -= step
-        if abs(step) * turn.speed < 1e-15 * max(1.0, abs(angle)):
+        # the error of the next is as the square of that of the last
+        if abs(step) * turn.speed < _SMALL_STEP * max(1.0, abs(angle)):
             break
     return time

@@ -1,0 +1,70 @@
+"""Periods of a varying spindle speed, and limits between two that nearly fit.
+
+A period holds a whole number of variations and of tool periods, so that the frequency of the
+variation is taken a little higher or lower than it is. Growth over a tool period changes smoothly
+with the ratio of the two: of the whole numbers on both sides of the true ratio, limits are
+interpolated, with an error of second order in what the frequency has been moved by.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.stability.cut_arrays import CutArrays
+from chatter.stability.spindle_turn import SpindleTurn, spindle_turn
+
+#: the frequency may be moved by this share where limits are looked for
+LOOSE_TUNING = 2e-2
+
+
+def varies(cut: CutArrays) -> bool:
+    """Tell whether the spindle speed varies."""
+    return cut.variation.amplitude > 0.0
+
+
+def tuned(cut: CutArrays, tuning: float) -> CutArrays:
+    """The cut with the frequency of a varying speed moved by no more than a share."""
+    return cut._replace(variation=cut.variation._replace(tuning=tuning))
+
+
+def beyond(cut: CutArrays) -> CutArrays:
+    """The cut with as many tool periods in a period as lie on the other side of the true ratio."""
+    return cut._replace(variation=cut.variation._replace(beyond=1))
+
+
+def turns(cut: CutArrays, speeds: NDArray[np.float64]) -> list[SpindleTurn]:
+    """Turn of the spindle at every speed (rad/s)."""
+    return [spindle_turn(cut.variation, float(speed), cut.period_angle) for speed in speeds]
+
+
+def tool_periods(cut: CutArrays, speeds: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Tool periods in a period (n,) at n speeds (rad/s)."""
+    if not varies(cut):
+        return np.ones(len(speeds))
+    return np.array([float(turn.patterns) for turn in turns(cut, speeds)])
+
+
+def place_between(cut: CutArrays, speeds: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Where the true ratio (n,) lies: 0 is what the cut takes, 1 what `beyond` takes."""
+    taken, other = turns(cut, speeds), turns(beyond(cut), speeds)
+    true = speeds / (cut.variation.frequency * cut.period_angle)
+    return np.array(
+        [
+            (ratio * one.cycles - one.patterns) / (two.patterns - one.patterns)
+            for ratio, one, two in zip(true.tolist(), taken, other, strict=True)
+        ]
+    )
+
+
+def interpolated(
+    taken: list[NDArray[np.float64]], other: list[NDArray[np.float64]], place: NDArray[np.float64]
+) -> list[NDArray[np.float64]]:
+    """Crossings of every speed between two lists of them (places 0 and 1).
+
+    Where their numbers differ, those of the first.
+    """
+    return [
+        a + share * (b - a) if a.size == b.size else a
+        for a, b, share in zip(taken, other, place.tolist(), strict=True)
+    ]
