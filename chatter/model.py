@@ -201,10 +201,10 @@ class MillingModel:
             waves,
         )
         varied = case.cut.speed_variation
-        variation = SpeedVariation(0.0, 1.0, 0, 0.0, 0)
+        variation = SpeedVariation(0.0, 1.0, 0, 0.0, 0, 0)
         if varied is not None:
             variation = SpeedVariation(
-                varied.amplitude, varied.frequency, int(varied.shape == "triangle"), _TUNING, 0
+                varied.amplitude, varied.frequency, int(varied.shape == "triangle"), _TUNING, 0, 0
             )
         period = period_angle(self.cutter)
         return cut_arrays(self._modes, self.basis, pieces, period, variation, points, waves)

@@ -261,6 +261,9 @@ def cut_plan(cut, turn, layout, speed, depth):
             pieces, tops, reach, rule, basis, points, layout, turn, speed_factor, angle, sources,
             count, row, stiffness, dashpot, groups, part, part_dashpot,
         )  # fmt: skip
+    if turn.amplitude > 0.0:
+        # what falls on a point by chance would make structures differ
+        sources.point[:] = -1
     return (
         packed_structure(layout, first_source, sources.element, sources.point),
         packed_numbers(layout, stiffness, dashpot, sources.block, first_source[rows]),

@@ -21,7 +21,8 @@ from chatter.stability.spindle_turn import speed_at, time_at
 
 #: element lengths closer than this share are the same
 _SAME_LENGTH = 1e-9
-#: of more intervals than these the elements are counted in steps of the speed, in powers of two
+#: of more intervals than these, or where the speed varies, elements are counted in steps of the
+#: speed, in powers of two
 _FEW_INTERVALS = 12
 _STEP_OF_MANY = 0.25
 #: over so small an angle the speed is even, and a difference of times would be rounded, rad
@@ -72,8 +73,8 @@ def _longest_span(turn, tool_period, start, end):
 def element_counts(resolution, borders, turn, tool_period, speed, depth):
     """Elements (I,) that each interval needs at a mean speed (rad/s), in every tool period."""
     counts = np.empty(borders.engaged.shape[0], dtype=np.int64)
-    if counts.shape[0] > _FEW_INTERVALS:
-        # one of so many would change its number at every speed, and no plan could be shared
+    if counts.shape[0] > _FEW_INTERVALS or turn.amplitude > 0.0:
+        # one of so many would change its number at every speed, and nothing could be shared
         speed = speed_step(speed, _STEP_OF_MANY)
     waves = math.sqrt(1.0 + resolution.stiffening * depth / resolution.fastest**2)
     for i in range(counts.shape[0]):

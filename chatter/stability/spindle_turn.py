@@ -14,6 +14,10 @@ from chatter.kernels import INLINED_KERNEL, KERNEL
 _SMALL_STEP = 1e-9
 #: variations in a period
 _MOST_CYCLES = 40
+#: a variation so many times the least period long meets the teeth at phases enough by itself
+_FEW_SHARES = 2
+#: ratios closer than this share are the same
+_SAME_RATIO = 1e-9
 
 
 class SpeedVariation(NamedTuple):
@@ -23,7 +27,9 @@ class SpeedVariation(NamedTuple):
     frequency: float  # Hz
     triangle: int  # 1 for a triangle, 0 for a sine
     tuning: float  # by that share it may be taken faster or slower to fit into a period
-    beyond: int  # 1 for the whole number of tool periods next to the one that fits best
+    least_periods: int  # 0, or periods of the tool that a period holds at least, where it is one of
+    # two between which the true ratio lies
+    beyond: int  # 1 for the one of the two with more of them
 
 
 class SpindleTurn(NamedTuple):
@@ -39,6 +45,43 @@ class SpindleTurn(NamedTuple):
 
 #: at a constant speed, in mean angle
 STEADY_TURN = SpindleTurn(1.0, 0.0, 1.0, 0, 1, 1)
+
+
+@njit(**KERNEL)
+def _common_divisor(a, b):
+    """Greatest common divisor."""
+    while b > 0:
+        a, b = b, a % b
+    return a
+
+
+@njit(**KERNEL)
+def _beside_true_ratio(variation, speed, pattern, a_cycle):
+    """Turn with fewer or more tool periods in a period than the true ratio asks for.
+
+    Their number has no divisor in common with that of the variations: the teeth then meet the
+    variation at as many phases as there are variations. At a few phases alone, as with a whole
+    number of tool periods in a variation, growth is not that of a ratio next to it.
+    """
+    least = variation.least_periods
+    cycles = math.ceil(least / a_cycle)
+    if a_cycle < _FEW_SHARES * least:
+        cycles = max(2, cycles)
+    true = cycles * a_cycle
+    patterns = int(max(1.0, np.round(true)))
+    if abs(true - patterns) < _SAME_RATIO * true:
+        # it fits as it is
+        divisor = _common_divisor(patterns, cycles)
+        patterns, cycles = patterns // divisor, cycles // divisor
+    else:
+        # in steps, so that many speeds have like periods
+        step = max(1, math.floor(true / least))
+        patterns = step * (math.floor(true / step) + variation.beyond)
+        while _common_divisor(patterns, cycles) > 1 and patterns > 1:
+            patterns += step if variation.beyond == 1 else -step
+        patterns = max(1, patterns)
+    frequency = cycles * speed / (patterns * pattern)
+    return SpindleTurn(speed, variation.amplitude, frequency, variation.triangle, patterns, cycles)
 
 
 @njit(**KERNEL)
@@ -60,6 +103,8 @@ def spindle_turn(variation, speed, pattern):
     if variation.amplitude == 0.0:
         return SpindleTurn(speed, 0.0, 1.0, 0, 1, 1)
     a_cycle = speed / (variation.frequency * pattern)
+    if variation.least_periods > 0:
+        return _beside_true_ratio(variation, speed, pattern, a_cycle)
     best, best_error = 1, np.inf
     for cycles in range(1, _MOST_CYCLES + 1):
         whole = max(1.0, np.round(cycles * a_cycle))
@@ -68,10 +113,9 @@ def spindle_turn(variation, speed, pattern):
             best, best_error = cycles, error
         if best_error < variation.tuning:
             break
-    patterns = int(max(1.0, np.round(best * a_cycle)))
-    if variation.beyond == 1:
-        # on the other side of the true ratio
-        patterns += 1 if best * a_cycle > patterns or patterns == 1 else -1
+    # in steps, so that many speeds have like periods
+    step = max(1.0, np.floor(variation.tuning * best * a_cycle))
+    patterns = int(max(1.0, step * np.round(best * a_cycle / step)))
     frequency = best * speed / (patterns * pattern)
     return SpindleTurn(speed, variation.amplitude, frequency, variation.triangle, patterns, best)
 

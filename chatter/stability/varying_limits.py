@@ -25,13 +25,7 @@ from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.limit_search import limits_at
 from chatter.stability.moved_limits import moved_limits
 from chatter.stability.sweep import Progress
-from chatter.stability.varying_speed import (
-    LOOSE_TUNING,
-    beyond,
-    interpolated,
-    place_between,
-    tuned,
-)
+from chatter.stability.varying_speed import beside, interpolated, place_between, tuned
 
 #: Gauss points of an element and waves that it holds, one after the other until limits are good
 _RESOLUTIONS = ((6, 1.0), RESOLUTION, *FINER[:2])
@@ -45,10 +39,10 @@ _REACHES = (0.015, 0.06)
 #: limits are searched to this share of the largest error
 _SEARCHED = 0.2
 #: limits that are looked at again: with elements of so many points, and their length over that they
-#: had, and with the frequency moved by no more than this
-_CHECKED, _CHECK, _CHECK_TUNING = 8, (10, 0.3), 5e-4
-#: too large an error of the tuning asks for that much less of it
-_TIGHTER = 0.4
+#: had, and with periods of so many tool periods at the least
+_CHECKED, _CHECK, _CHECK_PERIODS = 8, (10, 0.3), 150
+#: tool periods in a period at the least, one after the other until limits are good
+_LEAST_PERIODS = (20, 40)
 
 _Crossings = list[NDArray[np.float64]]
 
@@ -80,52 +74,57 @@ def limits_of_varying_speed(
     crossings = followed_crossings(
         len(speeds), depths, rates_at(first, speeds), _FIRST_TOLERANCE, _STRIDE, progress
     )
-    resolutions, tuning = list(_RESOLUTIONS), LOOSE_TUNING
+    resolutions, periods = list(_RESOLUTIONS), list(_LEAST_PERIODS)
     while True:
-        cut = tuned(cut_at(*resolutions[0]), tuning)
-        crossings = _truly_varying(crossings, cut, speeds, depths, _SEARCHED * tolerance)
+        cut = cut_at(*resolutions[0])
+        pair = beside(cut, periods[0])
+        crossings = _between(crossings, pair, speeds, depths, _SEARCHED * tolerance)
         limits = np.array([found[0] if found.size else np.inf for found in crossings])
-        checked = checked_limits(cut, speeds, limits, _CHECKED)
-        of_elements = _error_of_elements(checked, cut, cut_at, resolutions[0])
-        of_tuning = checked.largest_error(
-            rates(tuned(cut, _CHECK_TUNING), checked.speed, checked.depth)
-        )
-        if of_elements + of_tuning <= tolerance:
+        checked = checked_limits(pair[0], speeds, limits, _CHECKED)
+        of_elements = _error_of_elements(checked, pair[0], cut_at, resolutions[0])
+        of_periods = checked.largest_error(_rates_between(beside(cut, _CHECK_PERIODS), checked))
+        if of_elements + of_periods <= tolerance:
             break
-        if of_tuning > of_elements and tuning > _CHECK_TUNING:
-            tuning *= _TIGHTER
-        elif len(resolutions) > 1:
+        if of_periods > of_elements and len(periods) > 1:
+            periods.pop(0)
+        elif of_elements >= of_periods and len(resolutions) > 1:
             resolutions.pop(0)
         else:
             break
-    heard = near_limits(cut, speeds)
-    steps = points_of_periods(cut, speeds, depths)
+    heard = near_limits(pair[0], speeds)
+    steps = points_of_periods(pair[0], speeds, depths)
     curve = limits_at(heard.nearest, speeds, crossings, steps)
-    return curve._replace(error=of_elements + of_tuning)
+    return curve._replace(error=of_elements + of_periods)
 
 
-def _truly_varying(
+def _between(
     crossings: _Crossings,
-    cut: CutArrays,
+    pair: tuple[CutArrays, CutArrays],
     speeds: NDArray[np.float64],
     depths: NDArray[np.float64],
     tolerance: float,
 ) -> _Crossings:
-    """Limits at the true frequency, between the two that fit into a period."""
-    taken, other = (
-        moved_limits(
-            crossings, fitted, speeds, depths, rates_at(fitted, speeds), tolerance, _REACHES
-        )
-        for fitted in (cut, beyond(cut))
+    """Limits at the true ratio, between those of the two beside it."""
+    fewer, more = (
+        moved_limits(crossings, cut, speeds, depths, rates_at(cut, speeds), tolerance, _REACHES)
+        for cut in pair
     )
-    return interpolated(taken, other, place_between(cut, speeds))
+    return interpolated(fewer, more, place_between(pair, speeds))
+
+
+def _rates_between(
+    pair: tuple[CutArrays, CutArrays], checked: CheckedLimits
+) -> NDArray[np.float64]:
+    """Growth at limits, at the true ratio."""
+    fewer, more = (rates(cut, checked.speed, checked.depth) for cut in pair)
+    return fewer + place_between(pair, checked.speed) * (more - fewer)
 
 
 def _error_of_elements(
     checked: CheckedLimits, cut: CutArrays, cut_at: CutAt, resolution: tuple[int, float]
 ) -> float:
     """Error that the elements leave, by far finer ones."""
-    finer = tuned(cut_at(_CHECK[0], _CHECK[1] * resolution[1]), cut.variation.tuning)
-    # limits lie between two tunings: each has growth there
+    finer = cut_at(_CHECK[0], _CHECK[1] * resolution[1])._replace(variation=cut.variation)
+    # the true ratio lies between two: each has growth there
     there = checked.speed, checked.depth
     return checked.largest_error(rates(finer, *there) - rates(cut, *there))

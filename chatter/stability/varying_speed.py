@@ -28,9 +28,17 @@ def tuned(cut: CutArrays, tuning: float) -> CutArrays:
     return cut._replace(variation=cut.variation._replace(tuning=tuning))
 
 
-def beyond(cut: CutArrays) -> CutArrays:
-    """The cut with as many tool periods in a period as lie on the other side of the true ratio."""
-    return cut._replace(variation=cut.variation._replace(beyond=1))
+def beside(cut: CutArrays, least_periods: int) -> tuple[CutArrays, CutArrays]:
+    """The cut with periods of fewer and of more tool periods than the true ratio asks for.
+
+    Parameters
+    ----------
+    cut : CutArrays
+    least_periods : int
+        Tool periods in a period at the least.
+    """
+    fewer = cut.variation._replace(least_periods=least_periods, beyond=0)
+    return cut._replace(variation=fewer), cut._replace(variation=fewer._replace(beyond=1))
 
 
 def turns(cut: CutArrays, speeds: NDArray[np.float64]) -> list[SpindleTurn]:
@@ -45,16 +53,15 @@ def tool_periods(cut: CutArrays, speeds: NDArray[np.float64]) -> NDArray[np.floa
     return np.array([float(turn.patterns) for turn in turns(cut, speeds)])
 
 
-def place_between(cut: CutArrays, speeds: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Where the true ratio (n,) lies: 0 is what the cut takes, 1 what `beyond` takes."""
-    taken, other = turns(cut, speeds), turns(beyond(cut), speeds)
-    true = speeds / (cut.variation.frequency * cut.period_angle)
-    return np.array(
-        [
-            (ratio * one.cycles - one.patterns) / (two.patterns - one.patterns)
-            for ratio, one, two in zip(true.tolist(), taken, other, strict=True)
-        ]
+def place_between(
+    pair: tuple[CutArrays, CutArrays], speeds: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Where the true ratio (n,) lies: 0 is what the first of the two takes, 1 the second."""
+    fewer, more = (
+        np.array([turn.patterns / turn.cycles for turn in turns(cut, speeds)]) for cut in pair
     )
+    true = speeds / (pair[0].variation.frequency * pair[0].period_angle)
+    return np.where(more > fewer, (true - fewer) / np.where(more > fewer, more - fewer, 1.0), 0.0)
 
 
 def interpolated(
