@@ -21,7 +21,7 @@ from chatter.stability.following import followed_crossings
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.limit_search import HeardPoints, growth, limits_at
 from chatter.stability.multiplier import Multiplier
-from chatter.stability.sweep import Progress, no_progress, sweep, worker_count
+from chatter.stability.sweep import Progress, kept_threads, no_progress, sweep, worker_count
 from chatter.stability.varying_speed import tool_periods, turns, varies
 
 #: resolutions of a single point, one after the other until two agree
@@ -198,10 +198,11 @@ def limit_curve(
     growth_at = rates_at(cut, speeds)
     # over the long periods of a varying speed listening costs more than a point does
     refined = growth_at if varies(cut) else heard.growth
-    crossings = followed_crossings(
-        len(speeds), depths, growth_at, tolerance, stride, progress, refined
-    )
-    return limits_at(heard.nearest, speeds, crossings, points_of_periods(cut, speeds, depths))
+    with kept_threads():
+        crossings = followed_crossings(
+            len(speeds), depths, growth_at, tolerance, stride, progress, refined
+        )
+        return limits_at(heard.nearest, speeds, crossings, points_of_periods(cut, speeds, depths))
 
 
 def rates_at(cut: CutArrays, speeds: NDArray[np.float64]) -> Growth:

@@ -76,6 +76,8 @@ def _beside_true_ratio(variation, speed, pattern, a_cycle):
     else:
         # in steps, so that many speeds have like periods
         step = max(1, math.floor(true / least))
+        while _common_divisor(step, cycles) > 1:
+            step -= 1
         patterns = step * (math.floor(true / step) + variation.beyond)
         while _common_divisor(patterns, cycles) > 1 and patterns > 1:
             patterns += step if variation.beyond == 1 else -step

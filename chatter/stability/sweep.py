@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from typing import TypeVar
 
@@ -25,7 +25,7 @@ def no_progress(done: int, total: int) -> None:
     """Report nothing."""
 
 
-#: of a thread that other tasks run beside
+#: of a thread: whether other tasks run beside it, and the pool that its sweeps share
 _alone = threading.local()
 
 
@@ -37,6 +37,31 @@ def one_thread() -> Iterator[None]:
         yield
     finally:
         _alone.wanted = False
+
+
+@contextmanager
+def kept_threads() -> Iterator[None]:
+    """Let sweeps of this thread share their threads: starting some for each costs a millisecond."""
+    if getattr(_alone, "pool", None) is not None:
+        yield
+        return
+    with ThreadPoolExecutor(max_workers=worker_count()) as pool:
+        _alone.pool = pool
+        try:
+            yield
+        finally:
+            _alone.pool = None
+
+
+@contextmanager
+def _threads() -> Iterator[ThreadPoolExecutor]:
+    """Threads for one sweep."""
+    kept = getattr(_alone, "pool", None)
+    if kept is not None:
+        yield kept
+        return
+    with ThreadPoolExecutor(max_workers=worker_count()) as pool:
+        yield pool
 
 
 def worker_count() -> int:
@@ -84,13 +109,16 @@ def sweep(
         results.append(function(chunks[0]))
         progress(count, count)
         return results
-    with ThreadPoolExecutor(max_workers=worker_count()) as pool:
+    with _threads() as pool:
         futures = [pool.submit(function, chunk) for chunk in chunks]
         try:
             for chunk, future in zip(chunks, futures, strict=True):
                 results.append(future.result())
                 progress(int(chunk[-1]) + 1, count)
         except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
+            for future in futures:
+                future.cancel()
+            # those that run use arrays of the caller
+            wait(futures)
             raise
     return results

@@ -1,0 +1,110 @@
+"""Limits under a varying speed: periods that nearly fit, and limits between two of them."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from chatter.case import Case
+from chatter.model import milling_model
+from chatter.stability.collocation import rates
+from chatter.stability.spindle_turn import SpeedVariation, angle_at, spindle_turn, time_at
+from chatter.stability.varying_limits import limits_of_varying_speed
+from chatter.stability.varying_speed import tuned
+
+TOOTH = math.pi / 2.0
+
+
+@given(
+    ratio=st.floats(0.02, 600.0),
+    least=st.sampled_from([20, 40, 150]),
+    near=st.sampled_from([None, 1.0, 1.0 + 1e-6, 1.0 - 1e-4]),
+)
+@settings(max_examples=300, deadline=None)
+def test_the_true_ratio_lies_between_two_that_meet_the_teeth_at_all_phases(ratio, least, near):
+    if near:
+        ratio = max(1, round(ratio)) * near
+    speed = 300.0
+    variation = SpeedVariation(0.1, speed / (ratio * TOOTH), 0, 1e-3, least, 0)
+    fewer = spindle_turn(variation, speed, TOOTH)
+    more = spindle_turn(variation._replace(beyond=1), speed, TOOTH)
+    for turn in (fewer, more):
+        assert turn.patterns >= 1
+        assert math.gcd(turn.patterns, turn.cycles) == 1
+        assert turn.frequency * turn.patterns * TOOTH == pytest.approx(turn.cycles * speed)
+    low, high = (turn.patterns / turn.cycles for turn in (fewer, more))
+    if near == 1.0:
+        assert low == high == pytest.approx(ratio)
+    else:
+        assert low <= ratio * (1.0 + 1e-9) or fewer.patterns == 1
+        assert high >= ratio * (1.0 - 1e-9)
+        assert more.patterns >= least or low == high
+
+
+@pytest.mark.parametrize("triangle", [0, 1])
+@pytest.mark.parametrize("amplitude", [0.02, 0.3, 0.9])
+def test_time_and_angle_are_inverse(triangle, amplitude):
+    turn = spindle_turn(SpeedVariation(amplitude, 7.0, triangle, 1e-3, 0, 0), 200.0, TOOTH)
+    for angle in np.linspace(-3.0, 40.0, 301):
+        assert angle_at(turn, time_at(turn, angle)) == pytest.approx(angle, abs=1e-12)
+
+
+def varied(frequency, shape):
+    def mode(hertz, damping, stiffness, direction):
+        return {
+            "frequency": hertz,
+            "damping": damping,
+            "stiffness": stiffness,
+            "direction": direction,
+        }
+
+    return Case.from_dict(
+        {
+            "tool": {"teeth": 4, "diameter": "16 mm", "helix": "30 deg"},
+            "material": {"Ktc": "1800 MPa", "Krc": "700 MPa", "Kac": "200 MPa"},
+            "cut": {
+                "mode": "down",
+                "spindle_speed": "2000 rpm",
+                "feed_per_tooth": "0.08 mm",
+                "axial_depth": "2 mm",
+                "radial_depth": "8 mm",
+                "speed_variation": {"amplitude": 0.1, "frequency": frequency, "shape": shape},
+            },
+            "structure": {
+                "mode": [mode(900.0, 0.02, 2e7, [1, 0, 0]), mode(1010.0, 0.03, 2.2e7, [0, 1, 0])]
+            },
+        }
+    )
+
+
+def off_at(ratio, shape):
+    """Stated error of a limit, and what a period that fits the true ratio says of it."""
+    speed = 200.0
+    model = milling_model(varied(speed / (ratio * TOOTH), shape))
+    found = limits_of_varying_speed(
+        lambda points, waves: model.cut(4e-3, points, waves),
+        np.array([speed]),
+        np.linspace(0.0, 4e-3, 21)[1:],
+        lambda done, total: None,
+        1e-3,
+    )
+    limit = found.critical_depth[0]
+    fitting = tuned(model.cut(4e-3, 8, 1.0), 1e-6)
+    at = [rates(fitting, np.array([speed]), np.array([limit * by]))[0] for by in (0.98, 1.0, 1.02)]
+    assert at[0] < 0.0 < at[2]
+    return found.error, abs(at[1]) / ((at[2] - at[0]) / 0.04)
+
+
+@pytest.mark.parametrize("shape", ["triangle", "sine"])
+def test_limits_are_those_of_a_period_that_fits(shape):
+    """Next to ten tool periods a variation, growth is not that of just ten of them.
+
+    In narrow windows of the ratio twice the chatter frequency is a combination of tooth passing and
+    variation, and growth a little larger (9.955 to 9.98 for the triangle): of 6 ratios, 5.
+    """
+    ratios = [9 + 15 / 16, 10 + 1 / 16, 10.2, 12 + 5 / 13, 13 + 3 / 8, 16 + 3 / 17]
+    stated, off = np.array([off_at(ratio, shape) for ratio in ratios]).T
+    assert np.count_nonzero(off < np.maximum(1.5 * stated, 3e-4)) >= 5
+    assert np.all(off < 5e-3)
