@@ -23,7 +23,7 @@ from chatter.kernels import KERNEL
 from chatter.stability.cut_arrays import CutArrays
 from chatter.stability.matrix_free_answer import PLACES
 from chatter.stability.spindle_turn import angle_at, time_at
-from cutting.edge_coupling import chip_at, part_below, share_of_height
+from cutting.edge_coupling import chip_vanishes, part_below, share_of_height
 
 #: borders closer than this share of the period are the same
 _SAME = 1e-10
@@ -33,7 +33,7 @@ _DRAWN, _DRAWN_ROOT = 6, 3
 _FLAT = 0.5
 #: power for a root: f dt/ds is like s^2
 _POWER_OF_ROOT = 2.0
-#: a chip has as good as vanished below this share of the feed
+#: the slope of a size effect is infinite, or nearly, where the chip is below this share of the feed
 _THIN = 0.1
 #: sides of a border on which a chip vanishes, and on which engagement is a root of the time
 _BEFORE, _AFTER, _ROOT_BEFORE, _ROOT_AFTER = 1, 2, 4, 8
@@ -61,19 +61,6 @@ class Steps(NamedTuple):
     power: NDArray[np.float64]  # (N,)
     low: NDArray[np.float64]  # (N,)
     high: NDArray[np.float64]  # (N,)
-
-
-@njit(**KERNEL)
-def _is_thin(pieces, piece, place, immersion):
-    """Tell whether the slope of the force law is infinite, or nearly, at the border of an arc."""
-    low, high = pieces.immersion[piece, 0], pieces.immersion[piece, 1]
-    kappa = low + place * (high - low)
-    # at the very tip of a corner the chip is nothing at any angle
-    sk = max(math.sin(kappa), 1e-9)
-    height = share_of_height(pieces, piece, place)
-    chip = chip_at(pieces, piece, place, height, math.sin(immersion), sk, math.cos(kappa))
-    thin = chip < _THIN * sk * pieces.feed * pieces.delay[piece, 0]
-    return thin and pieces.exponent != 0.0
 
 
 @njit(**KERNEL)
@@ -141,7 +128,8 @@ def _border_angles(cut, depth):
                 angle = immersed - lag
                 angles[count] = angle - period * math.floor(angle / period)
                 sides[count] = _sides_of_root(pieces, piece, side, end)
-                if _is_thin(pieces, piece, place, immersed):
+                sized = pieces.exponent != 0.0
+                if sized and chip_vanishes(pieces, piece, place, immersed, _THIN):
                     # a place that enters is in the cut after it, one that leaves before; where the
                     # edge is flat, what is left of it next to it counts too
                     turned_round = pieces.turning[piece, end] == 1
