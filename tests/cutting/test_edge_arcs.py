@@ -43,6 +43,20 @@ def test_pieces_of_a_cone_have_the_mean_of_its_arc(mode, angle_deg, share):
     assert found == pytest.approx(exact, rel=2e-5)
 
 
+@pytest.mark.parametrize("top_over_tip", [10.0, 1000.0])
+def test_a_cone_far_wider_at_its_top_takes_few_pieces(top_over_tip):
+    """A chamfer mill or a nearly flat insert: each piece widens by a share of its own radius."""
+    width = 0.8 * RADIUS
+    angle = math.atan(DEPTH / (top_over_tip - 1.0) / RADIUS)
+    pieces = pieces_of(width, edge_angle=angle)
+    found = np.sum(pieces.length * (pieces.exit - pieces.entry).mean(axis=1))
+    exact = arc_along_the_edge(
+        width, lambda x: RADIUS + x * DEPTH / math.tan(angle), DEPTH / math.sin(angle)
+    )
+    assert found == pytest.approx(exact, rel=2e-5)
+    assert pieces.bottom.size < 100 * math.log(top_over_tip)
+
+
 def test_pieces_of_a_corner_have_the_mean_of_its_arc():
     corner, width = 2e-3, 9e-3
     pieces = pieces_of(width, corner_radius=corner)
