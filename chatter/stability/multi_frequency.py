@@ -20,6 +20,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from chatter.errors import RunError
 from chatter.kernels import DRIVER, KERNEL
 from chatter.stability.crossings import find_crossings
 from chatter.stability.cut_arrays import CutArrays
@@ -30,13 +31,19 @@ from cutting.edge_coupling import coupling_at, part_below, radius_at, share_of_h
 #: harmonics reach this far beyond the highest resonance
 _REACH = 4.0
 _FEWEST, _MOST = 3, 60
+#: or no less than this far where so many are not enough: limits are then good to 0.2 %
+_LEAST_REACH = 1.0
 #: largest turn of the determinant from one frequency to the next, rad, and the finest step
 _LARGEST_TURN = 0.7
 _FEWEST_LINES = 24
 _FINEST = 1e-7
 #: a limit is found when its bracket is this small, relative to the depth
 _DEPTH_TOLERANCE = 1e-4
-_SAME_DELAY = 4e-3
+#: delays vary by no more than this along a part of a piece, and differ by more to be two, rad
+_SAME_DELAY, _ONE_DELAY = 4e-3, 1e-9
+_MOST_PARTS = 48
+#: phase of the highest order along a part up to which two Gauss points do, and three, rad
+_SHORT_PART, _LONG_PART = 0.5, 1.5
 
 
 class FrequencyResponse(NamedTuple):
@@ -52,6 +59,93 @@ class Harmonics(NamedTuple):
     delay: NDArray[np.float64]  # rad (g,)
     stiffness: NDArray[np.complex128]  # N/m (g, 2K + 1, r, r)
     dashpot: NDArray[np.complex128]  # N s/m times the spindle speed (2K + 1, r, r)
+
+
+@njit(**KERNEL)
+def _parts(pieces, piece, top, highest):
+    """Parts of a piece along the edge, each of one delay, that the highest order resolves."""
+    varies = abs(pieces.delay[piece, 1] - pieces.delay[piece, 0])
+    turned = abs(pieces.angle[piece, 1] - pieces.angle[piece, 0])
+    return min(1 + int(varies / _SAME_DELAY) + int(turned * top * highest / 6.0), _MOST_PARTS)
+
+
+@njit(**KERNEL)
+def _points_along(pieces, piece, top, parts, highest):
+    """Gauss points along a part: two or three do where it is short for the highest order."""
+    turned = abs(pieces.angle[piece, 1] - pieces.angle[piece, 0])
+    widened = max(
+        abs(pieces.entry[piece, 1] - pieces.entry[piece, 0]),
+        abs(pieces.exit[piece, 1] - pieces.exit[piece, 0]),
+    )
+    phase = highest * (turned + widened) * top / parts
+    if pieces.exponent != 0.0 or phase > _LONG_PART:
+        return 6
+    return 2 if phase < _SHORT_PART else 3
+
+
+@njit(**KERNEL)
+def _delay_at(pieces, piece, place):
+    """Angle since the pass that left the surface at a place along a piece, rad."""
+    first, last = pieces.delay[piece, 0], pieces.delay[piece, 1]
+    return first + share_of_height(pieces, piece, place) * (last - first)
+
+
+@njit(**KERNEL)
+def _distinct_delays(pieces, depth, highest):
+    """Delays of all parts down to a depth, each once, ascending, rad."""
+    count = 0
+    for piece in range(pieces.bottom.shape[0]):
+        count += _parts(pieces, piece, 1.0, highest)
+    delays = np.empty(count)
+    count = 0
+    for piece in range(pieces.bottom.shape[0]):
+        top = part_below(pieces, piece, depth)
+        if top <= 0.0:
+            continue
+        parts = _parts(pieces, piece, top, highest)
+        for share in range(parts):
+            delays[count] = _delay_at(pieces, piece, top * (share + 0.5) / parts)
+            count += 1
+    delays = np.sort(delays[:count])
+    used = min(1, count)
+    for i in range(1, count):
+        if delays[i] - delays[used - 1] > _ONE_DELAY:
+            delays[used] = delays[i]
+            used += 1
+    return delays[:used].copy()
+
+
+@njit(**KERNEL)
+def _add_harmonics(cut, piece, place, length, speed_factor, orders, stiffness, dashpot):
+    """Add those of a place along a piece that stands for a length of edge, m."""
+    pieces = cut.pieces
+    rank = cut.shape.shape[1]
+    base = 2.0 * math.pi / cut.period_angle
+    part, part_dashpot = np.empty((rank, rank)), np.empty((rank, rank))
+    entry, leave = pieces.entry[piece, 0], pieces.exit[piece, 0]
+    entry += place * (pieces.entry[piece, 1] - entry)
+    leave += place * (pieces.exit[piece, 1] - leave)
+    turned = pieces.angle[piece, 1] - pieces.angle[piece, 0]
+    at = pieces.angle[piece, 0] + share_of_height(pieces, piece, place) * turned
+    spans = 1 + int((leave - entry) * orders * base / 8.0)
+    for span in range(spans):
+        for q in range(12):
+            x = (span + cut.edge_place[12, q]) / spans
+            spindle = entry + x * (leave - entry) - at
+            weight = cut.edge_weight[12, q] / spans * (leave - entry)
+            weight *= length / (2.0 * math.pi)
+            coupling_at(
+                pieces, piece, place, spindle, weight, speed_factor, cut.basis, part, part_dashpot
+            )
+            turn = np.exp(-1j * base * spindle)
+            wave = np.exp(1j * base * spindle * orders)
+            for k in range(2 * orders + 1):
+                for i in range(rank):
+                    for j in range(rank):
+                        stiffness[k, i, j] += wave * part[i, j]
+                        if speed_factor > 0.0:
+                            dashpot[k, i, j] += wave * part_dashpot[i, j]
+                wave *= turn
 
 
 @njit(**DRIVER)
@@ -72,69 +166,27 @@ def harmonics_at(cut, depth, orders):
     """
     pieces = cut.pieces
     rank = cut.shape.shape[1]
-    capacity = 48 * pieces.bottom.shape[0] + 1
-    delays = np.zeros(capacity)
-    stiffness = np.zeros((capacity, 2 * orders + 1, rank, rank), dtype=np.complex128)
+    highest = orders * 2.0 * math.pi / cut.period_angle
+    delays = _distinct_delays(pieces, depth, highest)
+    stiffness = np.zeros((delays.size, 2 * orders + 1, rank, rank), dtype=np.complex128)
     dashpot = np.zeros((2 * orders + 1, rank, rank), dtype=np.complex128)
-    part, part_dashpot = np.empty((rank, rank)), np.empty((rank, rank))
     speed_factor = 1.0 / radius_at(pieces, depth) if pieces.damping[1] > 0.0 else 0.0
-    base = 2.0 * math.pi / cut.period_angle
-    used = 0
     for piece in range(pieces.bottom.shape[0]):
         top = part_below(pieces, piece, depth)
         if top <= 0.0:
             continue
-        varies = abs(pieces.delay[piece, 1] - pieces.delay[piece, 0])
-        turned = pieces.angle[piece, 1] - pieces.angle[piece, 0]
-        # parts along the edge, each of one delay, that the highest order resolves
-        parts = 1 + int(varies / _SAME_DELAY) + int(abs(turned) * top * orders * base / 6.0)
-        parts = min(parts, 48)
+        parts = _parts(pieces, piece, top, highest)
+        points = _points_along(pieces, piece, top, parts, highest)
         for share in range(parts):
-            place = top * (share + 0.5) / parts
-            height = share_of_height(pieces, piece, place)
-            delay = pieces.delay[piece, 0] + height * (
-                pieces.delay[piece, 1] - pieces.delay[piece, 0]
-            )
-            own = -1
-            for g in range(used):
-                if abs(delays[g] - delay) < 1e-9:
-                    own = g
-            if own < 0:
-                own = used
-                delays[own] = delay
-                used += 1
-            for along in range(6):
-                place = top * (share + cut.edge_place[6, along]) / parts
-                height = share_of_height(pieces, piece, place)
-                length = pieces.length[piece] * top / parts * cut.edge_weight[6, along]
-                entry = pieces.entry[piece, 0] + place * (
-                    pieces.entry[piece, 1] - pieces.entry[piece, 0]
+            delay = _delay_at(pieces, piece, top * (share + 0.5) / parts)
+            own = max(0, np.searchsorted(delays, delay, side="right") - 1)
+            for along in range(points):
+                place = top * (share + cut.edge_place[points, along]) / parts
+                length = pieces.length[piece] * top / parts * cut.edge_weight[points, along]
+                _add_harmonics(
+                    cut, piece, place, length, speed_factor, orders, stiffness[own], dashpot
                 )
-                leave = pieces.exit[piece, 0] + place * (
-                    pieces.exit[piece, 1] - pieces.exit[piece, 0]
-                )
-                at = pieces.angle[piece, 0] + height * turned
-                spans = 1 + int((leave - entry) * orders * base / 8.0)
-                for span in range(spans):
-                    for q in range(12):
-                        x = (span + cut.edge_place[12, q]) / spans
-                        spindle = entry + x * (leave - entry) - at
-                        weight = cut.edge_weight[12, q] / spans * (leave - entry)
-                        weight *= length / (2.0 * math.pi)
-                        coupling_at(
-                            pieces, piece, place, spindle, weight, speed_factor, cut.basis,
-                            part, part_dashpot,
-                        )  # fmt: skip
-                        turn = np.exp(-1j * base * spindle)
-                        wave = np.exp(1j * base * spindle * orders)
-                        for k in range(2 * orders + 1):
-                            for i in range(rank):
-                                for j in range(rank):
-                                    stiffness[own, k, i, j] += wave * part[i, j]
-                                    if speed_factor > 0.0:
-                                        dashpot[k, i, j] += wave * part_dashpot[i, j]
-                            wave *= turn
-    return Harmonics(delays[:used], stiffness[:used], dashpot)
+    return Harmonics(delays, stiffness, dashpot)
 
 
 @njit(**KERNEL)
@@ -168,15 +220,20 @@ def _loop(response, harmonics, speed, base, omega, count, matrix):
     receptance = np.empty((rank, rank), dtype=np.complex128)
     coupling = np.empty((rank, rank), dtype=np.complex128)
     size = 2 * count + 2
-    matrix[:, :] = 0.0
+    factor = np.empty(harmonics.delay.shape[0], dtype=np.complex128)
     for m in range(size):
         w = omega + (m - count - 1) * base
+        for g in range(factor.shape[0]):
+            factor[g] = 1.0 - np.exp(-1j * w * harmonics.delay[g] / speed)
         for l in range(size):  # noqa: E741
             k = l - m + orders
-            coupling[:, :] = harmonics.dashpot[k] * (1j * w / speed)
-            for g in range(harmonics.delay.shape[0]):
-                factor = 1.0 - np.exp(-1j * w * harmonics.delay[g] / speed)
-                coupling += factor * harmonics.stiffness[g, k]
+            for i in range(rank):
+                for j in range(rank):
+                    coupling[i, j] = harmonics.dashpot[k, i, j] * (1j * w / speed)
+            for g in range(factor.shape[0]):
+                for i in range(rank):
+                    for j in range(rank):
+                        coupling[i, j] += factor[g] * harmonics.stiffness[g, k, i, j]
             for i in range(rank):
                 for j in range(rank):
                     matrix[l * rank + i, m * rank + j] = coupling[i, j]
@@ -276,8 +333,22 @@ def heard_frequency(response, harmonics, speed, base, count, lines):
 def harmonic_counts(
     highest: float, period_angle: float, speeds: NDArray[np.float64]
 ) -> NDArray[np.int64]:
-    """Harmonics on either side (n,) that reach beyond the highest resonance (rad/s)."""
+    """Harmonics on either side (n,) that reach beyond the highest resonance (rad/s).
+
+    Raises
+    ------
+    RunError
+        If they cannot at a speed.
+    """
     base = 2.0 * np.pi / period_angle * np.asarray(speeds)
+    slowest = float(base.min())
+    if _LEAST_REACH * highest > _MOST * slowest:
+        raise RunError(
+            f"at {float(np.min(speeds)) * 30.0 / np.pi:.4g} rpm the cut repeats itself "
+            f"{slowest / (2.0 * np.pi):.3g} times a second and modes reach up to "
+            f"{highest / (2.0 * np.pi):.4g} Hz; the {_MOST} harmonics of the multi-frequency "
+            'solution do not: raise the lowest spindle speed, or take "collocation"'
+        )
     return np.clip(np.ceil(_REACH * highest / base), _FEWEST, _MOST).astype(np.int64)
 
 
@@ -300,12 +371,16 @@ def limit_curve(
     depths : (m,) array of float
         Net, m.
     progress : callable, optional
-        Called with (done, total) points of the net.
+        Called with (done, total) depths of the net.
+
+    Raises
+    ------
+    RunError
+        If the harmonics do not reach up to the highest mode; see `harmonic_counts`.
     """
     counts = harmonic_counts(cut.resolution.fastest, cut.period_angle, speeds)
     orders = 2 * int(counts.max()) + 1
     base = 2.0 * np.pi / cut.period_angle * speeds
-    at_net = [harmonics_at(cut, float(depth), orders) for depth in depths]
 
     def verdict(speed: int, harmonics: Harmonics) -> float:
         # the coefficients of the orders that this speed needs
@@ -317,11 +392,15 @@ def limit_curve(
             response, _up_to(harmonics, 2 * count + 1), speeds[speed], base[speed], count
         )
 
-    def chunk(index: NDArray[np.int64]) -> list[float]:
-        return [verdict(int(i) // len(depths), at_net[int(i) % len(depths)]) for i in index]
+    def at_depths(index: NDArray[np.int64]) -> list[list[float]]:
+        return [
+            [verdict(speed, harmonics) for speed in range(len(speeds))]
+            for harmonics in (harmonics_at(cut, float(depths[i]), orders) for i in index)
+        ]
 
-    total = len(speeds) * len(depths)
-    net = np.array([v for part in sweep(chunk, total, progress) for v in part])
+    # the coefficients of one depth at a time: a tool of many delays has a good many of them
+    rows = sweep(at_depths, len(depths), progress, points_a_chunk=1)
+    net = np.array([row for part in rows for row in part]).T
 
     def growth(index: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
         def some(places: NDArray[np.int64]) -> list[float]:
@@ -333,7 +412,7 @@ def limit_curve(
 
         return np.array([v for part in sweep(some, len(index), points_a_chunk=4) for v in part])
 
-    crossings = find_crossings(net.reshape(len(speeds), -1), depths, growth, _DEPTH_TOLERANCE)
+    crossings = find_crossings(net, depths, growth, _DEPTH_TOLERANCE)
     first = np.array([found[0] if found.size else np.inf for found in crossings])
     frequency, kind = np.full(len(speeds), np.nan), ["none"] * len(speeds)
     for i in np.flatnonzero(np.isfinite(first)):
