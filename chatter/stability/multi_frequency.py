@@ -116,17 +116,23 @@ def _distinct_delays(pieces, depth, highest):
 
 
 @njit(**KERNEL)
-def _add_harmonics(cut, piece, place, length, speed_factor, orders, stiffness, dashpot):
-    """Add those of a place along a piece that stands for a length of edge, m."""
-    pieces = cut.pieces
-    rank = cut.shape.shape[1]
-    base = 2.0 * math.pi / cut.period_angle
-    part, part_dashpot = np.empty((rank, rank)), np.empty((rank, rank))
+def _arc_at(pieces, piece, place):
+    """Entry and exit at a place along a piece, and its angle on the tool, rad."""
     entry, leave = pieces.entry[piece, 0], pieces.exit[piece, 0]
     entry += place * (pieces.entry[piece, 1] - entry)
     leave += place * (pieces.exit[piece, 1] - leave)
     turned = pieces.angle[piece, 1] - pieces.angle[piece, 0]
-    at = pieces.angle[piece, 0] + share_of_height(pieces, piece, place) * turned
+    return entry, leave, pieces.angle[piece, 0] + share_of_height(pieces, piece, place) * turned
+
+
+@njit(**KERNEL)
+def _add_by_quadrature(cut, piece, place, length, speed_factor, orders, stiffness, dashpot):
+    """Add the coefficients of a place along a piece that stands for a length of edge, m."""
+    pieces = cut.pieces
+    rank = cut.shape.shape[1]
+    base = 2.0 * math.pi / cut.period_angle
+    part, part_dashpot = np.empty((rank, rank)), np.empty((rank, rank))
+    entry, leave, at = _arc_at(pieces, piece, place)
     spans = 1 + int((leave - entry) * orders * base / 8.0)
     for span in range(spans):
         for q in range(12):
@@ -146,6 +152,44 @@ def _add_harmonics(cut, piece, place, length, speed_factor, orders, stiffness, d
                         if speed_factor > 0.0:
                             dashpot[k, i, j] += wave * part_dashpot[i, j]
                 wave *= turn
+
+
+@njit(**KERNEL)
+def _add_exactly(cut, piece, place, length, speed_factor, orders, stiffness, dashpot):
+    """Do the same where the force is linear in the chip.
+
+    The coupling is then a trigonometric polynomial of the second degree in the immersion angle:
+    five samples of it give its terms, and the integral of each against a wave is known.
+    """
+    pieces = cut.pieces
+    rank = cut.shape.shape[1]
+    base = 2.0 * math.pi / cut.period_angle
+    part, part_dashpot = np.empty((rank, rank)), np.empty((rank, rank))
+    terms = np.zeros((2, 5, rank, rank), dtype=np.complex128)
+    entry, leave, at = _arc_at(pieces, piece, place)
+    for sample in range(5):
+        phi = 0.4 * math.pi * sample
+        coupling_at(
+            pieces, piece, place, phi - at, length / (2.0 * math.pi), speed_factor, cut.basis,
+            part, part_dashpot,
+        )  # fmt: skip
+        for n in range(5):
+            wave = np.exp(-1j * (n - 2) * phi) / 5.0
+            terms[0, n] += wave * part
+            if speed_factor > 0.0:
+                terms[1, n] += wave * part_dashpot
+    middle, half = 0.5 * (entry + leave), 0.5 * (leave - entry)
+    for k in range(2 * orders + 1):
+        order = (k - orders) * base
+        for n in range(5):
+            rest = n - 2 - order
+            size = 2.0 * half if abs(rest) < 1e-9 else 2.0 * math.sin(rest * half) / rest
+            wave = size * np.exp(1j * (rest * middle + order * at))
+            for i in range(rank):
+                for j in range(rank):
+                    stiffness[k, i, j] += wave * terms[0, n, i, j]
+                    if speed_factor > 0.0:
+                        dashpot[k, i, j] += wave * terms[1, n, i, j]
 
 
 @njit(**DRIVER)
@@ -183,7 +227,12 @@ def harmonics_at(cut, depth, orders):
             for along in range(points):
                 place = top * (share + cut.edge_place[points, along]) / parts
                 length = pieces.length[piece] * top / parts * cut.edge_weight[points, along]
-                _add_harmonics(
+                if pieces.exponent == 0.0:
+                    _add_exactly(
+                        cut, piece, place, length, speed_factor, orders, stiffness[own], dashpot
+                    )
+                    continue
+                _add_by_quadrature(
                     cut, piece, place, length, speed_factor, orders, stiffness[own], dashpot
                 )
     return Harmonics(delays, stiffness, dashpot)
