@@ -37,6 +37,8 @@ _POWER_OF_ROOT = 2.0
 _THIN = 0.1
 #: sides of a border on which a chip vanishes, and on which engagement is a root of the time
 _BEFORE, _AFTER, _ROOT_BEFORE, _ROOT_AFTER = 1, 2, 4, 8
+#: borders closer than this share of a step are as good as one
+_NEAR = 0.3
 #: a step turns the spindle by no more than this over the steps a wave, rad
 _ANGLE_A_WAVE = 3.0
 
@@ -233,18 +235,37 @@ def _drawn_out(pieces, sides, thin, root):
 
 
 @njit(**KERNEL)
-def _plain_counts(cut, turn, depth, borders, steps_a_wave):
-    """Steps (I,) that each interval between borders needs."""
+def _plain_steps(cut, turn, depth, borders, steps_a_wave):
+    """Steps (I,) that each interval between borders needs, not rounded."""
     arrays = cut.arrays
     stiffened = cut.fastest**2 + arrays.resolution.stiffening * depth
     longest = 2.0 * math.pi / (steps_a_wave * math.sqrt(stiffened))
-    counts = np.empty(borders.shape[0] - 1, dtype=np.int64)
-    for i in range(counts.shape[0]):
+    need = np.empty(borders.shape[0] - 1)
+    for i in range(need.shape[0]):
         turned = angle_at(turn, borders[i + 1]) - angle_at(turn, borders[i])
-        need = (borders[i + 1] - borders[i]) / longest
-        need = max(need, turned * steps_a_wave / _ANGLE_A_WAVE)
-        counts[i] = max(1, math.ceil(need - 1e-9))
-    return counts
+        need[i] = (borders[i + 1] - borders[i]) / longest
+        need[i] = max(need[i], turned * steps_a_wave / _ANGLE_A_WAVE)
+    return need
+
+
+@njit(**KERNEL)
+def _pass_on(sides, need):
+    """Let a border next to a singular one be singular, too, on the side away from it.
+
+    On the scale of a step both are at the same place: as where an edge begins to leave within its
+    length, and a moment later its top leaves.
+    """
+    last = need.shape[0]
+    for _ in range(2):
+        for i in range(last):
+            if need[i] < _NEAR:
+                sides[i + 1] |= sides[i] & (_AFTER | _ROOT_AFTER)
+        for i in range(last - 1, -1, -1):
+            if need[i] < _NEAR:
+                sides[i] |= sides[i + 1] & (_BEFORE | _ROOT_BEFORE)
+        # the end of a period is its beginning
+        sides[0] |= sides[last]
+        sides[last] = sides[0]
 
 
 @njit(**KERNEL)
@@ -267,7 +288,9 @@ def period_steps(cut, turn, depth, steps_a_wave, refinement):
     Steps
     """
     borders, sides = _border_times(cut.arrays, turn, depth)
-    counts = _plain_counts(cut, turn, depth, borders, steps_a_wave)
+    need = _plain_steps(cut, turn, depth, borders, steps_a_wave)
+    _pass_on(sides, need)
+    counts = np.maximum(1, np.ceil(need - 1e-9).astype(np.int64))
     steps = _empty_steps(refinement * (np.sum(counts) + 2 * _DRAWN * counts.shape[0]))
     count = 0
     for i in range(counts.shape[0]):
