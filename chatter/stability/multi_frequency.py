@@ -36,6 +36,11 @@ _LEAST_REACH = 1.0
 #: largest turn of the determinant from one frequency to the next, rad, and the finest step
 _LARGEST_TURN = 0.7
 _FEWEST_LINES = 24
+#: the receptance changes by no more than this share of itself from one frequency to the next; what
+#: it is below the other share of its peak does not count
+_LARGEST_CHANGE, _BELOW_PEAK = 0.5, 0.02
+#: frequencies at which the determinant of a limit is looked at, four times around its least
+_LINES_HEARD = 41
 _FINEST = 1e-7
 #: a limit is found when its bracket is this small, relative to the depth
 _DEPTH_TOLERANCE = 1e-4
@@ -133,13 +138,15 @@ def _add_by_quadrature(cut, piece, place, length, speed_factor, orders, stiffnes
     base = 2.0 * math.pi / cut.period_angle
     part, part_dashpot = np.empty((rank, rank)), np.empty((rank, rank))
     entry, leave, at = _arc_at(pieces, piece, place)
-    spans = 1 + int((leave - entry) * orders * base / 8.0)
+    spans = 2 + int((leave - entry) * orders * base / 4.0)
     for span in range(spans):
         for q in range(12):
-            x = (span + cut.edge_place[12, q]) / spans
+            share = (span + cut.edge_place[12, q]) / spans
+            # crowded towards the ends: a chip may vanish there, the slope of the law is infinite
+            x = share * share * share * (10.0 - 15.0 * share + 6.0 * share * share)
             spindle = entry + x * (leave - entry) - at
-            weight = cut.edge_weight[12, q] / spans * (leave - entry)
-            weight *= length / (2.0 * math.pi)
+            weight = 30.0 * (share * (1.0 - share)) ** 2 * (leave - entry)
+            weight *= cut.edge_weight[12, q] / spans * length / (2.0 * math.pi)
             coupling_at(
                 pieces, piece, place, spindle, weight, speed_factor, cut.basis, part, part_dashpot
             )
@@ -301,7 +308,7 @@ def _loop(response, harmonics, speed, base, omega, count, matrix):
 
 
 @njit(**DRIVER)
-def unstable_roots(response, harmonics, speed, base, count):
+def unstable_roots(response, harmonics, speed, base, count, marks):
     """Number of unstable multipliers.
 
     Parameters
@@ -315,6 +322,8 @@ def unstable_roots(response, harmonics, speed, base, count):
         Frequency of the period, rad/s.
     count : int
         Harmonics on either side.
+    marks : (k,) array of float
+        Frequencies that no step goes beyond, rad/s; see `frequency_marks`.
     """
     rank = response.receptance.shape[1]
     size = (2 * count + 2) * rank
@@ -322,14 +331,18 @@ def unstable_roots(response, harmonics, speed, base, count):
     _loop(response, harmonics, speed, base, 0.0, count, matrix)
     value = np.linalg.det(matrix)
     turned, at, step = 0.0, 0.0, 0.5 * base / _FEWEST_LINES
-    end = 0.5 * base
+    end, mark = 0.5 * base, 0
     while at < end * (1.0 - 1e-12):
+        while mark < marks.shape[0] and marks[mark] <= at:
+            mark += 1
         following = min(end, at + step)
+        if mark < marks.shape[0]:
+            following = min(following, marks[mark])
         _loop(response, harmonics, speed, base, following, count, matrix)
         ahead = np.linalg.det(matrix)
         change = np.angle(ahead / value)
-        if abs(change) > _LARGEST_TURN and step > _FINEST * base:
-            step *= 0.4
+        if abs(change) > _LARGEST_TURN and following - at > _FINEST * base:
+            step = 0.4 * (following - at)
             continue
         turned += change
         value, at = ahead, following
@@ -339,8 +352,10 @@ def unstable_roots(response, harmonics, speed, base, count):
 
 
 @njit(**DRIVER)
-def heard_frequency(response, harmonics, speed, base, count, lines):
+def heard_frequency(response, harmonics, speed, base, count, marks):
     """Frequency of the strongest part of the motion that is nearest to a root, and its place.
+
+    See `unstable_roots` for the parameters.
 
     Returns
     -------
@@ -350,18 +365,17 @@ def heard_frequency(response, harmonics, speed, base, count, lines):
     rank = response.receptance.shape[1]
     size = (2 * count + 2) * rank
     matrix = np.empty((size, size), dtype=np.complex128)
-    best, place = np.inf, 0.0
-    low, high = 0.0, 0.5 * base
-    for level in range(4):
-        step = (high - low) / lines
-        for i in range(lines + 1):
-            _loop(response, harmonics, speed, base, low + i * step, count, matrix)
+    best, place, low, high = np.inf, 0.0, 0.0, 0.5 * base
+    grid = np.sort(np.append(marks, np.linspace(0.0, high, _LINES_HEARD)))
+    for _ in range(4):
+        best = np.inf
+        for i in range(grid.shape[0]):
+            _loop(response, harmonics, speed, base, grid[i], count, matrix)
             value = abs(np.linalg.det(matrix))
             if value < best:
-                best, place = value, low + i * step
-        low, high = max(0.0, place - step), min(0.5 * base, place + step)
-        if level < 3:
-            best = np.inf
+                best, place = value, grid[i]
+                low, high = grid[max(0, i - 1)], grid[min(grid.shape[0] - 1, i + 1)]
+        grid = np.linspace(low, high, _LINES_HEARD)
     _loop(response, harmonics, speed, base, place, count, matrix)
     vector = np.ones(size, dtype=np.complex128)
     for i in range(size):
@@ -401,6 +415,26 @@ def harmonic_counts(
     return np.clip(np.ceil(_REACH * highest / base), _FEWEST, _MOST).astype(np.int64)
 
 
+def _changing_lines(response: FrequencyResponse) -> NDArray[np.float64]:
+    """Lines, rad/s, between which the receptance changes by no more than a share of itself."""
+    flat = response.receptance.reshape(response.omega.size, -1)
+    size = np.linalg.norm(flat, axis=1)
+    counted = np.maximum(np.minimum(size[1:], size[:-1]), _BELOW_PEAK * size.max())
+    change = np.linalg.norm(np.diff(flat, axis=0), axis=1) / (_LARGEST_CHANGE * counted)
+    passed = np.floor(np.append(0.0, np.cumsum(change)))
+    return response.omega[np.flatnonzero(np.diff(passed) > 0.0)]
+
+
+def frequency_marks(lines: NDArray[np.float64], base: float) -> NDArray[np.float64]:
+    """Frequencies w in 0 .. base/2, ascending, at which some w + l base is one of the lines.
+
+    A resonance far narrower than the base would else be stepped over: the determinant turns there
+    and back.
+    """
+    folded = np.sort(np.abs(lines - base * np.round(lines / base)))
+    return folded[np.append(True, np.diff(folded) > _FINEST * base)] if folded.size else folded
+
+
 def limit_curve(
     cut: CutArrays,
     response: FrequencyResponse,
@@ -430,6 +464,8 @@ def limit_curve(
     counts = harmonic_counts(cut.resolution.fastest, cut.period_angle, speeds)
     orders = 2 * int(counts.max()) + 1
     base = 2.0 * np.pi / cut.period_angle * speeds
+    lines = _changing_lines(response)
+    marks = [frequency_marks(lines, float(b)) for b in base]
 
     def verdict(speed: int, harmonics: Harmonics) -> float:
         # the coefficients of the orders that this speed needs
@@ -438,8 +474,9 @@ def limit_curve(
     def _roots(speed: int, harmonics: Harmonics) -> int:
         count = int(counts[speed])
         return unstable_roots(
-            response, _up_to(harmonics, 2 * count + 1), speeds[speed], base[speed], count
-        )
+            response, _up_to(harmonics, 2 * count + 1), speeds[speed], base[speed], count,
+            marks[speed],
+        )  # fmt: skip
 
     def at_depths(index: NDArray[np.int64]) -> list[list[float]]:
         return [
@@ -467,7 +504,7 @@ def limit_curve(
     for i in np.flatnonzero(np.isfinite(first)):
         count = int(counts[i])
         harmonics = _up_to(harmonics_at(cut, float(first[i]), orders), 2 * count + 1)
-        omega, place = heard_frequency(response, harmonics, speeds[i], base[i], count, 40)
+        omega, place = heard_frequency(response, harmonics, speeds[i], base[i], count, marks[i])
         frequency[i] = omega / (2.0 * np.pi)
         kind[i] = "flip" if place > 0.5 - 1e-3 else "hopf"
     return LimitCurve(speeds, first, frequency, tuple(kind), tuple(crossings), counts)
