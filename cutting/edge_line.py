@@ -46,10 +46,13 @@ def _radii_of_even_arcs(
 def _cone_heights(
     cutter: Cutter, mode: MillingMode, radial_depth: float, turn: float
 ) -> list[float]:
-    """Heights of even arcs on a cone on which the edge first meets the stock."""
+    """Heights of even arcs on a cone whose edge first meets the stock on it, or nearly so.
+
+    As it is cut all around at its tip but for a little, or hardly touches: the arc is then steep.
+    """
     top, slope = corner_height(cutter), math.tan(cutter.edge_angle)
     start = cutter.radius - cutter.corner_radius * (1.0 - math.sin(cutter.edge_angle))
-    if abs(cutter.radius - radial_depth) <= start:
+    if abs(cutter.radius - radial_depth) * (1.0 + _PIECE_LAG) <= start:
         return []
     radius = _radii_of_even_arcs(cutter, mode, radial_depth, turn)
     return list(top + (radius[radius > start] - start) * slope)
