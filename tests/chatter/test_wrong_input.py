@@ -89,8 +89,8 @@ def test_the_good_case_is_good(tmp_path):
         ("teeth = 2", 'teeth = 2\nhelix = "95 deg"', ["tool.helix", "90 deg"]),
         (
             "teeth = 2",
-            'teeth = 2\nserration = { depth = "2 mm", wavelength = "3 mm" }',
-            ["tool.serration.depth", "2 mm", "a tenth of the diameter"],
+            'teeth = 2\nserration = { depth = "9 mm", wavelength = "3 mm" }',
+            ["tool.serration.depth", "9 mm", "the radius of the tool, 8 mm"],
         ),
         (
             "teeth = 2",
