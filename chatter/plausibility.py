@@ -29,6 +29,8 @@ PLAUSIBLE_MODE: dict[str, tuple[float, float, str]] = {
 }
 #: the top of the edge trails its tip by at most this, rad
 _LARGEST_LAG = 200.0
+#: waves of a serrated edge within the depth of cut
+_MOST_WAVES = 200.0
 
 
 def check_plausible(case: Case) -> None:
@@ -51,6 +53,13 @@ def check_plausible(case: Case) -> None:
             f"{case.name}: tool.helix: the edge winds {lag / (2.0 * math.pi):.3g} times around the "
             f"tool within {deepest * 1e3:g} mm; at most {_LARGEST_LAG / (2.0 * math.pi):.0f} are "
             "allowed"
+        )
+    wave = case.tool.serration
+    if not problems and wave is not None and deepest > _MOST_WAVES * wave.wavelength:
+        problems.append(
+            f"{case.name}: tool.serration.wavelength: {wave.wavelength * 1e3:g} mm makes "
+            f"{deepest / wave.wavelength:.3g} waves within {deepest * 1e3:g} mm; at most "
+            f"{_MOST_WAVES:.0f} are allowed"
         )
     if problems:
         raise InputError(problems)

@@ -17,6 +17,8 @@ _PLACE_STEPS = 6
 #: of the reference chip: as far as rounding lets a chip vanish. The slope of a size effect is
 #: infinite there, its integral is not: what lies below is lost to the power of the exponent
 _LEAST_CHIP = 1e-16
+#: of the feed: a chip below this has vanished
+_VANISHED = 1e-3
 
 
 @register_jitable(**INLINED)
@@ -158,15 +160,18 @@ def chip_at(pieces, piece, place, height, sine, sine_of_edge, cosine_of_edge):
 
 
 @register_jitable(**INLINED)
-def chip_vanishes(pieces, piece, place, immersion):
-    """Tell whether a place along a piece has hardly a chip left at an immersion angle."""
+def chip_vanishes(pieces, piece, place, immersion, share=_VANISHED):
+    """Tell whether a place along a piece has hardly a chip left at an immersion angle.
+
+    Hardly a chip is less than this share of the feed.
+    """
     low, high = pieces.immersion[piece, 0], pieces.immersion[piece, 1]
     kappa = low + place * (high - low)
     # at the very tip of a corner the chip is nothing at any angle
     sk = max(math.sin(kappa), 1e-9)
     height = share_of_height(pieces, piece, place)
     chip = chip_at(pieces, piece, place, height, math.sin(immersion), sk, math.cos(kappa))
-    return chip < 1e-3 * sk * pieces.feed * pieces.delay[piece, 0]
+    return chip < share * sk * pieces.feed * pieces.delay[piece, 0]
 
 
 @register_jitable(**INLINED)

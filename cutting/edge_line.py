@@ -13,7 +13,7 @@ from cutting.engagement import MillingMode
 from cutting.tool import Cutter, corner_height
 
 _TURN = 2.0 * math.pi
-#: an edge trails, or a cone widens, by this much within a piece, rad
+#: an edge trails by this much within a piece, rad, or a cone widens by this share of its radius
 _PIECE_LAG = 0.03
 
 
@@ -46,10 +46,13 @@ def _radii_of_even_arcs(
 def _cone_heights(
     cutter: Cutter, mode: MillingMode, radial_depth: float, turn: float
 ) -> list[float]:
-    """Heights of even arcs on a cone on which the edge first meets the stock."""
+    """Heights of even arcs on a cone whose edge first meets the stock on it, or nearly so.
+
+    As it is cut all around at its tip but for a little, or hardly touches: the arc is then steep.
+    """
     top, slope = corner_height(cutter), math.tan(cutter.edge_angle)
     start = cutter.radius - cutter.corner_radius * (1.0 - math.sin(cutter.edge_angle))
-    if abs(cutter.radius - radial_depth) <= start:
+    if abs(cutter.radius - radial_depth) * (1.0 + _PIECE_LAG) <= start:
         return []
     radius = _radii_of_even_arcs(cutter, mode, radial_depth, turn)
     return list(top + (radius[radius > start] - start) * slope)
@@ -120,6 +123,20 @@ def _even_heights(spacing: float, deepest: float) -> list[float]:
     return list(spacing * np.arange(1, math.ceil(deepest / spacing)))
 
 
+def _cone_borders(cutter: Cutter, deepest: float, share: float, slope: float) -> list[float]:
+    """Heights between which a cone widens by no more than a share of its radius.
+
+    Nor does the edge trail by more than that, rad; it does so by `slope`, rad/m.
+    """
+    top, widening = corner_height(cutter), 1.0 / math.tan(cutter.edge_angle)
+    start = cutter.radius - cutter.corner_radius * (1.0 - math.sin(cutter.edge_angle))
+    heights = [top]
+    while heights[-1] < deepest:
+        radius = max(cutter.radius, start + widening * (heights[-1] - top))
+        heights.append(heights[-1] + share / max(widening / radius, slope))
+    return heights[1:-1]
+
+
 def crossing_heights(cutter: Cutter, deepest: float) -> list[float]:
     """Heights at which two flutes lie on the same side of the axis: their order changes."""
     slope = np.tan(np.asarray(cutter.helix)) / cutter.radius
@@ -159,7 +176,6 @@ def straight_borders(
         heights += _even_heights(fineness * _PIECE_LAG / slope, deepest)
     if cutter.edge_angle < 0.5 * math.pi - 1e-9:
         # the radius, and with it the arc, changes along a cone
-        rate = 1.0 / math.tan(cutter.edge_angle) / cutter.radius
-        heights += _even_heights(fineness * _PIECE_LAG / max(rate, slope), deepest)
+        heights += _cone_borders(cutter, deepest, fineness * _PIECE_LAG, slope)
         heights += _cone_heights(cutter, mode, radial_depth, turn)
     return heights

@@ -119,9 +119,12 @@ class Case(Description):
 
     @property
     def width_of_cut(self) -> float:
-        """Radial depth of cut, m: the diameter where a slot does not give it."""
+        """Radial depth of cut, m: the diameter where a slot does not give it.
+
+        A conversion of units may have rounded it to a hair more than the diameter.
+        """
         given = self.cut.radial_depth
-        return self.tool.diameter if given is None else given
+        return self.tool.diameter if given is None else min(given, self.tool.diameter)
 
     def machine_file(self) -> MachineFile:
         """Machine of [structure]: the one that was put in its place, else that of the file."""

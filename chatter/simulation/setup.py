@@ -187,7 +187,10 @@ def shortest_arc(case: Case, cutter: Cutter) -> float:
 
 
 def refuse_teeth_off_the_tool(case: Case) -> None:
-    """Refuse runout and setting errors that would move a tooth by a good part of the radius."""
+    """Refuse runout and setting errors that would move a tooth by a good part of the radius.
+
+    And waves of an edge that would reach the axis.
+    """
     tool = case.tool
     most = _FURTHEST * 0.5 * tool.diameter
     given = {"runout.offset": (tool.runout.offset,) if tool.runout else ()}
@@ -198,6 +201,11 @@ def refuse_teeth_off_the_tool(case: Case) -> None:
         for key, values in given.items()
         if values and max(map(abs, values)) > most
     ]
+    if tool.serration is not None and tool.serration.depth >= 0.5 * tool.diameter:
+        problems.append(
+            f"{case.name}: tool.serration.depth: {tool.serration.depth * 1e3:g} mm is not less "
+            f"than the radius of the tool, {tool.diameter * 500.0:g} mm"
+        )
     if problems:
         raise InputError(problems)
 

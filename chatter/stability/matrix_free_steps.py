@@ -23,7 +23,7 @@ from chatter.kernels import KERNEL
 from chatter.stability.cut_arrays import CutArrays
 from chatter.stability.matrix_free_answer import PLACES
 from chatter.stability.spindle_turn import angle_at, time_at
-from cutting.edge_coupling import chip_at, part_below, share_of_height
+from cutting.edge_coupling import chip_vanishes, part_below, share_of_height
 
 #: borders closer than this share of the period are the same
 _SAME = 1e-10
@@ -33,10 +33,12 @@ _DRAWN, _DRAWN_ROOT = 6, 3
 _FLAT = 0.5
 #: power for a root: f dt/ds is like s^2
 _POWER_OF_ROOT = 2.0
-#: a chip has as good as vanished below this share of the feed
+#: the slope of a size effect is infinite, or nearly, where the chip is below this share of the feed
 _THIN = 0.1
 #: sides of a border on which a chip vanishes, and on which engagement is a root of the time
 _BEFORE, _AFTER, _ROOT_BEFORE, _ROOT_AFTER = 1, 2, 4, 8
+#: borders closer than this share of a step are as good as one
+_NEAR = 0.3
 #: a step turns the spindle by no more than this over the steps a wave, rad
 _ANGLE_A_WAVE = 3.0
 
@@ -61,19 +63,6 @@ class Steps(NamedTuple):
     power: NDArray[np.float64]  # (N,)
     low: NDArray[np.float64]  # (N,)
     high: NDArray[np.float64]  # (N,)
-
-
-@njit(**KERNEL)
-def _is_thin(pieces, piece, place, immersion):
-    """Tell whether the slope of the force law is infinite, or nearly, at the border of an arc."""
-    low, high = pieces.immersion[piece, 0], pieces.immersion[piece, 1]
-    kappa = low + place * (high - low)
-    # at the very tip of a corner the chip is nothing at any angle
-    sk = max(math.sin(kappa), 1e-9)
-    height = share_of_height(pieces, piece, place)
-    chip = chip_at(pieces, piece, place, height, math.sin(immersion), sk, math.cos(kappa))
-    thin = chip < _THIN * sk * pieces.feed * pieces.delay[piece, 0]
-    return thin and pieces.exponent != 0.0
 
 
 @njit(**KERNEL)
@@ -141,7 +130,8 @@ def _border_angles(cut, depth):
                 angle = immersed - lag
                 angles[count] = angle - period * math.floor(angle / period)
                 sides[count] = _sides_of_root(pieces, piece, side, end)
-                if _is_thin(pieces, piece, place, immersed):
+                sized = pieces.exponent != 0.0
+                if sized and chip_vanishes(pieces, piece, place, immersed, _THIN):
                     # a place that enters is in the cut after it, one that leaves before; where the
                     # edge is flat, what is left of it next to it counts too
                     turned_round = pieces.turning[piece, end] == 1
@@ -245,18 +235,37 @@ def _drawn_out(pieces, sides, thin, root):
 
 
 @njit(**KERNEL)
-def _plain_counts(cut, turn, depth, borders, steps_a_wave):
-    """Steps (I,) that each interval between borders needs."""
+def _plain_steps(cut, turn, depth, borders, steps_a_wave):
+    """Steps (I,) that each interval between borders needs, not rounded."""
     arrays = cut.arrays
     stiffened = cut.fastest**2 + arrays.resolution.stiffening * depth
     longest = 2.0 * math.pi / (steps_a_wave * math.sqrt(stiffened))
-    counts = np.empty(borders.shape[0] - 1, dtype=np.int64)
-    for i in range(counts.shape[0]):
+    need = np.empty(borders.shape[0] - 1)
+    for i in range(need.shape[0]):
         turned = angle_at(turn, borders[i + 1]) - angle_at(turn, borders[i])
-        need = (borders[i + 1] - borders[i]) / longest
-        need = max(need, turned * steps_a_wave / _ANGLE_A_WAVE)
-        counts[i] = max(1, math.ceil(need - 1e-9))
-    return counts
+        need[i] = (borders[i + 1] - borders[i]) / longest
+        need[i] = max(need[i], turned * steps_a_wave / _ANGLE_A_WAVE)
+    return need
+
+
+@njit(**KERNEL)
+def _pass_on(sides, need):
+    """Let a border next to a singular one be singular, too, on the side away from it.
+
+    On the scale of a step both are at the same place: as where an edge begins to leave within its
+    length, and a moment later its top leaves.
+    """
+    last = need.shape[0]
+    for _ in range(2):
+        for i in range(last):
+            if need[i] < _NEAR:
+                sides[i + 1] |= sides[i] & (_AFTER | _ROOT_AFTER)
+        for i in range(last - 1, -1, -1):
+            if need[i] < _NEAR:
+                sides[i] |= sides[i + 1] & (_BEFORE | _ROOT_BEFORE)
+        # the end of a period is its beginning
+        sides[0] |= sides[last]
+        sides[last] = sides[0]
 
 
 @njit(**KERNEL)
@@ -279,7 +288,9 @@ def period_steps(cut, turn, depth, steps_a_wave, refinement):
     Steps
     """
     borders, sides = _border_times(cut.arrays, turn, depth)
-    counts = _plain_counts(cut, turn, depth, borders, steps_a_wave)
+    need = _plain_steps(cut, turn, depth, borders, steps_a_wave)
+    _pass_on(sides, need)
+    counts = np.maximum(1, np.ceil(need - 1e-9).astype(np.int64))
     steps = _empty_steps(refinement * (np.sum(counts) + 2 * _DRAWN * counts.shape[0]))
     count = 0
     for i in range(counts.shape[0]):

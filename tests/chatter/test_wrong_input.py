@@ -87,6 +87,16 @@ def test_the_good_case_is_good(tmp_path):
         ("teeth = 2", 'teeth = 2\nkind = "drill"', ["tool.kind", "drill", "end mill"]),
         ("teeth = 2", 'teeth = 2\npitch = ["100 deg", "100 deg"]', ["tool.pitch", "360"]),
         ("teeth = 2", 'teeth = 2\nhelix = "95 deg"', ["tool.helix", "90 deg"]),
+        (
+            "teeth = 2",
+            'teeth = 2\nserration = { depth = "9 mm", wavelength = "3 mm" }',
+            ["tool.serration.depth", "9 mm", "the radius of the tool, 8 mm"],
+        ),
+        (
+            "teeth = 2",
+            'teeth = 2\nserration = { depth = "0.2 mm", wavelength = "1 um" }',
+            ["tool.serration.wavelength", "4e+03 waves", "200"],
+        ),
         ('radial_depth = "8 mm"', 'radial_depth = "17 mm"', ["cut.radial_depth", "16 mm"]),
         ('radial_depth = "8 mm"', "", ["cut.radial_depth", "missing"]),
         ('feed_per_tooth = "0.1 mm"', "", ["cut.feed_per_tooth", "missing"]),
@@ -120,6 +130,19 @@ def test_wrong_cases(tmp_path, command, old, new, words):
     path = write(tmp_path, GOOD.replace(old, new, 1))
     refused(run(command, path, "--out", tmp_path / "out"), *words)
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("command", ["check", "lobes"])
+def test_a_width_rounded_to_a_hair_above_the_diameter_is_a_slot(tmp_path, command):
+    wide = GOOD.replace('radial_depth = "8 mm"', "radial_depth = 0.01600000000000001")
+    slot = GOOD.replace('mode = "down"', 'mode = "slot"').replace('radial_depth = "8 mm"\n', "")
+    found = []
+    for name, text in (("wide", wide), ("slot", slot)):
+        result = run(command, write(tmp_path, text), "--json", "--out", tmp_path / name)
+        assert result.exit_code == 0, result.output
+        found.append(json.loads(result.stdout))
+    key = "lowest_limit" if command == "lobes" else "critical_depth_mm"
+    assert found[0][key] == pytest.approx(found[1][key])
 
 
 @pytest.mark.parametrize(

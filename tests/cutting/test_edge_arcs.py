@@ -31,7 +31,7 @@ def arc_along_the_edge(width, radius_at, length):
 
 @pytest.mark.parametrize("mode", ["up", "down"])
 @pytest.mark.parametrize("angle_deg", [20.0, 45.0, 70.0])
-@pytest.mark.parametrize("share", [0.02, 0.1, 0.4])
+@pytest.mark.parametrize("share", [0.0006, 0.02, 0.1, 0.4, 0.9994])
 def test_pieces_of_a_cone_have_the_mean_of_its_arc(mode, angle_deg, share):
     angle, width = math.radians(angle_deg), share * 2.0 * RADIUS
     pieces = pieces_of(width, mode=mode, edge_angle=angle)
@@ -39,8 +39,22 @@ def test_pieces_of_a_cone_have_the_mean_of_its_arc(mode, angle_deg, share):
     exact = arc_along_the_edge(
         width, lambda x: RADIUS + x * DEPTH / math.tan(angle), DEPTH / math.sin(angle)
     )
-    # chords are up to 1e-3 short
+    # chords are up to 1e-3 short; an edge that hardly touches has the steepest arc
+    assert found == pytest.approx(exact, rel=6e-5 if share < 0.01 else 2e-5)
+
+
+@pytest.mark.parametrize("top_over_tip", [10.0, 1000.0])
+def test_a_cone_far_wider_at_its_top_takes_few_pieces(top_over_tip):
+    """A chamfer mill or a nearly flat insert: each piece widens by a share of its own radius."""
+    width = 0.8 * RADIUS
+    angle = math.atan(DEPTH / (top_over_tip - 1.0) / RADIUS)
+    pieces = pieces_of(width, edge_angle=angle)
+    found = np.sum(pieces.length * (pieces.exit - pieces.entry).mean(axis=1))
+    exact = arc_along_the_edge(
+        width, lambda x: RADIUS + x * DEPTH / math.tan(angle), DEPTH / math.sin(angle)
+    )
     assert found == pytest.approx(exact, rel=2e-5)
+    assert pieces.bottom.size < 100 * math.log(top_over_tip)
 
 
 def test_pieces_of_a_corner_have_the_mean_of_its_arc():

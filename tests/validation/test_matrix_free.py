@@ -201,6 +201,30 @@ def test_fourth_order_convergence(name):
     assert abs(better - exact) < 0.2 * errors[1]
 
 
+def test_fourth_order_where_an_edge_leaves_within_its_length_just_before_its_top():
+    """Of a flat cone the exit turns round 1e-4 rad before the top leaves: a root at both borders.
+
+    Of second order and less, steps four times as fine would be off by a seventh of the error.
+    """
+    tool = {
+        "teeth": 2, "diameter": 30.29e-3, "kind": "inserted", "helix": 0.504,
+        "pitch": [3.0027, 2.0 * math.pi - 3.0027], "cutting_edge_angle": 0.0266,
+    }  # fmt: skip
+    cut = {
+        "mode": "up", "spindle_speed": 37000.0, "feed_per_tooth": 2.56e-5,
+        "axial_depth": 0.833e-3, "radial_depth": 17.16e-3,
+    }  # fmt: skip
+    law = {"law": "exponential", "Ktc": 6.57e8, "Krc": 5.2e8, "h0": 1e-4, "exponent": 0.515}
+    modes = [{"frequency": 9000.0, "damping": 0.05, "stiffness": 8e6, "direction": [0, 0, 1]}]
+    stepped = model_of(tool, cut, modes, material=law).stepped_cut(cut["axial_depth"])
+    point = np.array([cut["spindle_speed"]]), np.array([cut["axial_depth"]])
+    radius = [
+        abs(matrix_free.multipliers(stepped, *point, refinements=(refinement,))[0])
+        for refinement in (1, 2, 4)
+    ]
+    assert abs(radius[2] - radius[1]) < abs(radius[1] - radius[0]) / 6.0
+
+
 @pytest.mark.parametrize("name", ["uniform", "variable pitch", "runout"])
 def test_limits_are_those_of_collocation(name):
     model = TOOLS[name]

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from chatter.case import Case
-from chatter.errors import InputError
+from chatter.errors import InputError, RunError
 from chatter.methods import METHODS, by_multi_frequency, zero_order_of
 from chatter.model import milling_model
 from chatter.stability import collocation
+from chatter.stability.multi_frequency import harmonics_at
 from chatter.stability.semi_discretization import multipliers
 from chatter.stability.step_schemes import (
     FirstOrder,
@@ -231,6 +232,78 @@ def test_multi_frequency_takes_unequal_pitch():
     model = altintas_engin_budak(30.0)
     curve = by_multi_frequency(model, np.array([8000.0]) * RPM, depths, None, no_progress)
     assert curve.critical_depth * 1e3 == pytest.approx([4.95246], rel=1e-3)
+
+
+@pytest.mark.parametrize("pitch", [None, (1.0, 2.0 * math.pi - 1.0)])
+def test_multi_frequency_refuses_what_its_harmonics_do_not_reach(pitch):
+    """Far below the modes it would take every cut for stable."""
+    tool = {} if pitch is None else {"pitch": list(pitch)}
+    model, depths = tool_922(1, 0.25, "down", **tool), np.linspace(0.0, 4e-3, 41)[1:]
+    repeats = 2 if pitch is None else 1
+    with pytest.raises(RunError, match="harmonics"):
+        by_multi_frequency(model, np.array([922.0 / repeats / 80.0]) * RPM * 60, depths, None,
+                           no_progress)  # fmt: skip
+    # sixty of them reach the highest mode just so
+    speed = np.array([922.0 / repeats / 48.0]) * RPM * 60
+    curves = [
+        METHODS[name](model, speed, depths, None, no_progress)
+        for name in ("multi-frequency", "collocation")
+    ]
+    assert curves[0].critical_depth == pytest.approx(curves[1].critical_depth, rel=4e-3)
+
+
+def test_multi_frequency_does_not_step_over_a_narrow_resonance():
+    """At one and a half times the frequency of a mode of little damping a cut grows slowly."""
+    modes = [mode(1676.8, 0.0034, stiffness=1.6e6)]
+    modes[0]["direction"] = [0.25, math.sqrt(1.0 - 0.25**2), 0.0]
+    tool = {"teeth": 3, "diameter": 21.35e-3}
+    cut = {"mode": "down", "radial_depth": 0.09e-3}
+    model = model_of(modes, tool, cut, 1.5e9, 0.4e9)
+    speed, depths = np.array([1676.8 * 1.501 / 3.0 * 2.0 * math.pi]), np.linspace(0, 4e-3, 17)[1:]
+    curves = [
+        METHODS[name](model, speed, depths, None, no_progress)
+        for name in ("multi-frequency", "collocation")
+    ]
+    assert np.isfinite(curves[1].critical_depth).all()
+    # so short a cut holds more harmonics than are kept: 0.11 %
+    assert curves[0].critical_depth == pytest.approx(curves[1].critical_depth, rel=2e-3)
+    assert curves[0].chatter_frequency == pytest.approx(curves[1].chatter_frequency, rel=1e-3)
+
+
+@pytest.mark.parametrize("exponent", [0.4, 0.65])
+def test_multi_frequency_with_a_size_effect(exponent):
+    """In a slot the chip vanishes at both ends of the arc, where the slope is infinite."""
+    modes = [mode(900.0, 0.03, axis, stiffness=8e6) for axis in "xy"]
+    case = {
+        "tool": {"teeth": 1, "diameter": 16e-3},
+        "material": {"law": "exponential", "Ktc": 9e8, "Krc": 4e8, "h0": 1e-4,
+                     "exponent": exponent},
+        "cut": {"mode": "slot", "spindle_speed": 1300.0, "feed_per_tooth": 1e-4,
+                "axial_depth": 1e-3},
+        "structure": {"mode": modes},
+    }  # fmt: skip
+    model = milling_model(Case.from_dict(case))
+    speeds, depths = np.array([1300.0, 2400.0]), np.linspace(0.0, 10e-3, 21)[1:]
+    curves = [
+        METHODS[name](model, speeds, depths, None, no_progress)
+        for name in ("multi-frequency", "collocation")
+    ]
+    assert np.isfinite(curves[1].critical_depth).all()
+    assert curves[0].critical_depth == pytest.approx(curves[1].critical_depth, rel=2e-3)
+
+
+def test_multi_frequency_of_a_serrated_edge():
+    """Many pieces, but no more delays than there are teeth: memory goes with these."""
+    wave = {"depth": 0.15e-3, "wavelength": 1.5e-3}
+    model = tool_922(2, 0.3, "up", teeth=3, serration=wave)
+    speed, depths = np.array([12000.0]) * RPM, np.linspace(0.0, 4e-3, 9)[1:]
+    curves = [
+        METHODS[name](model, speed, depths, None, no_progress)
+        for name in ("multi-frequency", "collocation")
+    ]
+    assert np.isfinite(curves[0].critical_depth).all()
+    assert curves[0].critical_depth == pytest.approx(curves[1].critical_depth, rel=2e-3)
+    assert harmonics_at(model.cut(4e-3), 4e-3, 3).delay.size == 3
 
 
 def test_zero_order_of_unequal_pitch_makes_the_determinant_vanish():
