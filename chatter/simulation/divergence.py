@@ -64,12 +64,15 @@ class Divergence:
         Growth of the push, logarithm a turn; -inf where it is gone at once, nan if not known.
     frequency : float
         Strongest line of what grows, Hz; nan where nothing does.
+    from_rest_alone : bool
+        True where small pushes die out, and only the cut from rest chatters.
     """
 
     verdict: str
     reason: str
     rate: float = math.nan
     frequency: float = math.nan
+    from_rest_alone: bool = False
 
     @property
     def stable(self) -> bool:
@@ -164,6 +167,7 @@ def _judged(found: Exponents, feed: float) -> Divergence:
             "the cut from rest stays away from its forced motion, on which small pushes die out",
             settled,
             found.frequency_of_rest(*found.watched_last),
+            from_rest_alone=True,
         )
     share = f" by {-math.expm1(settled):.1%} a turn" if math.isfinite(settled) else " at once"
     reason = f"a small push on the forced motion dies out{share}"
