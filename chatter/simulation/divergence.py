@@ -19,7 +19,8 @@ import math
 from dataclasses import dataclass
 
 from chatter.case import Case
-from chatter.simulation.exponents import Exponents, follow
+from chatter.simulation.exponents import Exponents
+from chatter.simulation.pushed_runs import follow
 from chatter.simulation.setup import set_up
 from dynamics.modal import Mode
 
@@ -155,6 +156,8 @@ def _judged(found: Exponents, feed: float) -> Divergence:
         if settled + _ERRORS * error > -_NEUTRAL:
             return _chatter(found, *grown, "while the cut takes hold a small push grows by")
         return _COME_BACK
+    if settled >= -_SUSTAINED and found.creeps():
+        return Divergence("stable", "a small push creeps back as friction lets it", settled)
     if settled >= -_SUSTAINED:
         says = "a small push on the forced motion changes by"
         return _chatter(found, *found.watched_last, says)

@@ -92,7 +92,11 @@ def test_a_difference_is_scaled_as_a_whole(case):
 def exponents(size, period=1.0, **others):
     """Exponents of a made-up growth of a push, with 40 turns of taking hold."""
     size = np.asarray(size, dtype=float)
-    given = {"from_rest": np.zeros(size.size), "still": np.zeros(size.size, dtype=bool)} | others
+    given = {
+        "distance": size,
+        "from_rest": np.zeros(size.size),
+        "still": np.zeros(size.size, dtype=bool),
+    } | others
     return Exponents(
         hold=40, period=period, cycle=0.3, size=size, scale=np.zeros(size.size), motion=[],
         rest=[], step=1e-5, swing=np.zeros(size.size), left=False, **given,
