@@ -48,7 +48,7 @@ _TRIES, _FASTER, _LONGER = 3, 3, 4
 #: forced vibration that is large, as a share of the feed per tooth; and by which it may be larger
 #: than small vibration would have it
 _LARGE, _TOO_LARGE = 0.5, 4.0
-#: the run from rest is where the other one is: within this share of the motion
+#: the run from rest is where the other one is, and a motion repeats: within this share of it
 _SAME = 0.05
 
 
@@ -172,6 +172,9 @@ def _judged(found: Exponents, feed: float) -> Divergence:
             found.frequency_of_rest(*found.watched_last),
             from_rest_alone=True,
         )
+    if not found.repeats(_SAME):
+        says = "the motion does not repeat with the variation, though small pushes on it die out"
+        return Divergence("chatter", says, settled)
     share = f" by {-math.expm1(settled):.1%} a turn" if math.isfinite(settled) else " at once"
     reason = f"a small push on the forced motion dies out{share}"
     swing = found.swing[slice(*found.watched_last)].max() / feed

@@ -18,6 +18,8 @@ _ENVELOPE, _LEAST_LAG = 4, 2
 _PARTS, _FEWEST_PARTS = 6, 3
 #: share of the watched turns in which what is left of the start dies out
 _SETTLING = 1.0 / 3.0
+#: a period is a whole number of turns within this share
+_WHOLE = 1e-6
 #: cosine of the angle between shapes that are one
 _SAME_SHAPE = 0.99
 #: samples that show a frequency, at the least
@@ -168,6 +170,17 @@ class Exponents:
             for shape, size in zip(shapes, sizes, strict=True)
         ]
         return len(alike) > 1 and all(alike)
+
+    def repeats(self, share: float) -> bool:
+        """Whether the motion repeats with the variation, as far as its range in every turn tells.
+
+        A share of the range counts as none. It tells where a period is a whole number of turns.
+        """
+        lag = round(self.period)
+        if lag < 1 or abs(self.period - lag) > _WHOLE * lag or len(self.swing) < 2 * lag:
+            return True
+        last, before = self.swing[-lag:], self.swing[-2 * lag : -lag]
+        return bool(np.abs(last - before).max() <= share * last.max())
 
     def swing_of_small_motion(self, small: float) -> float:
         """Half the range that the motion would have in the full cut by that of small motion, m.
