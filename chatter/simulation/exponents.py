@@ -81,7 +81,7 @@ class Exponents:
     def growth(self, first: int, least: float) -> tuple[int, int] | None:
         """Earliest growth by a logarithm, at the least, over whole periods from a turn on.
 
-        What friction held and lets go only begins to move: the distance must grow as well.
+        What friction held and lets go only begins to move: with it the distance must grow as well.
 
         Returns
         -------
@@ -89,7 +89,8 @@ class Exponents:
             Its first turn and its last; None where nothing grows that much.
         """
         width = max(_ENVELOPE, math.ceil(self.cycle))
-        grown = np.stack([self.size[first:], self.distance[first:]])
+        sizes = (self.size, self.distance) if self.rubs else (self.size,)
+        grown = np.stack([size[first:] for size in sizes])
         if grown.shape[1] < width + _LEAST_LAG:
             return None
         # beating must not look like growth
