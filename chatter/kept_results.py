@@ -77,7 +77,7 @@ class KeptPieces:
     def __init__(self, folder: str | Path | None, base: str) -> None:
         self._store = FinishedPoints(folder)
         self._base = base
-        self._finished = 0
+        self._asked: set[str] = set()
         self._lock = threading.Lock()
 
     def piece(self, name: str, inputs: Any, compute: Callable[[], Any]) -> Any:
@@ -93,19 +93,20 @@ class KeptPieces:
             What it returns is what JSON knows.
         """
         key = key_of(self._base, name, repr(inputs))
+        self._asked.add(key)
         if key not in self._store:
             record = compute()
             with self._lock:
                 # another thread may have come to the same piece
                 if key not in self._store:
                     self._store.add(key, record)
-        self._finished += 1
         return self._store[key]
 
     def interrupted(self) -> RunError:
         """What to raise where the search is interrupted."""
+        finished = sum(key in self._store for key in self._asked)
         kept = f"; they are in {self._store.path}, and the same command goes on from there"
         return RunError(
-            f"interrupted: {self._finished} pieces of the search are finished"
-            f"{kept if self._store.path and self._finished else ''}"
+            f"interrupted: {finished} pieces of the search are finished"
+            f"{kept if self._store.path and finished else ''}"
         )

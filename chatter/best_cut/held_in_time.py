@@ -53,8 +53,8 @@ def _side_by_side(search: KeptSearch, candidates: Sequence[Candidate]) -> list[C
             return _Check(search, told[place], stopped).held(candidates[place])
 
     with ThreadPoolExecutor(max_workers=min(worker_count(), max(len(candidates), 1))) as pool:
-        futures = [pool.submit(held, place) for place in range(len(candidates))]
         try:
+            futures = [pool.submit(held, place) for place in range(len(candidates))]
             found = [future.result() for future in futures]
         except BaseException:
             # an interruption reaches this thread alone: tell the others

@@ -19,7 +19,8 @@ import math
 from dataclasses import dataclass
 
 from chatter.case import Case
-from chatter.simulation.exponents import Exponents, follow
+from chatter.simulation.exponents import Exponents
+from chatter.simulation.pushed_runs import follow
 from chatter.simulation.setup import set_up
 from dynamics.modal import Mode
 
@@ -47,7 +48,7 @@ _TRIES, _FASTER, _LONGER = 3, 3, 4
 #: forced vibration that is large, as a share of the feed per tooth; and by which it may be larger
 #: than small vibration would have it
 _LARGE, _TOO_LARGE = 0.5, 4.0
-#: the run from rest is where the other one is: within this share of the motion
+#: the run from rest is where the other one is, and a motion repeats: within this share of it
 _SAME = 0.05
 
 
@@ -64,12 +65,15 @@ class Divergence:
         Growth of the push, logarithm a turn; -inf where it is gone at once, nan if not known.
     frequency : float
         Strongest line of what grows, Hz; nan where nothing does.
+    from_rest_alone : bool
+        True where small pushes die out, and only the cut from rest chatters.
     """
 
     verdict: str
     reason: str
     rate: float = math.nan
     frequency: float = math.nan
+    from_rest_alone: bool = False
 
     @property
     def stable(self) -> bool:
@@ -152,6 +156,8 @@ def _judged(found: Exponents, feed: float) -> Divergence:
         if settled + _ERRORS * error > -_NEUTRAL:
             return _chatter(found, *grown, "while the cut takes hold a small push grows by")
         return _COME_BACK
+    if settled >= -_SUSTAINED and found.creeps():
+        return Divergence("stable", "a small push creeps back as friction lets it", settled)
     if settled >= -_SUSTAINED:
         says = "a small push on the forced motion changes by"
         return _chatter(found, *found.watched_last, says)
@@ -164,7 +170,11 @@ def _judged(found: Exponents, feed: float) -> Divergence:
             "the cut from rest stays away from its forced motion, on which small pushes die out",
             settled,
             found.frequency_of_rest(*found.watched_last),
+            from_rest_alone=True,
         )
+    if not found.repeats(_SAME):
+        says = "the motion does not repeat with the variation, though small pushes on it die out"
+        return Divergence("chatter", says, settled)
     share = f" by {-math.expm1(settled):.1%} a turn" if math.isfinite(settled) else " at once"
     reason = f"a small push on the forced motion dies out{share}"
     swing = found.swing[slice(*found.watched_last)].max() / feed

@@ -1,4 +1,4 @@
-"""Growth of a small difference along a simulated cut, turn by turn."""
+"""What a small difference along a simulated cut, followed turn by turn, tells of its growth."""
 
 from __future__ import annotations
 
@@ -8,28 +8,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.case import Case
-from chatter.simulation.followed_run import FollowedRun, share_held
-from dynamics.modal import Mode
+from chatter.simulation.followed_run import share_held
 
 Array = NDArray[np.float64]
 
-#: size of the difference after every turn, as a share of the feed
-_PUSH = 1e-6
-#: push after every turn while the cut takes hold, as a share of it: no shape is lost for good
-_RENEWED = 1e-3
-#: a difference that moves by less than this share of its size, a turn of the lowest mode, is still
-_STILL = 1e-7
 #: turns of an envelope, and over which growth is looked at, at the least
 _ENVELOPE, _LEAST_LAG = 4, 2
-#: samples of a cycle of the highest mode that are kept
-_SAMPLES = 12
 #: parts that the watched turns are cut into for the error of a rate, and the fewest of them
 _PARTS, _FEWEST_PARTS = 6, 3
 #: share of the watched turns in which what is left of the start dies out
 _SETTLING = 1.0 / 3.0
-#: difference that is rounding, as a share of the push
-_ROUNDING = 1e-12
+#: a period is a whole number of turns within this share
+_WHOLE = 1e-6
+#: cosine of the angle between shapes that are one
+_SAME_SHAPE = 0.99
 #: samples that show a frequency, at the least
 _LEAST_SAMPLES = 16
 #: share of the cutting force from which on the motion tells of that in the full cut
@@ -50,8 +42,9 @@ class Exponents:
         Of the variation, turns.
     cycle : float
         Of the lowest mode, turns.
-    size : (n,) array of float
-        Logarithm of the speed of the difference, as if it had never been brought back.
+    size, distance : (n,) array of float
+        Logarithm of the speed of the difference, and of itself, as if it had never been brought
+        back; the speed over the push a second, the distance over the push.
     from_rest : (n,) array of float
         Speed of the difference of the run from rest, over that of the motion itself.
     still : (n,) array of bool
@@ -66,12 +59,15 @@ class Exponents:
         Half the range of the motion in every turn, of the axis that moves most, m.
     left : bool
         True where a run has left the range of the model.
+    rubs : bool
+        True where there is friction on modes.
     """
 
     hold: int
     period: float
     cycle: float
     size: Array
+    distance: Array
     from_rest: Array
     still: NDArray[np.bool_]
     scale: Array
@@ -80,9 +76,12 @@ class Exponents:
     step: float
     swing: Array
     left: bool
+    rubs: bool = False
 
     def growth(self, first: int, least: float) -> tuple[int, int] | None:
         """Earliest growth by a logarithm, at the least, over whole periods from a turn on.
+
+        What friction held and lets go only begins to move: with it the distance must grow as well.
 
         Returns
         -------
@@ -90,17 +89,19 @@ class Exponents:
             Its first turn and its last; None where nothing grows that much.
         """
         width = max(_ENVELOPE, math.ceil(self.cycle))
-        size = self.size[first:]
-        if len(size) < width + _LEAST_LAG:
+        sizes = (self.size, self.distance) if self.rubs else (self.size,)
+        grown = np.stack([size[first:] for size in sizes])
+        if grown.shape[1] < width + _LEAST_LAG:
             return None
         # beating must not look like growth
-        envelope = np.lib.stride_tricks.sliding_window_view(size, width).max(axis=1)
+        envelope = np.lib.stride_tricks.sliding_window_view(grown, width, axis=1).max(axis=2)
+        count = envelope.shape[1]
         found: list[tuple[int, float, int]] = []
-        for count in range(1, int(len(envelope) / self.period) + 1):
-            lag = round(count * self.period)
-            if not _LEAST_LAG <= lag < len(envelope):
+        for periods in range(1, int(count / self.period) + 1):
+            lag = round(periods * self.period)
+            if not _LEAST_LAG <= lag < count:
                 continue
-            rise = envelope[lag:] - envelope[:-lag]
+            rise = (envelope[:, lag:] - envelope[:, :-lag]).min(axis=0)
             enough = np.flatnonzero(rise >= least)
             if enough.size:
                 found.append((int(enough[0]) + lag, -rise[enough[0]] / lag, lag))
@@ -152,6 +153,36 @@ class Exponents:
         logarithm = np.log(np.maximum(apart, 1e-300))
         return float(np.polyfit(np.arange(len(apart)), logarithm, 1)[0]) < -slope
 
+    def creeps(self) -> bool:
+        """Whether friction lets what is left of a push creep: it keeps its shape then.
+
+        Vibration that does not repeat turns from shape to shape.
+        """
+        if not self.rubs:
+            return False
+        begin, end = self.watched_last
+        lag = max(round(self.period), 1)
+        shapes = [
+            np.diff(self.motion[turn], axis=0).ravel() for turn in range(end, begin - 1, -lag)
+        ]
+        sizes = [float(np.linalg.norm(shape)) for shape in shapes]
+        alike = [
+            float(shape @ shapes[0]) > _SAME_SHAPE * size * sizes[0]
+            for shape, size in zip(shapes, sizes, strict=True)
+        ]
+        return len(alike) > 1 and all(alike)
+
+    def repeats(self, share: float) -> bool:
+        """Whether the motion repeats with the variation, as far as its range in every turn tells.
+
+        A share of the range counts as none. It tells where a period is a whole number of turns.
+        """
+        lag = round(self.period)
+        if lag < 1 or abs(self.period - lag) > _WHOLE * lag or len(self.swing) < 2 * lag:
+            return True
+        last, before = self.swing[-lag:], self.swing[-2 * lag : -lag]
+        return bool(np.abs(last - before).max() <= share * last.max())
+
     def swing_of_small_motion(self, small: float) -> float:
         """Half the range that the motion would have in the full cut by that of small motion, m.
 
@@ -185,82 +216,6 @@ class Exponents:
     def frequency_of_rest(self, begin: int, end: int) -> float:
         """Strongest line of the difference of the run from rest, Hz."""
         return _strongest(self.rest[max(0, begin, end - _MOST_TURNS) : end], self.step)
-
-
-def follow(case: Case, modes: tuple[Mode, ...], hold: int, watch: int, period: float) -> Exponents:
-    """Follow a cut as it takes hold and after that, with a pushed run and one from rest beside it.
-
-    Parameters
-    ----------
-    case : Case
-    modes : tuple of Mode
-        Of its structure.
-    hold, watch : int
-        Turns in which the cut takes hold, and that are watched after that.
-    period : float
-        Of the variation, turns.
-    """
-    leader, pushed, rest = (FollowedRun(case, modes, turns) for turns in (hold, hold, 0))
-    push = _PUSH * case.cut.feed_per_tooth
-    frequencies = [mode.frequency for mode in leader.setup.modes]
-    a_second = leader.setup.spindle.speed / (2.0 * math.pi)
-    cycle = a_second / min(frequencies)
-    stride = _stride(leader.bins, a_second / max(frequencies))
-    least = 2.0 * math.pi * min(frequencies) * leader.setup.step * _STILL
-    pushed.push(push)
-    found: list[tuple[float, float, bool, float, float, Array, Array]] = []
-    scale, left = 0.0, False
-    for turn in range(hold + watch):
-        motion, beside, other = leader.turn(), pushed.turn(), rest.turn()
-        if motion is None or beside is None:
-            left = True
-            break
-        difference = beside - motion
-        other = np.full_like(motion, math.inf) if other is None else other - motion
-        apart = max(_rms(difference), _ROUNDING * push)
-        moving = _moving(difference)
-        still = moving < least * apart
-        size = math.log(max(moving, least * apart)) + scale
-        with np.errstate(invalid="ignore", divide="ignore"):
-            away = float(np.nan_to_num(_moving(other) / _moving(motion), nan=math.inf))
-        swing = 0.5 * float(np.ptp(motion, axis=0).max())
-        found.append((size, scale, still, away, swing, difference[::stride], other[::stride]))
-        pushed.come_closer(leader, push / apart)
-        scale += math.log(apart / push)
-        if turn < hold:
-            pushed.push((-1.0) ** turn * _RENEWED * push)
-    size, scales, still, away, swing, motions, others = (
-        zip(*found, strict=True) if found else ((),) * 7
-    )
-    return Exponents(
-        hold=hold,
-        period=period,
-        cycle=cycle,
-        size=np.array(size),
-        from_rest=np.array(away),
-        still=np.array(still, dtype=bool),
-        scale=np.array(scales),
-        motion=list(motions),
-        rest=list(others),
-        step=stride * leader.setup.step,
-        swing=np.array(swing),
-        left=left,
-    )
-
-
-def _rms(motion: Array) -> float:
-    return math.sqrt(float(np.mean(np.sum(motion**2, axis=1))))
-
-
-def _moving(motion: Array) -> float:
-    """Root mean square of the change from sample to sample."""
-    return _rms(np.diff(motion, axis=0))
-
-
-def _stride(bins: int, cycle: float) -> int:
-    """Divisor of the steps of a turn that keeps enough samples of a cycle, given in turns."""
-    most = max(1, int(bins * cycle / _SAMPLES))
-    return next(stride for stride in range(min(most, bins // 2), 0, -1) if bins % stride == 0)
 
 
 def _strongest(parts: list[Array], step: float) -> float:

@@ -88,11 +88,11 @@ class FollowedRun:
 
 
 def _arrays(held: object) -> list[NDArray]:
-    """Arrays within nested tuples, in their order, each once."""
+    """Arrays within nested tuples that a run may change, in their order, each once."""
     found: dict[int, NDArray] = {}
 
     def collect(part: object) -> None:
-        if isinstance(part, np.ndarray):
+        if isinstance(part, np.ndarray) and part.flags.writeable:
             found.setdefault(id(part), part)
         elif isinstance(part, tuple):
             for inner in part:

@@ -5,23 +5,28 @@ without being thrown out of the chip; what is left of the start then dies out or
 multiplier follows from how the differences between successive periods follow each other: they are
 free of the periodic motion.
 
-Full chatter has a multiplier of 1 too, and so has a forced motion about to lose its stability. They
-are told apart by a cut that takes hold more slowly: what is left of the start is then smaller in
-the same measure, chatter is as large as before.
+Full chatter has multipliers of its own, of 1 or less, and where teeth differ it may repeat from
+turn to turn as forced vibration does. So a motion large enough for teeth to leave the cut is not
+taken for stable by them alone: small pushes tell how vibration grew before.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from chatter.case import Case
+from chatter.judgement.lines import strongest_line
+from chatter.judgement.orbits import kind_of_orbit
+from chatter.simulation.divergence import LARGE_SWING, divergence
 from chatter.simulation.engine import COLUMNS, Record, run
 from chatter.simulation.setup import Setup, delayed, set_up
 from chatter.simulation.spindle import prescribed
+from chatter.stability.multiplier import bifurcation_kind
+from cutting.edge_pieces import period_angle
 from cutting.tool_point import tool_point
 from dynamics.modal import Mode
 from dynamics.modal_steps import modal_steps
@@ -43,13 +48,15 @@ _FEATURES = 32
 _MOST_SHAPES = 8
 _WEAKEST_SHAPE = 1e-3
 _LEAST_SHARE = 0.02
-#: a multiplier below 1 by no more than this may be that of full chatter; such a cut takes hold
-#: again, slower by a factor, and what is left of the start is less than this share of what it was.
-#: Chatter on the way that dies out in the full cut is not in proportion: where it is mistaken, the
-#: limit is wrong by this at the most, over the growth per relative depth
-_NEARLY_NEUTRAL = 0.001
+#: what is left of the first difference where it has died out for certain
+_DIED_OUT = 0.05
+#: a cut takes hold slower by a factor; what is left of the start is then less than this share
 _SLOWER = 4
 _LEFT_OF_START = 0.5
+#: periods of full chatter that show its kind, at the most and at the least
+_MOST_SHOWN, _LEAST_SHOWN = 60, 6
+#: periods before the tool is thrown out, in which it is little else than what grows
+_LAST_BEFORE_LEFT = 12
 
 
 @dataclass(frozen=True)
@@ -65,11 +72,14 @@ class Growth:
         s.
     frequency : float
         Of the vibration that grows or dies out slowest, Hz; nan where it is not known.
+    bifurcation : str
+        ``"flip"`` where vibration doubles the period, else ``"hopf"``.
     """
 
     multiplier: complex
     period: float
     frequency: float
+    bifurcation: str
 
     @property
     def radius(self) -> float:
@@ -78,14 +88,8 @@ class Growth:
 
 
 def periods_a_turn(setup: Setup) -> int:
-    """Periods in which the cut repeats within a turn: teeth where they are all alike, else one."""
-    slices = setup.slices
-    turned = slices.angle - slices.angle[:, :1]
-    alike = np.allclose(turned, turned[0], atol=1e-9) and np.allclose(
-        slices.normal_offset, slices.normal_offset[0], atol=1e-12
-    )
-    equal = np.allclose(setup.cutter.pitch, 2.0 * math.pi / setup.cutter.teeth, atol=1e-9)
-    return setup.cutter.teeth if alike and equal else 1
+    """Periods in which the cut repeats within a turn: teeth where they are all alike."""
+    return round(2.0 * math.pi / period_angle(setup.cutter))
 
 
 def growth_of(case: Case, modes: tuple[Mode, ...]) -> Growth:
@@ -107,41 +111,69 @@ def growth_of(case: Case, modes: tuple[Mode, ...]) -> Growth:
     slowest = max(1.0 / (mode.damping * mode.natural_frequency) for mode in setup.modes)
     wanted = max(_RAMP_PERIODS + _WATCHED_PERIODS, math.ceil(_TIME_CONSTANTS * slowest / period))
     count = min(wanted, _MOST_PERIODS)
-    ramp = count // 4
-    periods = _watched(setup, ramp, count - ramp)
-    if len(periods) < _LEAST_FITTED:
-        return Growth(complex(math.inf), period, math.nan)
-    found = _fitted(periods, period, case.cut.feed_per_tooth)
-    if not 1.0 - _NEARLY_NEUTRAL < found.radius < 1.0:
+    ramp, feed = count // 4, case.cut.feed_per_tooth
+    periods = _periods(setup, ramp, count)
+    watched = periods[ramp:]
+    if len(watched) < _LEAST_FITTED:
+        return _full_chatter(periods[-_LAST_BEFORE_LEFT:], period)
+    fitted = _fit_of(watched, feed)
+    if fitted is None:
+        return _full_chatter(watched, period)
+    difference = np.diff(watched, axis=0)[fitted]
+    found = _fitted(difference, period)
+    swing = 0.5 * float(np.ptp(watched[len(watched) // 2 :], axis=(0, 1)).max())
+    if found.radius >= 1.0 or swing <= LARGE_SWING * feed:
         return found
-    slower = _watched(set_up(delayed(case), modes), _SLOWER * ramp, count - ramp)
-    if _as_large(slower, periods):
-        return Growth(complex(math.inf), period, found.frequency)
-    return found
+    a_turn = periods_a_turn(setup)
+    if a_turn == setup.cutter.teeth and _dies_out(difference):
+        return found
+    apart = divergence(case, modes)
+    if apart.verdict != "chatter" or apart.from_rest_alone:
+        return found
+    if apart.rate <= 0.0:
+        # neither grows nor dies out for certain
+        slower = _periods(set_up(delayed(case), modes), _SLOWER * ramp, _SLOWER * ramp + count)
+        if not _as_large(slower[_SLOWER * ramp :], watched):
+            return found
+    return replace(_full_chatter(watched, period), frequency=apart.frequency)
 
 
-def _watched(setup: Setup, ramp: int, count: int) -> NDArray[np.float64]:
-    """Motion (k, n, 3), m, over `count` periods after those in which the cut takes hold.
+def _periods(setup: Setup, ramp: int, count: int) -> NDArray[np.float64]:
+    """Motion (k, n, 3), m, over `count` periods; in the first of them the cut takes hold.
 
     There are fewer where the tool leaves the range of the model.
     """
     samples = setup.resolution.steps_a_turn // periods_a_turn(setup)
-    motion, done = motion_of(setup, (ramp + count) * samples, ramp * samples)
-    whole = max(done // samples, ramp)
-    return motion[ramp * samples : whole * samples].reshape(whole - ramp, samples, 3)
+    motion, done = motion_of(setup, count * samples, ramp * samples)
+    whole = done // samples
+    return motion[: whole * samples].reshape(whole, samples, 3)
 
 
 def _as_large(slower: NDArray[np.float64], periods: NDArray[np.float64]) -> bool:
     """Tell full chatter, which is as large (k, n, 3) in a cut that takes hold more slowly.
 
-    Vibration along the cycle of full chatter neither grows nor dies out, so that the multiplier is
-    1 but for an error, which may put it below 1. A stable forced motion nearly as neutral is
-    disturbed by the cut taking hold alone, in inverse proportion to the time that this takes.
+    Vibration along the cycle of full chatter neither grows nor dies out. A stable forced motion
+    nearly as neutral is disturbed by the cut taking hold alone, in inverse proportion to the time
+    that this takes.
     """
     if len(slower) < len(periods):
         return True
     size, before = (float(np.linalg.norm(np.diff(part, axis=0))) for part in (slower, periods))
     return size > _LEFT_OF_START * before
+
+
+def _full_chatter(periods: NDArray[np.float64], period: float) -> Growth:
+    """Kind and frequency of chatter that is full, or throws the tool out, from its motion."""
+    # second differences: free of forced vibration that grows evenly as the cut takes hold
+    shown = np.diff(periods[-_MOST_SHOWN:], 2, axis=0)
+    size = np.linalg.norm(shown, axis=(1, 2))
+    if len(shown) < _LEAST_SHOWN or not size.all():
+        return Growth(complex(math.inf), period, math.nan, "hopf")
+    growth = max(float(np.polyfit(np.arange(len(size)), np.log(size), 1)[0]), 0.0)
+    line = strongest_line(shown, growth)
+    kind, _ = kind_of_orbit(shown, line, growth, 0.0)
+    flip = "flip" if kind == "flip" else "hopf"
+    return Growth(complex(math.inf), period, line.cycles / period, flip)
 
 
 def motion_of(
@@ -179,11 +211,10 @@ def motion_of(
     return record.rows[:, 3:6], done
 
 
-def _fitted(periods: NDArray[np.float64], period: float, feed: float) -> Growth:
-    """Dominant multiplier from motion (k, n, 3) over k periods of n samples."""
+def _fit_of(periods: NDArray[np.float64], feed: float) -> slice | None:
+    """Differences between periods that are small vibration; None where it is full chatter."""
     difference = np.diff(periods, axis=0)
-    flat = difference.reshape(len(difference), -1)
-    size = np.sqrt(np.mean(flat**2, axis=1) * 3.0)
+    size = np.sqrt(np.mean(difference**2, axis=(1, 2)) * 3.0)
     large = np.flatnonzero(size > _LARGEST_DIFFERENCE * feed)
     gone = np.flatnonzero(size < _SMALLEST_DIFFERENCE * feed)
     first = 0
@@ -194,14 +225,28 @@ def _fitted(periods: NDArray[np.float64], period: float, feed: float) -> Growth:
         later = gone[gone > first]
         end = int(later[0]) if later.size else len(size)
         if end - first < _LEAST_FITTED:
-            return Growth(complex(math.inf), period, math.nan)
+            return None
     if end - first < _LEAST_FITTED:
-        return Growth(0j, period, math.nan)
+        return slice(0, 0)
     # what other modes have left of the start dies out first
-    begin = first + min((end - first) // 3, end - first - _LEAST_FITTED)
-    multiplier = _dominant(difference[begin:end])
-    frequency = _frequency(difference[begin:end], multiplier, period)
-    return Growth(multiplier, period, frequency)
+    return slice(first + min((end - first) // 3, end - first - _LEAST_FITTED), end)
+
+
+def _dies_out(difference: NDArray[np.float64]) -> bool:
+    """Whether the differences (k, n, 3) of periods do die out as they are followed."""
+    if len(difference) == 0:
+        return True
+    first, last = np.linalg.norm(difference[[0, -1]], axis=(1, 2))
+    return bool(last < _DIED_OUT * first)
+
+
+def _fitted(difference: NDArray[np.float64], period: float) -> Growth:
+    """Dominant multiplier from differences (k, n, 3) of periods; 0 where there are none."""
+    if len(difference) == 0:
+        return Growth(0j, period, math.nan, "hopf")
+    multiplier = _dominant(difference)
+    kind = bifurcation_kind(multiplier)
+    return Growth(multiplier, period, _frequency(difference, multiplier, period), kind)
 
 
 def _dominant(differences: NDArray[np.float64]) -> complex:

@@ -11,7 +11,6 @@ from chatter.case import Case
 from chatter.simulation.growth import Growth, growth_of
 from chatter.stability.crossings import find_crossings
 from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.multiplier import bifurcation_kind
 from chatter.stability.sweep import Progress, no_progress, sweep
 from dynamics.modal import Mode
 
@@ -88,7 +87,7 @@ def time_limit_curve(
     beyond = growths(case, modes, speeds[lost], _BEYOND * first[lost])
     for i, growth in zip(lost, beyond, strict=True):
         frequency[i] = growth.frequency
-        kind[i] = _kind(growth)
+        kind[i] = growth.bifurcation
     return LimitCurve(
         spindle_speed=speeds,
         critical_depth=first,
@@ -97,12 +96,6 @@ def time_limit_curve(
         crossings=tuple(crossings),
         steps=np.zeros(len(speeds), dtype=np.int64),
     )
-
-
-def _kind(growth: Growth) -> str:
-    if not math.isfinite(growth.radius):
-        return "hopf"
-    return bifurcation_kind(growth.multiplier)
 
 
 def _logarithms(found: list[Growth]) -> NDArray[np.float64]:

@@ -35,7 +35,11 @@ def _tanh(section: Friction) -> FrictionLaw:
     # the slope at a reversal is twice the inclination times the force
     inclination = section.presliding_stiffness / (2.0 * section.coulomb)
     return TanhHysteresis(
-        coulomb=section.coulomb, viscous=section.viscous or 0.0, inclination=inclination
+        coulomb=section.coulomb,
+        viscous=section.viscous or 0.0,
+        slow_viscous=0.0,
+        slow_decay=0.0,
+        inclination=inclination,
     )
 
 

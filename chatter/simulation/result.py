@@ -31,6 +31,8 @@ _LEAST_TURNS_TO_JUDGE = 8.0
 _LEAST_CYCLES_TO_JUDGE = 12.0
 #: deviations from period to period that are none: a carved wall repeats less well
 _DELAYED, _CARVED = 0.005, 0.03
+#: helix angles within this, rad, are the same
+_SAME_HELIX = 1e-12
 #: means are taken over the last whole turns within this share of the run
 _SETTLED_SHARE = 0.5
 
@@ -173,10 +175,9 @@ class SimulationResult:
 
     def _cut_record(self) -> CutRecord:
         cutter, slices = self.setup.cutter, self.setup.slices
-        turned = slices.angle - slices.angle[:, :1]
         widest = int(np.argmax(np.ptp(slices.normal_offset, axis=0)))
         # flutes of different helix are no more alike than teeth out of true
-        known = np.allclose(turned, turned[0])
+        known = np.ptp(cutter.helix) <= _SAME_HELIX
         return CutRecord(
             time=self.time,
             spindle_angle=self.spindle_angle,

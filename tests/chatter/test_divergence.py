@@ -1,6 +1,7 @@
 """Small pushes on the forced motion: their growth follows the multipliers of the cut."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -92,7 +93,11 @@ def test_a_difference_is_scaled_as_a_whole(case):
 def exponents(size, period=1.0, **others):
     """Exponents of a made-up growth of a push, with 40 turns of taking hold."""
     size = np.asarray(size, dtype=float)
-    given = {"from_rest": np.zeros(size.size), "still": np.zeros(size.size, dtype=bool)} | others
+    given = {
+        "distance": size,
+        "from_rest": np.zeros(size.size),
+        "still": np.zeros(size.size, dtype=bool),
+    } | others
     return Exponents(
         hold=40, period=period, cycle=0.3, size=size, scale=np.zeros(size.size), motion=[],
         rest=[], step=1e-5, swing=np.zeros(size.size), left=False, **given,
@@ -126,6 +131,17 @@ def test_what_wavers_has_an_error():
     rate, error = found.settled_rate()
     assert error > 0.005
     assert abs(rate + 0.005) < 2.0 * error
+
+
+def test_motion_that_takes_two_periods_of_the_variation_does_not_repeat_with_it():
+    turns = np.arange(120)
+    found = exponents(-0.1 * turns, period=6.0)
+    with_it = replace(found, swing=1.0 + 0.2 * np.cos(2.0 * math.pi * turns / 6.0))
+    doubled = replace(found, swing=1.0 + 0.2 * np.cos(2.0 * math.pi * turns / 12.0))
+    assert with_it.repeats(0.05)
+    assert not doubled.repeats(0.05)
+    # turns of one phase do not meet
+    assert replace(doubled, period=6.3).repeats(0.05)
 
 
 def test_growth_of_a_mode_across_the_feed():
