@@ -17,7 +17,7 @@ from chatter.model import milling_model
 from chatter.stability import collocation
 from chatter.stability.following import followed_crossings
 from chatter.stability.semi_discretization import limit_curve, multipliers
-from chatter.stability.sweep import worker_count
+from chatter.stability.sweep import kept_threads, worker_count
 
 RPM = math.pi / 30.0
 SPEEDS, DEPTHS, STEPS = 200, 100, 40
@@ -219,7 +219,8 @@ def limit_curves():
     def growth_at(points, depth):
         return np.log(np.abs(collocation.multipliers(quick, speeds[points], depth)))
 
-    _, alone, _ = timed(partial(followed_crossings, len(speeds), coarse, growth_at, 5e-3, 8))
+    with kept_threads():
+        _, alone, _ = timed(partial(followed_crossings, len(speeds), coarse, growth_at, 5e-3, 8))
     off = np.abs(found.critical_depth[both] / full.critical_depth[both] - 1.0)
     missed = [
         sum(len(a) != len(b) for a, b in zip(some.crossings, full.crossings, strict=True))

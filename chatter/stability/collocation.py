@@ -12,6 +12,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.lanes import LANES
 from chatter.stability import drivers
 from chatter.stability.brackets import Growth
 from chatter.stability.cut_arrays import RESOLUTION, CutArrays
@@ -30,8 +31,9 @@ FINER = ((10, 0.7), (12, 0.5), (12, 0.3), (12, 0.15))
 DEPTH_TOLERANCE = 1e-6
 #: speeds from one to the next of those at which all depths are looked at
 STRIDE = 4
-#: points handed to a thread at once: many enough to fill the lanes of the kernels
-_POINTS_A_CHUNK = 64
+#: points handed to a thread at once, about: many enough to fill the lanes of the kernels; so many
+#: that a second thread is worth it
+_POINTS_A_CHUNK, _FEW_POINTS = 128, 64
 #: the same at a varying speed, where a point takes long: the least, and parts of all for a thread
 _FEWEST_POINTS, _PARTS = 16, 4
 
@@ -90,9 +92,12 @@ def _solved(
 
 
 def _points_a_chunk(cut: CutArrays, count: int) -> int:
-    if not varies(cut):
-        return _POINTS_A_CHUNK
-    return max(_FEWEST_POINTS, math.ceil(count / (_PARTS * worker_count())))
+    """As many for every thread, in full lanes."""
+    threads = worker_count()
+    if varies(cut):
+        return max(_FEWEST_POINTS, math.ceil(count / (_PARTS * threads)))
+    parts = threads * max(1, round(count / (threads * _POINTS_A_CHUNK)))
+    return max(_FEW_POINTS, LANES * math.ceil(count / (parts * LANES)))
 
 
 def _solved_together(
