@@ -68,10 +68,8 @@ class _Narrowing:
         self.last_side = np.zeros(self.low.size, dtype=np.int64)
         self.x = np.stack([self.low, self.high, *brackets.beside])
         self.y = np.stack([self.at_low, self.at_high, *brackets.at_beside])
-
-    def interpolated(self, k: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Root of brackets k by inverse interpolation through up to four points."""
-        return _inverse_interpolation(self.x[:, k], self.y[:, k], self.low[k])
+        # roots by inverse interpolation through up to four points
+        self.interpolated = _inverse_interpolation(self.x, self.y, self.low)
 
     def next_look(self, k: NDArray[np.int64], iteration: int) -> NDArray[np.float64]:
         """Depth to look at in brackets k."""
@@ -82,7 +80,7 @@ class _Narrowing:
         curving = iteration < _MOST_CURVED
         share = _SMALL_SHARE if curving else _LARGE_SHARE
         margin = (share if iteration % _KEEP_OFF == _KEEP_OFF - 1 else 0.0) * width
-        curved = self.interpolated(k)
+        curved = self.interpolated[k]
         inside = (curved > low + margin) & (curved < high - margin)
         return np.clip(np.where(inside & curving, curved, straight), low + margin, high - margin)
 
@@ -114,6 +112,7 @@ class _Narrowing:
         self.scaled_low[k[stuck & upper]] *= 0.5
         self.scaled_high[k[stuck & ~upper]] *= 0.5
         self.last_side[k] = side
+        self.interpolated[k] = _inverse_interpolation(self.x[:, k], self.y[:, k], self.low[k])
 
 
 def roots_in(brackets: Brackets, growth: Growth, tolerance: float) -> NDArray[np.float64]:
@@ -147,7 +146,7 @@ def roots_in(brackets: Brackets, growth: Growth, tolerance: float) -> NDArray[np
         close = tolerance * depth * narrowing.slope(k, depth, value)
         narrowing.take(k, depth, value)
         low, high = narrowing.low[k], narrowing.high[k]
-        following = narrowing.interpolated(k)
+        following = narrowing.interpolated[k]
         within = (following >= low) & (following <= high)
         root[k] = np.where(within, following, depth)
         left = np.abs(value)
