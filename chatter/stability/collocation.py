@@ -12,6 +12,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.errors import RunError
 from chatter.lanes import LANES
 from chatter.stability import drivers
 from chatter.stability.brackets import Growth
@@ -29,6 +30,8 @@ from chatter.stability.varying_speed import tool_periods, turns, varies
 FINER = ((10, 0.7), (12, 0.5), (12, 0.3), (12, 0.15))
 #: of a limit, relative to its depth
 DEPTH_TOLERANCE = 1e-6
+#: vibrations in a period of the tool
+_MOST_VIBRATIONS = 1_000
 #: speeds from one to the next of those at which all depths are looked at
 STRIDE = 4
 #: points handed to a thread at once, about: many enough to fill the lanes of the kernels; so many
@@ -75,6 +78,7 @@ def _solved(
     """Multipliers, and chatter frequencies (Hz) of the points listened to, nan elsewhere."""
     if len(speeds) == 0:
         return np.empty(0, dtype=np.complex128), np.empty(0)
+    _refuse_endless(cut, float(np.min(speeds)))
     compile_side_by_side(cut)
     order, arrays = _neighbours_together(cut, speeds, depths), map_arrays(cut)
     parts = sweep(
@@ -89,6 +93,18 @@ def _solved(
     multiplier[order] = np.concatenate([part[0] for part in parts])
     frequency[order] = np.concatenate([part[1] for part in parts])
     return multiplier, frequency
+
+
+def _refuse_endless(cut: CutArrays, slowest: float) -> None:
+    """Raise RunError where a period of the tool at a speed (rad/s) holds too many vibrations."""
+    vibrations = cut.resolution.fastest * cut.period_angle / (2.0 * math.pi * slowest)
+    if vibrations > _MOST_VIBRATIONS:
+        hertz = cut.resolution.fastest / (2.0 * math.pi)
+        raise RunError(
+            f"at {slowest * 30.0 / math.pi:.4g} rpm the tool takes {vibrations:.3g} vibrations of "
+            f"{hertz:.4g} Hz to look the same again; at most {_MOST_VIBRATIONS} can be computed: "
+            "raise the lowest spindle speed, or leave out modes that are far too stiff to chatter"
+        )
 
 
 def _points_a_chunk(cut: CutArrays, count: int) -> int:

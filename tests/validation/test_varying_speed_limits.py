@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from chatter.case import Case
+from chatter.errors import RunError
 from chatter.model import milling_model
 from chatter.stability.collocation import rates
 from chatter.stability.spindle_turn import SpeedVariation, angle_at, spindle_turn, time_at
@@ -108,3 +109,10 @@ def test_limits_are_those_of_a_period_that_fits(shape):
     stated, off = np.array([off_at(ratio, shape) for ratio in ratios]).T
     assert np.count_nonzero(off < np.maximum(1.5 * stated, 3e-4)) >= 5
     assert np.all(off < 5e-3)
+
+
+def test_a_spindle_that_hardly_turns_is_refused():
+    """1212 Hz, an element's wave, at a tooth a second."""
+    model = milling_model(varied(2.0, "sine"))
+    with pytest.raises(RunError, match=r"15 rpm .* 1.21e\+03 vibrations of 1212 Hz"):
+        rates(model.cut(4e-3), np.array([2.0 * math.pi / 4.0]), np.array([1e-3]))
