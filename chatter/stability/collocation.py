@@ -30,8 +30,8 @@ from chatter.stability.varying_speed import tool_periods, turns, varies
 FINER = ((10, 0.7), (12, 0.5), (12, 0.3), (12, 0.15))
 #: of a limit, relative to its depth
 DEPTH_TOLERANCE = 1e-6
-#: vibrations in a period of the tool
-_MOST_VIBRATIONS = 1_000
+#: vibrations in a period of the tool, all of which a delay may hold, and in one of a varying speed
+_MOST_VIBRATIONS, _MOST_OF_VARYING = 1_000, 10_000
 #: speeds from one to the next of those at which all depths are looked at
 STRIDE = 4
 #: points handed to a thread at once, about: many enough to fill the lanes of the kernels; so many
@@ -78,7 +78,7 @@ def _solved(
     """Multipliers, and chatter frequencies (Hz) of the points listened to, nan elsewhere."""
     if len(speeds) == 0:
         return np.empty(0, dtype=np.complex128), np.empty(0)
-    _refuse_endless(cut, float(np.min(speeds)))
+    _refuse_endless(cut, speeds)
     compile_side_by_side(cut)
     order, arrays = _neighbours_together(cut, speeds, depths), map_arrays(cut)
     parts = sweep(
@@ -95,15 +95,26 @@ def _solved(
     return multiplier, frequency
 
 
-def _refuse_endless(cut: CutArrays, slowest: float) -> None:
-    """Raise RunError where a period of the tool at a speed (rad/s) holds too many vibrations."""
-    vibrations = cut.resolution.fastest * cut.period_angle / (2.0 * math.pi * slowest)
-    if vibrations > _MOST_VIBRATIONS:
-        hertz = cut.resolution.fastest / (2.0 * math.pi)
+def _refuse_endless(cut: CutArrays, speeds: NDArray[np.float64]) -> None:
+    """Raise RunError where a period at one of the speeds (rad/s) holds too many vibrations."""
+    hertz = cut.resolution.fastest / (2.0 * math.pi)
+    of_tool = hertz * cut.period_angle / float(np.min(speeds))
+    rpm = float(np.min(speeds)) * 30.0 / math.pi
+    if of_tool > _MOST_VIBRATIONS:
         raise RunError(
-            f"at {slowest * 30.0 / math.pi:.4g} rpm the tool takes {vibrations:.3g} vibrations of "
-            f"{hertz:.4g} Hz to look the same again; at most {_MOST_VIBRATIONS} can be computed: "
-            "raise the lowest spindle speed, or leave out modes that are far too stiff to chatter"
+            f"at {rpm:.4g} rpm the tool takes {of_tool:.3g} vibrations of {hertz:.4g} Hz to look "
+            f"the same again; at most {_MOST_VIBRATIONS} can be computed: raise the lowest spindle "
+            "speed, or leave out modes that are far too stiff to chatter"
+        )
+    if not varies(cut):
+        return
+    longest = float(np.max(hertz * cut.period_angle / speeds * tool_periods(cut, speeds)))
+    if longest > _MOST_OF_VARYING:
+        raise RunError(
+            f"cut.speed_variation.frequency: at {cut.variation.frequency:.4g} Hz the cut takes "
+            f"{longest:.3g} vibrations of {hertz:.4g} Hz to repeat itself; at most "
+            f"{_MOST_OF_VARYING} can be computed: for so slow a variation take the limits at the "
+            "constant speeds that it goes through"
         )
 
 

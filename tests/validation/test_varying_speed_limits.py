@@ -116,3 +116,9 @@ def test_a_spindle_that_hardly_turns_is_refused():
     model = milling_model(varied(2.0, "sine"))
     with pytest.raises(RunError, match=r"15 rpm .* 1.21e\+03 vibrations of 1212 Hz"):
         rates(model.cut(4e-3), np.array([2.0 * math.pi / 4.0]), np.array([1e-3]))
+
+
+def test_a_variation_that_hardly_repeats_is_refused():
+    model = milling_model(varied(0.05, "sine"))
+    with pytest.raises(RunError, match=r"speed_variation.frequency: at 0.05 Hz .* constant speeds"):
+        rates(model.cut(4e-3), np.array([200.0]), np.array([1e-3]))
