@@ -15,12 +15,13 @@ from chatter.mirror_point import NOT_PASSIVE, is_passive, with_magnitudes
 from chatter.stability.zero_order import frequency_lines
 from dynamics.formats import read_frfs
 from dynamics.frf import Frf, MeasurementError, Point, on_common_lines
+from dynamics.identification import ModalFit, identify_modes
+from dynamics.identification.prepare import prepare
 from dynamics.modal import Mode, Side, receptance_matrix
 
 if TYPE_CHECKING:
     from chatter.case import Case
     from chatter.case.structure import MeasuredFrf
-    from dynamics.identification import ModalFit
 
 _AXES = "xyz"
 
@@ -59,9 +60,6 @@ class MeasuredSide:
         InputError
             If no mode at the tool point is found.
         """
-        # it takes its time to import, and most cases name their modes
-        from dynamics.identification import identify_modes
-
         try:
             fit = with_magnitudes(identify_modes(self.frfs, tool_point=self.node))
         except MeasurementError as error:
@@ -88,8 +86,6 @@ class MeasuredSide:
 
         Where the measurement is not that of a drive point, the receptance of `modes` stands in.
         """
-        from dynamics.identification.prepare import prepare
-
         measured = self.tool_point_frfs()
         band = prepare(measured, None).clean
         inside = [frf.receptance().band(band.lowest, band.highest) for frf in measured]

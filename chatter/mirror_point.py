@@ -9,15 +9,12 @@ beam), every mode has the right magnitude and every second one the wrong sign.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dynamics.frf import Frf
+from dynamics.identification import IdentifiedMode, ModalFit
 from dynamics.modal import Mode
-
-if TYPE_CHECKING:
-    from dynamics.identification import IdentifiedMode, ModalFit
 
 NOT_PASSIVE = (
     "power flows out at some resonances, so this is no drive point; the magnitudes of its modes "

@@ -13,11 +13,11 @@ from chatter.errors import InputError
 from chatter.measured_frf import MeasuredSide, measured_sides
 from chatter.stability.zero_order import frequency_lines
 from dynamics.frf import MeasurementError
+from dynamics.identification import ModalFit
 from dynamics.modal import Mode, receptance_matrix
 
 if TYPE_CHECKING:
     from chatter.case import Case
-    from dynamics.identification import ModalFit
 
 #: chatter is looked for up to this multiple of the highest mode
 _HIGHEST_CHATTER = 4.0
