@@ -21,9 +21,9 @@ import numpy as np
 from numba.core.runtime import _nrt_python, rtsys
 
 from chatter import Case
-from chatter.coupled.setup import set_up_machine
-from chatter.coupled.simulate import simulate_on_machine
-from chatter.virtual_machine.engine import advance
+from chatter.engine.machine_loop import advance
+from chatter.simulation.on_machine.setup import set_up_machine
+from chatter.simulation.on_machine.simulate import simulate_on_machine
 from dynamics.machine.loop import Loads
 
 MACHINE = Path(__file__).parents[1] / "examples" / "machine-coupled-milling" / "machine.toml"

@@ -22,7 +22,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests/dynamics")]
 
 from hammer_records import random_set  # noqa: E402
 
-from dynamics.hammer import examine_records  # noqa: E402
+from dynamics.frf.hammer import examine_records  # noqa: E402
 
 CONDITIONS = {
     "white noise": {},

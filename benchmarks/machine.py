@@ -23,9 +23,9 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 from numba.core.runtime import _nrt_python, rtsys
 
-from chatter.machine_file import MachineFile
-from chatter.virtual_machine.engine import Record, run
-from chatter.virtual_machine.run import RunInputs, run_machine
+from chatter.description.machine.machine_file import MachineFile
+from chatter.engine.machine_loop import Record, run
+from chatter.simulation.virtual_tests.run import RunInputs, run_machine
 from dynamics.friction.lugre import LuGre
 from dynamics.machine.description import Machine
 from dynamics.machine.loop import Loads

@@ -14,10 +14,11 @@ import time
 
 import numpy as np
 
-from chatter.case import Case
-from chatter.model import milling_model
-from chatter.stability import collocation, drivers
-from chatter.stability.element_assembly import map_arrays
+from chatter.description.case import Case
+from chatter.stability.methods.collocation import drivers
+from chatter.stability.methods.collocation import multipliers as collocation
+from chatter.stability.methods.collocation.element_assembly import map_arrays
+from chatter.stability.model import milling_model
 
 RPM = math.pi / 30.0
 POINTS = 800

@@ -12,12 +12,12 @@ from functools import partial
 import numpy as np
 from scipy.linalg import expm
 
-from chatter.case import Case
-from chatter.model import milling_model
-from chatter.stability import collocation
-from chatter.stability.following import followed_crossings
-from chatter.stability.semi_discretization import limit_curve, multipliers
-from chatter.stability.sweep import kept_threads, worker_count
+from chatter.description.case import Case
+from chatter.engine.parallel import kept_threads, worker_count
+from chatter.stability.boundary_continuation import followed_crossings
+from chatter.stability.methods.collocation import multipliers as collocation
+from chatter.stability.methods.semi_discretization.method import limit_curve, multipliers
+from chatter.stability.model import milling_model
 
 RPM = math.pi / 30.0
 SPEEDS, DEPTHS, STEPS = 200, 100, 40

@@ -27,14 +27,14 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 from numba import njit
 
-from chatter.case import Case
+from chatter.description.case import Case
 from chatter.simulation.setup import Setup, set_up
 from chatter.simulation.simulate import simulate
-from cutting.dexel import dexel_carve, dexel_chip_thickness
-from cutting.dexel_stock import dexel_remove_path, dexel_stock
-from cutting.engagement import slice_engagement
-from cutting.voxel import voxel_carve, voxel_chip_thickness
-from cutting.voxel_stock import voxel_remove_path, voxel_stock
+from cutting.dexel.carving import dexel_carve, dexel_chip_thickness
+from cutting.dexel.stock import dexel_remove_path, dexel_stock
+from cutting.engagement.immersion import slice_engagement
+from cutting.voxel.carving import voxel_carve, voxel_chip_thickness
+from cutting.voxel.stock import voxel_remove_path, voxel_stock
 
 REPEATS = 7
 TEETH, SLICES, STEPS, TURNS = 4, 10, 800, 100

@@ -7,35 +7,24 @@
     diagram.plot()
     diagram.save("out")
 
-================== ===================================================================
-module             responsibility
-================== ===================================================================
-case               the case file: units, checks, patches, writing back, schema
-structure          modes of a case, or the measured FRFs that it names
-model              compile a case to flat arrays
-stability          kernels: one module a method, one sweep
-methods            the methods behind one call
-lobe_diagram       `lobes`: limits over speed, pockets, files
-path_diagram       `lobes --x`, `--y`: limits and maps over any path of the case
-stability_check    `check`: verdict on the operating point
-simulation         `simulate`: the cut in the time domain
-what_if            `whatif`: what would change if values were others
-monte_carlo        `uncertainty`: tolerances of the input to limits
-best_cut           `optimum`: the highest removal rate within limits
-pitch_angles       `pitch`: pitch angles for a range of speeds
-judgement          chatter or not, from the signals of a cut
-machine_file       the machine file: bodies, drives, friction, control -> a machine
-virtual_machine    `frf`, `move`: virtual tests of a machine
-findings           table of published against obtained
-modal_test         `modes`: measured FRFs or hammer records to modal parameters
-result_files       files that results write
-example_cases      `examples`: list, copy and run the shipped examples
-live               `lobes --live`: a page in the browser that follows sliders
-cluster            where studies are computed: here, or on a Dask cluster
-grid_blocks        the grid of a diagram on a cluster
-plots              pictures
-cli                the command line
-================== ===================================================================
+Layers, each of which imports only those below it:
+
+============ =========================================================================
+package      responsibility
+============ =========================================================================
+cli, app     the command line, a module a command; the page in the browser
+plots        pictures of results
+report       pages of results
+explain      what a measurement says that its declared case lacks
+studies      what-if, uncertainty, optimisation, pitch design; executor, result cache
+stability    `lobes`, `check`: diagrams, pockets, a package for each method
+simulation   `simulate`, `frf`, `move`: a cut or a machine in the time domain
+detection    chatter or not, from signals
+engine       the time loop, its dispatch, the presets of compiled code
+compile      from a case to flat arrays: tool, forces, structure, machine
+io           file formats in and out
+description  case, machine and measurement files: keys, units, patches, errors
+============ =========================================================================
 """
 
 from __future__ import annotations
@@ -44,49 +33,49 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from chatter.best_cut.study import optimum as optimum
-    from chatter.case import Case as Case
-    from chatter.case import load as load
-    from chatter.case import schema as schema
-    from chatter.errors import InputError as InputError
-    from chatter.errors import RunError as RunError
-    from chatter.example_cases import examples as examples
-    from chatter.lobe_diagram import lobes as lobes
-    from chatter.machine_file import load_machine as load_machine
-    from chatter.modal_test import modes as modes
-    from chatter.monte_carlo.study import uncertainty as uncertainty
-    from chatter.path_diagram import lobes_over as lobes_over
-    from chatter.pitch_angles.study import pitch as pitch
-    from chatter.simulation.bifurcation import bifurcation as bifurcation
+    from chatter.description.case import Case as Case
+    from chatter.description.case import load as load
+    from chatter.description.case_schema import schema as schema
+    from chatter.description.errors import InputError as InputError
+    from chatter.description.errors import RunError as RunError
+    from chatter.description.machine.machine_file import load_machine as load_machine
+    from chatter.io.shipped_examples import examples as examples
     from chatter.simulation.simulate import simulate as simulate
-    from chatter.stability_check import check as check
-    from chatter.virtual_machine.from_file import frf as frf
-    from chatter.virtual_machine.from_file import move as move
-    from chatter.what_if.study import whatif as whatif
+    from chatter.simulation.virtual_tests.from_file import frf as frf
+    from chatter.simulation.virtual_tests.from_file import move as move
+    from chatter.stability.check import check as check
+    from chatter.stability.diagram import lobes as lobes
+    from chatter.studies.bifurcation import bifurcation as bifurcation
+    from chatter.studies.diagram_over_axes import lobes_over as lobes_over
+    from chatter.studies.modal_test import modes as modes
+    from chatter.studies.optimisation.study import optimum as optimum
+    from chatter.studies.pitch_design.study import pitch as pitch
+    from chatter.studies.uncertainty.study import uncertainty as uncertainty
+    from chatter.studies.whatif.study import whatif as whatif
 
 __version__ = "0.1.0"
 
 #: public name -> module that holds it; imported when first used, so that `import chatter` is quick
 _PUBLIC = {
-    "Case": "chatter.case",
-    "InputError": "chatter.errors",
-    "RunError": "chatter.errors",
-    "bifurcation": "chatter.simulation.bifurcation",
-    "check": "chatter.stability_check",
-    "examples": "chatter.example_cases",
-    "frf": "chatter.virtual_machine.from_file",
-    "load": "chatter.case",
-    "load_machine": "chatter.machine_file",
-    "lobes": "chatter.lobe_diagram",
-    "lobes_over": "chatter.path_diagram",
-    "modes": "chatter.modal_test",
-    "optimum": "chatter.best_cut.study",
-    "move": "chatter.virtual_machine.from_file",
-    "pitch": "chatter.pitch_angles.study",
-    "schema": "chatter.case",
+    "Case": "chatter.description.case",
+    "InputError": "chatter.description.errors",
+    "RunError": "chatter.description.errors",
+    "bifurcation": "chatter.studies.bifurcation",
+    "check": "chatter.stability.check",
+    "examples": "chatter.io.shipped_examples",
+    "frf": "chatter.simulation.virtual_tests.from_file",
+    "load": "chatter.description.case",
+    "load_machine": "chatter.description.machine.machine_file",
+    "lobes": "chatter.stability.diagram",
+    "lobes_over": "chatter.studies.diagram_over_axes",
+    "modes": "chatter.studies.modal_test",
+    "optimum": "chatter.studies.optimisation.study",
+    "move": "chatter.simulation.virtual_tests.from_file",
+    "pitch": "chatter.studies.pitch_design.study",
+    "schema": "chatter.description.case_schema",
     "simulate": "chatter.simulation.simulate",
-    "uncertainty": "chatter.monte_carlo.study",
-    "whatif": "chatter.what_if.study",
+    "uncertainty": "chatter.studies.uncertainty.study",
+    "whatif": "chatter.studies.whatif.study",
 }
 
 __all__ = sorted(_PUBLIC)

@@ -8,8 +8,6 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from chatter.case.case import Case
-from chatter.case.path import field_at, parse_path
 from chatter.cli.errors import reports_errors
 from chatter.cli.options import (
     Assignments,
@@ -20,7 +18,9 @@ from chatter.cli.options import (
     patched_case,
 )
 from chatter.cli.report import announce_compilation, print_json, print_written, progress_bar
-from chatter.errors import InputError
+from chatter.description.case import Case
+from chatter.description.errors import InputError
+from chatter.description.path import field_at, parse_path
 
 
 @reports_errors
@@ -40,8 +40,8 @@ def bifurcation(
     """Simulate a case over a range of one value: where chatter sets in, and of what kind."""
     description = patched_case(case, assignments)
     path, values = _range(vary, count)
-    from chatter.simulation.bifurcation import bifurcation as run_bifurcation
-    from chatter.simulation.engine import run
+    from chatter.engine.loop import run
+    from chatter.studies.bifurcation import bifurcation as run_bifurcation
 
     announce_compilation(run)
     with progress_bar("cuts") as progress:

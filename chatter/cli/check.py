@@ -17,7 +17,7 @@ def check(
 ) -> None:
     """Judge the operating point of a case: stable or chatter, and the limit depth."""
     description = patched_case(case, assignments)
-    from chatter.stability_check import check as run_check
+    from chatter.stability.check import check as run_check
 
     announce_compilation()
     result = run_check(description, method)

@@ -16,8 +16,8 @@ def compare(
     json: Json = False,
 ) -> None:
     """Error of a case's prediction, by run and channel."""
-    from chatter.explain import compare as run_compare
-    from chatter.explain import read_measurement
+    from chatter.explain.comparison import compare as run_compare
+    from chatter.explain.measurement import read_measurement
 
     declared = read_measurement(measurement, case)
     announce_compilation()

@@ -10,7 +10,7 @@ from typing import ParamSpec
 
 import typer
 
-from chatter.errors import InputError, RunError
+from chatter.description.errors import InputError, RunError
 
 Parameters = ParamSpec("Parameters")
 

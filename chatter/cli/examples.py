@@ -22,8 +22,8 @@ def examples(
     out: OutputFolder = None,
 ) -> None:
     """List the shipped examples, copy one here, or run it."""
-    from chatter.example_cases import example
-    from chatter.example_cases import examples as shipped
+    from chatter.io.shipped_examples import example
+    from chatter.io.shipped_examples import examples as shipped
 
     if name is None:
         print_table(

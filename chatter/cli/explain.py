@@ -33,8 +33,8 @@ def explain(
     json: Json = False,
 ) -> None:
     """Trace what a measurement shows and its declared case lacks, and add it."""
-    from chatter.explain import explain as run_explain
-    from chatter.explain import read_measurement
+    from chatter.explain.explanation import explain as run_explain
+    from chatter.explain.measurement import read_measurement
 
     declared = read_measurement(measurement, case)
     announce_compilation()
@@ -55,7 +55,7 @@ def explain(
 
 def print_checks(checks: list[dict[str, str]]) -> None:
     """Print what was found in the signals, with what follows."""
-    from chatter.explain.report import FOLLOWS
+    from chatter.report.explanation.sections import FOLLOWS
 
     fatal = [one for one in checks if one["severity"] == "fatal"]
     for one in fatal or checks:
@@ -63,7 +63,7 @@ def print_checks(checks: list[dict[str, str]]) -> None:
 
 
 def _print(summary: dict) -> None:
-    from chatter.explain.separation import told_apart
+    from chatter.explain.selection.separation import told_apart
 
     typer.echo(f"verdict: {summary['verdict']}")
     print_checks(summary["checks"])

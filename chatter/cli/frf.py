@@ -74,8 +74,8 @@ def frf(
 ) -> None:
     """Frequency responses of a machine: at rest, moving, brake on, control on, in the cut."""
     from chatter.cli.machine_tests import frf_sections
-    from chatter.virtual_machine.engine import run
-    from chatter.virtual_machine.from_file import frfs
+    from chatter.engine.machine_loop import run
+    from chatter.simulation.virtual_tests.from_file import frfs
 
     file = patched_machine(machine, assignments)
     changes = {

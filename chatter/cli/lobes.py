@@ -7,7 +7,6 @@ from typing import Annotated
 
 import typer
 
-from chatter.case import Case
 from chatter.cli.errors import reports_errors
 from chatter.cli.options import (
     Assignments,
@@ -28,7 +27,8 @@ from chatter.cli.report import (
     print_written,
     progress_bar,
 )
-from chatter.errors import InputError
+from chatter.description.case import Case
+from chatter.description.errors import InputError
 
 
 @reports_errors
@@ -84,7 +84,7 @@ def lobes(
         raise InputError(
             "--cluster computes the grid of a diagram, or one over --x and --y; give one of them"
         )
-    from chatter.lobe_diagram import lobes as run_lobes
+    from chatter.stability.diagram import lobes as run_lobes
 
     announce_compilation()
     folder = output_folder(out, case.stem)
@@ -110,7 +110,7 @@ def _over_paths(
     json: bool,
 ) -> None:
     """Compute, write and tell a diagram over other paths than the spindle speed."""
-    from chatter.path_diagram import lobes_over
+    from chatter.studies.diagram_over_axes import lobes_over
 
     announce_compilation()
     with progress_bar("stability") as progress:
@@ -127,9 +127,9 @@ def _over_paths(
 
 def _serve(description: Case, method: str | None, port: int, no_browser: bool) -> None:
     """Serve the page until Ctrl-C."""
-    from chatter.live.answers import LiveCase
-    from chatter.live.server import LiveServer
-    from chatter.stability.sweep import no_progress
+    from chatter.app.answers import LiveCase
+    from chatter.app.server import LiveServer
+    from chatter.engine.parallel import no_progress
 
     announce_compilation()
     page = LiveCase(description, method)

@@ -7,12 +7,12 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from chatter.case.wording import sentences
-from chatter.errors import InputError
-from chatter.machine_file import MachineFile
-from chatter.machine_file.frf_section import FrfSection
-from chatter.machine_file.move_section import MoveSection
-from chatter.virtual_machine.from_file import default_frfs
+from chatter.description.errors import InputError
+from chatter.description.machine.frequency_response import FrfSection
+from chatter.description.machine.machine_file import MachineFile
+from chatter.description.machine.move import MoveSection
+from chatter.description.wording import sentences
+from chatter.simulation.virtual_tests.from_file import default_frfs
 
 #: band of a test that names none
 _BAND = ("5 Hz", "500 Hz")

@@ -37,7 +37,7 @@ def modes(
     json: Json = False,
 ) -> None:
     """Identify modal parameters from measured FRFs or hammer records."""
-    from chatter.modal_test import modes as run_modes
+    from chatter.studies.modal_test import modes as run_modes
 
     result = run_modes(
         files, keep=keep or (), direction=direction, side=side, band=band, mode_count=mode_count

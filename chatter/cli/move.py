@@ -37,8 +37,8 @@ def move(
 ) -> None:
     """Move the axes of a machine: tracking error, contour error, torque."""
     from chatter.cli.machine_tests import move_sections
-    from chatter.virtual_machine.engine import run
-    from chatter.virtual_machine.from_file import file_move
+    from chatter.engine.machine_loop import run
+    from chatter.simulation.virtual_tests.from_file import file_move
 
     file = patched_machine(machine, assignments)
     sections = move_sections(file, only)

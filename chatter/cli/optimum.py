@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from chatter.case import Case
 from chatter.cli.errors import reports_errors
 from chatter.cli.options import Assignments, CaseFile, Json, OutputFolder
 from chatter.cli.search import searched
-from chatter.errors import RunError
-from chatter.stability.sweep import Progress
+from chatter.description.case import Case
+from chatter.description.errors import RunError
+from chatter.engine.parallel import Progress
 
 if TYPE_CHECKING:
-    from chatter.best_cut.result import Optimum
+    from chatter.studies.optimisation.result import Optimum
 
 
 @reports_errors
@@ -32,7 +32,7 @@ def optimum(
     """Find the cut with the highest removal rate within the limits of [optimum]."""
 
     def search(description: Case, progress: Progress, folder: Path) -> Optimum:
-        from chatter.best_cut.study import optimum as run_optimum
+        from chatter.studies.optimisation.study import optimum as run_optimum
 
         return run_optimum(description, samples, seed, progress, folder)
 

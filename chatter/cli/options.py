@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from chatter.case import Case, load, parse_assignments
+from chatter.description.assignments import parse_assignments
+from chatter.description.case import Case, load
 
 if TYPE_CHECKING:
-    from chatter.machine_file import MachineFile
+    from chatter.description.machine.machine_file import MachineFile
 
 CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).")]
 MachinePath = Annotated[Path, typer.Argument(metavar="MACHINE", help="Machine file (TOML).")]
@@ -52,7 +53,7 @@ def patched_case(path: Path, assignments: list[str] | None) -> Case:
 
 def patched_machine(path: Path, assignments: list[str] | None) -> MachineFile:
     """Load a machine file and apply the assignments of the command line."""
-    from chatter.machine_file import load_machine
+    from chatter.description.machine.machine_file import load_machine
 
     machine = load_machine(path)
     return machine.patch(parse_assignments(assignments)) if assignments else machine

@@ -5,14 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from chatter.case import Case
 from chatter.cli.errors import reports_errors
 from chatter.cli.options import Assignments, CaseFile, Json, OutputFolder
 from chatter.cli.search import searched
-from chatter.stability.sweep import Progress
+from chatter.description.case import Case
+from chatter.engine.parallel import Progress
 
 if TYPE_CHECKING:
-    from chatter.pitch_angles.result import PitchResult
+    from chatter.studies.pitch_design.result import PitchResult
 
 
 @reports_errors
@@ -27,6 +27,6 @@ def pitch(
 
 
 def _search(description: Case, progress: Progress, folder: Path) -> PitchResult:
-    from chatter.pitch_angles.study import pitch as run_pitch
+    from chatter.studies.pitch_design.study import pitch as run_pitch
 
     return run_pitch(description, progress, folder)

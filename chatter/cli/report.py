@@ -39,7 +39,7 @@ def announce_compilation(driver: object | None = None) -> None:
     driver : compiled function, optional
         Asked for alone; by default any kernel will do.
     """
-    from chatter.kernels import CACHE_FOLDER, is_compiled
+    from chatter.engine.presets import CACHE_FOLDER, is_compiled
 
     known = any(CACHE_FOLDER.rglob("*.nbi")) if driver is None else is_compiled(driver)
     if not known:

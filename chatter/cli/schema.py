@@ -22,9 +22,9 @@ def schema(
     import json
 
     if machine:
-        from chatter.machine_file import machine_schema as content
+        from chatter.description.machine.machine_schema import machine_schema as content
     else:
-        from chatter.case import schema as content
+        from chatter.description.case_schema import schema as content
     if out is None:
         print_json(content())
         return

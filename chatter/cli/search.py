@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Protocol, TypeVar
 
-from chatter.case import Case
 from chatter.cli.options import output_folder, patched_case
 from chatter.cli.report import (
     announce_compilation,
@@ -16,7 +15,8 @@ from chatter.cli.report import (
     print_written,
     progress_bar,
 )
-from chatter.stability.sweep import Progress
+from chatter.description.case import Case
+from chatter.engine.parallel import Progress
 
 
 class Found(Protocol):

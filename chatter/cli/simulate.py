@@ -39,7 +39,7 @@ def simulate(
     description = patched_case(case, assignments)
     if chip is not None:
         description = description.patch({"simulation.chip": chip})
-    from chatter.simulation.engine import run
+    from chatter.engine.loop import run
     from chatter.simulation.simulate import simulate as run_simulation
 
     announce_compilation(run)

@@ -40,7 +40,7 @@ def uncertainty(
 ) -> None:
     """Propagate values such as "1650 +- 80 MPa" to a band of lobes and a probability."""
     description = patched_case(case, assignments)
-    from chatter.monte_carlo.study import uncertainty as run_uncertainty
+    from chatter.studies.uncertainty.study import uncertainty as run_uncertainty
 
     announce_compilation()
     folder = output_folder(out, case.stem)

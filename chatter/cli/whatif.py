@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from chatter.case import parse_assignments
 from chatter.cli.errors import reports_errors
 from chatter.cli.options import Assignments, Cluster, Json, Method, OutputFolder, output_folder
 from chatter.cli.report import (
@@ -17,11 +16,12 @@ from chatter.cli.report import (
     print_written,
     progress_bar,
 )
-from chatter.errors import InputError
+from chatter.description.assignments import parse_assignments
+from chatter.description.errors import InputError
 
 if TYPE_CHECKING:
-    from chatter.what_if.ready import ReadyStudy
-    from chatter.what_if.study import WhatIf
+    from chatter.studies.whatif.presets import ReadyStudy
+    from chatter.studies.whatif.study import WhatIf
 
 
 @reports_errors
@@ -72,14 +72,14 @@ def whatif(
         if chosen is None:
             raise InputError("a case or machine file is wanted, or --study NAME; --studies lists")
         file = chosen.file()
-    from chatter.what_if.subject import load_subject, patched
+    from chatter.studies.whatif.model import load_subject, patched
 
     subject = patched(load_subject(file), parse_assignments(assignments or []))
     name = file.parent.name if chosen is not None else file.stem
     folder = output_folder(out, f"{name}-{study}" if study else name)
     if chosen is not None:
         subject = _fitted(chosen, lambda: patched(subject, chosen.settings))
-    from chatter.what_if import whatif as run_whatif
+    from chatter.studies.whatif.study import whatif as run_whatif
 
     announce_compilation()
     with progress_bar("points") as progress:
@@ -118,7 +118,7 @@ def _chosen(study: str | None, vary: list[str] | None) -> ReadyStudy | None:
         return None
     if vary:
         raise InputError("--study and --vary are both given; a study has its own paths and values")
-    from chatter.what_if.ready import ready_study
+    from chatter.studies.whatif.presets import ready_study
 
     return ready_study(study)
 
@@ -139,7 +139,7 @@ def _say_resumed(before: int, total: int) -> None:
 
 
 def _list_studies() -> None:
-    from chatter.what_if.ready import STUDIES
+    from chatter.studies.whatif.presets import STUDIES
 
     for one in STUDIES.values():
         typer.echo(f"{one.name}: {one.question}")

@@ -23,9 +23,3 @@ report          report.html
 comparison      `compare`: errors of the declared case
 =============== ====================================================================
 """
-
-from chatter.explain.comparison import Comparison, compare
-from chatter.explain.explanation import Explanation, explain
-from chatter.explain.measurement import Measurement, read_measurement
-
-__all__ = ["Comparison", "Explanation", "Measurement", "compare", "explain", "read_measurement"]

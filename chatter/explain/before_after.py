@@ -10,8 +10,8 @@ import numpy as np
 
 from chatter.explain.errors_of_runs import by_channel, errors_of
 from chatter.explain.measurement import Run
-from chatter.explain.residual.left import Residual
-from chatter.result_files import finite_or_none
+from chatter.explain.residuals.normalised_residual import Residual
+from chatter.io.result_files import finite_or_none
 
 if TYPE_CHECKING:
     from chatter.explain.explanation import Explanation

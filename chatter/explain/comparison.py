@@ -7,12 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from chatter.explain.data_checks.checking import checked
+from chatter.explain.data_checks.finding import SignalFinding
 from chatter.explain.errors_of_runs import ChannelError, errors_of, overall
-from chatter.explain.kinds import kind_of
+from chatter.explain.kinds.registry import kind_of
 from chatter.explain.measurement import Measurement
-from chatter.explain.signals import SignalFinding, checked
 from chatter.explain.signature import Signature, signature_of
-from chatter.result_files import as_json, write_results
+from chatter.io.presentation import presentation
+from chatter.io.result_files import as_json, write_results
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -50,19 +52,20 @@ class Comparison:
 
     def plot(self) -> Figure:
         """Picture of measured signals and what the case leaves of them."""
-        from chatter.plots.explanation import plot_residuals
-        from chatter.plots.findings import plot_findings
-
         if self.measurement.kind == "stability":
-            return plot_findings(self.signature.findings[:1])
+            return presentation("plots.residual_diagnostics").plot_findings(
+                self.signature.findings[:1]
+            )
         title = f"{self.measurement.title}: what {self.measurement.case.name} leaves"
-        return plot_residuals({"left": self.signature.residual}, title)
+        return presentation("plots.explanation").plot_residuals(
+            {"left": self.signature.residual}, title
+        )
 
     def plot_signature(self) -> Figure:
         """Picture of where the residual lives."""
-        from chatter.plots.findings import plot_findings
-
-        return plot_findings(self.signature.telling or self.signature.findings[:1])
+        return presentation("plots.residual_diagnostics").plot_findings(
+            self.signature.telling or self.signature.findings[:1]
+        )
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write compare.csv, compare.json, compare.png and signature.png."""

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from chatter.case import Case
-from chatter.explain.kind import Kind
+from chatter.description.case import Case
+from chatter.explain.kinds.kind import Kind
 from chatter.explain.measurement import Measurement, Run
 
 

@@ -12,20 +12,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.case import Case
+from chatter.description.case import Case
 from chatter.explain.before_after import BeforeAfter, before_after
+from chatter.explain.data_checks.checking import checked
+from chatter.explain.data_checks.finding import SignalFinding
+from chatter.explain.data_checks.unusable import Unusable
 from chatter.explain.errors_of_runs import errors_of, overall
-from chatter.explain.fitting import Fit
-from chatter.explain.kind import Effect
-from chatter.explain.kinds import kind_of
+from chatter.explain.kinds.kind import Effect
+from chatter.explain.kinds.registry import kind_of
 from chatter.explain.measurement import Measurement
-from chatter.explain.problem import NUMERICS
-from chatter.explain.search import Candidate, Search, Stage, search
-from chatter.explain.separation import separation
-from chatter.explain.signals import SignalFinding, checked
+from chatter.explain.selection.fitting import Fit
+from chatter.explain.selection.problem import NUMERICS
+from chatter.explain.selection.search import Candidate, Search, Stage, search
+from chatter.explain.selection.separation import separation
 from chatter.explain.signature import Signatures, signatures_of
-from chatter.explain.unusable import Unusable
-from chatter.result_files import as_json, finite_or_none, write_results
+from chatter.io.presentation import presentation
+from chatter.io.result_files import as_json, finite_or_none, write_results
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -201,21 +203,17 @@ class Explanation:
 
     def plot(self) -> Figure:
         """Picture of what is left of the runs, before and after."""
-        from chatter.plots.explanation import plot_explanation
-
-        return plot_explanation(self)
+        return presentation("plots.explanation").plot_explanation(self)
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write explanation.json, case-updated.toml, report.html and residual.png."""
-        from chatter.explain.report import report_of
-
         summary = self.summary()
         picture = self.plot()
         written = write_results(
             folder,
             {
                 "explanation.json": as_json(summary),
-                "report.html": report_of(self, summary, picture),
+                "report.html": presentation("report.explanation").report_of(self, summary, picture),
             },
             {"residual.png": picture},
         )

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.case import Case
-from chatter.errors import InputError, RunError
+from chatter.description.case import Case
+from chatter.description.errors import InputError, RunError
 from chatter.explain.before_after import STEPS
-from chatter.lobe_diagram import LobeDiagram, lobes
+from chatter.stability.diagram import LobeDiagram, lobes
 
 if TYPE_CHECKING:
     from chatter.explain.explanation import Explanation

@@ -11,10 +11,10 @@ import numpy as np
 import tomlkit
 from numpy.typing import NDArray
 
-from chatter.case import Case, load
-from chatter.errors import InputError
-from chatter.explain.tables import read_signals
-from chatter.shown import shown
+from chatter.description.case import Case, load
+from chatter.description.errors import InputError
+from chatter.description.formatting import shown
+from chatter.io.signal_tables import read_signals
 
 KINDS = ("milling", "axis", "stability", "frf")
 #: keys of [[run]] that are no override of the case
@@ -243,7 +243,7 @@ def _path_of(where: str, key: str, declared: Case) -> str:
 
 
 def _seconds(where: str, given: Any) -> float:
-    from chatter.units import QuantityError, parse
+    from chatter.description.units import QuantityError, parse
 
     try:
         return parse(given, "time").value

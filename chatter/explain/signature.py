@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from chatter.case import Case
-from chatter.explain.kind import Kind
+from chatter.description.case import Case
+from chatter.explain.kinds.kind import Kind
 from chatter.explain.measurement import Measurement
-from chatter.explain.residual.finding import Finding
-from chatter.explain.residual.lead import Lead, lead_of
-from chatter.explain.residual.left import Noise, Residual, residual_of
-from chatter.explain.residual.views import look, nothing_beyond_chance
+from chatter.explain.residuals.diagnostics import look, nothing_beyond_chance
+from chatter.explain.residuals.finding import Finding
+from chatter.explain.residuals.normalised_residual import Noise, Residual, residual_of
+from chatter.explain.residuals.residual_dependence import Lead, lead_of
 
 if TYPE_CHECKING:
     from chatter.explain.explanation import Explanation

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from chatter.case.case import Case
-from chatter.case.path import field_at, parse_path
+from chatter.description.case import Case
+from chatter.description.path import field_at, parse_path
 from chatter.plots.style import BLUE, GREY, RED, finish, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from chatter.simulation.bifurcation import BifurcationDiagram
+    from chatter.studies.bifurcation import BifurcationDiagram
 
 #: dimension -> unit of the axis and factor from SI
 _SHOWN = {

@@ -13,14 +13,14 @@ from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
 from chatter.plots import style
-from chatter.plots.findings import plot_findings
+from chatter.plots.residual_diagnostics import plot_findings
 
 if TYPE_CHECKING:
     from chatter.explain.before_after import BeforeAfter
     from chatter.explain.explanation import Explanation
-    from chatter.explain.kind import Signals
+    from chatter.explain.kinds.kind import Signals
     from chatter.explain.lobes_before_after import LobesBeforeAfter
-    from chatter.explain.residual.left import Left, Residual
+    from chatter.explain.residuals.normalised_residual import Left, Residual
 
 _SHOWN_RUNS = 3
 #: deepest over shallowest cut beyond which depths are drawn on a logarithmic scale
@@ -134,7 +134,7 @@ def _unit(channel: str) -> tuple[str, float]:
         return "µm/N", 1e6
     if channel == "stable":
         return "", 1.0
-    from chatter.explain.residual.variables import told_unit
+    from chatter.explain.residuals.variables import told_unit
 
     return told_unit(channel)
 

@@ -9,10 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from chatter.plots import style
-from dynamics.frf import Frf
+from dynamics.frf.container import Frf
 
 if TYPE_CHECKING:
-    from chatter.virtual_machine.frf import FrfResult
+    from chatter.simulation.virtual_tests.frf import FrfResult
 
 _COLOURS = (style.BLUE, style.RED, style.GREEN, style.ORANGE, style.GREY, "#CC79A7", "#56B4E9")
 _LEAST_COHERENCE = 0.999

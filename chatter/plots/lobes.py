@@ -12,10 +12,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from chatter.plots import style
-from chatter.pockets import DEPTH_MARGIN, SPEED_MARGIN
+from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
 
 if TYPE_CHECKING:
-    from chatter.lobe_diagram import LobeDiagram
+    from chatter.stability.diagram import LobeDiagram
 
 _RPM = 30.0 / math.pi
 _FILL_ROWS = 1000

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from chatter.plots import style
-from dynamics.frf import Frf
+from dynamics.frf.container import Frf
 from dynamics.identification import FrfModel, ModalFit
 
 #: FRFs side by side in one picture

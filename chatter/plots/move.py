@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from chatter.plots import style
 
 if TYPE_CHECKING:
-    from chatter.virtual_machine.move import MoveResult
+    from chatter.simulation.virtual_tests.move import MoveResult
 
 _COLOURS = (style.BLUE, style.RED, style.GREEN, style.ORANGE)
 

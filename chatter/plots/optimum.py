@@ -15,7 +15,7 @@ from matplotlib.patches import Patch
 from chatter.plots import style
 
 if TYPE_CHECKING:
-    from chatter.best_cut.result import Optimum
+    from chatter.studies.optimisation.result import Optimum
 
 _RPM = 30.0 / math.pi
 _PER_MINUTE = 6e7

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from chatter.plots import style
 
 if TYPE_CHECKING:
-    from chatter.pitch_angles.result import PitchResult
+    from chatter.studies.pitch_design.result import PitchResult
 
 _RPM = 30.0 / math.pi
 _COLOURS = {"alternating": style.ORANGE, "linear": "#CC79A7"}

@@ -14,7 +14,7 @@ from scipy.interpolate import CubicSpline
 
 from chatter.plots import style
 from chatter.plots.workpiece import draw_workpiece
-from cutting.discrete_chip import DiscreteCut
+from cutting.chip.discrete_chip import DiscreteCut
 
 if TYPE_CHECKING:
     from chatter.simulation.finish import WallFinish

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from chatter.plots import style
 
 if TYPE_CHECKING:
-    from chatter.monte_carlo.study import Uncertainty
+    from chatter.studies.uncertainty.study import Uncertainty
 
 _RPM = 30.0 / math.pi
 _BINS = 24

@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from chatter.plots import style
-from chatter.what_if import telling
+from chatter.studies.whatif import summary as telling
 
 if TYPE_CHECKING:
-    from chatter.what_if.study import WhatIf
+    from chatter.studies.whatif.study import WhatIf
 
 _LONGEST_LABEL = 60
 _MOST_TICKS = 10

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.colors import ListedColormap
 
 from chatter.plots.style import BLUE, GREY, finish
-from cutting.dexel_stock import CAPACITY, DexelStock, line_coordinates
-from cutting.voxel_stock import VoxelStock
+from cutting.dexel.stock import CAPACITY, DexelStock, line_coordinates
+from cutting.voxel.stock import VoxelStock
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,7 +9,7 @@ import scipy.linalg
 import scipy.signal
 from numpy.typing import NDArray
 
-from chatter.case import Case
+from chatter.description.case import Case
 
 _FORCES = slice(0, 3)
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from chatter.simulation.carved import carved_walls
+from chatter.simulation.carved_workpiece import carved_walls
 from chatter.simulation.reconstruction import FloorProfile, WallProfiles, surface_profiles
-from cutting.dexel_stock import DexelStock
-from cutting.discrete_chip import DiscreteCut
-from cutting.texture import HeightParameters, Texture, cut_off_for, location_error, texture
+from cutting.chip.discrete_chip import DiscreteCut
+from cutting.dexel.stock import DexelStock
+from cutting.surface.texture import HeightParameters, Texture, cut_off_for, location_error, texture
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from cutting.engagement import slice_engagement
-from cutting.surface import (
+from cutting.engagement.immersion import slice_engagement
+from cutting.surface.envelope import (
     ToolMotion,
     WallPasses,
     floor_height,
     wall_reach,
     width_of_influence,
 )
-from cutting.tool import Cutter, EdgeSlices, corner_height, edge_slices
+from cutting.tool.cutter import Cutter, EdgeSlices, corner_height, edge_slices
 
 if TYPE_CHECKING:
     from chatter.simulation.result import SimulationResult

@@ -6,10 +6,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from chatter.case import Case
-from chatter.errors import InputError
-from cutting.tool import Cutter, slice_counts
-from dynamics.modal import Mode
+from chatter.description.case import Case
+from chatter.description.errors import InputError
+from cutting.tool.cutter import Cutter, slice_counts
+from dynamics.modal.modes import Mode
 
 #: steps within a period of the highest mode: where it leaves the chip, the moment counts
 _STEPS_A_PERIOD = 120

@@ -12,15 +12,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.errors import InputError
-from chatter.judgement import CutRecord, Judgement, judge
-from chatter.result_files import as_json, finite_or_none, write_results
-from chatter.simulation.carved import carving_notes
-from chatter.simulation.divergence import LARGE_SWING, Divergence, divergence
+from chatter.description.errors import InputError
+from chatter.detection.record import CutRecord
+from chatter.detection.verdict import Judgement, judge
+from chatter.io.presentation import presentation
+from chatter.io.result_files import as_json, finite_or_none, write_results
+from chatter.simulation.carved_workpiece import carving_notes
 from chatter.simulation.finish import Finish, finish_of
+from chatter.simulation.perturbation.divergence import LARGE_SWING, Divergence, divergence
 from chatter.simulation.setup import Setup
-from cutting.dexel_stock import DexelStock
-from cutting.discrete_chip import DiscreteCut
+from cutting.chip.discrete_chip import DiscreteCut
+from cutting.dexel.stock import DexelStock
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -300,9 +302,7 @@ class SimulationResult:
 
     def plot(self) -> Figure:
         """Return the picture of the run as a matplotlib figure."""
-        from chatter.plots.simulation import plot_simulation
-
-        return plot_simulation(self)
+        return presentation("plots.simulation").plot_simulation(self)
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write signals.csv, summary.json and simulate.png.

@@ -7,28 +7,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from chatter.case import Case
-from chatter.errors import InputError
-from chatter.plausibility import check_plausible
-from chatter.simulation.cutter import cutter_of, edge_law, flank_table
-from chatter.simulation.mode_friction import mode_frictions
+from chatter.compile.cutter import cutter_of, edge_law, flank_table
+from chatter.compile.mode_friction import mode_frictions
+from chatter.compile.structure import structure_of
+from chatter.description.case import Case
+from chatter.description.errors import InputError
+from chatter.description.plausibility import check_plausible
 from chatter.simulation.resolution import Resolution, resolution_of
-from chatter.simulation.spindle import (
-    Spindle,
-    ToolPath,
-    path_of,
-    path_of_last_turn,
-    spindle_of,
-)
-from chatter.simulation.stock import TURNS_BEFORE, discrete_cut
-from chatter.structure import structure_of
-from cutting.contact import ToolContact
-from cutting.delayed_chip import DelayedCut
-from cutting.discrete_chip import DiscreteCut
-from cutting.engagement import slice_engagement
-from cutting.regeneration import delayed_cut
-from cutting.tool import Cutter, EdgeSlices, edge_slices
-from dynamics.modal import Mode
+from chatter.simulation.spindle import Spindle, ToolPath, path_of, path_of_last_turn, spindle_of
+from chatter.simulation.workpiece import TURNS_BEFORE, discrete_cut
+from cutting.chip.delayed_chip import DelayedCut
+from cutting.chip.discrete_chip import DiscreteCut
+from cutting.chip.regeneration import delayed_cut
+from cutting.engagement.immersion import slice_engagement
+from cutting.process_damping.contact import ToolContact
+from cutting.tool.cutter import Cutter, EdgeSlices, edge_slices
+from dynamics.modal.modes import Mode
 
 #: the model of the chip holds while the tool moves by less than this share of its radius
 _FURTHEST = 0.2

@@ -6,25 +6,20 @@ import math
 
 import numpy as np
 
-from chatter.case import Case
-from chatter.errors import InputError, RunError
-from chatter.simulation.carved import FollowingStock, after_run, set_up_on
+from chatter.description.case import Case
+from chatter.description.errors import InputError, RunError
+from chatter.engine.loop import COLUMNS, Record, run
+from chatter.engine.parallel import Progress, no_progress
+from chatter.simulation.carved_workpiece import FollowingStock, after_run, set_up_on
 from chatter.simulation.dynamometer import as_measured
-from chatter.simulation.engine import COLUMNS, Record, run
 from chatter.simulation.result import SimulationResult
 from chatter.simulation.setup import Setup, set_up
 from chatter.simulation.spindle import prescribed
-from chatter.simulation.stock import (
-    STEPS_A_CHUNK,
-    follows,
-    reach_of,
-    steps_a_chunk,
-)
-from chatter.stability.sweep import Progress, no_progress
-from cutting.dexel_stock import DexelStock
-from cutting.discrete_chip import DiscreteCut
-from cutting.tool_point import tool_point
-from dynamics.modal_steps import ModalSteps, modal_steps, stored_energy
+from chatter.simulation.workpiece import STEPS_A_CHUNK, follows, reach_of, steps_a_chunk
+from cutting.chip.discrete_chip import DiscreteCut
+from cutting.chip.tool_point import tool_point
+from cutting.dexel.stock import DexelStock
+from dynamics.modal.modal_steps import ModalSteps, modal_steps, stored_energy
 
 #: a run may be this long, in steps
 _MOST_STEPS = 2_000_000_000
@@ -65,7 +60,7 @@ def simulate(
     An interruption (Ctrl-C) ends the run, not the program: the result holds what was simulated.
     """
     if workpiece is None and case.structure is not None and case.structure.machine is not None:
-        from chatter.coupled.simulate import simulate_on_machine
+        from chatter.simulation.on_machine.simulate import simulate_on_machine
 
         return simulate_on_machine(case, progress)
     setup = set_up(case) if workpiece is None else set_up_on(case, workpiece)

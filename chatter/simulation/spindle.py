@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.case import Case
-from chatter.simulation.engine import Prescribed
+from chatter.description.case import Case
+from chatter.engine.loop import Prescribed
 
 _TURN = 2.0 * math.pi
 

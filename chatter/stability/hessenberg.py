@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numba import njit
 
-from chatter.kernels import KERNEL
+from chatter.engine.presets import KERNEL
 
 _MOST_SWEEPS = 60
 _EXCEPTIONAL_SHIFTS = (10, 20, 30, 40, 50)

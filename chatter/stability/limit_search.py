@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.engine.parallel import Progress, no_progress
 from chatter.stability.crossings import find_crossings, growth_on_net
+from chatter.stability.floquet_multiplier import bifurcation_kind
 from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.multiplier import bifurcation_kind
-from chatter.stability.sweep import Progress, no_progress
 
 #: multipliers at points: (indices of speeds, depths, progress) -> (n,) complex
 AtPoints = Callable[..., NDArray[np.complex128]]

@@ -16,9 +16,9 @@ checks          refusals of numbers out of range
 =============== ====================================================================
 
 Each drive is a specification whose `parts(axis)` are joined with the machine by
-`dynamics.assembly.assembly`; the motors' angles become rows that torques act along. Each axis
-keeps one free motion, which its controller or brake holds. `dynamics.control` has the controllers
-and how torque follows current.
+`dynamics.structure.assembly.assembly`; the motors' angles become rows that torques act along.
+Each axis keeps one free motion, which its controller or brake holds. `dynamics.control` has the
+controllers and how torque follows current.
 """
 
 from dynamics.drive.ball_screw import BallScrew

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.beam_element import positive
-from dynamics.coupling import Term
+from dynamics.beam.element import positive
 from dynamics.drive.belt import Belt, belt_stages
 from dynamics.drive.checks import require_not_negative, require_not_zero, require_stiffness
 from dynamics.drive.gear_train import (
@@ -27,7 +26,8 @@ from dynamics.drive.gear_train import (
 )
 from dynamics.drive.parts import DrivenAxis, DriveParts, Motor
 from dynamics.drive.screw_shaft import AxialSupport, ScrewShaft
-from dynamics.structure import StructureError
+from dynamics.structure.linear_structure import StructureError
+from dynamics.structure.spring_coupling import Term
 
 
 @dataclass(frozen=True)

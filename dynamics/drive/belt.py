@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.beam_element import positive
+from dynamics.beam.element import positive
 from dynamics.drive.checks import require_not_negative, require_stiffness
 from dynamics.drive.gear_train import Spring, Stage
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.structure import StructureError
+from dynamics.structure.linear_structure import StructureError
 
 
 def require_not_negative(where: str, **values: float) -> None:

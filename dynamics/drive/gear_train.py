@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dynamics.coupling import Coupling, Term, reversed_terms
-from dynamics.rotor import Rotor
-from dynamics.structure import StructureError
+from dynamics.structure.linear_structure import StructureError
+from dynamics.structure.rotor import Rotor
+from dynamics.structure.spring_coupling import Coupling, Term, reversed_terms
 
 
 class Spring(NamedTuple):

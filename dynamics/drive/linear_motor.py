@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dynamics.bodies import finite
 from dynamics.drive.parts import DrivenAxis, DriveParts, Motor
-from dynamics.structure import StructureError
+from dynamics.structure.bodies import finite
+from dynamics.structure.linear_structure import StructureError
 
 
 @dataclass(frozen=True, eq=False)

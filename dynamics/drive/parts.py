@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dynamics.bodies import Connector, finite
-from dynamics.coupling import Coupling, Term
-from dynamics.rotor import Rotor
-from dynamics.structure import StructureError
+from dynamics.structure.bodies import Connector, finite
+from dynamics.structure.linear_structure import StructureError
+from dynamics.structure.rotor import Rotor
+from dynamics.structure.spring_coupling import Coupling, Term
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,9 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dynamics.beam_element import positive
-from dynamics.bodies import finite
-from dynamics.coupling import Term
+from dynamics.beam.element import positive
 from dynamics.drive.checks import require_not_negative, require_stiffness
 from dynamics.drive.gear_train import (
     GearTrain,
@@ -22,7 +20,9 @@ from dynamics.drive.gear_train import (
     reflected_inertia,
 )
 from dynamics.drive.parts import DrivenAxis, DriveParts, Motor
-from dynamics.structure import StructureError
+from dynamics.structure.bodies import finite
+from dynamics.structure.linear_structure import StructureError
+from dynamics.structure.spring_coupling import Term
 
 
 @dataclass(frozen=True, eq=False)

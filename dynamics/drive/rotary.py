@@ -6,20 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.beam_element import positive
-from dynamics.coupling import Term
+from dynamics.beam.element import positive
 from dynamics.drive.belt import Belt, belt_stages
 from dynamics.drive.checks import require_not_negative, require_stiffness
-from dynamics.drive.gear_train import (
-    Housing,
-    Spring,
-    Stage,
-    gear_train,
-    reflected_inertia,
-    turning,
-)
+from dynamics.drive.gear_train import Housing, Spring, Stage, gear_train, reflected_inertia, turning
 from dynamics.drive.parts import DrivenAxis, DriveParts, Motor
-from dynamics.rotor import Rotor
+from dynamics.structure.rotor import Rotor
+from dynamics.structure.spring_coupling import Term
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from dynamics.bodies import Connector, finite
-from dynamics.coupling import Coupling, Term
 from dynamics.drive.ball_screw import turning_direction
 from dynamics.drive.belt import Belt, belt_stages
 from dynamics.drive.checks import require_not_negative, require_not_zero, require_stiffness
@@ -22,21 +20,23 @@ from dynamics.drive.gear_train import (
     turning,
 )
 from dynamics.drive.parts import DrivenAxis, DriveParts, Motor
-from dynamics.structure import StructureError
+from dynamics.structure.bodies import Connector, finite
+from dynamics.structure.linear_structure import StructureError
+from dynamics.structure.spring_coupling import Coupling, Term
 
 
 @dataclass(frozen=True, eq=False)
 class ScrewOnBeam:
     """Nut on a beam that is the screw, and the motor at the beam's end.
 
-    Between nut and screw is the stiffness of `dynamics.coupling.screw_nut_matrix`: springs in
-    the radial directions and against tilt, and one along the screw that its turning stretches
-    too. The beam brings the screw's bearings, inertia and compliance.
+    Between nut and screw is the stiffness of
+    `dynamics.structure.spring_coupling.screw_nut_matrix`: springs in the radial
+    directions and against tilt, and one along the screw that its turning stretches too. The beam brings the screw's bearings, inertia and compliance.
 
     Parameters
     ----------
     beam : str
-        Name of the `dynamics.beam.BeamLine`; it lies along the axis.
+        Name of the `dynamics.beam.shaft.BeamLine`; it lies along the axis.
     lead : float
         Travel per turn, m; positive for a right-hand thread, negative for a left-hand one.
     radial : (float, float)

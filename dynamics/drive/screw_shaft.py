@@ -7,9 +7,9 @@ from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
-from dynamics.beam_element import Material, positive
+from dynamics.beam.element import Material, positive
 from dynamics.drive.gear_train import series_stiffness
-from dynamics.structure import StructureError
+from dynamics.structure.linear_structure import StructureError
 
 Support = Literal["fixed-free", "fixed-supported", "fixed-fixed"]
 STEEL = Material(young=206e9, density=7850.0, poisson=0.3)

@@ -19,12 +19,7 @@
 
 from dynamics.identification.band import Band
 from dynamics.identification.fit import identify_modes
-from dynamics.identification.result import (
-    FrfModel,
-    IdentifiedMode,
-    ModalFit,
-    SynthesisError,
-)
+from dynamics.identification.result import FrfModel, IdentifiedMode, ModalFit, SynthesisError
 from dynamics.identification.stabilisation import StabilisationDiagram
 
 __all__ = [

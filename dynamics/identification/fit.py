@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.frf import Frf, MeasurementError
+from dynamics.frf.container import Frf, MeasurementError
 from dynamics.identification.band import Band, widened
 from dynamics.identification.polynomial import polyreference_poles
 from dynamics.identification.prepare import (
@@ -36,11 +36,7 @@ from dynamics.identification.result import (
     SynthesisError,
     synthesis_error,
 )
-from dynamics.identification.selection import (
-    add_missing,
-    drop_unsupported,
-    with_mode_count,
-)
+from dynamics.identification.selection import add_missing, drop_unsupported, with_mode_count
 from dynamics.identification.stabilisation import (
     StabilisationDiagram,
     stabilisation_diagram,

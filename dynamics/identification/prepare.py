@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.frf import DERIVATIVE_ORDER, Frf, MeasurementError, Point, on_common_lines
+from dynamics.frf.container import DERIVATIVE_ORDER, Frf, MeasurementError, Point, on_common_lines
 from dynamics.identification.band import Band, usable_bands
 from dynamics.identification.noise import noise_level
 from dynamics.identification.real_modes import ToolPointRecords

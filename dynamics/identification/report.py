@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.identification.judgement import TINY, near_mode, peak_share
+from dynamics.identification.mode_quality import TINY, near_mode, peak_share
 from dynamics.identification.real_modes import RealModel, ToolPointRecords
 from dynamics.identification.refinement import ModalModel
 from dynamics.identification.residues import Records
 from dynamics.identification.result import FrfModel, IdentifiedMode
 from dynamics.identification.tool_point import share_of_real_mode
-from dynamics.modal import Mode
+from dynamics.modal.modes import Mode
 
 #: relative standard deviation of damping or mass above which a mode is doubtful
 DOUBTFUL_STD = 0.1

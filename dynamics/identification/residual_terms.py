@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.identification.judgement import LEAST_MISFIT
 from dynamics.identification.marquardt import ROUGH
+from dynamics.identification.mode_quality import LEAST_MISFIT
 from dynamics.identification.refinement import ModalModel, fit_residues, refine
 from dynamics.identification.residues import CURVATURE_TERMS, Records
 

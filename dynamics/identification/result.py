@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from dynamics.frf import DERIVATIVE_ORDER, Frf
+from dynamics.frf.container import DERIVATIVE_ORDER, Frf
 from dynamics.identification.band import Band
 from dynamics.identification.residues import COMPLIANCE, MASS, QUADRATURE
 from dynamics.identification.stabilisation import StabilisationDiagram
-from dynamics.modal import Mode, Side
+from dynamics.modal.modes import Mode, Side
 
 #: noise over peak above which an FRF, such as a cross term of nothing, says little
 MOSTLY_NOISE = 0.1

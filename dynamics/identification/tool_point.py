@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.identification.judgement import LEAST_PEAK_SHARE, largest_share, peak_share
+from dynamics.identification.mode_quality import LEAST_PEAK_SHARE, largest_share, peak_share
 from dynamics.identification.real_modes import (
     RealModel,
     ToolPointRecords,

@@ -12,8 +12,8 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from dynamics.reduction import undamped_modes
-from dynamics.structure import LinearStructure
+from dynamics.reduction.modal_truncation import undamped_modes
+from dynamics.structure.linear_structure import LinearStructure
 
 #: part of the fastest rate below which a motion counts as not vibrating
 _STILL = 1e-6

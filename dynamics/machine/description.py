@@ -9,14 +9,14 @@ from typing import Literal, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from dynamics.assembly import Assembly, assembly
-from dynamics.bodies import Connector, MeshedPart, Part, Point
 from dynamics.control import DriveController
-from dynamics.coupling import Coupling, Term
 from dynamics.drive.parts import DrivenAxis, DriveParts, Motor
 from dynamics.friction.laws import FrictionLaw
-from dynamics.reduction import undamped_modes, with_static_shapes
-from dynamics.structure import LinearStructure, StructureError
+from dynamics.reduction.modal_truncation import undamped_modes, with_static_shapes
+from dynamics.structure.assembly import Assembly, assembly
+from dynamics.structure.bodies import Connector, MeshedPart, Part, Point
+from dynamics.structure.linear_structure import LinearStructure, StructureError
+from dynamics.structure.spring_coupling import Coupling, Term
 
 #: what holds an axis: its controller, its brake, or nothing
 Condition = Literal["control", "brake", "free"]
@@ -87,7 +87,7 @@ class MachineParts:
     Parameters
     ----------
     bodies, beams, connectors, couplings, points
-        As for `dynamics.assembly.assembly`.
+        As for `dynamics.structure.assembly.assembly`.
     axes : sequence of MachineAxis
     frictions : sequence of FrictionAt
     damping_ratio : float

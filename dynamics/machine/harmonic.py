@@ -12,7 +12,7 @@ from dynamics.control import controller_response
 from dynamics.control.sampling import zero_order_hold_response
 from dynamics.friction.laws import FrictionLaw
 from dynamics.machine.description import Friction, Machine
-from dynamics.reduction import undamped_modes
+from dynamics.reduction.modal_truncation import undamped_modes
 
 #: cycles of a friction at an amplitude that stand for those at all frequencies
 _CYCLES_GONE_THROUGH = 20

@@ -14,7 +14,7 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from dynamics.machine.blocks import blocks
-from dynamics.structure import LinearStructure
+from dynamics.structure.linear_structure import LinearStructure
 
 INLINED = {"error_model": "numpy", "forceinline": True, "_nrt": False}
 

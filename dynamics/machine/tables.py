@@ -14,7 +14,7 @@ from dynamics.machine.description import Machine
 from dynamics.machine.groups import ConstantForces, ControlledDrives
 from dynamics.machine.loop import Loads
 from dynamics.machine.steps import StructureSteps, structure_steps
-from dynamics.structure import StructureError
+from dynamics.structure.linear_structure import StructureError
 from dynamics.trajectory.set_points import SetPoints
 
 

@@ -14,12 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from dynamics.trajectory.motion import (
-    Motion,
-    along,
-    axes_vector,
-    require_positive,
-)
+from dynamics.trajectory.motion import Motion, along, axes_vector, require_positive
 
 
 def speed_change(change: float, acceleration: float, jerk: float) -> tuple[float, float]:

@@ -8,13 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from dynamics.trajectory.motion import (
-    Motion,
-    TrajectoryError,
-    along,
-    axes_vector,
-    require_positive,
-)
+from dynamics.trajectory.motion import Motion, TrajectoryError, along, axes_vector, require_positive
 
 
 def _standing_outside(motion: Motion, t: NDArray[np.float64], duration: float) -> Motion:

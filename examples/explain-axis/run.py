@@ -5,7 +5,8 @@ Six moves, position and motor force measured; the README tells the story.
 
 from pathlib import Path
 
-from chatter.explain import explain, read_measurement
+from chatter.explain.explanation import explain
+from chatter.explain.measurement import read_measurement
 
 HERE = Path(__file__).parent
 

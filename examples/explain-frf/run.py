@@ -5,7 +5,8 @@ Eight FRFs, idle and in the cut; the README tells the story.
 
 from pathlib import Path
 
-from chatter.explain import explain, read_measurement
+from chatter.explain.explanation import explain
+from chatter.explain.measurement import read_measurement
 from chatter.plots.explanation import plot_lobes_before_after
 
 HERE = Path(__file__).parent

@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 
 import chatter
-from chatter.case import Case
-from chatter.findings import Finding, write_findings
+from chatter.description.case import Case
 from chatter.plots import style
+from chatter.report.published_against_obtained import Finding, write_findings
 
 HERE = Path(__file__).parent
 CONTACT = {"stiffness": "2.50 N/um", "damping": "3.35 kN*s/m"}

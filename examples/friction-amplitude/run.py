@@ -14,10 +14,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import chatter
-from chatter.case import Case
-from chatter.methods import zero_order_of
-from chatter.model import milling_model
+from chatter.description.case import Case
 from chatter.plots import style
+from chatter.stability.model import milling_model
+from chatter.stability.registry import zero_order_of
 
 HERE = Path(__file__).parent
 DEPTHS = (9.0, 9.5, 10.0, 10.5, 11.0, 11.5, 12.0, 13.0)  # mm

@@ -11,9 +11,9 @@ import numpy as np
 from scipy.optimize import least_squares
 
 import chatter
-from chatter.virtual_machine.frf import linearised_frictions, peaks
-from chatter.virtual_machine.from_file import one_frf
-from dynamics.frf import Frf
+from chatter.simulation.virtual_tests.frf import linearised_frictions, peaks
+from chatter.simulation.virtual_tests.from_file import one_frf
+from dynamics.frf.container import Frf
 from dynamics.machine.harmonic import receptance
 
 HERE = Path(__file__).parent

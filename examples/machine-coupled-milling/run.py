@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 
 import chatter
-from chatter.findings import Finding, write_findings
-from chatter.machine_file import MachineFile
+from chatter.description.machine.machine_file import MachineFile
 from chatter.plots import style
-from chatter.virtual_machine.frf import FrfResult, peaks
-from dynamics.frf import Frf
+from chatter.report.published_against_obtained import Finding, write_findings
+from chatter.simulation.virtual_tests.frf import FrfResult, peaks
+from dynamics.frf.container import Frf
 
 HERE = Path(__file__).parent
 BLOWS = ("moving", "rest", "no_friction")

@@ -10,9 +10,9 @@ import numpy as np
 from scipy.optimize import least_squares
 
 import chatter
-from chatter.machine_file import MachineFile
-from chatter.virtual_machine.frf import linearised_frf, peaks
-from dynamics.frf import Frf
+from chatter.description.machine.machine_file import MachineFile
+from chatter.simulation.virtual_tests.frf import linearised_frf, peaks
+from dynamics.frf.container import Frf
 
 HERE = Path(__file__).parent
 BRAKES = {"X": "brake", "Y": "brake", "Z": "brake"}

@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import chatter
-from chatter.findings import Finding, write_findings
-from chatter.machine_file import MachineFile
+from chatter.description.machine.machine_file import MachineFile
 from chatter.plots.style import BLUE, GREEN, GREY, ORANGE, RED, finish, new_figure
-from chatter.virtual_machine.frf import FrfCurve, peaks
-from dynamics.drive_records import (
+from chatter.report.published_against_obtained import Finding, write_findings
+from chatter.simulation.virtual_tests.frf import FrfCurve, peaks
+from dynamics.friction.identification import (
     AxisFit,
     AxisModel,
     DriveRecord,
@@ -26,8 +26,8 @@ from dynamics.drive_records import (
     record_from_current,
 )
 from dynamics.friction.lugre import LuGre
-from dynamics.receptance import PointPort
-from dynamics.reduction import state_space, truncated, undamped_modes
+from dynamics.receptance.coupling import PointPort
+from dynamics.reduction.modal_truncation import state_space, truncated, undamped_modes
 
 HERE = Path(__file__).parent
 GAINS = (30.0, 15.0, 7.5)  # N m s/rad, published

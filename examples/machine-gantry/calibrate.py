@@ -11,9 +11,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 import chatter
-from chatter.machine_file import MachineFile
-from dynamics.assembly import assemble
-from dynamics.reduction import undamped_modes
+from chatter.description.machine.machine_file import MachineFile
+from dynamics.reduction.modal_truncation import undamped_modes
+from dynamics.structure.assembly import assemble
 
 HERE = Path(__file__).parent
 MASS = 330.0  # kg, with the head

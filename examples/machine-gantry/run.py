@@ -15,13 +15,13 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 import chatter
-from chatter.findings import Finding, write_findings
-from chatter.machine_file import MachineFile
+from chatter.description.machine.machine_file import MachineFile
 from chatter.plots import style
-from chatter.virtual_machine.frf import FrfResult, linearised_frf, peaks
-from chatter.virtual_machine.move import MovePlan, MoveResult, move_axes
-from dynamics.assembly import assemble
-from dynamics.frf import Frf
+from chatter.report.published_against_obtained import Finding, write_findings
+from chatter.simulation.virtual_tests.frf import FrfResult, linearised_frf, peaks
+from chatter.simulation.virtual_tests.move import MovePlan, MoveResult, move_axes
+from dynamics.frf.container import Frf
+from dynamics.structure.assembly import assemble
 from dynamics.trajectory import JerkLimitedMove, Motion, square
 from dynamics.trajectory.path import Path as PlanePath
 

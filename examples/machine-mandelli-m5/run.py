@@ -15,18 +15,18 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 import chatter
-from chatter.findings import Finding, write_findings
-from chatter.machine_file import MachineFile
+from chatter.description.machine.machine_file import MachineFile
 from chatter.plots import style
-from chatter.virtual_machine.frf import linearised_frictions, peaks
-from chatter.virtual_machine.loop_response import (
+from chatter.report.published_against_obtained import Finding, write_findings
+from chatter.simulation.virtual_tests.frf import linearised_frictions, peaks
+from chatter.simulation.virtual_tests.loop_response import (
     LoopResponse,
     LoopSweep,
     loop_by_sweep,
     loop_response,
 )
-from dynamics.drive_records import DriveRecord, LinearFriction, LowPass, fit_linear
-from dynamics.frf import Frf
+from dynamics.frf.container import Frf
+from dynamics.friction.identification import DriveRecord, LinearFriction, LowPass, fit_linear
 from dynamics.machine.harmonic import receptance
 
 HERE = Path(__file__).parent

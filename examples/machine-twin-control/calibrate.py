@@ -12,8 +12,8 @@ import numpy as np
 from scipy.optimize import brentq, least_squares
 
 import chatter
-from chatter.machine_file import MachineFile
-from chatter.virtual_machine.frf import peaks
+from chatter.description.machine.machine_file import MachineFile
+from chatter.simulation.virtual_tests.frf import peaks
 
 HERE = Path(__file__).parent
 SPINDLE, ALONG, FRAME = (800.0, 1300.0), 650.0, (110.0, 260.0)  # Hz

@@ -14,12 +14,12 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import chatter
-from chatter.findings import Finding, write_findings
-from chatter.machine_file import MachineFile
+from chatter.description.machine.machine_file import MachineFile
 from chatter.plots import style
-from chatter.virtual_machine.frf import FrfCurve, FrfResult, peaks
-from chatter.virtual_machine.move import MoveResult
-from chatter.virtual_machine.run import RunInputs, run_machine
+from chatter.report.published_against_obtained import Finding, write_findings
+from chatter.simulation.virtual_tests.frf import FrfCurve, FrfResult, peaks
+from chatter.simulation.virtual_tests.move import MoveResult
+from chatter.simulation.virtual_tests.run import RunInputs, run_machine
 from dynamics.trajectory import SetPoints, set_points
 
 HERE = Path(__file__).parent

@@ -11,12 +11,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import chatter
-from chatter.case import Case
-from chatter.coupled.simulate import MachineResult
-from chatter.findings import Finding, write_findings
-from chatter.methods import zero_order_of
-from chatter.model import milling_model
+from chatter.description.case import Case
 from chatter.plots import style
+from chatter.report.published_against_obtained import Finding, write_findings
+from chatter.simulation.on_machine.simulate import MachineResult
+from chatter.stability.model import milling_model
+from chatter.stability.registry import zero_order_of
 
 HERE = Path(__file__).parent
 LEAD = 0.020  # m, of Y

@@ -17,11 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.plots.style import BLUE, ORANGE, finish, new_figure
-from dynamics.assembly import assemble
-from dynamics.bodies import Body, Connector, Point
-from dynamics.craig_bampton import ElasticJoint, joined
-from dynamics.imported import RigidSurface, imported_structure
-from dynamics.structure import LinearStructure
+from dynamics.reduction.craig_bampton import ElasticJoint, joined
+from dynamics.structure.assembly import assemble
+from dynamics.structure.bodies import Body, Connector, Point
+from dynamics.structure.imported import RigidSurface, imported_structure
+from dynamics.structure.linear_structure import LinearStructure
 
 HERE = Path(__file__).parent
 SUPER_ELEMENT = HERE / "super-element"

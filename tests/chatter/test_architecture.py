@@ -54,15 +54,20 @@ def test_machine_and_cutting_know_nothing_of_each_other(package, others):
     for path in modules(package):
         names = {name.split(".")[0] for name in imported(path)}
         # units are read where files are read, and nowhere else
-        allowed = {"pint"} if path.parent.name == "formats" else set()
+        allowed = {"pint"} if path.parent.name == "frf_formats" else set()
         assert not names & (FOREIGN - allowed | others), path
 
 
 def test_kernels_know_nothing_of_units_files_and_pictures():
-    for path in modules("chatter/stability"):
+    for path in modules("chatter/stability/methods"):
         for name in imported(path):
             assert name.split(".")[0] not in FOREIGN - {"chatter"}, (path, name)
-            known = ("chatter.stability", "chatter.kernels", "chatter.lanes", "chatter.errors")
+            known = (
+                "chatter.stability",
+                "chatter.engine.presets",
+                "chatter.stability.simd_batch",
+                "chatter.description.errors",
+            )
             inside = name.startswith(known)
             assert inside or not name.startswith("chatter"), (path, name)
 
@@ -141,12 +146,16 @@ def sources(tmp_path):
 
 
 def test_cache_folder_changes_with_every_source(sources):
-    from chatter.kernels import CACHE_FOLDER, source_hash
+    from chatter.engine.presets import CACHE_FOLDER, source_hash
 
     first = source_hash(sources)
     assert CACHE_FOLDER.name == f"kernels-{first}"
     seen = {first}
-    for name in ("cutting/directional.py", "dynamics/modal.py", "chatter/stability/drivers.py"):
+    for name in (
+        "cutting/force/directional_coefficients.py",
+        "dynamics/modal/modes.py",
+        "chatter/stability/methods/collocation/drivers.py",
+    ):
         path = sources / name
         text = path.read_text(encoding="utf-8")
         path.write_text(text + "\n# edited\n", encoding="utf-8")
@@ -154,7 +163,7 @@ def test_cache_folder_changes_with_every_source(sources):
         path.write_text(text, encoding="utf-8")
         assert source_hash(sources) == first
     assert len(seen) == 4
-    (sources / "cutting/directional.py").rename(sources / "cutting/renamed.py")
+    (sources / "cutting/force/directional_coefficients.py").rename(sources / "cutting/renamed.py")
     assert source_hash(sources) not in seen
 
 
@@ -163,7 +172,7 @@ def test_an_edited_leaf_is_compiled_anew(sources):
     code = (
         "import json, sys\n"
         "sys.path.insert(0, sys.argv[1] if len(sys.argv) > 1 else '.')\n"
-        "from chatter.kernels import CACHE_FOLDER\n"
+        "from chatter.engine.presets import CACHE_FOLDER\n"
         "print(json.dumps(str(CACHE_FOLDER)))"
     )
     base = sources / "cache"
@@ -182,16 +191,16 @@ def test_an_edited_leaf_is_compiled_anew(sources):
     first = folder()
     assert Path(first).parent == base
     assert folder() == first
-    leaf = sources / "cutting/force_law.py"
+    leaf = sources / "cutting/force/force_law.py"
     leaf.write_text(leaf.read_text(encoding="utf-8") + "\n", encoding="utf-8")
     assert folder() != first
 
 
 def test_other_values_and_counts_compile_nothing_new():
     from chatter import Case
-    from chatter.model import milling_model
-    from chatter.stability.drivers import multipliers_at
-    from chatter.stability.semi_discretization import multipliers
+    from chatter.stability.methods.collocation.drivers import multipliers_at
+    from chatter.stability.methods.semi_discretization.method import multipliers
+    from chatter.stability.model import milling_model
 
     case = Case.from_dict(CASE)
     second = {
@@ -220,8 +229,8 @@ MULTIPLIER = """
 import json, sys
 import numpy as np
 from chatter import Case
-from chatter.model import milling_model
-from chatter.stability.drivers import multipliers_at
+from chatter.stability.model import milling_model
+from chatter.stability.methods.collocation.drivers import multipliers_at
 case = Case.from_dict(json.loads({case!r}))
 arrays = milling_model(case).arrays
 point = [np.array([float(v)]) for v in (case.cut.spindle_speed, case.cut.axial_depth)]

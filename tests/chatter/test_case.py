@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import chatter
 from chatter import Case, InputError, load
-from chatter.case import loads
+from chatter.description.case import loads
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from chatter.case import Case, load, loads
-from chatter.errors import InputError
+from chatter.description.case import Case, load, loads
+from chatter.description.errors import InputError
 
 GOOD = """
 title = "good"

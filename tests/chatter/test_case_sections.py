@@ -8,11 +8,11 @@ from typing import get_args
 
 import pytest
 
-from chatter.case import Case, load, loads
-from chatter.case.sections import FRICTION_LAWS, Friction, Lobes
-from chatter.errors import InputError
-from chatter.methods import AUTO, METHODS
-from cutting.material_table import MATERIALS
+from chatter.description.case import Case, load, loads
+from chatter.description.errors import InputError
+from chatter.description.sections.process import FRICTION_LAWS, Friction, Lobes
+from chatter.stability.registry import AUTO, METHODS
+from cutting.material.table import MATERIALS
 
 ROOT = Path(__file__).resolve().parents[2]
 SHARED = ROOT / "../shared"

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from chatter.case import Case, load, loads
-from chatter.errors import InputError
-from cutting.material_table import MATERIALS
+from chatter.description.case import Case, load, loads
+from chatter.description.errors import InputError
+from cutting.material.table import MATERIALS
 
 TEXT = """\
 # written by hand

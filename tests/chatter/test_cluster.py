@@ -18,10 +18,10 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.cluster import Here, OnDask, _Cost, computing_on
-from chatter.errors import InputError, RunError
-from chatter.stability.sweep import one_thread, worker_count
-from chatter.what_if.finished import FILE
+from chatter.description.errors import InputError, RunError
+from chatter.engine.parallel import one_thread, worker_count
+from chatter.studies.executor import Here, OnDask, _Cost, computing_on
+from chatter.studies.finished_points import FILE
 
 distributed = pytest.importorskip("distributed")
 cloudpickle = pytest.importorskip("cloudpickle")
@@ -326,7 +326,7 @@ def test_what_is_no_address_is_told(address):
 
 
 def test_an_address_without_scheduler_is_told(monkeypatch):
-    monkeypatch.setattr("chatter.cluster._PATIENCE_FOR_SCHEDULER", 0.5)
+    monkeypatch.setattr("chatter.studies.executor._PATIENCE_FOR_SCHEDULER", 0.5)
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         address = f"tcp://127.0.0.1:{taken.getsockname()[1]}"

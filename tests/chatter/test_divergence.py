@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.example_cases import example
-from chatter.simulation.divergence import divergence
-from chatter.simulation.exponents import Exponents
-from chatter.simulation.followed_run import FollowedRun, share_held
-from chatter.simulation.growth import growth_of
+from chatter.io.shipped_examples import example
+from chatter.simulation.perturbation.divergence import divergence
+from chatter.simulation.perturbation.followed_run import FollowedRun, share_held
+from chatter.simulation.perturbation.growth_rate import growth_of
+from chatter.simulation.perturbation.lyapunov import Exponents
 from chatter.simulation.setup import modes_of
 
 #: a variation so weak that the cut is that of a constant speed

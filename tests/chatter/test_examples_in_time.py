@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.example_cases import example
+from chatter.io.shipped_examples import example
 
 
 def load(name):

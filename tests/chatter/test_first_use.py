@@ -6,10 +6,10 @@ import numba
 import numpy as np
 import pytest
 
-from chatter.case import load
-from chatter.model import milling_model
-from chatter.stability import drivers, first_use
-from chatter.stability.element_assembly import map_arrays
+from chatter.description.case import load
+from chatter.stability.methods.collocation import drivers, first_use
+from chatter.stability.methods.collocation.element_assembly import map_arrays
+from chatter.stability.model import milling_model
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

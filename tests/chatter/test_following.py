@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from chatter.stability.following import followed_crossings
+from chatter.stability.boundary_continuation import followed_crossings
 
 SPEEDS = np.linspace(0.0, 1.0, 201)
 DEPTHS = np.linspace(0.0, 1.0, 41)[1:]

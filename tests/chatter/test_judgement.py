@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from chatter.errors import InputError
-from chatter.judgement import CutRecord, judge
+from chatter.description.errors import InputError
+from chatter.detection.record import CutRecord
+from chatter.detection.verdict import judge
 
 
 def _load_made():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.case import Case
+from chatter.description.case import Case
 
 RPM = math.pi / 30.0
 
@@ -173,6 +173,6 @@ def test_threads_do_not_change_a_byte(monkeypatch):
     case = two_degrees_of_freedom()
     results = []
     for threads in (1, 3):
-        monkeypatch.setattr("chatter.stability.sweep.worker_count", lambda n=threads: n)
+        monkeypatch.setattr("chatter.engine.parallel.worker_count", lambda n=threads: n)
         results.append(chatter.lobes(case).limits.critical_depth.tobytes())
     assert results[0] == results[1]

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.case import loads
+from chatter.compile.structure import structure_of
+from chatter.description.case import loads
 from chatter.simulation.dynamometer import through_resonance
-from chatter.structure import structure_of
 
 CASE = """
 [tool]

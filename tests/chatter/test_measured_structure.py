@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 import chatter
-import chatter.case
-from chatter.case import Case
-from chatter.errors import InputError
-from chatter.mirror_point import is_passive
-from chatter.model import milling_model
-from dynamics.frf import Frf
-from dynamics.modal import Mode, receptance_matrix
+import chatter.description.case
+from chatter.compile.drive_point_check import is_passive
+from chatter.description.case import Case
+from chatter.description.errors import InputError
+from chatter.stability.model import milling_model
+from dynamics.frf.container import Frf
+from dynamics.modal.modes import Mode, receptance_matrix
 
 MODES = (
     Mode(820.0, 0.03, 0.45, (1.0, 0.0, 0.0)),
@@ -104,8 +104,8 @@ def test_zero_order_needs_no_fit(tap_test, monkeypatch):
     def refuse(*_args, **_options):
         raise AssertionError("the zeroth-order solution asked for a modal fit")
 
-    monkeypatch.setattr("chatter.measured_frf.identify_modes", refuse)
-    from chatter.methods import zero_order_of
+    monkeypatch.setattr("chatter.compile.measured_frf.identify_modes", refuse)
+    from chatter.stability.registry import zero_order_of
 
     model = milling_model(measured_case(tap_test))
     assert np.isfinite(zero_order_of(model, np.array([900.0])).critical_depth[0])
@@ -165,11 +165,13 @@ def test_files_of_a_modal_test(tap_test, tmp_path):
     assert summary["fit_error"]["maximum"] < 0.05
     assert len(summary["modes"]) == 2
     snippet = (tmp_path / "out/modes.toml").read_text()
-    assert chatter.case.loads(snippet).structure.mode[0].frequency == pytest.approx(820, rel=1e-3)
+    assert chatter.description.case.loads(snippet).structure.mode[0].frequency == pytest.approx(
+        820, rel=1e-3
+    )
 
 
 def test_shipped_beam_has_six_modes():
-    from chatter.example_cases import example
+    from chatter.io.shipped_examples import example
 
     test = chatter.modes(example("flexible-workpiece").folder / "beam.uff", direction="y")
     found = [mode.frequency for mode in test.fit.modes]

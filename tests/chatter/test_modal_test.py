@@ -6,7 +6,7 @@ import pytest
 import tomlkit
 
 import chatter
-from chatter.errors import InputError
+from chatter.description.errors import InputError
 
 FOLDER = Path(__file__).resolve().parents[2].parent / "shared/taptests"
 SETS = sorted(FOLDER.glob("tap-*"))

@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from chatter import InputError
-from chatter.case import loads, parse_assignments
+from chatter.description.assignments import parse_assignments
+from chatter.description.case import loads
 
 TEXT = """# head
 [tool]

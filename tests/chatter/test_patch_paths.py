@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from chatter.case import loads, parse_assignments
-from chatter.errors import InputError
+from chatter.description.assignments import parse_assignments
+from chatter.description.case import loads
+from chatter.description.errors import InputError
 
 TEXT = """\
 title = "patched"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from chatter.pockets import DEPTH_MARGIN, SPEED_MARGIN, find_pockets
+from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN, find_pockets
 
 SPEEDS = np.linspace(900.0, 1100.0, 401)
 

@@ -10,8 +10,8 @@ import tomlkit
 
 import chatter
 from chatter import InputError
-from chatter.case import Case
-from chatter.case.path import keys_of
+from chatter.description.case import Case
+from chatter.description.path import keys_of
 
 SCHEMA = chatter.schema()
 

@@ -11,9 +11,9 @@ import pytest
 from numba import njit
 
 from chatter import Case
-from chatter.errors import RunError
-from chatter.kernels import DRIVER
-from chatter.simulation.engine import run as compiled
+from chatter.description.errors import RunError
+from chatter.engine.loop import run as compiled
+from chatter.engine.presets import DRIVER
 from chatter.simulation.setup import set_up
 from chatter.simulation.simulate import run_setup, simulate
 

@@ -9,7 +9,7 @@ from scipy.integrate import quad
 
 from chatter import Case
 from chatter.simulation.simulate import simulate
-from cutting.tool import Cutter, edge_slices, slice_counts
+from cutting.tool.cutter import Cutter, edge_slices, slice_counts
 
 KTC, KRC, KAC = 1.1e9, 4.0e8, 1.5e8
 KTE, KRE, KAE = 2.2e4, 3.1e4, 2.0e3

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from chatter import Case, InputError
-from chatter.simulation import stock as stock_module
-from chatter.simulation.carved import FollowingStock, carved_walls
-from chatter.simulation.engine import run as compiled_run
+from chatter.engine.loop import run as compiled_run
+from chatter.simulation import workpiece as stock_module
+from chatter.simulation.carved_workpiece import FollowingStock, carved_walls
 from chatter.simulation.setup import set_up
 from chatter.simulation.simulate import run_setup, simulate
 

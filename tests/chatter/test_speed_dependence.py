@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.case import Case, loads
-from chatter.errors import InputError
-from chatter.grid_blocks import radius_in_blocks
-from chatter.live.answers import LiveCase
-from chatter.methods import METHODS, zero_order_of
-from chatter.model import milling_model
-from chatter.stability.sweep import no_progress
-from chatter.structure import structure_of
-from dynamics.modal import Mode, receptance_matrix
+from chatter.app.answers import LiveCase
+from chatter.compile.structure import structure_of
+from chatter.description.case import Case, loads
+from chatter.description.errors import InputError
+from chatter.engine.parallel import no_progress
+from chatter.stability.grid_blocks import radius_in_blocks
+from chatter.stability.model import milling_model
+from chatter.stability.registry import METHODS, zero_order_of
+from dynamics.modal.modes import Mode, receptance_matrix
 
 RPM = math.pi / 30.0
 TEXT = """

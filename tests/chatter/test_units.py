@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from chatter.units import DIMENSIONS, QuantityError, parse, unit_factor, write
+from chatter.description.units import DIMENSIONS, QuantityError, parse, unit_factor, write
 
 #: units that users write, by dimension, with the SI value of one
 UNITS = {

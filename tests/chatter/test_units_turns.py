@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from chatter.units import QuantityError, parse
+from chatter.description.units import QuantityError, parse
 
 #: 14 turns a second
 SPEED = 2.0 * math.pi * 14.0
@@ -86,7 +86,7 @@ def test_units_are_never_evaluated(unit):
 
 def test_importing_cases_leaves_the_slow_libraries_alone():
     code = (
-        "import sys, chatter.case; "
+        "import sys, chatter.description; "
         "print([m for m in ('numba', 'scipy', 'matplotlib', 'pint') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

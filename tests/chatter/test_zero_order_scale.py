@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from chatter.case import Case
-from chatter.methods import METHODS, zero_order_of
-from chatter.model import milling_model
-from chatter.stability.sweep import no_progress
+from chatter.description.case import Case
+from chatter.engine.parallel import no_progress
+from chatter.stability.model import milling_model
+from chatter.stability.registry import METHODS, zero_order_of
 
 RPM = math.pi / 30.0
 

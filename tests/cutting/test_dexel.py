@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numba import njit
 
-from cutting.dexel import dexel_carve, dexel_chip_thickness, dexel_flush
-from cutting.dexel_stock import (
+from cutting.dexel.carving import dexel_carve, dexel_chip_thickness, dexel_flush
+from cutting.dexel.stock import (
     dexel_remaining_area,
     dexel_remove_path,
     dexel_stock,

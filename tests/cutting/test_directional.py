@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from numba import njit
 
-from cutting.directional import (
+from cutting.engagement.immersion import engagement
+from cutting.force.directional_coefficients import (
     directional_matrix,
     directional_table,
     mean_coupling,
     mean_over_turn,
 )
-from cutting.engagement import engagement
-from cutting.force_law import ExponentialLaw, LinearLaw
-from cutting.process_damping import ViscousProcessDamping
+from cutting.force.force_law import ExponentialLaw, LinearLaw
+from cutting.process_damping.viscous import ViscousProcessDamping
 
 KT, KR, KA = 600e6, 200e6, 80e6
 LAW = LinearLaw((KT, KR, KA))

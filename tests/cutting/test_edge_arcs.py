@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from cutting.edge_coupling import coupling_at, part_below
-from cutting.edge_pieces import edge_pieces
-from cutting.force_law import ExponentialLaw, LinearLaw
-from cutting.tool import Cutter
+from cutting.edge_segments.coupling import coupling_at, part_below
+from cutting.edge_segments.segments import edge_pieces
+from cutting.force.force_law import ExponentialLaw, LinearLaw
+from cutting.tool.cutter import Cutter
 
 RADIUS, DEPTH = 8e-3, 2e-3
 ONE_TOOTH = (2.0 * RADIUS, (math.radians(30.0),), (2.0 * math.pi,))

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from cutting.engagement import cutting_speed, engagement, removal_rate
+from cutting.engagement.immersion import cutting_speed, engagement, removal_rate
 
 
 def test_half_immersion():

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from cutting.force_law import ExponentialLaw, LinearLaw, oblique_cutting_coefficients
+from cutting.force.force_law import ExponentialLaw, LinearLaw, oblique_cutting_coefficients
 
 MPA = 1e6
 

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from cutting.force_law import ExponentialLaw, LinearLaw
-from cutting.force_spectrum import RigidCut
-from cutting.process_damping import ViscousProcessDamping
-from cutting.tool import Cutter
+from cutting.force.force_law import ExponentialLaw, LinearLaw
+from cutting.force.force_spectrum import RigidCut
+from cutting.process_damping.viscous import ViscousProcessDamping
+from cutting.tool.cutter import Cutter
 
 LAW = LinearLaw((800e6, 250e6, 100e6), (12e3, 14e3, 2e3))
 

@@ -5,7 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from cutting.ploughing import Ploughing, forget_wave, note_wave, ploughing_flank, ploughing_force
+from cutting.process_damping.ploughing import (
+    Ploughing,
+    forget_wave,
+    note_wave,
+    ploughing_flank,
+    ploughing_force,
+)
 
 CLEARANCE = math.radians(7.0)
 SPEED_STEP = 2e-6  # m of cutting path in a step

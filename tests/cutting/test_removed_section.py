@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from cutting.removed_section import removed_section
-from cutting.tool import Cutter
+from cutting.engagement.removed_section import removed_section
+from cutting.tool.cutter import Cutter
 
 
 def cutter(**more):

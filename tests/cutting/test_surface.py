@@ -5,14 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from cutting.surface import (
+from cutting.surface.envelope import (
     ToolMotion,
     WallPasses,
     floor_height,
     wall_reach,
     width_of_influence,
 )
-from cutting.texture import (
+from cutting.surface.texture import (
     cut_off_for,
     height_parameters,
     location_error,

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numba import njit
 
-from cutting.voxel import voxel_carve, voxel_chip_thickness
-from cutting.voxel_stock import (
+from cutting.voxel.carving import voxel_carve, voxel_chip_thickness
+from cutting.voxel.stock import (
     voxel_remaining_area,
     voxel_remove_path,
     voxel_stock,

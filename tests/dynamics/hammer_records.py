@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.signal import cont2discrete, lfilter
 
-from dynamics.hammer.record import HammerRecord
+from dynamics.frf.hammer.record import HammerRecord
 
 SAMPLING_RATE = 25600.0
 OVERSAMPLING = 8

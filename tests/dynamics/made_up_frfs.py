@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dynamics.frf import Frf, Point
+from dynamics.frf.container import Frf, Point
 
 AXES = ("x", "y", "z")
 

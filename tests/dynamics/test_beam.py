@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from dynamics.assembly import assemble
-from dynamics.beam import BeamLine, Bearing, Disc, Material, Segment, cowper, hutchinson
-from dynamics.beam_element import element_mass, element_stiffness
-from dynamics.bodies import Body, Connector, Point
-from dynamics.structure import StructureError
+from dynamics.beam.element import element_mass, element_stiffness
+from dynamics.beam.shaft import BeamLine, Bearing, Disc, Material, Segment, cowper, hutchinson
+from dynamics.structure.assembly import assemble
+from dynamics.structure.bodies import Body, Connector, Point
+from dynamics.structure.linear_structure import StructureError
 
 TIMOSHENKO_TOOL = Material(young=200e9, density=7800.0, poisson=0.29)
 ROTOR_STEEL = Material(young=211e9, density=7810.0, poisson=211.0 / (2.0 * 81.2) - 1.0)

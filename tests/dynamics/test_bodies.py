@@ -5,10 +5,10 @@ import pytest
 import scipy.linalg
 from scipy.spatial.transform import Rotation
 
-from dynamics.assembly import assemble
-from dynamics.beam import BeamLine, Material, Segment
-from dynamics.bodies import Body, Connector, Point
-from dynamics.structure import StructureError
+from dynamics.beam.shaft import BeamLine, Material, Segment
+from dynamics.structure.assembly import assemble
+from dynamics.structure.bodies import Body, Connector, Point
+from dynamics.structure.linear_structure import StructureError
 
 STEEL = Material(young=210e9, density=7850.0, poisson=0.3)
 

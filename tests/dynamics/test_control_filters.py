@@ -6,13 +6,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from dynamics.control import (
-    ControlError,
-    ReferenceModel,
-    SecondOrderFilter,
-    low_pass,
-    notch,
-)
+from dynamics.control import ControlError, ReferenceModel, SecondOrderFilter, low_pass, notch
 from dynamics.control.current_loop import FirstOrderCurrentLoop, SecondOrderCurrentLoop
 from dynamics.control.filters import resting_states, sampled_response, second_order_sample
 from dynamics.control.sampling import held_samples_response, zero_order_hold_response

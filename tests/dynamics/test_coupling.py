@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from dynamics.assembly import assembly
-from dynamics.bodies import Body, Connector
-from dynamics.coupling import Coupling, Term, reversed_terms, screw_nut_matrix
-from dynamics.rotor import Rotor
-from dynamics.structure import StructureError
+from dynamics.structure.assembly import assembly
+from dynamics.structure.bodies import Body, Connector
+from dynamics.structure.linear_structure import StructureError
+from dynamics.structure.rotor import Rotor
+from dynamics.structure.spring_coupling import Coupling, Term, reversed_terms, screw_nut_matrix
 
 
 def rack(stiffness=2e7, damping=300.0, radius=0.05):

@@ -5,13 +5,13 @@ import pytest
 import scipy.linalg
 import scipy.sparse
 
-from dynamics.assembly import assemble
-from dynamics.beam import BeamLine, Bearing, Material, Segment, hutchinson
-from dynamics.beam_element import element_mass, element_stiffness
-from dynamics.bodies import Connector, Point
-from dynamics.craig_bampton import ElasticJoint, RigidJoint, joined, super_element
-from dynamics.reduction import truncated, undamped_modes
-from dynamics.structure import LinearStructure, StructureError
+from dynamics.beam.element import element_mass, element_stiffness
+from dynamics.beam.shaft import BeamLine, Bearing, Material, Segment, hutchinson
+from dynamics.reduction.craig_bampton import ElasticJoint, RigidJoint, joined, super_element
+from dynamics.reduction.modal_truncation import truncated, undamped_modes
+from dynamics.structure.assembly import assemble
+from dynamics.structure.bodies import Connector, Point
+from dynamics.structure.linear_structure import LinearStructure, StructureError
 
 STEEL = Material(young=200e9, density=7800.0, poisson=0.29)
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from dynamics.formats import read_frfs
-from dynamics.frf import MeasurementError
+from chatter.io.frf_formats import read_frfs
+from dynamics.frf.container import MeasurementError
 
 # as written for the program: the words follow the numbers of the first line, separated by tabs
 ROWS = ((0.0, 1.2e-8, 0.0), (1.0, 1.3e-8, -2e-10), (2.0, 1.4e-8, -4e-10))

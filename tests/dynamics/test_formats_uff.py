@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.formats import read_frfs
-from dynamics.frf import MeasurementError, Point
+from chatter.io.frf_formats import read_frfs
+from dynamics.frf.container import MeasurementError, Point
 
 BEAM = Path(__file__).resolve().parents[2] / "../shared/data/frf-beam"
 

@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from dynamics.frf import Frf, MeasurementError, Point, on_common_lines, without_added_decay
+from dynamics.frf.container import (
+    Frf,
+    MeasurementError,
+    Point,
+    on_common_lines,
+    without_added_decay,
+)
 
 FREQUENCY = np.linspace(0.0, 1000.0, 201)
 

@@ -5,13 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from dynamics.friction.lugre import (
-    LuGre,
-    lugre_advance,
-    lugre_energy,
-    lugre_force,
-    lugre_table,
-)
+from dynamics.friction.lugre import LuGre, lugre_advance, lugre_energy, lugre_force, lugre_table
 
 #: Canudas de Wit, Olsson, Astrom and Lischinsky 1995, Table I
 PAPER = LuGre(1e5, math.sqrt(1e5), 0.4, 1.0, 1.5, 1e-3)

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.frf import MeasurementError, Point, without_added_decay
-from dynamics.hammer import averaged_spectra, coherence, frf_from_records, h1, h2, usable_band
-from dynamics.hammer.hit import locate_hit
-from dynamics.hammer.spectra import Spectra
-from dynamics.hammer.windows import choose_windows, force_window
+from dynamics.frf.container import MeasurementError, Point, without_added_decay
+from dynamics.frf.hammer import averaged_spectra, coherence, frf_from_records, h1, h2, usable_band
+from dynamics.frf.hammer.hit import locate_hit
+from dynamics.frf.hammer.spectra import Spectra
+from dynamics.frf.hammer.windows import choose_windows, force_window
 
 
 def _load_made():

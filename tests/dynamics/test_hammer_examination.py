@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import tomlkit
 
-from dynamics.hammer import examine_records, read_hammer_folder
+from dynamics.frf.hammer import examine_records, read_hammer_folder
 
 SHARED = Path(__file__).resolve().parents[2] / "../shared"
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from dynamics.frf import MeasurementError
-from dynamics.hammer import HammerRecord, read_hammer_folder, read_hammer_record
+from dynamics.frf.container import MeasurementError
+from dynamics.frf.hammer import HammerRecord, read_hammer_folder, read_hammer_record
 
 RATE, COUNT = 25600.0, 400
 

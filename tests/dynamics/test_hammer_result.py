@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.frf import MeasurementError
-from dynamics.hammer import h2, hammer_test
+from dynamics.frf.container import MeasurementError
+from dynamics.frf.hammer import h2, hammer_test
 
 
 def _load_made():

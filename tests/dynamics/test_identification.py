@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 import tomlkit
 
-from dynamics.frf import Frf, MeasurementError, Point
+from dynamics.frf.container import Frf, MeasurementError, Point
 from dynamics.identification import identify_modes
-from dynamics.modal import Mode, receptance_matrix
+from dynamics.modal.modes import Mode, receptance_matrix
 
 HERE = Path(__file__).resolve()
 SHARED = HERE.parents[2] / "../shared"

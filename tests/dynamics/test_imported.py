@@ -9,10 +9,15 @@ import scipy.io
 import scipy.linalg
 import scipy.sparse
 
-from dynamics.constraint import InterpolatedPoint, Nodes, RigidSurface, interpolation
-from dynamics.imported import imported_structure, read_matrix, read_nodes, tied_structure
-from dynamics.matrix_file import refuse_indefinite
-from dynamics.structure import LinearStructure, StructureError
+from dynamics.structure.imported import imported_structure, read_matrix, read_nodes, tied_structure
+from dynamics.structure.linear_structure import LinearStructure, StructureError
+from dynamics.structure.matrix_file import refuse_indefinite
+from dynamics.structure.surface_constraint import (
+    InterpolatedPoint,
+    Nodes,
+    RigidSurface,
+    interpolation,
+)
 
 SIDE = 0.1
 

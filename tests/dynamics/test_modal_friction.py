@@ -10,9 +10,9 @@ from scipy.integrate import solve_ivp
 from dynamics.friction.coulomb_stribeck import CoulombStribeck
 from dynamics.friction.laws import friction_groups
 from dynamics.friction.smooth_coulomb import SmoothCoulomb
-from dynamics.modal import Mode
-from dynamics.modal_friction import hold, resist
-from dynamics.modal_steps import correct, modal_steps, predict, stored_energy, take_force
+from dynamics.modal.modal_friction import hold, resist
+from dynamics.modal.modal_steps import correct, modal_steps, predict, stored_energy, take_force
+from dynamics.modal.modes import Mode
 
 FREQUENCY, MASS = 100.0, 2.0
 STIFFNESS = MASS * (2.0 * math.pi * FREQUENCY) ** 2

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from dynamics.modal import Mode
-from dynamics.modal_steps import correct, modal_steps, predict, stored_energy, take_force
+from dynamics.modal.modal_steps import correct, modal_steps, predict, stored_energy, take_force
+from dynamics.modal.modes import Mode
 
 MODE = Mode(120.0, 0.03, 0.8, (1.0, 0.0, 0.0), "tool")
 OMEGA, ZETA, MASS = 2.0 * math.pi * 120.0, 0.03, 0.8

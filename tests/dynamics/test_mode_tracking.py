@@ -3,18 +3,12 @@
 import numpy as np
 import pytest
 
-from dynamics.assembly import assemble
-from dynamics.beam import BeamLine, Bearing, Material, Segment
-from dynamics.bodies import Body, Connector, Point
-from dynamics.mode_tracking import (
-    ModalModel,
-    ModalModelAlongAxis,
-    aligned,
-    assurance,
-    paired,
-)
-from dynamics.reduction import truncated, undamped_modes
-from dynamics.structure import StructureError
+from dynamics.beam.shaft import BeamLine, Bearing, Material, Segment
+from dynamics.modal.mode_tracking import ModalModel, ModalModelAlongAxis, aligned, assurance, paired
+from dynamics.reduction.modal_truncation import truncated, undamped_modes
+from dynamics.structure.assembly import assemble
+from dynamics.structure.bodies import Body, Connector, Point
+from dynamics.structure.linear_structure import StructureError
 
 STEEL = Material(young=210e9, density=7850.0)
 POINTS = [f"p{place}" for place in range(7)]

@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 import scipy.optimize
 
-from dynamics.assembly import assemble
-from dynamics.beam import BeamLine, Material, Segment
-from dynamics.bodies import Connector, Point
-from dynamics.frf import MeasurementError
-from dynamics.receptance import (
+from dynamics.beam.shaft import BeamLine, Material, Segment
+from dynamics.frf.container import MeasurementError
+from dynamics.receptance.coupling import (
     Component,
     PointPort,
     component,
@@ -19,7 +17,9 @@ from dynamics.receptance import (
     receptance_with_residual,
     without_tool,
 )
-from dynamics.structure import StructureError
+from dynamics.structure.assembly import assemble
+from dynamics.structure.bodies import Connector, Point
+from dynamics.structure.linear_structure import StructureError
 
 STEEL = Material(young=200e9, density=7800.0, poisson=0.29)
 EULER = {"shear_coefficient": 1e9}

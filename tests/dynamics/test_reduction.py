@@ -5,12 +5,17 @@ import pytest
 import scipy.linalg
 import scipy.sparse
 
-from dynamics.assembly import assemble
-from dynamics.beam import BeamLine, Bearing, Material, Segment
-from dynamics.bodies import Point
-from dynamics.receptance import PointPort, receptance_with_residual, residual_compliance
-from dynamics.reduction import damping_ratios, state_space, truncated, undamped_modes
-from dynamics.structure import LinearStructure, StructureError
+from dynamics.beam.shaft import BeamLine, Bearing, Material, Segment
+from dynamics.receptance.coupling import PointPort, receptance_with_residual, residual_compliance
+from dynamics.reduction.modal_truncation import (
+    damping_ratios,
+    state_space,
+    truncated,
+    undamped_modes,
+)
+from dynamics.structure.assembly import assemble
+from dynamics.structure.bodies import Point
+from dynamics.structure.linear_structure import LinearStructure, StructureError
 
 STEEL = Material(young=210e9, density=7850.0)
 TIP = PointPort("tip", [1.0, 0.0, 0.0])

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from dynamics.assembly import assembly
-from dynamics.bodies import Body, Connector
-from dynamics.coupling import Coupling, Term
-from dynamics.rotor import Rotor
-from dynamics.structure import StructureError
+from dynamics.structure.assembly import assembly
+from dynamics.structure.bodies import Body, Connector
+from dynamics.structure.linear_structure import StructureError
+from dynamics.structure.rotor import Rotor
+from dynamics.structure.spring_coupling import Coupling, Term
 
 
 def test_motion_is_its_turning_wherever_the_place():

@@ -10,10 +10,10 @@ import scipy.optimize
 import scipy.sparse
 import scipy.sparse.linalg
 
-from dynamics.bodies import rigid_motion
-from dynamics.craig_bampton import super_element
-from dynamics.reduction import undamped_modes
-from dynamics.structure import LinearStructure
+from dynamics.reduction.craig_bampton import super_element
+from dynamics.reduction.modal_truncation import undamped_modes
+from dynamics.structure.bodies import rigid_motion
+from dynamics.structure.linear_structure import LinearStructure
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples" / "solid-crossbeam"
 STATIONS = 1

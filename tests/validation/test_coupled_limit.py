@@ -5,14 +5,14 @@ import pytest
 
 import chatter
 from chatter import Case
-from chatter.coupled.engine import run_coupled
-from chatter.coupled.setup import set_up_machine, tool_side
-from chatter.coupled.simulate import _record
-from chatter.machine_file import MachineFile
-from chatter.model import milling_model
-from chatter.stability.semi_discretization import multipliers
-from chatter.virtual_machine.engine import advance
-from cutting.tool_point import tool_point
+from chatter.description.machine.machine_file import MachineFile
+from chatter.engine.machine_cut_loop import run_coupled
+from chatter.engine.machine_loop import advance
+from chatter.simulation.on_machine.setup import set_up_machine, tool_side
+from chatter.simulation.on_machine.simulate import _record
+from chatter.stability.methods.semi_discretization.method import multipliers
+from chatter.stability.model import milling_model
+from cutting.chip.tool_point import tool_point
 from dynamics.machine.loop import Loads
 
 STIFF = 1e11

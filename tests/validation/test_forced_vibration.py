@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.case import Case
-from chatter.forced_vibration import forced_vibration, notes_on_steady_cut
-from chatter.model import milling_model
-from chatter.simulation.limits import growths
+from chatter.description.case import Case
+from chatter.stability.forced_vibration import forced_vibration, notes_on_steady_cut
+from chatter.stability.methods.time_domain.critical_depths import growths
+from chatter.stability.model import milling_model
 
 RPM = math.pi / 30.0
 

@@ -10,11 +10,11 @@ from reference.general_cases import STORE, load
 from reference.general_cut import GeneralCut, spectral_radius
 from reference.setting_cases import case_dict
 
-from chatter.case import Case
-from chatter.model import milling_model
-from chatter.stability import sweep
-from chatter.stability.collocation import converged_multiplier, multipliers
-from cutting.edge_pieces import period_angle
+from chatter.description.case import Case
+from chatter.engine import parallel as sweep
+from chatter.stability.methods.collocation.multipliers import converged_multiplier, multipliers
+from chatter.stability.model import milling_model
+from cutting.edge_segments.segments import period_angle
 
 CASES = load()
 #: drawn with another seed when the code stood; four of them showed faults of the edge pieces

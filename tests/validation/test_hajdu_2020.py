@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.model import milling_model
-from chatter.stability.semi_discretization import limit_curve, multipliers
+from chatter.stability.methods.semi_discretization.method import limit_curve, multipliers
+from chatter.stability.model import milling_model
 
 FOLDER = Path(__file__).resolve().parents[2].parent / "shared/data/stability-hajdu-2020"
 pytestmark = pytest.mark.skipif(not FOLDER.exists(), reason="shared data not at hand")

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from chatter.case import Case
-from chatter.methods import by_collocation
-from chatter.model import milling_model
-from chatter.stability import collocation
-from chatter.stability.sweep import no_progress
+from chatter.description.case import Case
+from chatter.engine.parallel import no_progress
+from chatter.stability.methods.collocation import multipliers as collocation
+from chatter.stability.model import milling_model
+from chatter.stability.registry import by_collocation
 
 RPM = math.pi / 30.0
 

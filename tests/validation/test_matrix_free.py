@@ -10,21 +10,23 @@ from reference.general_cases import case_dict, load
 from reference.general_cut import GeneralCut, spectral_radius
 from scipy.integrate import quad
 
-from chatter.case import Case
-from chatter.errors import RunError
-from chatter.methods import (
+from chatter.description.case import Case
+from chatter.description.errors import RunError
+from chatter.engine import parallel as sweep
+from chatter.engine.parallel import no_progress
+from chatter.stability.methods.collocation import multipliers as collocation
+from chatter.stability.methods.matrix_free import method as matrix_free
+from chatter.stability.methods.matrix_free.modal_response import PLACES, drawn_answer, mode_answer
+from chatter.stability.methods.time_domain.critical_depths import growths
+from chatter.stability.model import milling_model
+from chatter.stability.registry import (
     GRIDS,
     METHODS,
     chosen_method,
     operating_frequency,
     operating_multiplier,
 )
-from chatter.model import milling_model
-from chatter.simulation.limits import growths
-from chatter.stability import collocation, matrix_free, sweep
-from chatter.stability.matrix_free_answer import PLACES, drawn_answer, mode_answer
-from chatter.stability.sweep import no_progress
-from cutting.edge_pieces import period_angle
+from cutting.edge_segments.segments import period_angle
 
 RPM = math.pi / 30.0
 CASES = load()

@@ -5,21 +5,21 @@ import math
 import numpy as np
 import pytest
 
-from chatter.case import Case
-from chatter.errors import InputError, RunError
-from chatter.methods import METHODS, by_multi_frequency, zero_order_of
-from chatter.model import milling_model
-from chatter.stability import collocation
-from chatter.stability.multi_frequency import harmonics_at
-from chatter.stability.semi_discretization import multipliers
-from chatter.stability.step_schemes import (
+from chatter.description.case import Case
+from chatter.description.errors import InputError, RunError
+from chatter.engine.parallel import no_progress
+from chatter.stability.methods.collocation import multipliers as collocation
+from chatter.stability.methods.multi_frequency.method import harmonics_at
+from chatter.stability.methods.semi_discretization.method import multipliers
+from chatter.stability.methods.semi_discretization.step_schemes import (
     FirstOrder,
     FullDiscretization,
     SecondOrder,
     ZerothOrder,
 )
-from chatter.stability.sweep import no_progress
-from dynamics.modal import receptance_matrix
+from chatter.stability.model import milling_model
+from chatter.stability.registry import METHODS, by_multi_frequency, zero_order_of
+from dynamics.modal.modes import receptance_matrix
 
 RPM = math.pi / 30.0
 

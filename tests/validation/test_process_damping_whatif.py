@@ -11,8 +11,8 @@ import math
 import numpy as np
 import pytest
 
-from chatter.case import Case
-from chatter.what_if import whatif
+from chatter.description.case import Case
+from chatter.studies.whatif.study import whatif
 
 RPM = math.pi / 30.0
 TEETH = 4

@@ -5,16 +5,16 @@ import math
 import numpy as np
 import pytest
 
-from chatter.case import Case
-from chatter.methods import zero_order_of
-from chatter.model import milling_model
-from chatter.stability.semi_discretization import (
+from chatter.description.case import Case
+from chatter.stability.methods.semi_discretization.method import (
     automatic_steps,
     chatter_frequency,
     limit_curve,
     multipliers,
 )
-from dynamics.modal import receptance_matrix
+from chatter.stability.model import milling_model
+from chatter.stability.registry import zero_order_of
+from dynamics.modal.modes import receptance_matrix
 
 RPM = math.pi / 30.0
 

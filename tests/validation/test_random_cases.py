@@ -7,9 +7,9 @@ import pytest
 from reference.cases import case_file, load
 from reference.milling import spectral_radius
 
-from chatter.case import loads
-from chatter.model import milling_model
-from chatter.stability.semi_discretization import converged_multiplier, multipliers
+from chatter.description.case import loads
+from chatter.stability.methods.semi_discretization.method import converged_multiplier, multipliers
+from chatter.stability.model import milling_model
 
 CASES = load()
 

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.case import Case
-from chatter.methods import by_collocation
-from chatter.model import milling_model
-from chatter.simulation.divergence import divergence
-from chatter.simulation.growth import delayed, motion_of
+from chatter.description.case import Case
+from chatter.engine.parallel import no_progress
+from chatter.simulation.perturbation.divergence import divergence
+from chatter.simulation.perturbation.growth_rate import delayed, motion_of
 from chatter.simulation.setup import modes_of, set_up
-from chatter.stability.sweep import no_progress
+from chatter.stability.model import milling_model
+from chatter.stability.registry import by_collocation
 
 TURNS = 300
 LAWS = {

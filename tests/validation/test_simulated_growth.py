@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.case import Case
-from chatter.methods import by_collocation, operating_multiplier
-from chatter.model import milling_model
-from chatter.simulation.growth import growth_of
-from chatter.simulation.limits import time_limit_curve
+from chatter.description.case import Case
+from chatter.engine.parallel import no_progress
+from chatter.simulation.perturbation.growth_rate import growth_of
 from chatter.simulation.setup import modes_of
-from chatter.stability.sweep import no_progress
+from chatter.stability.methods.time_domain.critical_depths import time_limit_curve
+from chatter.stability.model import milling_model
+from chatter.stability.registry import by_collocation, operating_multiplier
 
 SHARES = (0.8, 0.95, 1.05, 1.3, 2.0)
 

@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 from reference.turning import delay_of_a_spindle, spectral_radius
 
-from chatter.case import Case
-from chatter.methods import by_collocation
-from chatter.model import milling_model
-from chatter.simulation.divergence import divergence
-from chatter.simulation.growth import delayed, motion_of
+from chatter.description.case import Case
+from chatter.engine.parallel import no_progress
+from chatter.simulation.perturbation.divergence import divergence
+from chatter.simulation.perturbation.growth_rate import delayed, motion_of
 from chatter.simulation.setup import modes_of, set_up
-from chatter.stability.collocation import converged_multiplier, multipliers
-from chatter.stability.sweep import no_progress
-from cutting.edge_pieces import period_angle
+from chatter.stability.methods.collocation.multipliers import converged_multiplier, multipliers
+from chatter.stability.model import milling_model
+from chatter.stability.registry import by_collocation
+from cutting.edge_segments.segments import period_angle
 
 # --- BENCHMARKS.md 1.4: turning -------------------------------------------------------------------
 

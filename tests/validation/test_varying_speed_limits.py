@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from chatter.case import Case
-from chatter.errors import RunError
-from chatter.model import milling_model
-from chatter.stability.collocation import rates
-from chatter.stability.spindle_turn import SpeedVariation, angle_at, spindle_turn, time_at
-from chatter.stability.varying_limits import limits_of_varying_speed
-from chatter.stability.varying_speed import tuned
+from chatter.description.case import Case
+from chatter.description.errors import RunError
+from chatter.stability.methods.collocation.multipliers import rates
+from chatter.stability.methods.collocation.varying_limits import limits_of_varying_speed
+from chatter.stability.methods.collocation.varying_speed import tuned
+from chatter.stability.model import milling_model
+from chatter.stability.spindle_rotation import SpeedVariation, angle_at, spindle_turn, time_at
 
 TOOTH = math.pi / 2.0
 

@@ -5,7 +5,7 @@ An effect joins by one entry in the list of its kind of measurement.
 
 from chatter.explain.effects.axis import AXIS_EFFECTS
 from chatter.explain.effects.milling import MILLING_EFFECTS
-from chatter.explain.kind import Effect
+from chatter.explain.kinds.kind import Effect
 from chatter.explain.measurement import Measurement
 
 #: every effect, in the order in which equals are named

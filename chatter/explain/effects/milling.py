@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from chatter.case import Case
-from chatter.explain.fitting import Parameter
-from chatter.explain.kind import Effect
+from chatter.description.case import Case
+from chatter.explain.kinds.kind import Effect
 from chatter.explain.measurement import Measurement
+from chatter.explain.selection.fitting import Parameter
 
 Values = Mapping[str, float]
 Assignments = dict[str, Any]

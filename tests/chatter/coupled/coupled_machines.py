@@ -5,15 +5,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from chatter import Case
-from chatter.coupled.engine import run_coupled
-from chatter.coupled.setup import set_up_machine, tool_side
-from chatter.coupled.simulate import _record
-from chatter.machine_file import MachineFile
-from chatter.virtual_machine.engine import advance
-from cutting.tool_point import tool_point
-from dynamics.coupling import Term
+from chatter.description.machine.machine_file import MachineFile
+from chatter.engine.machine_cut_loop import run_coupled
+from chatter.engine.machine_loop import advance
+from chatter.simulation.on_machine.setup import set_up_machine, tool_side
+from chatter.simulation.on_machine.simulate import _record
+from cutting.chip.tool_point import tool_point
 from dynamics.machine.loop import Loads
 from dynamics.machine.tables import machine_tables
+from dynamics.structure.spring_coupling import Term
 
 STIFF = 1e13  # N/m, N m/rad
 RIGID = dict.fromkeys(("x", "y", "z"), STIFF) | dict.fromkeys(("rx", "ry", "rz"), STIFF)
@@ -125,7 +125,7 @@ def stepped(case, count, outputs=None):
     points = next((group.points for group in old.groups if hasattr(group, "points")), None)
     start = np.zeros(on.machine.structure.size)
     if on.spindle_axis is not None:
-        from chatter.virtual_machine.rigid_motion import rigid_motion
+        from chatter.compile.rigid_motion import rigid_motion
 
         start = rigid_motion(on.machine, {on.spindle_axis: on.sense * setup.spindle.speed})
     tables = machine_tables(on.machine, setup.step, points, {}, rows, start)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from coupled_machines import body, cut_case, linear_axis, spindle, stepped, written
 
-from chatter.coupled.setup import set_up_machine
+from chatter.simulation.on_machine.setup import set_up_machine
 
 TIP = (0.11, -0.07, 0.4)
 BODIES = {
@@ -165,7 +165,7 @@ def residual(path, parts):
 
 def freedoms(machine, told):
     """Names of the outputs that are the freedoms of the structure, in their order."""
-    from dynamics.coupling import Term
+    from dynamics.structure.spring_coupling import Term
 
     order = [""] * machine.structure.size
     for name, (part, way, at) in told.items():

@@ -7,8 +7,8 @@ from coupled_machines import cut_case, spindle, written
 from test_coupled_feed import slide
 
 import chatter
-from chatter.coupled.setup import set_up_machine
-from chatter.errors import InputError
+from chatter.description.errors import InputError
+from chatter.simulation.on_machine.setup import set_up_machine
 
 
 def refused(folder, machine, structure=None, **given):

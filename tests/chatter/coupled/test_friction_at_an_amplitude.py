@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.coupled.linearised import machine_structure
-from chatter.errors import InputError
+from chatter.compile.linearised_machine import machine_structure
+from chatter.description.errors import InputError
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "friction-amplitude"
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.case import Case
-from chatter.coupled.real_modes import lines_around, real_modes
-from chatter.what_if.subject import field_of
-from dynamics.modal import Mode, receptance_matrix
+from chatter.compile.real_modes import lines_around, real_modes
+from chatter.description.case import Case
+from chatter.studies.whatif.model import field_of
+from dynamics.modal.modes import Mode, receptance_matrix
 
 FACE_MILL = Path(__file__).resolve().parents[3] / "examples/face-mill-chatter/case.toml"
 

@@ -6,10 +6,12 @@ from dataclasses import replace
 
 import pytest
 
-from chatter.case import load
-from chatter.example_cases import examples
-from chatter.explain import compare, explain, read_measurement
+from chatter.description.case import load
 from chatter.explain import lobes_before_after as lobes_before_after_module
+from chatter.explain.comparison import compare
+from chatter.explain.explanation import explain
+from chatter.explain.measurement import read_measurement
+from chatter.io.shipped_examples import examples
 
 NAMES = ("explain-axis", "explain-frf", "explain-milling", "explain-stability")
 HEADINGS = (

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from chatter.errors import InputError
-from chatter.explain.headings import named
+from chatter.description.errors import InputError
 from chatter.explain.measurement import read_measurement
-from chatter.explain.tables import read_signals
+from chatter.io.headings import named
+from chatter.io.signal_tables import read_signals
 
 TIME = np.arange(20) * 1e-3
 FORCE = 100.0 + 5.0 * np.arange(20)
@@ -222,7 +222,7 @@ def test_what_is_wrong_in_the_description_is_named(tmp_path, text, words):
 
 
 def test_missing_columns_are_named_with_those_there_are(tmp_path):
-    from chatter.explain.signals import checked
+    from chatter.explain.data_checks.checking import checked
 
     (tmp_path / "case.toml").write_text(CASE)
     (tmp_path / "a.csv").write_text("time [s],torque [N*m]\n0,1\n1,2\n")

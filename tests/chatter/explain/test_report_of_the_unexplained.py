@@ -5,7 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from chatter.explain import explain, read_measurement
+from chatter.explain.explanation import explain
+from chatter.explain.measurement import read_measurement
 
 MASS, VISCOUS, NOISE = 100.0, 500.0, 1.0
 PLACE, WIDTH, PUSH = 0.05, 0.006, 60.0

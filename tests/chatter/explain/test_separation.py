@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from chatter.case import loads
-from chatter.explain.axis import Axis
+from chatter.description.case import loads
+from chatter.explain.kinds.axis import Axis
+from chatter.explain.kinds.milling import Milling
 from chatter.explain.measurement import Measurement, Run
-from chatter.explain.milling import Milling
-from chatter.explain.separation import separation, told_apart
+from chatter.explain.selection.separation import separation, told_apart
 
 AXIS = loads("""
 title = "an axis"

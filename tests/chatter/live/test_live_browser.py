@@ -18,8 +18,8 @@ from pathlib import Path
 import pytest
 
 import chatter
-from chatter.live.answers import LiveCase
-from chatter.live.server import LiveServer
+from chatter.app.answers import LiveCase
+from chatter.app.server import LiveServer
 
 CASE = Path(__file__).resolve().parents[3] / "examples" / "two-degrees-of-freedom" / "case.toml"
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)

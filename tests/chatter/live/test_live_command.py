@@ -54,8 +54,8 @@ def test_options_that_do_not_go_together_are_told(options):
 
 def test_the_page_is_imported_only_when_asked_for():
     script = (
-        "import sys, chatter.cli, chatter.lobe_diagram;"
-        "print(any(name in sys.modules for name in ('chatter.live', 'http.server', 'distributed')))"
+        "import sys, chatter.cli, chatter.stability.diagram;"
+        "print(any(name in sys.modules for name in ('chatter.app', 'http.server', 'distributed')))"
     )
     found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
     assert found.stdout.strip() == "False", found.stderr

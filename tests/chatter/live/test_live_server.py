@@ -12,11 +12,11 @@ import pytest
 import tomlkit
 
 import chatter
-from chatter.errors import InputError, RunError
-from chatter.live.answers import LiveCase
-from chatter.live.latest import Latest, SupersededError
-from chatter.live.parameters import case_parameters
-from chatter.live.server import LARGEST_REQUEST, LiveServer
+from chatter.app.answers import LiveCase
+from chatter.app.latest import Latest, SupersededError
+from chatter.app.parameters import case_parameters
+from chatter.app.server import LARGEST_REQUEST, LiveServer
+from chatter.description.errors import InputError, RunError
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 CASE = EXAMPLES / "two-degrees-of-freedom" / "case.toml"

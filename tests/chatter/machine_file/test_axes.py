@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from chatter import InputError
-from chatter.machine_file import MachineFile, loads_machine
-from dynamics.reduction import undamped_modes
+from chatter.description.machine.machine_file import MachineFile, loads_machine
+from dynamics.reduction.modal_truncation import undamped_modes
 
 TRAVEL = 0.01 / (2.0 * math.pi)
 RACK = {

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from chatter import InputError
-from chatter.machine_file import MachineFile
-from dynamics.beam import BeamLine, Material, Segment
+from chatter.description.machine.machine_file import MachineFile
+from dynamics.beam.shaft import BeamLine, Material, Segment
 
 NODES = 9
 LENGTH = 1.0

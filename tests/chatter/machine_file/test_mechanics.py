@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from chatter.machine_file import MachineFile, loads_machine
-from dynamics.assembly import assemble
-from dynamics.beam import BeamLine, Bearing, Material, Segment
-from dynamics.bodies import Body, Connector, Point
+from chatter.description.machine.machine_file import MachineFile, loads_machine
+from dynamics.beam.shaft import BeamLine, Bearing, Material, Segment
+from dynamics.structure.assembly import assemble
+from dynamics.structure.bodies import Body, Connector, Point
 
 TABLE, BED, ROTOR = 300.0, 2000.0, 0.006
 FEET, TRAVEL = 40e6, 0.01 / (2.0 * math.pi)

@@ -3,7 +3,7 @@
 import pytest
 
 from chatter import InputError
-from chatter.machine_file import MachineFile, load_machine, loads_machine
+from chatter.description.machine.machine_file import MachineFile, load_machine, loads_machine
 
 FRICTION = {
     "law": "Coulomb-Stribeck", "coulomb": "1 N", "static": "1 N", "stribeck_velocity": "1 mm/s",

@@ -8,8 +8,9 @@ import pytest
 import tomlkit
 
 from chatter import InputError
-from chatter.case.path import keys_of
-from chatter.machine_file import MachineFile, load_machine, loads_machine, machine_schema
+from chatter.description.machine.machine_file import MachineFile, load_machine, loads_machine
+from chatter.description.machine.machine_schema import machine_schema
+from chatter.description.path import keys_of
 
 
 def test_patch_keeps_comments_and_units(line_text):

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.virtual_machine.frf import linearised_frictions, peaks
-from chatter.virtual_machine.from_file import one_frf
-from dynamics.frf import Frf
+from chatter.simulation.virtual_tests.frf import linearised_frictions, peaks
+from chatter.simulation.virtual_tests.from_file import one_frf
+from dynamics.frf.container import Frf
 from dynamics.machine.harmonic import receptance
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "machine-coupled-milling" / "machine.toml"

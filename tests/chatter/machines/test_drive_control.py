@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.virtual_machine.frf import linearised_frf, peaks
-from dynamics.frf import Frf
-from dynamics.receptance import PointPort
-from dynamics.reduction import state_space, truncated, undamped_modes
+from chatter.simulation.virtual_tests.frf import linearised_frf, peaks
+from dynamics.frf.container import Frf
+from dynamics.receptance.coupling import PointPort
+from dynamics.reduction.modal_truncation import state_space, truncated, undamped_modes
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "machine-drive-control" / "machine.toml"
 BRAKES = {"X": "brake", "Y": "brake", "Z": "brake"}

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.virtual_machine.loop_stability import least_stable_motion
+from chatter.simulation.virtual_tests.loop_stability import least_stable_motion
 from dynamics.trajectory import square
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "machine-gantry"

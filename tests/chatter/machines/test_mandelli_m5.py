@@ -7,17 +7,17 @@ import pytest
 from scipy.optimize import least_squares
 
 import chatter
-from chatter.errors import InputError
-from chatter.virtual_machine.frf import linearised_frf, linearised_frictions, peaks
-from chatter.virtual_machine.loop_response import (
+from chatter.compile.rigid_motion import rigid_motion
+from chatter.description.errors import InputError
+from chatter.simulation.virtual_tests.frf import linearised_frf, linearised_frictions, peaks
+from chatter.simulation.virtual_tests.loop_response import (
     LoopSweep,
     loop_by_sweep,
     loop_response,
     velocity_controlled,
 )
-from chatter.virtual_machine.rigid_motion import rigid_motion
-from dynamics.drive_records import DriveRecord, LowPass, fit_linear
-from dynamics.frf import Frf
+from dynamics.frf.container import Frf
+from dynamics.friction.identification import DriveRecord, LowPass, fit_linear
 from dynamics.machine.harmonic import receptance
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "machine-mandelli-m5" / "machine.toml"

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.coupled.machine_cut import machine_cut
+from chatter.compile.machine_cut import machine_cut
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 EXAMPLE = EXAMPLES / "mandelli-m5-slot"

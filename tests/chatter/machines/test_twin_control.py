@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.virtual_machine.frf import peaks
-from chatter.virtual_machine.loop_stability import least_stable_motion
+from chatter.simulation.virtual_tests.frf import peaks
+from chatter.simulation.virtual_tests.loop_stability import least_stable_motion
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "machine-twin-control"
 

@@ -10,14 +10,14 @@ import pytest
 from scipy.stats import norm, truncnorm
 from typer.testing import CliRunner
 
-from chatter.case import loads
 from chatter.cli import app
-from chatter.errors import InputError, RunError
-from chatter.monte_carlo import study as module
-from chatter.monte_carlo.confidence import wilson_interval
-from chatter.monte_carlo.parameters import UncertainParameter, correlation_of, parameters_of
-from chatter.monte_carlo.sampling import samples
-from chatter.monte_carlo.study import uncertainty
+from chatter.description.case import loads
+from chatter.description.errors import InputError, RunError
+from chatter.studies.uncertainty import study as module
+from chatter.studies.uncertainty.confidence import wilson_interval
+from chatter.studies.uncertainty.parameters import UncertainParameter, correlation_of, parameters_of
+from chatter.studies.uncertainty.sampling import samples
+from chatter.studies.uncertainty.study import uncertainty
 
 TEXT = """
 title = "one degree of freedom"
@@ -59,7 +59,7 @@ def case():
 def limit_of(case, **patch):
     """Limit at the speed of the cut, m."""
     fixed = {path.replace("__", "."): value for path, value in patch.items()}
-    from chatter.monte_carlo.propagation import sample_limits, shared_net
+    from chatter.studies.uncertainty.propagation import sample_limits, shared_net
 
     changed = case.patch({"material.Ktc": case.get("material.Ktc"), **fixed})
     return sample_limits(changed, shared_net(case, 3), None).operating

@@ -9,12 +9,12 @@ from typer.testing import CliRunner
 
 import chatter
 from chatter import InputError
-from chatter.best_cut.stable_depths import first_limits
 from chatter.cli import app
-from chatter.example_cases import example
-from chatter.model import milling_model
-from chatter.pitch_angles.families import alternating, families, linear, regeneration
-from chatter.pitch_angles.search import in_grains
+from chatter.io.shipped_examples import example
+from chatter.stability.model import milling_model
+from chatter.studies.optimisation.stable_depths import first_limits
+from chatter.studies.pitch_design.families import alternating, families, linear, regeneration
+from chatter.studies.pitch_design.search import in_grains
 
 RPM = math.pi / 30.0
 

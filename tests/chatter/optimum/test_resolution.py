@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from cuts import MODES, end_mill
 
-from chatter.best_cut.limits import limits_of
-from chatter.best_cut.resolution import most_waves
-from chatter.best_cut.sampled_cuts import samples_of
-from chatter.best_cut.stable_depths import first_limits, stable_depths, widest_stride
-from chatter.model import milling_model
-from chatter.stability import collocation
+from chatter.stability.methods.collocation import multipliers as collocation
+from chatter.stability.model import milling_model
+from chatter.studies.optimisation.limits import limits_of
+from chatter.studies.optimisation.resolution import most_waves
+from chatter.studies.optimisation.sampled_cuts import samples_of
+from chatter.studies.optimisation.stable_depths import first_limits, stable_depths, widest_stride
 
 RPM = math.pi / 30.0
 #: a machine: low modes that decide, and a fast one that hardly takes part

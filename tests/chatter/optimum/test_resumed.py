@@ -12,7 +12,7 @@ from cuts import end_mill
 
 import chatter
 from chatter import RunError
-from chatter.what_if.finished import FILE
+from chatter.studies.finished_points import FILE
 
 NET = {"speeds": {"from": "8800 rpm", "to": "9600 rpm"}, "depths": {"to": "3 mm", "count": 10}}
 WIDTHS = {"from": "2 mm", "to": "6 mm", "count": 3}
@@ -100,7 +100,7 @@ def test_a_changed_case_starts_anew_and_the_same_one_computes_nothing(tmp_path, 
     case = end_mill(CASES["pitch"])
     first = chatter.pitch(case, folder=tmp_path)
     known = lines_of(tmp_path)
-    monkeypatch.setattr("chatter.pitch_angles.search.first_limits", None)
+    monkeypatch.setattr("chatter.studies.pitch_design.search.first_limits", None)
     again = chatter.pitch(case, folder=tmp_path)
     assert lines_of(tmp_path) == known
     assert again.best.pitch == first.best.pitch

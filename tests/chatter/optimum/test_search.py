@@ -10,11 +10,11 @@ from typer.testing import CliRunner
 
 import chatter
 from chatter import InputError
-from chatter.best_cut.steady_cut import SteadyModel
 from chatter.cli import app
-from chatter.example_cases import example
-from chatter.model import milling_model
-from chatter.stability import collocation
+from chatter.io.shipped_examples import example
+from chatter.stability.methods.collocation import multipliers as collocation
+from chatter.stability.model import milling_model
+from chatter.studies.optimisation.steady_cut import SteadyModel
 
 RPM = math.pi / 30.0
 STIFF = [

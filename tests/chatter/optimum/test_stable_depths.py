@@ -6,9 +6,14 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.best_cut.stable_depths import StableDepths, first_limits, is_inside, stable_depths
-from chatter.example_cases import example
-from chatter.model import milling_model
+from chatter.io.shipped_examples import example
+from chatter.stability.model import milling_model
+from chatter.studies.optimisation.stable_depths import (
+    StableDepths,
+    first_limits,
+    is_inside,
+    stable_depths,
+)
 
 RPM = math.pi / 30.0
 

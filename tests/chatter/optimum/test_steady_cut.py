@@ -7,8 +7,8 @@ import pytest
 from cuts import MODES, end_mill
 
 import chatter
-from chatter.best_cut.steady_cut import SteadyModel
-from chatter.model import milling_model
+from chatter.stability.model import milling_model
+from chatter.studies.optimisation.steady_cut import SteadyModel
 
 
 def steady(case):

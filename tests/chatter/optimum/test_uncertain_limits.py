@@ -8,9 +8,9 @@ from cuts import end_mill
 from scipy.stats import norm
 
 import chatter
-from chatter.best_cut.limits import limits_of
-from chatter.best_cut.sampled_cuts import SampledCuts, samples_of
-from chatter.model import milling_model
+from chatter.stability.model import milling_model
+from chatter.studies.optimisation.limits import limits_of
+from chatter.studies.optimisation.sampled_cuts import SampledCuts, samples_of
 
 RPM = math.pi / 30.0
 NO_EDGE = {"material.Kte": 0.0, "material.Kre": 0.0}

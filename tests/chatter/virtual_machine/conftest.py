@@ -12,7 +12,7 @@ from dynamics.control import (
 )
 from dynamics.control.measurement import MeasuringSystem
 from dynamics.machine.description import Drive, Friction, Machine
-from dynamics.structure import LinearStructure
+from dynamics.structure.linear_structure import LinearStructure
 
 TRANSMISSION = 10e-3 / (2.0 * np.pi)  # m/rad
 MOTOR, TABLE, BED = 6e-3, 300.0, 1500.0  # kg m^2, kg, kg

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from chatter.virtual_machine.run import RunInputs, run_machine
+from chatter.simulation.virtual_tests.run import RunInputs, run_machine
 from dynamics.control import Feedforward
 from dynamics.friction.lugre import LuGre
 from dynamics.friction.tanh_hysteresis import TanhHysteresis
 from dynamics.machine.description import Friction, Machine
-from dynamics.structure import LinearStructure
+from dynamics.structure.linear_structure import LinearStructure
 from dynamics.trajectory import JerkLimitedMove, set_points
 
 LEAD = 10e-3 / (2.0 * np.pi)

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from chatter.errors import InputError
-from chatter.virtual_machine.frf import FrfCurve, FrfResult, linearised_frf, peaks
-from chatter.virtual_machine.run import RunInputs, run_machine
-from chatter.virtual_machine.virtual_tests import FrfTest, frf_by_test
-from dynamics.frf import Frf
+from chatter.description.errors import InputError
+from chatter.simulation.virtual_tests.frf import FrfCurve, FrfResult, linearised_frf, peaks
+from chatter.simulation.virtual_tests.run import RunInputs, run_machine
+from chatter.simulation.virtual_tests.virtual_tests import FrfTest, frf_by_test
+from dynamics.frf.container import Frf
 from dynamics.friction.lugre import LuGre
 
 STEP = 1e-4

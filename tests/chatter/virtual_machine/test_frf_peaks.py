@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from chatter.virtual_machine.frf_peaks import peaks, peaks_of_test
-from dynamics.frf import Frf
+from chatter.simulation.virtual_tests.frf_peaks import peaks, peaks_of_test
+from dynamics.frf.container import Frf
 
 LINES = np.linspace(5.0, 500.0, 1981)
 MODES = ((60.0, 0.02, 1e8), (150.0, 0.05, 4e8), (320.0, 0.01, 3e9))

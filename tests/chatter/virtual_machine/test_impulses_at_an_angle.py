@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from chatter.errors import InputError
-from chatter.machine_file.frf_section import FrfSection
-from chatter.virtual_machine.virtual_tests import FrfTest, _at_angle
+from chatter.description.errors import InputError
+from chatter.description.machine.frequency_response import FrfSection
+from chatter.simulation.virtual_tests.virtual_tests import FrfTest, _at_angle
 
 STEP = 5e-5
 

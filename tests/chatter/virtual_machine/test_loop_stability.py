@@ -5,10 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from chatter.errors import InputError
-from chatter.machine_file import load_machine
-from chatter.virtual_machine.loop_stability import least_stable_motion, refuse_unstable_control
-from chatter.virtual_machine.run import RunInputs, run_machine
+from chatter.description.errors import InputError
+from chatter.description.machine.machine_file import load_machine
+from chatter.simulation.virtual_tests.loop_stability import (
+    least_stable_motion,
+    refuse_unstable_control,
+)
+from chatter.simulation.virtual_tests.run import RunInputs, run_machine
 from dynamics.trajectory import SetPoints
 
 STEP = 1e-4

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from chatter.errors import InputError
-from chatter.virtual_machine.move import MovePlan, move_axes
-from chatter.virtual_machine.rigid_motion import rigid_motion
-from chatter.virtual_machine.run import RunInputs, run_machine
+from chatter.compile.rigid_motion import rigid_motion
+from chatter.description.errors import InputError
+from chatter.simulation.virtual_tests.move import MovePlan, move_axes
+from chatter.simulation.virtual_tests.run import RunInputs, run_machine
 from dynamics.control import Feedforward
 from dynamics.machine.description import Drive, Machine
-from dynamics.structure import LinearStructure
+from dynamics.structure.linear_structure import LinearStructure
 from dynamics.trajectory import CircleMotion, JerkLimitedMove, SineMotion, circle, set_points
 
 STEP = 1e-4

@@ -2,7 +2,7 @@
 
 import pytest
 
-from chatter.case import loads
+from chatter.description.case import loads
 
 TEXT = """
 title = "one degree of freedom"

@@ -6,13 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from chatter.case import parse_assignments
-from chatter.monte_carlo.parameters import parameters_of
-from chatter.what_if import load_subject
-from chatter.what_if.design import chosen_layout, points_of
-from chatter.what_if.ready import STUDIES
-from chatter.what_if.subject import patched
-from chatter.what_if.variation import read_variation
+from chatter.description.assignments import parse_assignments
+from chatter.studies.uncertainty.parameters import parameters_of
+from chatter.studies.whatif.design import chosen_layout, points_of
+from chatter.studies.whatif.model import load_subject, patched
+from chatter.studies.whatif.presets import STUDIES
+from chatter.studies.whatif.variation import read_variation
 
 ROOT = Path(__file__).resolve().parents[3]
 TEXT = (ROOT / "docs/what-if.md").read_text(encoding="utf-8")

@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.errors import InputError, RunError
-from chatter.what_if import load_subject, measures, whatif
-from chatter.what_if.ready import STUDIES
+from chatter.description.errors import InputError, RunError
+from chatter.studies.whatif import measures
+from chatter.studies.whatif.model import load_subject
+from chatter.studies.whatif.presets import STUDIES
+from chatter.studies.whatif.study import whatif
 
 ZERO_ORDER = {"method": "zero-order"}
 
@@ -198,9 +200,9 @@ def test_lobes_of_a_case_follow_its_machine(case_on_machine, machine_file):
 @pytest.mark.parametrize("name", STUDIES)
 def test_ready_studies_fit_their_examples(name):
     """Every patch of a ready study is valid on its example."""
-    from chatter.what_if.design import chosen_layout, points_of
-    from chatter.what_if.subject import patched
-    from chatter.what_if.variation import read_variation
+    from chatter.studies.whatif.design import chosen_layout, points_of
+    from chatter.studies.whatif.model import patched
+    from chatter.studies.whatif.variation import read_variation
 
     study = STUDIES[name]
     try:

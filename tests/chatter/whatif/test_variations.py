@@ -2,10 +2,10 @@
 
 import pytest
 
-from chatter.errors import InputError
-from chatter.what_if import whatif
-from chatter.what_if.subject import load_subject, patched, value_of
-from chatter.what_if.variation import read_variation
+from chatter.description.errors import InputError
+from chatter.studies.whatif.model import load_subject, patched, value_of
+from chatter.studies.whatif.study import whatif
+from chatter.studies.whatif.variation import read_variation
 
 
 def numbers(text, case, count=None):

@@ -4,7 +4,7 @@ import pytest
 from typer.testing import CliRunner
 
 from chatter.cli import app
-from chatter.what_if.ready import STUDIES
+from chatter.studies.whatif.presets import STUDIES
 
 CASE = "friction-amplitude/case.toml"
 MACHINE = "friction-amplitude/machine.toml"

@@ -4,9 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from dynamics.assembly import assembly
-from dynamics.beam import BeamLine, Bearing, Segment
-from dynamics.bodies import Body, Connector, rigid_motion
+from dynamics.beam.shaft import BeamLine, Bearing, Segment
 from dynamics.drive import (
     BallScrew,
     Belt,
@@ -19,8 +17,10 @@ from dynamics.drive import (
     ScrewShaft,
 )
 from dynamics.drive.screw_shaft import STEEL
-from dynamics.rotor import Rotor
-from dynamics.structure import StructureError
+from dynamics.structure.assembly import assembly
+from dynamics.structure.bodies import Body, Connector, rigid_motion
+from dynamics.structure.linear_structure import StructureError
+from dynamics.structure.rotor import Rotor
 
 TURN = Rotation.from_euler("xyz", [0.4, -0.7, 1.1]).as_matrix()
 AHEAD, UP = TURN[0], TURN[2]

@@ -15,7 +15,7 @@ from dynamics.drive import (
     ScrewShaft,
     SpindleRotor,
 )
-from dynamics.structure import StructureError
+from dynamics.structure.linear_structure import StructureError
 
 UP = (0.0, 0.0, 1.0)
 MOTOR = RackMotor(2e-3, UP)

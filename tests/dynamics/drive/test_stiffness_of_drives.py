@@ -3,10 +3,7 @@
 import numpy as np
 import pytest
 
-from dynamics.assembly import assembly
-from dynamics.beam import BeamLine, Bearing, Segment
-from dynamics.bodies import Body, Connector
-from dynamics.coupling import screw_nut_matrix
+from dynamics.beam.shaft import BeamLine, Bearing, Segment
 from dynamics.drive import (
     BallScrew,
     Belt,
@@ -19,6 +16,9 @@ from dynamics.drive import (
 )
 from dynamics.drive.gear_train import Spring, in_series
 from dynamics.drive.screw_shaft import STEEL
+from dynamics.structure.assembly import assembly
+from dynamics.structure.bodies import Body, Connector
+from dynamics.structure.spring_coupling import screw_nut_matrix
 
 DIAMETER, LENGTH, NUT_AT, LEAD = 0.032, 0.9, 0.35, 0.01
 AREA, POLAR = np.pi * DIAMETER**2 / 4.0, np.pi * DIAMETER**4 / 32.0

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from dynamics.drive_records import DriveRecord
+from dynamics.friction.identification import DriveRecord
 
 
 def back_and_forth(speeds, acceleration, dwell, step):

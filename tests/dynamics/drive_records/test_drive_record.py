@@ -5,8 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from dynamics.drive_records import DriveRecord, LowPass, record_from_current, smoothed_derivative
-from dynamics.frf import MeasurementError
+from dynamics.frf.container import MeasurementError
+from dynamics.friction.identification import (
+    DriveRecord,
+    LowPass,
+    record_from_current,
+    smoothed_derivative,
+)
 
 T = 1e-3 * np.arange(1000)
 X = 0.01 * np.sin(2 * np.pi * T)

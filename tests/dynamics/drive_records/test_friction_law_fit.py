@@ -7,7 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.drive_records import (
+from dynamics.frf.container import MeasurementError
+from dynamics.friction.coulomb_stribeck import CoulombStribeck
+from dynamics.friction.identification import (
     AxisModel,
     LowPass,
     fit_axis,
@@ -18,8 +20,6 @@ from dynamics.drive_records import (
     guess_tanh,
     reversal_way,
 )
-from dynamics.frf import MeasurementError
-from dynamics.friction.coulomb_stribeck import CoulombStribeck
 from dynamics.friction.lugre import LuGre
 from dynamics.friction.tanh_hysteresis import TanhHysteresis
 

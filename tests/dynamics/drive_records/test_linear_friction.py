@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.drive_records import LowPass, fit_linear
-from dynamics.frf import MeasurementError
+from dynamics.frf.container import MeasurementError
+from dynamics.friction.identification import LowPass, fit_linear
 
 _made_up = importlib.util.spec_from_file_location(
     "made_up_drive_records", Path(__file__).with_name("made_up_records.py")

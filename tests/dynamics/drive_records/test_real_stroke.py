@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.drive_records import AxisModel, DriveRecord, LowPass, fit_axis, fit_linear
 from dynamics.friction.coulomb_stribeck import CoulombStribeck
+from dynamics.friction.identification import AxisModel, DriveRecord, LowPass, fit_axis, fit_linear
 from dynamics.friction.lugre import LuGre
 
 STROKE = Path(__file__).resolve().parents[3] / "../shared/data/axis-rack-and-pinion/move01.csv"

@@ -7,7 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.drive_records import (
+from dynamics.frf.container import MeasurementError
+from dynamics.friction.coulomb_stribeck import CoulombStribeck
+from dynamics.friction.identification import (
     LowPass,
     SteadyPoint,
     constant_speed_points,
@@ -15,8 +17,6 @@ from dynamics.drive_records import (
     referred_to_slide,
     split_about_shaft,
 )
-from dynamics.frf import MeasurementError
-from dynamics.friction.coulomb_stribeck import CoulombStribeck
 from dynamics.friction.lugre import LuGre
 from dynamics.friction.tanh_hysteresis import TanhHysteresis
 

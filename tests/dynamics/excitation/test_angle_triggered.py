@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dynamics.excitation import (
+from dynamics.frf.excitation import (
     ExcitationError,
     angle_at_constant_speed,
     angle_triggered_pulses,

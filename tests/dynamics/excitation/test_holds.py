@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dynamics.excitation import (
+from dynamics.frf.excitation import (
     BAND_LIMITED,
     FIRST_ORDER_HOLD,
     ZERO_ORDER_HOLD,
@@ -12,8 +12,8 @@ from dynamics.excitation import (
     schroeder_phases,
     without_images,
 )
-from dynamics.excitation.holds import image_share
-from dynamics.excitation.periodic import PeriodicRecord, frf_of_periods
+from dynamics.frf.excitation.holds import image_share
+from dynamics.frf.excitation.periodic import PeriodicRecord, frf_of_periods
 
 T = 1e-3
 S = np.concatenate([2j * np.pi * np.array([0.5, 20.0, 250.0, 490.0]), [7.0 + 600.0j, 0.3 + 0.1j]])

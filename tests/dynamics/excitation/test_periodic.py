@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from dynamics.excitation import (
+from dynamics.frf.container import MeasurementError
+from dynamics.frf.excitation import (
     BAND_LIMITED,
     FIRST_ORDER_HOLD,
     ZERO_ORDER_HOLD,
@@ -18,7 +19,6 @@ from dynamics.excitation import (
     random_phases,
     without_drift,
 )
-from dynamics.frf import MeasurementError
 
 STEP = 5e-4
 

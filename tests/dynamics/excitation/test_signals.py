@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dynamics.excitation import (
+from dynamics.frf.excitation import (
     ExcitationError,
     constant_blow,
     full_lines,

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from dynamics.excitation import (
+from dynamics.frf.container import MeasurementError
+from dynamics.frf.excitation import (
     BAND_LIMITED,
     FIRST_ORDER_HOLD,
     ZERO_ORDER_HOLD,
@@ -18,8 +19,7 @@ from dynamics.excitation import (
     several_blows,
     without_images,
 )
-from dynamics.frf import MeasurementError
-from dynamics.hammer import HammerRecord, h1, h2
+from dynamics.frf.hammer import HammerRecord, h1, h2
 
 BAND = (1.0, 200.0)  # to a tenth of the sampling frequency
 WITHIN = 1e-3

@@ -7,7 +7,7 @@ import scipy.optimize
 
 from dynamics.machine.blocks import blocks
 from dynamics.machine.steps import begin_step, end_step, move, structure_steps
-from dynamics.structure import LinearStructure
+from dynamics.structure.linear_structure import LinearStructure
 
 
 def random_structure(rng, size, rigid=0, damping=1.0):

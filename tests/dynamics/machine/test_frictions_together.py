@@ -18,7 +18,7 @@ from dynamics.machine.groups import all_drive, all_resist, all_settle
 from dynamics.machine.loop import machine_step
 from dynamics.machine.steps import begin_step, end_step, move
 from dynamics.machine.tables import machine_tables
-from dynamics.structure import LinearStructure
+from dynamics.structure.linear_structure import LinearStructure
 
 LUGRE = LuGre(2e7, 0.0, 300.0, 80.0, 120.0, 2e-3)
 TANH = TanhHysteresis(90.0, 400.0, 3000.0, 300.0, 2e4)

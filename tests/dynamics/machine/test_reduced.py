@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from dynamics.reduction import undamped_modes, with_static_shapes
-from dynamics.structure import LinearStructure
+from dynamics.reduction.modal_truncation import undamped_modes, with_static_shapes
+from dynamics.structure.linear_structure import LinearStructure
 
 HIGHEST = 160.0
 

@@ -16,7 +16,7 @@ import numpy as np
 
 import chatter
 from chatter import Case
-from chatter.simulation.growth import growth_of
+from chatter.simulation.perturbation.growth_rate import growth_of
 from chatter.simulation.setup import modes_of
 
 FILE = Path(__file__).with_suffix(".json")

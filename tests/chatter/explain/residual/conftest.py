@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from chatter.case import Case
-from chatter.explain.kinds import KINDS
+from chatter.description.case import Case
+from chatter.explain.kinds.registry import KINDS
 from chatter.explain.measurement import Measurement, Run
-from chatter.explain.residual.left import Left, Residual
+from chatter.explain.residuals.normalised_residual import Left, Residual
 
 MILLING = {
     "tool": {"teeth": 4, "diameter": "16 mm"},

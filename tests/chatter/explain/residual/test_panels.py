@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from chatter.explain.residual.dependence import Sample, dependence
-from chatter.explain.residual.finding import Bars, Curve, Curves, Finding, Map, Points
-from chatter.explain.residual.lead import lead_of
-from chatter.explain.residual.views import look
-from chatter.plots.findings import plot_findings
+from chatter.explain.residuals.dependence import Sample, dependence
+from chatter.explain.residuals.diagnostics import look
+from chatter.explain.residuals.finding import Bars, Curve, Curves, Finding, Map, Points
+from chatter.explain.residuals.residual_dependence import lead_of
+from chatter.plots.residual_diagnostics import plot_findings
 
 X = np.array([0.01, 0.1, 1.0, 10.0])
 PANELS = {

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from chatter.explain.residual.dependence import Sample, dependence
-from chatter.explain.residual.lead import lead_of
-from chatter.explain.residual.ranks import rank_correlation
-from chatter.explain.residual.views import look, nothing_beyond_chance
+from chatter.explain.residuals.dependence import Sample, dependence
+from chatter.explain.residuals.diagnostics import look, nothing_beyond_chance
+from chatter.explain.residuals.ranks import rank_correlation
+from chatter.explain.residuals.residual_dependence import lead_of
 
 TURN = 2.0 * np.pi
 

@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from chatter import simulate
-from chatter.case import Case, loads
+from chatter.description.case import Case, loads
+from chatter.explain.data_checks.checking import checked
+from chatter.explain.data_checks.finding import SignalFinding
 from chatter.explain.measurement import Measurement, Run
-from chatter.explain.signals import SignalFinding, checked
 
 CASE = """
 title = "small"

@@ -9,8 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from chatter.explain import compare, explain, read_measurement
-from chatter.explain.signals import checked
+from chatter.explain.comparison import compare
+from chatter.explain.data_checks.checking import checked
+from chatter.explain.explanation import explain
+from chatter.explain.measurement import read_measurement
 
 SETS = Path(__file__).resolve().parents[4] / "../shared/measurements"
 needs_sets = pytest.mark.skipif(not SETS.is_dir(), reason="no measurement sets here")

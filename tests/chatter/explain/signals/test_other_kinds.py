@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from chatter.case import loads
-from chatter.explain import explain
+from chatter.compile.structure import structure_of
+from chatter.description.case import loads
+from chatter.explain.data_checks.checking import checked
+from chatter.explain.explanation import explain
 from chatter.explain.measurement import Measurement, Run
-from chatter.explain.signals import checked
-from chatter.structure import structure_of
-from dynamics.modal import receptance_matrix
+from dynamics.modal.modes import receptance_matrix
 
 MODES = """
 [tool]
@@ -86,7 +86,7 @@ def tap_tests() -> Measurement:
 
 def cutting_tests() -> Measurement:
     """Sixty points around the limits of the declared case."""
-    from chatter.explain.stability import stability_margins
+    from chatter.explain.kinds.stability import stability_margins
 
     case = loads(MODES)
     random = np.random.default_rng(0)

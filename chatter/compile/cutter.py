@@ -1,0 +1,108 @@
+"""Tool and force laws of a case, as `cutting` knows them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from chatter.description.case import Case
+from chatter.description.errors import InputError
+from cutting.force.edge_force import ExponentialEdge, LinearEdge, edge_law_table
+from cutting.force.force_law import ExponentialLaw, ForceLaw, LinearLaw
+from cutting.process_damping.flank import BareFlank
+from cutting.process_damping.ploughing import Ploughing, PloughingFlank, ploughing_flank
+from cutting.process_damping.viscous import ViscousFlank
+from cutting.tool.cutter import Cutter, Serration
+
+
+def helix_angles(case: Case) -> tuple[float, ...]:
+    """Helix angle of each tooth, rad."""
+    helix = case.tool.helix
+    return tuple(helix) if isinstance(helix, tuple) else (helix,) * case.tool.teeth
+
+
+def pitch_angles(case: Case) -> tuple[float, ...]:
+    """Angle from each tooth to the next, rad; they make a turn exactly."""
+    teeth = case.tool.teeth
+    given = np.asarray(case.tool.pitch or (1.0,) * teeth)
+    return tuple(given * 2.0 * np.pi / given.sum())
+
+
+def cutter_of(case: Case) -> Cutter:
+    """Tool that a case describes."""
+    tool = case.tool
+    corner = 0.5 * tool.diameter if tool.kind == "ball" else tool.corner_radius
+    wave = tool.serration
+    return Cutter(
+        diameter=tool.diameter,
+        helix=helix_angles(case),
+        pitch=pitch_angles(case),
+        corner_radius=corner,
+        edge_angle=tool.cutting_edge_angle - tool.taper_angle,
+        runout_offset=tool.runout.offset if tool.runout else 0.0,
+        runout_angle=tool.runout.angle if tool.runout else 0.0,
+        radial_error=tool.radial_error or (),
+        axial_error=tool.axial_error or (),
+        serration=Serration(wave.depth, wave.wavelength) if wave else None,
+    )
+
+
+def force_law(case: Case, helix: float) -> ForceLaw:
+    """Force law of a case after its cutting time, for an edge inclined by the helix, rad."""
+    material = case.material
+    cutting = np.asarray(material.cutting_coefficients(helix))
+    edge = np.asarray(material.edge_coefficients)
+    if case.wear is not None and case.cut is not None:
+        time = case.cut.cut_time
+        cutting = cutting * (1.0 + case.wear.cutting * time)
+        edge = edge + time * np.array([case.wear.edge_tangential, case.wear.edge_radial, 0.0])
+    if material.law == "exponential":
+        return ExponentialLaw(tuple(cutting), material.h0, material.exponent, tuple(edge))
+    return LinearLaw(tuple(cutting), tuple(edge))
+
+
+def edge_law(case: Case) -> LinearEdge | ExponentialEdge:
+    """Table of the force law for the kernels; helix may differ from tooth to tooth."""
+    return edge_law_table([force_law(case, helix) for helix in helix_angles(case)])
+
+
+def ploughing_of(case: Case) -> Ploughing:
+    """Ploughing that a case describes.
+
+    Raises
+    ------
+    InputError
+        If the tool lacks the clearance angle, or anything that touches the work.
+    """
+    tool, section = case.tool, case.process_damping
+    problems = []
+    if tool.clearance_angle is None:
+        problems.append(
+            f"{case.name}: tool.clearance_angle: is missing; process_damping.indentation_force "
+            'needs it, such as "6 deg"'
+        )
+    if not tool.edge_radius and not tool.flank_wear:
+        problems.append(
+            f"{case.name}: tool.edge_radius: neither edge_radius nor flank_wear is given; "
+            "process_damping.indentation_force needs one of them"
+        )
+    if problems:
+        raise InputError(problems)
+    return Ploughing(
+        indentation_force=section.indentation_force,
+        clearance_angle=tool.clearance_angle,
+        flank_wear=tool.flank_wear,
+        edge_radius=tool.edge_radius,
+        friction=section.friction,
+    )
+
+
+def flank_table(
+    case: Case, radius: np.ndarray, step_angle: float
+) -> BareFlank | ViscousFlank | PloughingFlank:
+    """Table of the flank force for the kernels."""
+    section = case.process_damping
+    if section is not None and section.indentation_force is not None:
+        return ploughing_flank(ploughing_of(case), radius, case.tool.teeth, step_angle)
+    if section is not None and section.coefficient:
+        return ViscousFlank(section.coefficient, section.friction)
+    return BareFlank()

@@ -1,0 +1,155 @@
+"""The machine of a case as the stability methods see it: FRFs at the tool point, linearised."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.compile.machine_cut import MachineCut, machine_cut
+from chatter.compile.real_modes import largest_misfit, lines_around, real_modes
+from chatter.description.case import Case
+from chatter.description.errors import InputError
+from chatter.simulation.virtual_tests.frf import linearised_frictions
+from chatter.simulation.virtual_tests.loop_stability import refuse_unstable_control
+from dynamics.machine.harmonic import receptance
+from dynamics.modal.modes import Mode
+
+#: lines of the receptance, and how far they reach above the highest mode that matters
+_LINES = 1600
+_ABOVE = 1.5
+#: flexibility at the tool point, as a share of the largest, above which a mode matters
+_MATTERS = 0.01
+_LOWEST = 1.0
+#: misfit of the modes, over the largest receptance, of which the user should know
+_WORTH_TELLING = 0.02
+
+
+@dataclass(frozen=True)
+class LinearisedMachine:
+    """Structure described by the receptance of a linearised machine at its tool point.
+
+    Parameters
+    ----------
+    case : Case
+    cut : MachineCut
+    """
+
+    case: Case
+    cut: MachineCut
+
+    @cached_property
+    def _guess(self) -> tuple[Mode, ...]:
+        """Modes of the structure that matter, its loops open."""
+        modes = self.cut.modes()
+        if not modes:
+            raise InputError(
+                f"{self.case.name}: structure.machine: {self.cut.file.name} is rigid at the tool"
+            )
+        least = _MATTERS * max(1.0 / mode.stiffness for mode in modes)
+        return tuple(mode for mode in modes if 1.0 / mode.stiffness > least)
+
+    @cached_property
+    def _fitted(self) -> tuple[tuple[Mode, ...], float]:
+        highest = _ABOVE * max(mode.frequency for mode in self._guess)
+        lines = lines_around(self._guess, _LOWEST, highest)
+        values = tool_receptance(self.case, self.cut, lines)
+        modes = real_modes(lines, values, self._guess)
+        return modes, largest_misfit(modes, lines, values)
+
+    @property
+    def modes(self) -> tuple[Mode, ...]:
+        """Real modes fitted to the receptance."""
+        return self._fitted[0]
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was assumed."""
+        notes = [f"dynamics of {self.cut.file.name}, linearised, its control loops closed"]
+        if self.cut.machine.frictions:
+            amplitude = self.case.structure.friction_amplitude
+            others = (
+                "stick"
+                if amplitude is None
+                else f"are linearised at vibration of {amplitude * 1e6:g} um along their axes"
+            )
+            notes.append(f"frictions of axes that move slide, those of others {others}")
+        misfit = self._fitted[1]
+        if misfit > _WORTH_TELLING:
+            notes.append(
+                f"methods that need modes take real ones, which miss the receptance by up to "
+                f"{misfit:.1%} of its largest value"
+            )
+        return tuple(notes)
+
+    @property
+    def directions(self) -> NDArray[np.float64]:
+        """Directions (3, 3) in which the tool point can move."""
+        return np.eye(3)
+
+    def receptance(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+        """Lines (m,) in Hz and relative receptance (m, 3, 3), without a fit, m/N."""
+        highest = _ABOVE * max(mode.frequency for mode in self._guess)
+        lines = np.union1d(
+            np.linspace(_LOWEST, highest, _LINES), lines_around(self._guess, _LOWEST, highest)
+        )
+        return lines, tool_receptance(self.case, self.cut, lines)
+
+
+def machine_structure(case: Case) -> LinearisedMachine:
+    """Structure of a case whose dynamics come from a machine.
+
+    The machine moves at the feed of the case, so that frictions on moving axes slide and others
+    stick; the control loops are closed. Modes are fitted to its FRFs when they are asked for.
+
+    Raises
+    ------
+    InputError
+        If the machine cannot make the cut, or its control is unstable.
+    """
+    cut = machine_cut(case)
+    refuse_unstable_control(cut.machine, cut.file.step)
+    return LinearisedMachine(case, cut)
+
+
+def tool_receptance(
+    case: Case, cut: MachineCut, frequency: NDArray[np.float64]
+) -> NDArray[np.complex128]:
+    """Receptance (m, 3, 3) of the tool against the workpiece in the directions of the cut, m/N.
+
+    Parameters
+    ----------
+    case : Case
+    cut : MachineCut
+    frequency : (m,) array of float
+        Hz, above 0.
+    """
+    moving = _moving(case, cut)
+    frictions = linearised_frictions(cut.machine, moving, _amplitudes(case, cut))
+    return receptance(cut.machine, frequency, cut.tool, cut.file.step, frictions)
+
+
+def _amplitudes(case: Case, cut: MachineCut) -> dict[str, float] | None:
+    """Amplitude at every friction for the one along the axes, m; at motors by the transmission."""
+    along = case.structure.friction_amplitude
+    if along is None:
+        return None
+    found = {}
+    for one in cut.machine.frictions:
+        # one friction of the file may act at several places: "name[1]"
+        target = cut.file.friction[one.name.partition("[")[0]].on
+        drive = None if target.motor is None else cut.file.axis[target.motor].drive
+        if drive is None:
+            found[one.name] = along
+        elif not drive.turns:
+            found[one.name] = along / drive.spec().transmission
+    return found
+
+
+def _moving(case: Case, cut: MachineCut) -> dict[str, float]:
+    teeth, speed = case.tool.teeth, case.cut.spindle_speed
+    feed = case.cut.feed_per_tooth * teeth * speed / (2.0 * math.pi)
+    return cut.velocities(feed, speed)

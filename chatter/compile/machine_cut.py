@@ -1,0 +1,224 @@
+"""A case on a machine: who moves, where the cut acts, at which step."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.compile.rigid_motion import rigid_motion
+from chatter.description.case import Case
+from chatter.description.errors import InputError
+from chatter.description.machine.machine_file import MachineFile
+from dynamics.machine.description import Machine
+from dynamics.modal.modes import Mode
+from dynamics.reduction.modal_truncation import damping_ratios, undamped_modes
+from dynamics.structure.spring_coupling import Term
+
+#: cosine of the angle by which directions may miss being along, or across
+_ALONG, _ACROSS = 0.999, 1e-3
+#: part of the largest motion of the tool point below which a mode does not move it
+_UNMOVED = 1e-3
+_LEAST_DAMPING = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class MachineCut:
+    """Machine of a case, seen from the cut.
+
+    Parameters
+    ----------
+    file : MachineFile
+    machine : Machine
+    tool : (3, n) array of float
+        Rows of the tool against the workpiece along x, y, z of the cut, both taken at the tip, so
+        that the force on both has no moment left over.
+    spindle : (n,) array of float, optional
+        Row of the turning tool against the workpiece, positive as the tool turns; None where no
+        axis turns it and its speed is prescribed.
+    spindle_axis : str, optional
+    sense : float
+        1 or -1: of the spindle's axis against the turning of the tool.
+    feeds : mapping of str to float
+        Velocity of each axis of the machine for a feed of 1 m/s; empty where none of those under
+        control can feed the tool, whose path is then prescribed.
+    """
+
+    file: MachineFile
+    machine: Machine
+    tool: NDArray[np.float64]
+    spindle: NDArray[np.float64] | None
+    spindle_axis: str | None
+    sense: float
+    feeds: Mapping[str, float]
+
+    def velocities(self, feed: float, speed: float) -> dict[str, float]:
+        """Velocity of all axes for a feed, m/s, and a spindle speed, rad/s."""
+        moving = {axis: share * feed for axis, share in self.feeds.items()}
+        if self.spindle_axis is not None:
+            moving[self.spindle_axis] = self.sense * speed
+        return moving
+
+    def modes(self) -> tuple[Mode, ...]:
+        """Undamped modes of the structure that move the tool point, as far as they tell.
+
+        For resolution and pictures; loops are open in them and axes free.
+        """
+        structure = self.machine.structure
+        found = undamped_modes(structure)
+        ratios = np.maximum(damping_ratios(structure, found), _LEAST_DAMPING)
+        moved = (self.tool @ found.shapes).T
+        size = np.linalg.norm(moved, axis=1)
+        elastic = found.frequency > 0.0
+        least = _UNMOVED * np.max(size[elastic], initial=0.0)
+        return tuple(
+            Mode(
+                float(found.frequency[i]),
+                float(min(ratios[i], 0.9)),
+                float(size[i] ** -2),
+                tuple(moved[i] / size[i]),
+            )
+            for i in np.flatnonzero(elastic & (size > least))
+        )
+
+
+def machine_cut(case: Case, friction: bool | None = None) -> MachineCut:
+    """Machine that a case names, in the state that it asks for.
+
+    Parameters
+    ----------
+    case : Case
+        With structure.machine.
+    friction : bool, optional
+        Overrides that of the case.
+
+    Raises
+    ------
+    InputError
+        If the machine cannot make the cut: no tool point, a spindle across the tool.
+    """
+    section = case.structure
+    file = case.machine_file()
+    if file.tool_point is None:
+        raise InputError(f"{file.name}: tool_point is missing; {case.name} cuts there")
+    _refuse_unknown_axes(case, file)
+    machine = file.machine(section.condition, section.position)
+    wanted = section.friction if friction is None else friction
+    if wanted is False:
+        machine = machine.without_friction()
+    axes = cut_directions(case)
+    tip, workpiece = _ends(file, section.position or {})
+    tool = np.array(
+        [
+            machine.row("tool", (Term(tip.body, way, tip.at), Term(workpiece, -way, tip.at)))
+            for way in axes
+        ]
+    )
+    name = _spindle_axis(case, file, machine)
+    spindle, sense = None, 1.0
+    if name is not None:
+        spindle, sense = _spindle_row(case, file, machine, name, workpiece, axes[2])
+    feeds = _feeds(machine, tool, [one for one in machine.axes if one != name])
+    return MachineCut(file, machine, tool, spindle, name, sense, feeds)
+
+
+def _refuse_unknown_axes(case: Case, file: MachineFile) -> None:
+    for key in ("condition", "position"):
+        for name in getattr(case.structure, key) or ():
+            if name not in file.axis:
+                known = ", ".join(file.axis) or "none"
+                raise InputError(
+                    f'{case.name}: structure.{key}: {file.name} has no axis "{name}"; there are '
+                    f"{known}"
+                )
+
+
+def cut_directions(case: Case) -> NDArray[np.float64]:
+    """Rows x, y, z of the cut in the machine's directions.
+
+    Raises
+    ------
+    InputError
+        If feed and tool axis are not perpendicular.
+    """
+    x = np.array(case.structure.feed or (1.0, 0.0, 0.0))
+    z = np.array(case.structure.tool_axis or (0.0, 0.0, 1.0))
+    if abs(x @ z) > _ACROSS:
+        raise InputError(
+            f"{case.name}: structure.feed: {x.tolist()} is not perpendicular to the tool axis "
+            f"{z.tolist()}"
+        )
+    return np.array([x, np.cross(z, x), z])
+
+
+def _ends(file: MachineFile, positions: Mapping[str, float]):
+    points = {point.name: point for point in file.at(positions).points}
+    workpiece = "ground" if file.workpiece is None else points[file.workpiece].body
+    return points[file.tool_point], workpiece
+
+
+def _spindle_axis(case: Case, file: MachineFile, machine: Machine) -> str | None:
+    controlled = {drive.axis for drive in machine.drives}
+    named = case.structure.spindle
+    if named is not None:
+        if named not in controlled:
+            known = ", ".join(sorted(controlled)) or "none"
+            raise InputError(
+                f'{case.name}: structure.spindle: axis "{named}" is not under control in '
+                f"{file.name}; there are {known}"
+            )
+        return named
+    turning = [
+        name
+        for name, axis in file.axis.items()
+        if axis.drive is not None and axis.drive.kind == "spindle" and name in controlled
+    ]
+    if len(turning) > 1:
+        raise InputError(
+            f"{case.name}: structure.spindle is missing; {file.name} has {', '.join(turning)}"
+        )
+    return turning[0] if turning else None
+
+
+def _spindle_row(
+    case: Case,
+    file: MachineFile,
+    machine: Machine,
+    name: str,
+    workpiece: str,
+    upwards: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], float]:
+    """Row of the turning tool against the workpiece, and the sense of the axis."""
+    direction = np.asarray(file.axis[name].direction, dtype=np.float64)
+    direction = direction / np.linalg.norm(direction)
+    along = float(direction @ upwards)
+    if abs(along) < _ALONG:
+        raise InputError(
+            f"{case.name}: structure.tool_axis: the spindle {name} of {file.name} turns about "
+            f"{direction.tolist()}, not about {upwards.tolist()}"
+        )
+    # seen from above the tool turns clockwise: about the direction to its tip
+    sense = -math.copysign(1.0, along)
+    tip, _ = _ends(file, case.structure.position or {})
+    about = np.concatenate([np.zeros(3), sense * direction])
+    rotor = f"{name}: motor"
+    turning = rotor if rotor in machine.assembly.parts else tip.body
+    terms = (Term(turning, about, tip.at), Term(workpiece, -about, tip.at))
+    return machine.row("spindle", terms), sense
+
+
+def _feeds(machine: Machine, tool: NDArray[np.float64], axes: list[str]) -> dict[str, float]:
+    """Velocities of controlled axes that feed the tool along x at 1 m/s; none if they cannot."""
+    controlled = [name for name in axes if name in {drive.axis for drive in machine.drives}]
+    ways = np.array([tool @ rigid_motion(machine, {name: 1.0}) for name in controlled]).T
+    wanted = np.array([1.0, 0.0, 0.0])
+    if not controlled:
+        return {}
+    share, *_ = np.linalg.lstsq(ways, wanted, rcond=None)
+    if np.max(np.abs(ways @ share - wanted)) > _UNMOVED:
+        return {}
+    feeds = dict(zip(controlled, share.tolist(), strict=True))
+    return {name: part for name, part in feeds.items() if abs(part) > 1e-9}

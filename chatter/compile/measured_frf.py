@@ -1,0 +1,203 @@
+"""The FRF files that a case names: read, given their directions, sorted by side."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.compile.drive_point_check import NOT_PASSIVE, is_passive, with_magnitudes
+from chatter.description.errors import InputError
+from chatter.io.frf_formats import read_frfs
+from chatter.stability.methods.zeroth_order.method import frequency_lines
+from dynamics.frf.container import Frf, MeasurementError, Point, on_common_lines
+from dynamics.identification import ModalFit, identify_modes
+from dynamics.identification.prepare import prepare
+from dynamics.modal.modes import Mode, Side, receptance_matrix
+
+if TYPE_CHECKING:
+    from chatter.description.case import Case
+    from chatter.description.sections.structure import MeasuredFrf
+
+_AXES = "xyz"
+
+
+@dataclass(frozen=True)
+class MeasuredSide:
+    """All FRFs of the tool or of the workpiece, in the directions of the case.
+
+    Parameters
+    ----------
+    side : str
+    frfs : tuple of Frf
+        Those at the tool point and, for better poles, others of the same structure.
+    node : str or None
+        Node of the tool point.
+    """
+
+    side: Side
+    frfs: tuple[Frf, ...]
+    node: str | None = None
+
+    def tool_point_frfs(self) -> tuple[Frf, ...]:
+        """FRFs with force and response at the tool point."""
+        return tuple(
+            frf
+            for frf in self.frfs
+            if frf.response.node == frf.reference.node and self.node in (None, frf.response.node)
+        )
+
+    @cached_property
+    def fit(self) -> ModalFit:
+        """Modal fit of all FRFs of the side.
+
+        Raises
+        ------
+        InputError
+            If no mode at the tool point is found.
+        """
+        try:
+            fit = with_magnitudes(identify_modes(self.frfs, tool_point=self.node))
+        except MeasurementError as error:
+            raise InputError(str(error)) from error
+        if not fit.modes:
+            raise InputError(f"structure.frf: no mode at the tool point: {fit.no_mass_reason}")
+        return fit
+
+    @cached_property
+    def modes(self) -> tuple[Mode, ...]:
+        """Real modes at the tool point; magnitudes where the FRFs are not passive (see notes)."""
+        return tuple(replace(mode, side=self.side) for mode in self.fit.modes)
+
+    def notes(self) -> tuple[str, ...]:
+        """Warnings about FRFs that no drive point can have."""
+        return tuple(
+            f"{frf.source}: {NOT_PASSIVE}"
+            for frf in self.tool_point_frfs()
+            if frf.is_drive_point and not is_passive(frf)
+        )
+
+    def receptance(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+        """Usable lines (m,) in Hz and receptance (m, 3, 3) at the tool point, m/N, as measured.
+
+        Where the measurement is not that of a drive point, the receptance of `modes` stands in.
+        """
+        measured = self.tool_point_frfs()
+        band = prepare(measured, None).clean
+        inside = [frf.receptance().band(band.lowest, band.highest) for frf in measured]
+        frequency, columns = on_common_lines(inside)
+        if self.notes():
+            lines = frequency_lines(
+                np.array([mode.frequency for mode in self.modes]),
+                np.array([mode.damping for mode in self.modes]),
+                band.highest,
+            )
+            return lines, receptance_matrix(self.modes, lines)
+        total = np.zeros((frequency.size, 3, 3), dtype=np.complex128)
+        for frf, column in zip(measured, columns.T, strict=True):
+            i, j = (_AXES.index(p.direction) for p in (frf.response, frf.reference))
+            value = column * frf.response.sign * frf.reference.sign
+            total[:, i, j] = value
+            # reciprocity stands in for a cross term that was not measured itself
+            if not np.any(total[:, j, i]):
+                total[:, j, i] = value
+        return frequency, total
+
+
+def measured_sides(
+    case: Case, entries: Sequence[MeasuredFrf]
+) -> tuple[tuple[MeasuredSide, ...], tuple[str, ...]]:
+    """Read FRFs of a case.
+
+    Parameters
+    ----------
+    case : Case
+    entries : sequence of MeasuredFrf
+        Those of its files that count.
+
+    Returns
+    -------
+    sides : tuple of MeasuredSide
+        Tool side, workpiece side, as far as measured.
+    notes : tuple of str
+        Assumptions made.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, or files do not say at which point or in which direction.
+    """
+    notes: list[str] = []
+    problems: list[str] = []
+    found: dict[Side, list[Frf]] = {"tool": [], "workpiece": []}
+    nodes: dict[Side, set[str]] = {"tool": set(), "workpiece": set()}
+    for entry in entries:
+        try:
+            frfs = read_frfs(entry.file)
+            found[entry.side] += _directed(entry, frfs, notes)
+        except (MeasurementError, InputError) as error:
+            problems.append(str(error))
+            continue
+        nodes[entry.side] |= _tool_nodes(entry, frfs)
+    for side, names in nodes.items():
+        if len(names) > 1 and not problems:
+            listed = ", ".join(f'"{name}"' for name in sorted(names))
+            problems.append(
+                f"{case.name}: structure.frf: drive points at several nodes of the {side} "
+                f'({listed}); name the tool point with node = "..."'
+            )
+        if found[side] and not names and not problems:
+            problems.append(
+                f"{case.name}: structure.frf: no FRF of the {side} has force and response at the "
+                "same point; the tool point needs one"
+            )
+    if problems:
+        raise InputError(problems)
+    sides = tuple(
+        MeasuredSide(side, tuple(frfs), next(iter(nodes[side])))
+        for side, frfs in found.items()
+        if frfs
+    )
+    notes += [note for side in sides for note in side.notes()]
+    return sides, tuple(dict.fromkeys(notes))
+
+
+def _tool_nodes(entry: MeasuredFrf, frfs: Iterable[Frf]) -> set[str]:
+    drive = {frf.response.node for frf in frfs if frf.response.node == frf.reference.node}
+    if entry.node is not None:
+        drive &= {entry.node}
+    return drive
+
+
+def _directed(entry: MeasuredFrf, frfs: list[Frf], notes: list[str]) -> list[Frf]:
+    """Give the FRFs of one file the directions that the case says they have."""
+    if entry.direction is None:
+        if all(frf.response.direction and frf.reference.direction for frf in frfs):
+            return frfs
+        notes.append(
+            f"{entry.file.name} names no direction: taken as the same in x and y; say so, or "
+            'otherwise, with direction = "x" in [[structure.frf]]'
+        )
+        return [with_direction(frf, axis, axis) for axis in "xy" for frf in frfs]
+    pairs = {(frf.response.direction, frf.reference.direction) for frf in frfs}
+    if len(pairs) > 1:
+        listed = ", ".join(sorted("".join(pair) or "none" for pair in pairs))
+        raise InputError(
+            f"{entry.file}: holds FRFs in several directions ({listed}); direction = "
+            f'"{entry.direction}" cannot stand for all of them; leave it out'
+        )
+    response, reference = entry.direction[0], entry.direction[-1]
+    return [with_direction(frf, response, reference) for frf in frfs]
+
+
+def with_direction(frf: Frf, response: str, reference: str) -> Frf:
+    """Return an FRF with the directions of response and force replaced, their senses kept."""
+    return replace(
+        frf,
+        response=Point(frf.response.node, response, frf.response.sign),
+        reference=Point(frf.reference.node, reference, frf.reference.sign),
+    )

@@ -1,0 +1,188 @@
+"""The Case: an immutable description of a cut; everything else is a function of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from pydantic import Field, PrivateAttr, model_validator
+
+from chatter.description.case_checks import (
+    engagement_problems,
+    engagement_problems_of_draft,
+    friction_problems,
+    optimum_problems,
+)
+from chatter.description.errors import InputError
+from chatter.description.patchable import Description
+from chatter.description.section import raise_if_any
+from chatter.description.sections.cut import Cut
+from chatter.description.sections.material import Material
+from chatter.description.sections.optimisation import Optimum, PitchDesign
+from chatter.description.sections.process import (
+    Axis,
+    Contact,
+    Dynamometer,
+    Friction,
+    Lobes,
+    ProcessDamping,
+    Simulation,
+    Stock,
+    Uncertainty,
+    Wear,
+)
+from chatter.description.sections.structure import StructureSection
+from chatter.description.sections.tool import Tool
+from chatter.description.toml_document import move_references
+from chatter.description.toml_editing import Layout
+
+if TYPE_CHECKING:
+    from chatter.description.machine.machine_file import MachineFile
+
+
+class Case(Description):
+    """A tool, a material, a cut and a structure, in SI.
+
+    Sections are None (or empty) where the file has none; a command asks for those that it needs
+    with `require`.
+    """
+
+    NOUN: ClassVar[str] = "case"
+    EXAMPLE_PATH: ClassVar[str] = "cut.axial_depth"
+    OTHER_KIND: ClassVar[tuple[tuple[str, ...], str]] = (
+        ("body", "beam", "connector", "point"),
+        "machine",
+    )
+    LAYOUT: ClassVar[Layout] = Layout(
+        headed=frozenset({("friction", "*")}),
+        alternatives={
+            "mass": "stiffness",
+            "stiffness": "mass",
+            "duration": "revolutions",
+            "revolutions": "duration",
+        },
+    )
+
+    title: str = ""
+    tool: Tool | None = None
+    material: Material | None = None
+    cut: Cut | None = None
+    structure: StructureSection | None = None
+    process_damping: ProcessDamping | None = None
+    contact: Contact | None = None
+    wear: Wear | None = None
+    dynamometer: Dynamometer | None = None
+    friction: dict[str, Friction] = Field(default_factory=dict)
+    axis: Axis | None = None
+    simulation: Simulation | None = None
+    stock: Stock | None = None
+    lobes: Lobes | None = None
+    uncertainty: Uncertainty | None = None
+    optimum: Optimum | None = None
+    pitch_design: PitchDesign | None = None
+
+    #: takes the place of the file that structure.machine names; no file holds it
+    _machine: Any = PrivateAttr(default=None)
+
+    @model_validator(mode="after")
+    def _check_engagement(self) -> Case:
+        if self.tool is not None and self.cut is not None:
+            cut = self.cut
+            raise_if_any(engagement_problems(cut.mode, cut.radial_depth, self.tool.diameter))
+        return self
+
+    @classmethod
+    def _problems_of_draft(cls, data: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
+        return engagement_problems_of_draft(data)
+
+    def _further_problems(self, data: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
+        del data
+        return [
+            *friction_problems(self.structure, self.friction),
+            *optimum_problems(self.optimum, self.cut, self.tool),
+        ]
+
+    def _resolve_files(self, content: dict[str, Any]) -> None:
+        if self.structure is None:
+            return
+        for entry in content["structure"]["frf"]:
+            entry["file"] = str(Path(entry["file"]).resolve())
+        if self.structure.machine is not None:
+            content["structure"]["machine"] = str(self.structure.machine.resolve())
+        if self._machine is not None:
+            content["structure"]["machine"] = self._machine._content()
+
+    @classmethod
+    def _move_references(cls, document: Any, old: Path, new: Path) -> None:
+        move_references(document, old, new)
+
+    @property
+    def width_of_cut(self) -> float:
+        """Radial depth of cut, m: the diameter where a slot does not give it.
+
+        A conversion of units may have rounded it to a hair more than the diameter.
+        """
+        given = self.cut.radial_depth
+        return self.tool.diameter if given is None else min(given, self.tool.diameter)
+
+    def machine_file(self) -> MachineFile:
+        """Machine of [structure]: the one that was put in its place, else that of the file."""
+        from chatter.description.machine.machine_file import load_machine
+
+        return load_machine(self.structure.machine) if self._machine is None else self._machine
+
+    def with_machine(self, machine: MachineFile) -> Case:
+        """Return the case on another machine than that of the file that it names.
+
+        Raises
+        ------
+        InputError
+            If the case is on no machine.
+        """
+        if self.structure is None or self.structure.machine is None:
+            raise InputError(f"{self.name}: structure.machine is missing; it is on no machine")
+        moved = self.model_copy()
+        moved._machine = machine
+        return moved
+
+    def patch(self, values: Mapping[str, Any]) -> Case:
+        """Return the case with some values changed, on the same machine; see `Description`."""
+        patched = super().patch(values)
+        named = None if patched.structure is None else patched.structure.machine
+        if self._machine is not None and named == self.structure.machine:
+            patched._machine = self._machine
+        return patched
+
+    def require(self, *sections: str) -> None:
+        """Raise InputError naming every one of the sections that the case lacks."""
+        missing = [section for section in sections if not getattr(self, section)]
+        if missing:
+            raise InputError(
+                [
+                    f"{self.name}: [{section}] is missing; this command needs it"
+                    for section in missing
+                ]
+            )
+
+
+def load(path: str | Path) -> Case:
+    """Read a case file.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read or describes no case; all problems found are in it.
+    """
+    return Case.from_file(path)
+
+
+def loads(text: str, name: str = "case", folder: str | Path = ".") -> Case:
+    """Read a case from TOML text.
+
+    Raises
+    ------
+    InputError
+        If the text describes no case; all problems found are in it.
+    """
+    return Case.from_text(text, name, folder)

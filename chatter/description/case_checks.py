@@ -1,0 +1,103 @@
+"""Checks across sections of a case."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from chatter.description.path import field_at
+from chatter.description.sections.cut import Cut
+from chatter.description.sections.optimisation import Optimum
+from chatter.description.sections.process import Friction
+from chatter.description.sections.structure import StructureSection
+from chatter.description.sections.tool import Tool
+
+_WIDTH = "cut.radial_depth"
+
+
+def engagement_problems(
+    mode: str | None, radial_depth: float | None, diameter: float | None
+) -> list[tuple[str, str]]:
+    """Check the radial depth (m) against the diameter (m) of the tool.
+
+    Parameters
+    ----------
+    mode, radial_depth, diameter
+        None where it is not known.
+
+    Returns
+    -------
+    list of (str, str)
+        Path and sentence of what is wrong.
+    """
+    if radial_depth is None or diameter is None:
+        return []
+    width, size = f"{radial_depth * 1e3:g} mm", f"{diameter * 1e3:g} mm"
+    if radial_depth > diameter * (1.0 + 1e-9):
+        return [(_WIDTH, f"{width} is more than the diameter of the tool, {size}")]
+    if mode == "slot" and radial_depth < diameter * (1.0 - 1e-6):
+        text = f'{width} is not the diameter, {size}, that mode = "slot" cuts; '
+        return [(_WIDTH, text + 'leave it out, or choose "up" or "down"')]
+    return []
+
+
+def engagement_problems_of_draft(data: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Make the same check on a case that has other faults, as far as its values can be read."""
+    tool, cut = data.get("tool"), data.get("cut")
+    return engagement_problems(
+        cut.get("mode") if isinstance(cut, Mapping) else None,
+        _length(Cut, cut, "radial_depth"),
+        _length(Tool, tool, "diameter"),
+    )
+
+
+def friction_problems(
+    structure: StructureSection | None, frictions: Mapping[str, Friction]
+) -> list[tuple[str, str]]:
+    """Check that the frictions named by modes are there.
+
+    Returns
+    -------
+    list of (str, str)
+        Path and sentence of what is wrong.
+    """
+    known = ", ".join(f"[friction.{name}]" for name in frictions) or "none"
+    return [
+        (
+            f"structure.mode[{place}].friction",
+            f"there is no [friction.{mode.friction}]; there is {known}",
+        )
+        for place, mode in enumerate(structure.mode if structure is not None else ())
+        if mode.friction is not None and mode.friction not in frictions
+    ]
+
+
+def optimum_problems(
+    optimum: Optimum | None, cut: Cut | None, tool: Tool | None
+) -> list[tuple[str, str]]:
+    """Check the widths of [optimum] against the cut and the tool.
+
+    Returns
+    -------
+    list of (str, str)
+        Path and sentence of what is wrong.
+    """
+    if optimum is None or optimum.widths is None or cut is None or tool is None:
+        return []
+    if cut.mode == "slot":
+        text = 'mode = "slot" cuts the whole diameter; leave widths out, or choose "up" or "down"'
+        return [("optimum.widths", text)]
+    if optimum.widths.to > tool.diameter * (1.0 + 1e-9):
+        width, size = f"{optimum.widths.to * 1e3:g} mm", f"{tool.diameter * 1e3:g} mm"
+        return [("optimum.widths.to", f"{width} is more than the diameter of the tool, {size}")]
+    return []
+
+
+def _length(section: type, table: Any, key: str) -> float | None:
+    if not isinstance(table, Mapping) or key not in table:
+        return None
+    try:
+        return field_at(section, (key,)).read(table[key])
+    except ValueError:
+        # told by the section itself
+        return None

@@ -1,0 +1,126 @@
+"""[axis.NAME]: what an axis moves, on what, and how it is driven and held."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+
+from chatter.description.machine.control import ControlSection
+from chatter.description.machine.drive import DriveSection
+from chatter.description.machine.fields import Direction, Place
+from chatter.description.quantities import either_quantity, quantity
+from chatter.description.section import Section, raise_if_any
+from dynamics.drive.parts import DrivenAxis
+from dynamics.machine.description import MachineAxis
+from dynamics.structure.bodies import GROUND
+
+
+class BrakeSection(Section):
+    """What holds each motor while the brake is on."""
+
+    stiffness: either_quantity("rotational_stiffness", "stiffness", above=0.0) = Field(
+        description="N/m of a linear motor"
+    )
+    damping: either_quantity("rotational_damping", "damping", at_least=0.0) = 0.0
+
+
+class AxisSection(Section):
+    """Axis; without a drive it only says what travels."""
+
+    direction: Direction = Field(
+        description="of positive motion of moving against carrying", examples=[[0, 1, 0]]
+    )
+    moving: str | None = Field(None, description="part that is driven")
+    carrying: str = Field(GROUND, description="part that carries the motor")
+    at: Place | None = Field(None, description="where the drive pushes, at position 0")
+    carries: tuple[str, ...] | None = Field(
+        None, description="all parts that travel with the axis; moving by default"
+    )
+    position: quantity("length", at_least=-200.0, at_most=200.0) = 0.0
+    scale_at: Place | None = Field(
+        None, description="place of the direct measuring system; at by default"
+    )
+    drive: DriveSection | None = None
+    brake: BrakeSection | None = None
+    control: ControlSection | None = None
+
+    @model_validator(mode="after")
+    def _check_drive(self) -> AxisSection:
+        problems = []
+        kind = None if self.drive is None else self.drive.kind
+        if self.moving is None and kind != "spindle":
+            problems.append(("moving", "is missing; the part that the axis moves is wanted"))
+        if self.at is None and kind is not None:
+            problems.append(("at", "is missing; the place where the drive pushes is wanted"))
+        for key in ("brake", "control"):
+            if kind is None and getattr(self, key) is not None:
+                problems.append((key, "is given, but the axis has no drive"))
+        if self.control is not None and self.control.motors == "each":
+            problems += [
+                (
+                    f"drive.motors[{place}].preload",
+                    f'{motor.preload:g} N m is given, but with control.motors = "each" the '
+                    'controllers of the motors take it back; "together" keeps it',
+                )
+                for place, motor in enumerate(() if kind is None else self.drive.motors)
+                if motor.preload
+            ]
+        if kind is not None and self.drive.turns and (self.carries or self.position):
+            problems.append(
+                ("", f'drive.kind = "{kind}" turns; position and carries do not belong to it')
+            )
+        raise_if_any(problems)
+        return self
+
+    @property
+    def travelling(self) -> tuple[str, ...]:
+        """All parts that travel with the axis."""
+        if self.drive is not None and self.drive.turns:
+            return ()
+        return (self.moving,) if self.carries is None else self.carries
+
+    @property
+    def driven_part(self) -> str:
+        """Part that is driven; a spindle that is only a rotor has none and names its housing."""
+        return self.carrying if self.moving is None else self.moving
+
+    def geometry(self, name: str, position: float, shift: NDArray[np.float64]) -> DrivenAxis:
+        """Where the axis is driven.
+
+        Parameters
+        ----------
+        name : str
+        position : float
+            m.
+        shift : (3,) array of float
+            Of the moving part, by all axes that carry it, m.
+        """
+        at = np.zeros(3) if self.at is None else np.asarray(self.at)
+        return DrivenAxis(
+            name, self.direction, self.driven_part, self.carrying, at + shift, position
+        )
+
+    def axis(self, geometry: DrivenAxis, shift: NDArray[np.float64]) -> MachineAxis:
+        """The axis with its drive and control.
+
+        Raises
+        ------
+        StructureError, ControlError
+            If numbers make no sense.
+        """
+        drive = self.drive.spec()
+        return MachineAxis(
+            geometry,
+            drive,
+            self.controllers(drive),
+            None if self.scale_at is None else np.asarray(self.scale_at) + shift,
+            *(() if self.brake is None else ((self.brake.stiffness, self.brake.damping),)),
+        )
+
+    def controllers(self, drive: object) -> tuple:
+        """Controllers of a drive: none, one for all motors, or one each."""
+        if self.control is None:
+            return ()
+        one = self.control.spec(drive.transmission)
+        return (one,) * (max(len(self.drive.motors), 1) if self.control.motors == "each" else 1)

@@ -1,0 +1,183 @@
+"""[body.NAME], [connector.NAME], [point.NAME] and [contact]."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+
+from chatter.description.formatting import shown
+from chatter.description.machine.fields import Direction, Place, Places, Size
+from chatter.description.quantities import QuantityField, quantity
+from chatter.description.section import Section, raise_if_any
+from dynamics.structure.bodies import Body, Connector, Point
+
+_INERTIA = QuantityField("moment_of_inertia")
+#: where six entries of a tensor stand
+_ENTRIES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+
+
+def _inertia(given: Any) -> tuple[float, ...]:
+    if not isinstance(given, (list, tuple)) or len(given) not in (3, 6):
+        raise ValueError(
+            f"{shown(given)} is given; three principal moments of inertia are wanted, or six "
+            "entries of the tensor: xx, yy, zz, xy, xz, yz"
+        )
+    return tuple(_INERTIA.read(part) for part in given)
+
+
+Inertia = Annotated[
+    tuple[float, ...],
+    BeforeValidator(_inertia),
+    WithJsonSchema(
+        {
+            "type": "array",
+            "items": {"anyOf": _INERTIA.json_schema()["anyOf"]},
+            "minItems": 3,
+            "maxItems": 6,
+            "description": "about the centre of gravity: three principal moments of inertia, or "
+            "xx, yy, zz, xy, xz, yz of the tensor (off the diagonal with its minus sign)",
+        }
+    ),
+    _INERTIA,
+]
+
+
+class BodySection(Section):
+    """Rigid body."""
+
+    mass: quantity("mass", above=0.0)
+    inertia: Inertia | None = None
+    size: Size | None = Field(
+        None, description="edges of a uniform block, for its moments of inertia; or give inertia"
+    )
+    centre: Place = Field(description="centre of gravity")
+
+    @model_validator(mode="after")
+    def _check_inertia(self) -> BodySection:
+        given = (self.inertia is not None) + (self.size is not None)
+        text = {
+            0: "is missing; give three moments of inertia, or the size of a block",
+            2: "inertia and size are both given; one is wanted",
+        }
+        key = "inertia" if given == 0 else ""
+        raise_if_any([(key, text[given])] if given != 1 else [])
+        return self
+
+    @property
+    def tensor(self) -> NDArray[np.float64]:
+        """Inertia tensor (3, 3), kg m^2."""
+        if self.size is not None:
+            square = np.square(self.size)
+            return np.diag(self.mass / 12.0 * (np.sum(square) - square))
+        tensor = np.zeros((3, 3))
+        for (row, column), value in zip(_ENTRIES, self.inertia, strict=False):
+            tensor[row, column] = tensor[column, row] = value
+        return tensor
+
+    def part(self, name: str, shift: NDArray[np.float64]) -> Body:
+        """The body, shifted (3,) m by the axes that carry it."""
+        return Body(name, self.mass, self.tensor, np.asarray(self.centre) + shift)
+
+
+class SixStiffness(Section):
+    """Stiffness along and about the connector's x, y, z."""
+
+    x: quantity("stiffness", at_least=0.0) = 0.0
+    y: quantity("stiffness", at_least=0.0) = 0.0
+    z: quantity("stiffness", at_least=0.0) = 0.0
+    rx: quantity("rotational_stiffness", at_least=0.0) = 0.0
+    ry: quantity("rotational_stiffness", at_least=0.0) = 0.0
+    rz: quantity("rotational_stiffness", at_least=0.0) = 0.0
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """(6,), N/m and N m/rad."""
+        return tuple(getattr(self, key) for key in SIX)
+
+
+class SixDamping(Section):
+    """Damping along and about the connector's x, y, z."""
+
+    x: quantity("damping", at_least=0.0) = 0.0
+    y: quantity("damping", at_least=0.0) = 0.0
+    z: quantity("damping", at_least=0.0) = 0.0
+    rx: quantity("rotational_damping", at_least=0.0) = 0.0
+    ry: quantity("rotational_damping", at_least=0.0) = 0.0
+    rz: quantity("rotational_damping", at_least=0.0) = 0.0
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """(6,), N s/m and N m s/rad."""
+        return tuple(getattr(self, key) for key in SIX)
+
+
+SIX = ("x", "y", "z", "rx", "ry", "rz")
+
+
+class ConnectorSection(Section):
+    """Springs and dampers between two parts, at one place or the same at several."""
+
+    between: tuple[str, str] = Field(
+        description='two parts, or one and "ground"; the connector travels with the first',
+        examples=[["table", "ground"]],
+    )
+    at: Place | None = None
+    places: Places | None = Field(None, description="several equal ones; or give at")
+    stiffness: SixStiffness
+    damping: SixDamping = SixDamping()
+    axes: tuple[Direction, Direction, Direction] | None = Field(
+        None, description="directions of the connector's own x, y, z; the machine's by default"
+    )
+
+    @model_validator(mode="after")
+    def _check_place(self) -> ConnectorSection:
+        given = (self.at is not None) + (self.places is not None)
+        text = {
+            0: ("at", 'is missing; a place is wanted, such as ["0 mm", "0 mm", "0 mm"]'),
+            2: ("", "at and places are both given; one is wanted"),
+        }
+        raise_if_any([text[given]] if given != 1 else [])
+        return self
+
+    def names(self, name: str) -> list[str]:
+        """Names of the connectors that this one stands for."""
+        if self.at is not None:
+            return [name]
+        return [f"{name}[{number}]" for number in range(len(self.places))]
+
+    def parts(self, name: str, shift: NDArray[np.float64]) -> list[Connector]:
+        """The connectors, shifted (3,) m with the first part."""
+        places = self.places if self.at is None else (self.at,)
+        return [
+            Connector(
+                one,
+                *self.between,
+                np.asarray(at) + shift,
+                self.stiffness.values,
+                self.damping.values,
+                np.eye(3) if self.axes is None else np.array(self.axes),
+            )
+            for one, at in zip(self.names(name), places, strict=True)
+        ]
+
+
+class PointSection(Section):
+    """Named place on a part."""
+
+    on: str = Field(description='body, beam or imported part, or "ground"', examples=["table"])
+    at: Place
+
+    def part(self, name: str, shift: NDArray[np.float64]) -> Point:
+        """The point, shifted (3,) m with its part."""
+        return Point(name, self.on, np.asarray(self.at) + shift)
+
+
+class ContactSection(Section):
+    """Springs and dampers between tool point and workpiece while in the cut."""
+
+    stiffness: quantity("stiffness", at_least=0.0)
+    damping: quantity("damping", at_least=0.0) = 0.0
+    directions: tuple[Literal["x", "y", "z"], ...] = Field(("x", "y", "z"), min_length=1)

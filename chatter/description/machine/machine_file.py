@@ -1,0 +1,236 @@
+"""The MachineFile: an immutable description of a machine tool."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, ClassVar
+
+from pydantic import Field, PrivateAttr
+
+from chatter.description.errors import InputError
+from chatter.description.machine.axis import AxisSection
+from chatter.description.machine.beam import BeamSection
+from chatter.description.machine.bodies import (
+    BodySection,
+    ConnectorSection,
+    ContactSection,
+    PointSection,
+)
+from chatter.description.machine.compose import Composition
+from chatter.description.machine.errors_by_key import sentence, telling
+from chatter.description.machine.frequency_response import FrfSection
+from chatter.description.machine.friction import FrictionSection
+from chatter.description.machine.imported import ImportedSection
+from chatter.description.machine.move import MoveSection
+from chatter.description.machine.references import dimension_problems, reference_problems
+from chatter.description.patchable import Description
+from chatter.description.quantities import QuantityField, quantity, whole_number
+from chatter.description.toml_document import moved_reference
+from chatter.description.toml_editing import Layout
+from chatter.description.wording import nearest
+from dynamics.machine.description import Condition, Machine, MachineParts, machine
+from dynamics.structure.bodies import GROUND
+from dynamics.structure.imported_part import ImportedPart
+
+_POSITION = QuantityField("length", at_least=-200.0, at_most=200.0)
+_FILES = ("mass", "stiffness", "damping", "nodes")
+
+
+class MachineFile(Description):
+    """Bodies, beams and imported parts, what joins them, axes, frictions; in SI."""
+
+    NOUN: ClassVar[str] = "machine"
+    EXAMPLE_PATH: ClassVar[str] = "axis.Y.control.position.gain"
+    OTHER_KIND: ClassVar[tuple[tuple[str, ...], str]] = (
+        ("tool", "material", "cut", "structure"),
+        "case",
+    )
+    LAYOUT: ClassVar[Layout] = Layout(
+        headed=frozenset(
+            {
+                *((kind, "*") for kind in ("body", "connector", "beam", "imported", "point")),
+                *((kind, "*") for kind in ("axis", "friction", "frf", "move")),
+                *(("axis", "*", part) for part in ("drive", "brake", "control")),
+                ("imported", "*", "point"),
+                ("imported", "*", "point", "*"),
+            }
+        ),
+        alternatives={"at": "places", "places": "at", "inertia": "size", "size": "inertia"},
+    )
+    #: kinds of parts
+    PARTS: ClassVar[tuple[str, ...]] = ("body", "beam", "imported")
+
+    title: str = ""
+    tool_point: str | None = Field(None, description="point where the tool is")
+    workpiece: str | None = Field(None, description="point that it is measured against")
+    damping_ratio: quantity("number", at_least=0.0, below=1.0) = Field(
+        0.0, description="of every elastic mode, on top of the dampers"
+    )
+    highest_frequency: quantity("frequency", above=0.0) | None = Field(
+        None,
+        description="modes above it are left out; their static answer is kept at drives, "
+        "frictions and points",
+    )
+    allowed_rigid_motions: whole_number(0, 1000, "numbers of motions") = Field(
+        0, description="free motions that are meant, besides those of the axes"
+    )
+    body: dict[str, BodySection] = Field(default_factory=dict)
+    beam: dict[str, BeamSection] = Field(default_factory=dict)
+    imported: dict[str, ImportedSection] = Field(default_factory=dict)
+    connector: dict[str, ConnectorSection] = Field(default_factory=dict)
+    point: dict[str, PointSection] = Field(default_factory=dict)
+    axis: dict[str, AxisSection] = Field(default_factory=dict)
+    friction: dict[str, FrictionSection] = Field(default_factory=dict)
+    contact: ContactSection | None = None
+    step: quantity("time", above=0.0) = Field(
+        50e-6, description="of runs in time; sample times are multiples of it"
+    )
+    frf: dict[str, FrfSection] = Field(default_factory=dict)
+    move: dict[str, MoveSection] = Field(default_factory=dict)
+
+    _imported_parts: dict[str, ImportedPart] = PrivateAttr(default_factory=dict)
+
+    def _resolve_files(self, content: dict[str, Any]) -> None:
+        for section in content["imported"].values():
+            for key in _FILES:
+                if section[key] is not None:
+                    section[key] = str(Path(section[key]).resolve())
+
+    @classmethod
+    def _move_references(cls, document: Any, old: Path, new: Path) -> None:
+        for section in document.get("imported", {}).values():
+            for key in _FILES:
+                if isinstance(section.get(key), str):
+                    section[key] = moved_reference(section[key], old, new)
+
+    def _further_problems(self, data: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
+        problems = reference_problems(self)
+        if problems:
+            return problems
+        problems = dimension_problems(self, data)
+        if not any(getattr(self, kind) for kind in self.PARTS):
+            problems.append(("", "has no parts; [body.NAME], [beam.NAME] or [imported.NAME]"))
+        if self.contact is not None and self.tool_point is None:
+            problems.append(("tool_point", "is missing; the contact acts there"))
+        for key, make in Composition(self, {}).makers():
+            try:
+                make()
+            except ValueError as error:
+                problems.append((key, sentence(error, key)))
+        return problems
+
+    @property
+    def part_names(self) -> tuple[str, ...]:
+        """Names of all parts, and the ground."""
+        return (*(name for kind in self.PARTS for name in getattr(self, kind)), GROUND)
+
+    @property
+    def contact_ends(self) -> tuple[tuple[str, float], ...]:
+        """Points that the contact joins, and the sign of their motion."""
+        ends = ((self.tool_point, 1.0), (self.workpiece, -1.0))
+        return tuple((name, sign) for name, sign in ends if name is not None)
+
+    def imported_part(self, name: str) -> ImportedPart:
+        """Imported part at position 0, read and reduced once.
+
+        Raises
+        ------
+        InputError
+            If its files cannot be used.
+        """
+        if name not in self._imported_parts:
+            with telling(self.name, f"imported.{name}"):
+                self._imported_parts[name] = self.imported[name].part(name)
+        return self._imported_parts[name]
+
+    def at(
+        self, positions: Mapping[str, float | str] | None = None, in_cut: bool = False
+    ) -> MachineParts:
+        """Everything the machine is made of, at positions of its axes.
+
+        What an axis carries is shifted along it: bodies, beams, imported parts, points, places
+        where drives push, and connectors whose first part it carries.
+
+        Parameters
+        ----------
+        positions : mapping of str to float or str, optional
+            m, or a quantity such as "120 mm"; where the file has the axis by default.
+        in_cut : bool
+            Whether tool and workpiece touch: with the couplings of [contact].
+
+        Raises
+        ------
+        InputError
+            If there is no such axis, a position is none, or the machine makes no sense there.
+        """
+        if in_cut and self.contact is None:
+            raise InputError(f"{self.name}: [contact] is missing; the machine is to be in the cut")
+        return Composition(self, self._positions(positions or {})).parts(in_cut)
+
+    def machine(
+        self,
+        conditions: Mapping[str, Condition] | None = None,
+        positions: Mapping[str, float | str] | None = None,
+        in_cut: bool = False,
+    ) -> Machine:
+        """Assemble the machine.
+
+        Parameters
+        ----------
+        conditions : mapping of str to {"control", "brake", "free"}, optional
+            What holds each driven axis; control where it has one by default, else nothing.
+        positions, in_cut
+            As for `at`.
+
+        Raises
+        ------
+        InputError
+            If the machine makes no sense: parts that nothing holds, an axis that is not there, a
+            nut off its screw.
+        """
+        parts = self.at(positions, in_cut)
+        for name, condition in (conditions or {}).items():
+            if condition == "brake" and name in self.axis and self.axis[name].brake is None:
+                raise InputError(
+                    f"{self.name}: axis.{name}.brake: is missing; the axis is to be held by it"
+                )
+        with telling(self.name):
+            return machine(parts, conditions)
+
+    def _positions(self, given: Mapping[str, float | str]) -> dict[str, float]:
+        read = {}
+        for name, position in given.items():
+            if name not in self.axis:
+                known = nearest(str(name), list(self.axis)) if self.axis else "there are none"
+                raise InputError(f'{self.name}: position: there is no axis "{name}"; {known}')
+            drive = self.axis[name].drive
+            if drive is not None and drive.turns:
+                raise InputError(f"{self.name}: position: axis {name} turns; it has no position")
+            try:
+                read[name] = _POSITION.read(position)
+            except ValueError as error:
+                raise InputError(f"{self.name}: position of axis {name}: {error}") from None
+        return read
+
+
+def load_machine(path: str | Path) -> MachineFile:
+    """Read a machine file.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read or describes no machine; all problems found are in it.
+    """
+    return MachineFile.from_file(path)
+
+
+def loads_machine(text: str, name: str = "machine", folder: str | Path = ".") -> MachineFile:
+    """Read a machine from TOML text.
+
+    Raises
+    ------
+    InputError
+        If the text describes no machine; all problems found are in it.
+    """
+    return MachineFile.from_text(text, name, folder)

@@ -1,0 +1,377 @@
+"""What a case and a machine share: an immutable description, read from TOML, patched, written."""
+
+from __future__ import annotations
+
+import copy
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import tomlkit
+from pydantic import PrivateAttr, ValidationError
+
+from chatter.description.errors import InputError
+from chatter.description.formatting import shown
+from chatter.description.path import (
+    Step,
+    field_at,
+    info_at,
+    is_mapping,
+    join_path,
+    key_of,
+    model_at,
+    parse_path,
+)
+from chatter.description.section import Section
+from chatter.description.toml_document import parse_document, plain, read_text, value_at
+from chatter.description.toml_editing import PLAIN, Layout, set_value
+from chatter.description.units import parse, write
+from chatter.description.wording import nearest, sentences, unknown_key
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+
+class Description(Section):
+    """Nested tables of a TOML file, in SI.
+
+    A kind of file says by class variables how it is called and laid out, and by methods what is
+    to be checked across its sections and which files it names.
+    """
+
+    #: what the file describes, and a path into it, for messages
+    NOUN: ClassVar[str]
+    EXAMPLE_PATH: ClassVar[str]
+    LAYOUT: ClassVar[Layout]
+    #: sections that only another kind of file has, and how that is called
+    OTHER_KIND: ClassVar[tuple[tuple[str, ...], str]]
+
+    #: the file that it came from, and what was set in it since: (path, value)
+    _document: Any = PrivateAttr(default=None)
+    _edits: tuple[tuple[tuple[Step, ...], Any], ...] = PrivateAttr(default=())
+    #: bare content of the file, with what was set
+    _data: Any = PrivateAttr(default=None)
+    _folder: Path = PrivateAttr(default=Path())
+    _name: str = PrivateAttr(default="")
+
+    def __eq__(self, other: object) -> bool:
+        """Compare by content, whatever the files looked like and wherever they lie."""
+        return type(other) is type(self) and self._content() == other._content()
+
+    def __hash__(self) -> int:
+        """Hash of the content."""
+        return hash(self._content())
+
+    def _content(self) -> str:
+        content = self.model_dump(mode="json")
+        self._resolve_files(content)
+        return json.dumps(content, sort_keys=True)
+
+    def _resolve_files(self, content: dict[str, Any]) -> None:
+        """Make file names in the content absolute, so that one file has one name."""
+
+    @classmethod
+    def _move_references(cls, document: Any, old: Path, new: Path) -> None:
+        """Rewrite file names relative to one folder so that they hold in another."""
+
+    @classmethod
+    def _problems_of_draft(cls, data: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
+        """Tell, as path and sentence, what can be told of data that has other faults."""
+        del data
+        return ()
+
+    def _further_problems(self, data: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
+        """Tell, as path and sentence, what is wrong across sections that are right in themselves.
+
+        Parameters
+        ----------
+        data : mapping
+            What the file says, before units were read.
+        """
+        del data
+        return ()
+
+    @property
+    def name(self) -> str:
+        """Name of the file, for messages."""
+        return self._name or self.NOUN
+
+    @property
+    def folder(self) -> Path:
+        """Folder that relative file names start from."""
+        return self._folder
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any], name: str = "", folder: Path | str = ".") -> Self:
+        """Make a description from nested dicts, with the keys and values of its file.
+
+        Keys whose value is None are taken as not given.
+
+        Raises
+        ------
+        InputError
+            If it describes nothing; all problems found are in it.
+        """
+        name = name or cls.NOUN
+        if not isinstance(data, Mapping):
+            raise InputError(f"{name}: {shown(data)} is given, a table of sections is wanted")
+        try:
+            document = tomlkit.item(plain(data, noun=cls.NOUN))
+        except InputError as error:
+            raise InputError(f"{name}: {error}") from None
+        except RecursionError:
+            raise InputError(f"{name}: is too deeply nested") from None
+        return cls._of_document(document, name, Path(folder))
+
+    @classmethod
+    def from_file(cls, path: str | Path) -> Self:
+        """Read a file.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be read or describes nothing; all problems found are in it.
+        """
+        path = Path(path)
+        document = parse_document(read_text(path, cls.NOUN), str(path))
+        return cls._of_document(document, str(path), path.parent)
+
+    @classmethod
+    def from_text(cls, text: str, name: str = "", folder: str | Path = ".") -> Self:
+        """Read TOML text.
+
+        Raises
+        ------
+        InputError
+            If the text describes nothing; all problems found are in it.
+        """
+        name = name or cls.NOUN
+        return cls._of_document(parse_document(text, name), name, Path(folder))
+
+    @classmethod
+    def _of_document(cls, document: Any, name: str, folder: Path) -> Self:
+        made = cls._validated(document.unwrap(), name, folder)
+        made._document = document
+        return made
+
+    @classmethod
+    def _validated(cls, data: dict[str, Any], name: str, folder: Path) -> Self:
+        try:
+            made = cls.model_validate(data, context={"folder": folder})
+        except ValidationError as error:
+            cls._refuse_other_kind(data, name)
+            problems = sentences(error, cls, name)
+            told = [f"{name}: {path}: {text}" for path, text in cls._problems_of_draft(data)]
+            raise InputError(
+                [*problems, *(text for text in told if text not in problems)]
+            ) from None
+        made._data, made._folder, made._name = data, folder, name
+        problems = [
+            f"{name}: {path}: {text}" if path else f"{name}: {text}"
+            for path, text in made._further_problems(data)
+        ]
+        if problems:
+            raise InputError(problems)
+        return made
+
+    @classmethod
+    def _refuse_other_kind(cls, data: Mapping[str, Any], name: str) -> None:
+        """Say in one sentence that a file of the other kind is given."""
+        keys, noun = cls.OTHER_KIND
+        found = [key for key in keys if key in data]
+        if len(found) > 1:
+            listed = " and ".join(f"[{key}]" for key in found)
+            raise InputError(f"{name}: is a {noun} ({listed}); a {cls.NOUN} is wanted")
+
+    def get(self, path: str) -> Any:
+        """Return the value at a dotted path, in SI; a tuple of all where a step is ``[*]``.
+
+        Raises
+        ------
+        InputError
+            If the path leads nowhere.
+        """
+        return self._value_of(self, self._steps(path), 0)
+
+    def _value_of(self, item: Any, steps: tuple[Step, ...], place: int) -> Any:
+        if place == len(steps):
+            return item
+        step, here = steps[place], steps[: place + 1]
+        if isinstance(item, Section):
+            key = key_of(type(item), str(step))
+            if key is None:
+                raise InputError(
+                    f"{self.name}: {join_path(steps)}: {unknown_key(type(self), here)}"
+                )
+            return self._value_of(getattr(item, key), steps, place + 1)
+        if isinstance(item, tuple) and step == "*":
+            return tuple(self._value_of(entry, steps, place + 1) for entry in item)
+        in_table = isinstance(item, dict) and step in item
+        in_list = isinstance(item, tuple) and isinstance(step, int) and step < len(item)
+        if not (in_table or in_list):
+            raise InputError(f"{self.name}: {join_path(steps)}: there is no {join_path(here)}")
+        return self._value_of(item[step], steps, place + 1)
+
+    def patch(self, values: Mapping[str, Any]) -> Self:
+        """Return the description with some values changed; this one stays as it is.
+
+        Parameters
+        ----------
+        values : mapping
+            Dotted path -> quantity text, number, text, list, table, or None to remove the key.
+            A bare number is SI and is written in the unit that stood there. Sections that are
+            not there are made; a table one place past the end of a list is appended.
+
+        Raises
+        ------
+        InputError
+            If a path is unknown or what comes of it is wrong; all problems found are in it.
+        """
+        data = copied(self._plain())
+        edits = []
+        problems: list[str] = []
+        unknown: list[str] = []
+        for path, value in values.items():
+            try:
+                steps = self._steps(path)
+                self._check_known(steps)
+                unknown += self._newly_made(data, steps)
+                given = self._in_given_unit(data, steps, plain(value, steps, self.NOUN))
+                set_value(data, steps, copied(given), self.LAYOUT, PLAIN)
+                edits.append((steps, given))
+            except InputError as error:
+                problems += [f"{self.name}: {message}" for message in error.messages]
+        if problems:
+            raise InputError(problems)
+        try:
+            made = self._validated(data, self.name, self._folder)
+        except InputError as error:
+            # a table that was made and is not whole: its name is hardly meant
+            raise InputError(
+                [f"{self.name}: {text}" for text in unknown] or error.messages
+            ) from None
+        made._document, made._edits = self._document, (*self._edits, *edits)
+        return made
+
+    def deviations(self) -> dict[str, float]:
+        """Standard deviations (SI) of the values given as "1650 +- 80 MPa", by path."""
+        found: dict[str, float] = {}
+        self._collect_deviations(self._plain(), (), found)
+        return found
+
+    def to_toml(self) -> str:
+        """Return the file, with the comments, the order and the units of its source."""
+        return tomlkit.dumps(self._source())
+
+    def save(self, path: str | Path) -> None:
+        """Write the file; relative file names are rewritten to hold in its folder.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be written.
+        """
+        path = Path(path)
+        document = self._source()
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            if path.parent.resolve() != self._folder.resolve():
+                self._move_references(document, self._folder, path.parent)
+            path.write_text(tomlkit.dumps(document), encoding="utf-8", newline="")
+        except OSError as error:
+            raise InputError(f"{path}: cannot be written ({error.strerror})") from None
+
+    def _plain(self) -> dict[str, Any]:
+        """Content of the file; made from that of the description where there was none."""
+        if self._data is None:
+            content = self.model_dump(mode="json", by_alias=True, exclude_unset=True)
+            self._data = plain(content)
+        return self._data
+
+    def _source(self) -> Any:
+        """Document with all that was set in it."""
+        if self._document is None:
+            return tomlkit.item(copied(self._plain()))
+        # only what is written needs it, so that patches do not carry its comments about
+        document = copy.deepcopy(self._document)
+        for steps, value in self._edits:
+            set_value(document, steps, copied(value), self.LAYOUT)
+        return document
+
+    @classmethod
+    def _steps(cls, path: str) -> tuple[Step, ...]:
+        return parse_path(path, f"a {cls.NOUN}, such as {cls.EXAMPLE_PATH}")
+
+    @classmethod
+    def _check_known(cls, steps: tuple[Step, ...]) -> None:
+        """Refuse a path with an unknown key before anything is changed."""
+        for place, step in enumerate(steps):
+            section = model_at(cls, steps[:place])
+            named = section is not None and isinstance(step, str) and step != "*"
+            if named and key_of(section, step) is None:
+                here = steps[: place + 1]
+                raise InputError(f"{join_path(steps)}: {unknown_key(cls, here)}")
+
+    @classmethod
+    def _newly_made(cls, document: Any, steps: tuple[Step, ...]) -> list[str]:
+        """Say where a path leads into a table of a name that none of its kind has."""
+        for place in range(1, len(steps) - 1):
+            kind, name = steps[:place], steps[place]
+            info = info_at(cls, kind)
+            stands = value_at(document, kind)
+            if info is None or not is_mapping(info.annotation) or not stands or name in stands:
+                continue
+            hint = nearest(str(name), [str(one) for one in stands])
+            return [f"{join_path(steps)}: there is no {join_path((*kind, name))}; {hint}"]
+        return []
+
+    @classmethod
+    def _in_given_unit(cls, document: Any, steps: tuple[Step, ...], value: Any) -> Any:
+        """Write bare numbers in the unit of the text that they replace."""
+        field = field_at(cls, steps)
+        stands = value_at(document, tuple(0 if step == "*" else step for step in steps))
+        if field is None:
+            return value
+        if isinstance(value, list) and isinstance(stands, list) and len(value) == len(stands):
+            pairs = zip(value, stands, strict=True)
+            return [_like(entry, stood, field, steps) for entry, stood in pairs]
+        return _like(value, stands, field, steps)
+
+    @classmethod
+    def _collect_deviations(
+        cls, item: Any, steps: tuple[Step, ...], found: dict[str, float]
+    ) -> None:
+        if isinstance(item, dict):
+            for key, value in item.items():
+                cls._collect_deviations(value, (*steps, key), found)
+        elif isinstance(item, list):
+            for place, value in enumerate(item):
+                cls._collect_deviations(value, (*steps, place), found)
+        elif isinstance(item, str):
+            field = field_at(cls, steps)
+            if field is not None:
+                deviation = parse(item, field.alike(item).dimension).deviation
+                if deviation > 0.0:
+                    found[join_path(steps)] = deviation
+
+
+def copied(value: Any) -> Any:
+    """Copy of nested tables and lists; what they hold is immutable."""
+    if isinstance(value, dict):
+        return {key: copied(entry) for key, entry in value.items()}
+    if isinstance(value, list):
+        return [copied(entry) for entry in value]
+    return value
+
+
+def _like(value: Any, stands: Any, field: Any, steps: tuple[Step, ...]) -> Any:
+    bare = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if not bare or not isinstance(stands, str):
+        return value
+    try:
+        stood = field.alike(stands)
+        unit = parse(stands, stood.dimension).unit
+        return write(stood.read(value), unit, stood.dimension)
+    except ValueError as error:
+        raise InputError(f"{join_path(steps)}: {error}") from None

@@ -1,0 +1,84 @@
+"""Refuse numbers that no milling cut can have, before they overflow in a kernel."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from chatter.description.errors import InputError
+
+if TYPE_CHECKING:
+    from chatter.description.case import Case
+
+#: path -> lowest, highest and unit, SI; wide enough for any machine from dental to ship yard
+PLAUSIBLE: dict[str, tuple[float, float, str]] = {
+    "tool.diameter": (1e-6, 20.0, "m"),
+    "material.Ktc": (1e3, 1e13, "Pa"),
+    "cut.spindle_speed": (0.1, 1e6, "rad/s"),
+    "cut.feed_per_tooth": (1e-10, 1.0, "m"),
+    "cut.axial_depth": (1e-9, 10.0, "m"),
+    "lobes.speeds.from": (0.1, 1e6, "rad/s"),
+    "lobes.speeds.to": (0.1, 1e6, "rad/s"),
+    "lobes.depths.to": (1e-9, 10.0, "m"),
+    "process_damping.coefficient": (0.0, 1e12, "N/m"),
+}
+PLAUSIBLE_MODE: dict[str, tuple[float, float, str]] = {
+    "frequency": (0.01, 1e6, "Hz"),
+    "damping": (1e-6, 1.0, ""),
+    "modal_mass": (1e-9, 1e9, "kg"),
+}
+#: the top of the edge trails its tip by at most this, rad
+_LARGEST_LAG = 200.0
+#: waves of a serrated edge within the depth of cut
+_MOST_WAVES = 200.0
+
+
+def check_plausible(case: Case) -> None:
+    """Raise InputError naming every value of the case that is out of any plausible range."""
+    problems = []
+    for path, bounds in PLAUSIBLE.items():
+        section = path.partition(".")[0]
+        value = _value(case, path) if getattr(case, section) is not None else None
+        problems += _problem(case.name, path, value, bounds)
+    for place, mode in enumerate(case.structure.mode if case.structure else ()):
+        for key, bounds in PLAUSIBLE_MODE.items():
+            path = f"structure.mode[{place}].{key.removeprefix('modal_')}"
+            problems += _problem(case.name, path, getattr(mode, key), bounds)
+    helix = case.tool.helix
+    angles = helix if isinstance(helix, tuple) else (helix,)
+    deepest = max(case.cut.axial_depth, _value(case, "lobes.depths.to") or 0.0)
+    lag = max(abs(math.tan(angle)) for angle in angles) * deepest / (0.5 * case.tool.diameter)
+    if not problems and lag > _LARGEST_LAG:
+        problems.append(
+            f"{case.name}: tool.helix: the edge winds {lag / (2.0 * math.pi):.3g} times around the "
+            f"tool within {deepest * 1e3:g} mm; at most {_LARGEST_LAG / (2.0 * math.pi):.0f} are "
+            "allowed"
+        )
+    wave = case.tool.serration
+    if not problems and wave is not None and deepest > _MOST_WAVES * wave.wavelength:
+        problems.append(
+            f"{case.name}: tool.serration.wavelength: {wave.wavelength * 1e3:g} mm makes "
+            f"{deepest / wave.wavelength:.3g} waves within {deepest * 1e3:g} mm; at most "
+            f"{_MOST_WAVES:.0f} are allowed"
+        )
+    if problems:
+        raise InputError(problems)
+
+
+def _value(case: Case, path: str) -> float | None:
+    item = case
+    for key in path.split("."):
+        item = getattr(item, "from_" if key == "from" else key, None)
+    return item
+
+
+def _problem(
+    name: str, path: str, value: float | None, bounds: tuple[float, float, str]
+) -> list[str]:
+    lowest, highest, unit = bounds
+    if value is None or lowest <= value <= highest:
+        return []
+    return [
+        f"{name}: {path}: {value:.4g} {unit} is out of any plausible range, "
+        f"{lowest:g} to {highest:g} {unit}".rstrip()
+    ]

@@ -1,0 +1,121 @@
+"""[optimum] and [pitch_design]: what a search may change, and what it must keep within."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from chatter.description.quantities import PositiveLength, quantity, whole_number
+from chatter.description.section import Section, raise_if_any
+from chatter.description.sections.cut import LARGEST_FEED
+
+_MOST_VALUES = 200
+Values = whole_number(2, _MOST_VALUES, "counts")
+
+
+def _refuse_empty(first: float, last: float, unit: str, factor: float) -> None:
+    text = f"the range is empty: from ({first * factor:g} {unit}) is not less than to "
+    raise_if_any([("", f"{text}({last * factor:g} {unit})")] if first >= last else [])
+
+
+class SpeedBand(Section):
+    """Spindle speeds that may be chosen."""
+
+    from_: quantity("angular_speed", above=0.0) = Field(alias="from")
+    to: quantity("angular_speed", above=0.0)
+
+    @model_validator(mode="after")
+    def _check_order(self) -> SpeedBand:
+        _refuse_empty(self.from_, self.to, "rpm", 30.0 / math.pi)
+        return self
+
+
+class AxialDepths(Section):
+    """Axial depths that may be chosen."""
+
+    from_: PositiveLength | None = Field(None, alias="from")
+    to: PositiveLength
+    count: Values = Field(60, description="depths of the coarse net")
+
+    @model_validator(mode="after")
+    def _check_order(self) -> AxialDepths:
+        if self.from_ is not None:
+            _refuse_empty(self.from_, self.to, "mm", 1e3)
+        return self
+
+
+class RadialDepths(Section):
+    """Radial depths that may be chosen."""
+
+    from_: PositiveLength = Field(alias="from")
+    to: PositiveLength
+    count: Values = Field(8, description="widths of the coarse net")
+
+    @model_validator(mode="after")
+    def _check_order(self) -> RadialDepths:
+        _refuse_empty(self.from_, self.to, "mm", 1e3)
+        return self
+
+
+class Feeds(Section):
+    """Feeds per tooth that may be chosen."""
+
+    from_: quantity("length", above=0.0, at_most=LARGEST_FEED) = Field(alias="from")
+    to: quantity("length", above=0.0, at_most=LARGEST_FEED)
+    count: Values = Field(4, description="feeds of the coarse net")
+
+    @model_validator(mode="after")
+    def _check_order(self) -> Feeds:
+        _refuse_empty(self.from_, self.to, "mm", 1e3)
+        return self
+
+
+Margin = quantity("number", at_least=0.0, at_most=0.5)
+
+
+class Optimum(Section):
+    """What the search for the highest removal rate may choose, and its limits."""
+
+    speeds: SpeedBand | None = Field(None, description="by default those of the lobe diagram")
+    depths: AxialDepths | None = Field(None, description="by default those of the lobe diagram")
+    widths: RadialDepths | None = Field(None, description="by default that of the cut alone")
+    feeds: Feeds | None = Field(None, description="by default that of the cut alone")
+    max_power: quantity("power", above=0.0) | None = Field(
+        None, description="of the spindle, mean over a turn"
+    )
+    max_torque: quantity("torque", above=0.0) | None = Field(
+        None, description="of the spindle, mean over a turn"
+    )
+    max_deflection: PositiveLength | None = Field(
+        None, description="of the tool point against the work, largest within a turn"
+    )
+    max_surface_error: PositiveLength | None = Field(
+        None, description="location of the wall, largest over its height, either way"
+    )
+    confidence: quantity("number", at_least=0.5, below=1.0) = Field(
+        0.95, description="probability of stability, where values of the case are uncertain"
+    )
+    depth_margin: Margin | None = Field(
+        None, description="share of the limit depth kept free; 0.15 by default"
+    )
+    speed_margin: Margin | None = Field(
+        None, description="share by which the speed may be off; 0.015 by default"
+    )
+
+
+class PitchDesign(Section):
+    """Search for pitch angles over a range of speeds."""
+
+    speeds: SpeedBand | None = Field(None, description="by default those of the lobe diagram")
+    count: Values = Field(20, description="speeds at which the limit is computed")
+    depths: AxialDepths | None = Field(None, description="to which the limit is looked for")
+    largest_chip: quantity("number", above=1.0, at_most=2.0) = Field(
+        1.25, description="of a tooth, in units of the mean; no pitch is smaller than 2 less this"
+    )
+    goal: Literal["lowest limit", "removal rate"] = Field(
+        "lowest limit",
+        description="the lowest limit over all speeds, or the highest removal rate within the "
+        "margins of depth and speed",
+    )

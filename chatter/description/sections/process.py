@@ -1,0 +1,319 @@
+"""The smaller sections: process damping, contact, friction, axis, simulation, lobes."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
+
+from chatter.description.formatting import shown
+from chatter.description.quantities import PositiveLength, QuantityField, quantity, whole_number
+from chatter.description.section import Section, raise_if_any
+
+#: most points a side of a diagram, and in all
+MOST_POINTS_A_SIDE = 20_000
+MOST_POINTS = 20_000_000
+
+
+class ProcessDamping(Section):
+    """Process damping: viscous, F_r += C (b/V) r_dot, or by the material that the flank ploughs."""
+
+    coefficient: quantity("line_force", at_least=0.0) | None = Field(
+        None, description="C of the viscous form"
+    )
+    indentation_force: quantity("pressure_gradient", above=0.0) | None = Field(
+        None, description="force per ploughed volume; the form for the time domain"
+    )
+    friction: quantity("number", at_least=0.0) = Field(
+        0.0, description="mu, tangential over radial force"
+    )
+
+    @model_validator(mode="after")
+    def _check_form(self) -> ProcessDamping:
+        given = [
+            key for key in ("coefficient", "indentation_force") if getattr(self, key) is not None
+        ]
+        problems = []
+        if not given:
+            problems.append(("coefficient", "is missing; give it, or indentation_force"))
+        if len(given) == 2:
+            problems.append(("", "coefficient and indentation_force are both given; give one form"))
+        raise_if_any(problems)
+        return self
+
+
+class Contact(Section):
+    """Contact of tool and workpiece while in cut."""
+
+    stiffness: quantity("stiffness", at_least=0.0)
+    damping: quantity("damping", at_least=0.0) = 0.0
+    full_at: quantity("number", above=0.0, at_most=1.0) = Field(
+        1.0,
+        description="engaged share of the depth from which on the contact acts whole; 1: it grows "
+        "until the whole depth is engaged, near 0: it acts whole as soon as any edge cuts",
+    )
+
+
+class Wear(Section):
+    """Growth of the force coefficients with the cutting time of the tool."""
+
+    edge_tangential: quantity("line_force_rate") = Field(0.0, description="of Kte per cutting time")
+    edge_radial: quantity("line_force_rate") = Field(0.0, description="of Kre per cutting time")
+    cutting: quantity("rate") = Field(
+        0.0, description="of Ktc, Krc and Kac per cutting time, as a share of them"
+    )
+
+
+class Dynamometer(Section):
+    """Resonance of the sensor that measures the forces."""
+
+    frequency: quantity("frequency", above=0.0)
+    damping: quantity("number", above=0.0, below=1.0) = Field(description="damping ratio")
+
+
+#: law of friction -> its keys
+FRICTION_LAWS: dict[str, tuple[str, ...]] = {
+    "coulomb": ("coulomb", "viscous"),
+    "smooth-coulomb": ("coulomb", "smoothing_velocity", "viscous"),
+    "coulomb-stribeck": ("coulomb", "static", "stribeck_velocity", "viscous"),
+    "tanh": ("coulomb", "viscous", "presliding_stiffness"),
+    "lugre": ("coulomb", "static", "stribeck_velocity", "sigma0", "sigma1", "sigma2"),
+}
+
+
+class Friction(Section):
+    """Friction of a guide or drive."""
+
+    law: Literal["coulomb", "smooth-coulomb", "coulomb-stribeck", "tanh", "lugre"] = "coulomb"
+    coulomb: quantity("force", at_least=0.0) | None = None
+    static: quantity("force", at_least=0.0) | None = None
+    viscous: quantity("damping", at_least=0.0) | None = None
+    stribeck_velocity: quantity("velocity", above=0.0) | None = None
+    smoothing_velocity: quantity("velocity", above=0.0) | None = Field(
+        None, description="below which the friction falls to zero"
+    )
+    presliding_stiffness: quantity("stiffness", above=0.0) | None = None
+    sigma0: quantity("stiffness", at_least=0.0) | None = Field(
+        None, description="stiffness of the bristles"
+    )
+    sigma1: quantity("damping", at_least=0.0) | None = Field(
+        None, description="damping of the bristles"
+    )
+    sigma2: quantity("damping", at_least=0.0) | None = Field(
+        None, description="viscous part of the LuGre law"
+    )
+
+    @model_validator(mode="after")
+    def _check_law(self) -> Friction:
+        known = ("law", *FRICTION_LAWS[self.law])
+        raise_if_any(
+            [
+                (key, f'does not belong to law = "{self.law}"')
+                for key in type(self).model_fields
+                if key not in known and getattr(self, key) is not None
+            ]
+        )
+        return self
+
+
+class Cogging(Section):
+    """Force that repeats along the axis."""
+
+    amplitude: quantity("force", at_least=0.0)
+    period: quantity("length", above=0.0)
+    phase: quantity("angle") = 0.0
+
+
+class WarmUp(Section):
+    """Friction that falls as the axis warms up."""
+
+    share: quantity("number", above=-1.0) = Field(
+        description="of the viscous friction at the start that is lost in the end"
+    )
+    time: quantity("time", above=0.0) = Field(description="constant of the decay")
+
+
+class Axis(Section):
+    """A feed axis as a moving mass with friction."""
+
+    moving_mass: quantity("mass", above=0.0)
+    viscous_friction: quantity("damping", at_least=0.0) = 0.0
+    coulomb_friction: quantity("force", at_least=0.0) = 0.0
+    static_friction: quantity("force", at_least=0.0) | None = None
+    stribeck_velocity: quantity("velocity", above=0.0) | None = None
+    presliding_stiffness: quantity("stiffness", above=0.0) | None = None
+    presliding_damping: quantity("damping", at_least=0.0) | None = None
+    asymmetry: quantity("force") = Field(
+        0.0, description="Coulomb friction forwards above the mean of both directions"
+    )
+    offset: quantity("force") = Field(0.0, description="constant force that is held")
+    quadratic_drag: quantity("drag", at_least=0.0) = 0.0
+    cogging: Cogging | None = None
+    backlash: quantity("length", at_least=0.0) = 0.0
+    motor_mass: quantity("mass", at_least=0.0) | None = Field(
+        None, description="part of the moving mass on the motor's side of the backlash"
+    )
+    warm_up: WarmUp | None = None
+
+
+def _plane_point(given: Any) -> tuple[float, float]:
+    if not isinstance(given, (list, tuple)) or len(given) != 2:
+        raise ValueError(f'{shown(given)} is no point; two lengths are wanted: ["0 mm", "5 mm"]')
+    x, y = (_COORDINATE.read(part) for part in given)
+    return x, y
+
+
+_COORDINATE = QuantityField("length", above=-100.0, below=100.0)
+PlanePoint = Annotated[
+    tuple[float, float],
+    BeforeValidator(_plane_point),
+    WithJsonSchema(
+        {
+            "type": "array",
+            "items": {"anyOf": _COORDINATE.json_schema()["anyOf"]},
+            "minItems": 2,
+            "maxItems": 2,
+        }
+    ),
+    _COORDINATE,
+]
+
+
+class StockBox(Section):
+    """A block of material, or a pocket in it; the tool starts with its tip at the origin."""
+
+    x: PlanePoint = Field(description="from and to")
+    y: PlanePoint = Field(description="from and to")
+    z: PlanePoint = Field(description="from and to")
+    remove: bool = Field(False, description="take this block away instead")
+
+    @field_validator("x", "y", "z")
+    @classmethod
+    def _check_order(cls, given: tuple[float, float]) -> tuple[float, float]:
+        if given[0] >= given[1]:
+            raise ValueError(f"is empty: from {given[0]:g} m is not less than to {given[1]:g} m")
+        return given
+
+
+class Stock(Section):
+    """The workpiece before the cut, as blocks added and taken away in their order."""
+
+    box: tuple[StockBox, ...] = Field(min_length=1)
+
+
+class Simulation(Section):
+    """Time-domain simulation."""
+
+    chip: Literal["delay", "dexel", "voxel"] = "delay"
+    duration: quantity("time", above=0.0) | None = None
+    revolutions: quantity("number", above=0.0) | None = None
+    resolution: PositiveLength | None = Field(
+        None, description="spacing of dexels or size of voxels"
+    )
+    steps: whole_number(16, 4_000_000, "steps a revolution") | None = Field(
+        None, description="steps a revolution; by default they are chosen"
+    )
+    slices: whole_number(1, 5_000, "slices of the edge") | None = Field(
+        None, description="slices of the straight edge; by default they are chosen"
+    )
+    path: tuple[PlanePoint, ...] | None = Field(
+        None, description="corners of the tool path, [x, y] each; dexel and voxel chips follow it"
+    )
+
+    @model_validator(mode="after")
+    def _check_length(self) -> Simulation:
+        both = self.duration is not None and self.revolutions is not None
+        raise_if_any([("", "give duration or revolutions, not both")] if both else [])
+        return self
+
+    @field_validator("path")
+    @classmethod
+    def _check_path(cls, given: tuple[PlanePoint, ...] | None) -> tuple[PlanePoint, ...] | None:
+        if given is not None and len(given) < 2:
+            raise ValueError("has fewer than two corners")
+        if given is not None and any(a == b for a, b in itertools.pairwise(given)):
+            raise ValueError("has two corners in a row at the same place")
+        return given
+
+
+Count = whole_number(2, MOST_POINTS_A_SIDE, "counts")
+
+
+class SpeedRange(Section):
+    """Spindle speeds of the diagram."""
+
+    from_: quantity("angular_speed", above=0.0) = Field(alias="from")
+    to: quantity("angular_speed", above=0.0)
+    count: Count = 400
+
+    @model_validator(mode="after")
+    def _check_order(self) -> SpeedRange:
+        first, last = (value * 30.0 / math.pi for value in (self.from_, self.to))
+        text = f"the range is empty: from ({first:g} rpm) is not less than to ({last:g} rpm)"
+        raise_if_any([("", text)] if self.from_ >= self.to else [])
+        return self
+
+
+class DepthRange(Section):
+    """Axial depths of the diagram."""
+
+    to: PositiveLength
+    count: Count = 100
+
+
+class Lobes(Section):
+    """The stability diagram."""
+
+    speeds: SpeedRange | None = None
+    depths: DepthRange | None = None
+    method: (
+        Literal[
+            "auto",
+            "collocation",
+            "semi-discretization",
+            "semi-discretization-0",
+            "semi-discretization-2",
+            "full-discretization",
+            "matrix-free",
+            "multi-frequency",
+            "zero-order",
+            "time",
+        ]
+        | None
+    ) = None
+    steps: whole_number(4, 20_000, "steps a tooth period") | None = Field(
+        None, description="fixes the steps a tooth period; by default they are chosen"
+    )
+    tolerance: quantity("number", at_least=1e-6, at_most=0.05) = Field(
+        1e-3,
+        description="largest estimated error of the limit depths, relative; the resolution follows",
+    )
+
+    @model_validator(mode="after")
+    def _check_size(self) -> Lobes:
+        points = (self.speeds.count if self.speeds else 400) * (
+            self.depths.count if self.depths else 100
+        )
+        text = f"{points} points in all; at most {MOST_POINTS} are allowed"
+        raise_if_any([("", text)] if points > MOST_POINTS else [])
+        return self
+
+
+class Correlation(Section):
+    """How two uncertain values go together."""
+
+    between: tuple[str, str] = Field(
+        description="paths of values with a standard deviation",
+        examples=[["material.Ktc", "material.Krc"]],
+    )
+    coefficient: quantity("number", above=-1.0, below=1.0) = Field(
+        description="of correlation, of the normal distributions"
+    )
+
+
+class Uncertainty(Section):
+    """What is known of values given with a standard deviation, besides it."""
+
+    correlation: tuple[Correlation, ...] = ()

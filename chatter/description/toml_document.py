@@ -1,0 +1,160 @@
+"""The TOML document behind a case or machine: reading text, values for it, file names in it."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping
+from datetime import date, time
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+
+from chatter.description.errors import InputError
+from chatter.description.formatting import printable, shown
+from chatter.description.path import Step, join_path
+
+_LARGEST_FILE = 256 * 1024
+#: TOML's whole numbers have 64 bits
+_LARGEST_INTEGER = 2**63 - 1
+#: what the parsers say -> what people say
+_PLAIN_WORDS = {
+    "Cannot overwrite a value": "a key is given twice",
+    "Cannot declare": "the table is given twice:",
+}
+
+
+def read_text(path: Path, noun: str = "case") -> str:
+    """Read a file as text; raise InputError saying why that cannot be done.
+
+    Parameters
+    ----------
+    path : Path
+    noun : str
+        What the file describes, for messages.
+    """
+    try:
+        if path.is_dir():
+            raise InputError(f"{path}: is a folder; a {noun} file is wanted")
+        with path.open("rb") as file:
+            # a size is no use: pipes and devices have none
+            raw = file.read(_LARGEST_FILE + 1)
+    except FileNotFoundError:
+        raise InputError(f"{path}: there is no such file") from None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror})") from None
+    except ValueError:
+        raise InputError(f"{shown(str(path))}: is no name of a file") from None
+    if b"\0" in raw:
+        raise InputError(f"{path}: is a binary file; a {noun} file is TOML text")
+    if len(raw) > _LARGEST_FILE:
+        raise InputError(
+            f"{path}: has more than {_LARGEST_FILE} bytes; no {noun} file is that large"
+        )
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(
+            f"{path}: is not UTF-8 text (byte {error.start}); a {noun} file is TOML text in UTF-8"
+        ) from None
+    if not text.strip():
+        raise InputError(f"{path}: is empty; a {noun} file is TOML text")
+    return text
+
+
+def parse_document(text: str, name: str) -> tomlkit.TOMLDocument:
+    """Parse TOML text; raise InputError with line and column."""
+    try:
+        if sys.version_info >= (3, 11):
+            import tomllib
+
+            # its messages name the line even of a duplicate key
+            tomllib.loads(text)
+        return tomlkit.parse(text)
+    except Exception as error:
+        # whatever a parser of untrusted text stumbles over
+        raise InputError(f"{name}: is no valid TOML: {_reason(error)}") from None
+
+
+def _reason(error: Exception) -> str:
+    if isinstance(error, RecursionError):
+        return "it is too deeply nested"
+    text = printable(str(error).replace("\n", " "), 200)
+    for words, plain in _PLAIN_WORDS.items():
+        text = text.replace(words, plain)
+    return text
+
+
+def plain(value: Any, steps: tuple[Step, ...] = (), noun: str = "case") -> Any:
+    """Return a value of Python as one of TOML; None stands for a key that is not there.
+
+    Parameters
+    ----------
+    value : object
+    steps : tuple
+        Its place, for messages.
+    noun : str
+        What the document describes, for messages.
+
+    Raises
+    ------
+    InputError
+        If TOML has nothing for it.
+    """
+    if hasattr(value, "tolist"):
+        # numbers and arrays of numpy
+        value = value.tolist()
+    if isinstance(value, Path):
+        return value.as_posix()
+    if isinstance(value, Mapping):
+        given = {str(key): plain(each, (*steps, str(key)), noun) for key, each in value.items()}
+        return {key: entry for key, entry in given.items() if entry is not None}
+    if isinstance(value, (list, tuple)):
+        return [plain(entry, (*steps, place), noun) for place, entry in enumerate(value)]
+    known = value is None or isinstance(value, (bool, int, float, str, date, time))
+    if not known or (isinstance(value, int) and abs(value) > _LARGEST_INTEGER):
+        raise InputError(f"{join_path(steps)}: {shown(value)} is no value of a {noun} file")
+    return value
+
+
+def value_at(document: Any, steps: tuple[Step, ...]) -> Any:
+    """Value at a path of plain keys and places; None where there is none."""
+    item = document
+    for step in steps:
+        try:
+            item = item[step]
+        except (KeyError, IndexError, TypeError):
+            return None
+    return item
+
+
+def moved_reference(name: str, old: Path, new: Path) -> str:
+    """Return a file name relative to one folder so that it holds in another."""
+    if Path(name).is_absolute():
+        return name
+    return Path(os.path.relpath(old.resolve() / name, new.resolve())).as_posix()
+
+
+def move_references(document: Any, old: Path, new: Path) -> None:
+    """Rewrite file names of a case relative to one folder so that they hold in another."""
+    structure = document.get("structure")
+    if not isinstance(structure, dict):
+        return
+
+    def moved(name: str) -> str:
+        return moved_reference(name, old, new)
+
+    frf = structure.get("frf")
+    if isinstance(frf, str):
+        structure["frf"] = moved(frf)
+    if isinstance(structure.get("machine"), str):
+        structure["machine"] = moved(structure["machine"])
+    for entries in [frf] if isinstance(frf, list) else []:
+        for place, entry in enumerate(entries):
+            if isinstance(entry, str):
+                entries[place] = moved(entry)
+            elif isinstance(entry, dict) and "file" in entry:
+                entry["file"] = moved(entry["file"])
+    if isinstance(frf, dict) and "file" in frf:
+        frf["file"] = moved(frf["file"])

@@ -1,0 +1,126 @@
+"""Say what is wrong with a case: which file, which key, what was given, what is allowed."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Sequence
+from typing import Any, Literal, get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
+
+from chatter.description.formatting import printable, shown
+from chatter.description.path import Step, field_at, info_at, join_path, keys_of, model_at
+from chatter.description.section import SectionError
+
+#: more messages than this tell nobody anything
+_MOST_SENTENCES = 20
+_IS_MISSING = "is missing"
+_LONGEST_KEY = 60
+
+
+def sentences(error: ValidationError, model: type[BaseModel], name: str) -> list[str]:
+    """Turn the errors of a validation into one sentence each.
+
+    Parameters
+    ----------
+    error : ValidationError
+    model : type
+        Class that was validated.
+    name : str
+        File, for the beginning of each sentence.
+    """
+    problems = [
+        ((*item["loc"], key) if key else tuple(item["loc"]), text)
+        for item in error.errors(include_url=False)
+        for key, text in _problems(item, model)
+    ]
+    misspelt = {
+        (*steps[:-1], _nearest_key(model, steps))
+        for steps, text in problems
+        if text.startswith("unknown key")
+    }
+    texts = [
+        f"{name}: {printable(join_path(steps))}: {text}" if steps else f"{name}: {text}"
+        for steps, text in problems
+        # the misspelt key says it already
+        if not (text.startswith(_IS_MISSING) and steps in misspelt)
+    ]
+    if len(texts) <= _MOST_SENTENCES:
+        return texts
+    more = len(texts) - _MOST_SENTENCES
+    return [*texts[:_MOST_SENTENCES], f"{name}: and {more} more of this kind"]
+
+
+def _problems(item: Any, model: type[BaseModel]) -> list[tuple[str, str]]:
+    """Key (empty for the place itself) and sentence of each problem in one item."""
+    kind, steps = item["type"], tuple(item["loc"])
+    original = item.get("ctx", {}).get("error")
+    if isinstance(original, SectionError):
+        return list(original.problems)
+    if kind == "value_error":
+        return [("", str(original))]
+    if kind == "extra_forbidden":
+        return [("", unknown_key(model, steps))]
+    if kind == "missing":
+        return [("", _missing(model, steps))]
+    if kind == "literal_error":
+        return [("", _not_allowed(item))]
+    return [("", _wrong_type(item, steps))]
+
+
+def _wrong_type(item: Any, steps: tuple[Step, ...]) -> str:
+    kind, given = item["type"], item["input"]
+    key = printable(str(steps[-1])) if steps else ""
+    if kind.startswith(("model", "dict")):
+        tables = isinstance(given, list) and given and all(isinstance(e, dict) for e in given)
+        hint = f"; write [{key}], not [[{key}]]" if tables else ""
+        return f"{shown(given)} is given, a table is wanted{hint}"
+    if kind.startswith(("tuple", "list")):
+        table = join_path(steps)
+        hint = f"; write [[{table}]], not [{table}]" if isinstance(given, dict) else ""
+        return f"{shown(given)} is given, a list is wanted{hint}"
+    if kind.startswith("string"):
+        return f"{shown(given)} is given, text in quotes is wanted"
+    if kind.startswith("bool"):
+        return f"{shown(given)} is given, true or false is wanted"
+    return f"{shown(given)} is not allowed here"
+
+
+def nearest(word: str, known: Sequence[str]) -> str:
+    """Return a hint at the nearest known word, or the list of all."""
+    near = _nearest(word, known)
+    return f'did you mean "{near}"?' if near else "known are " + ", ".join(known)
+
+
+def _nearest(word: str, known: Sequence[str]) -> str | None:
+    folded = {key.lower(): key for key in known}
+    near = difflib.get_close_matches(word[:_LONGEST_KEY].lower(), folded, n=1, cutoff=0.6)
+    return folded[near[0]] if near else None
+
+
+def _nearest_key(model: type[BaseModel], steps: tuple[Step, ...]) -> str | None:
+    section = model_at(model, steps[:-1])
+    return _nearest(str(steps[-1]), keys_of(section)) if section else None
+
+
+def unknown_key(model: type[BaseModel], steps: tuple[Step, ...]) -> str:
+    """Say that the last step is no key of its section, with the nearest that is."""
+    section = model_at(model, steps[:-1])
+    return f"unknown key; {nearest(str(steps[-1]), keys_of(section))}" if section else "unknown key"
+
+
+def _missing(model: type[BaseModel], steps: tuple[Step, ...]) -> str:
+    quantity, info = field_at(model, steps), info_at(model, steps)
+    if quantity is not None:
+        return f"{_IS_MISSING}; {quantity.noun} is wanted, such as {quantity.example}"
+    if info is not None and get_origin(info.annotation) is Literal:
+        allowed = ", ".join(shown(value) for value in get_args(info.annotation))
+        return f"{_IS_MISSING}; allowed are {allowed}"
+    if info is not None and info.examples:
+        return f"{_IS_MISSING}; give, for example, {shown(info.examples[0])}"
+    return _IS_MISSING
+
+
+def _not_allowed(item: Any) -> str:
+    allowed = item["ctx"]["expected"].replace("'", '"')
+    return f"{shown(item['input'])} is not allowed; allowed are {allowed}"

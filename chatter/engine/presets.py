@@ -1,0 +1,90 @@
+"""Decorator presets of the compiled code, and the folder that keeps it between sessions.
+
+Physics leaves in `cutting` and `dynamics` are `register_jitable`: plain functions to Python,
+inlined by the drivers here. numba's disk cache looks only at the file of the cached function, so
+an edit of a leaf would go unseen; the cache folder is therefore named by a hash of all sources.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import time
+from pathlib import Path
+
+import numba
+
+#: compiled code of other versions is kept this long, s
+_KEEP_OLD_CACHES = 30 * 86400.0
+
+_PACKAGES = ("chatter", "cutting", "dynamics")
+
+
+def source_hash(root: Path) -> str:
+    """Hash of every Python source below the three packages in `root`."""
+    digest = hashlib.sha256()
+    for package in _PACKAGES:
+        for path in sorted((root / package).rglob("*.py")):
+            digest.update(path.relative_to(root).as_posix().encode())
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def cache_base() -> Path:
+    """Folder of all caches: $NUMBA_CACHE_DIR, else the user's cache folder."""
+    named = os.environ.get("NUMBA_CACHE_DIR")
+    if named:
+        return Path(named)
+    home = os.environ.get("XDG_CACHE_HOME")
+    return (Path(home) if home else Path.home() / ".cache") / "chatter"
+
+
+def _remove_old_caches(base: Path, current: str) -> None:
+    for folder in base.glob("kernels-*"):
+        too_old = time.time() - folder.stat().st_mtime > _KEEP_OLD_CACHES
+        if folder.name != current and too_old:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+def _set_cache_folder() -> Path:
+    base = cache_base()
+    folder = base / f"kernels-{source_hash(Path(__file__).resolve().parents[2])}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        _remove_old_caches(base, folder.name)
+    except OSError:
+        # a read-only home: numba falls back to its own choice
+        return folder
+    numba.config.CACHE_DIR = str(folder)
+    return folder
+
+
+CACHE_FOLDER = _set_cache_folder()
+
+#: functions called from drivers
+KERNEL = {"cache": True, "error_model": "numpy"}
+#: the same where the call itself would cost: a table that is passed on has all its arrays counted
+INLINED_KERNEL = {**KERNEL, "forceinline": True}
+#: sums may be taken in lanes: always in the same order on one machine, whatever the threads
+SUMMING_KERNEL = {**KERNEL, "fastmath": {"reassoc", "contract", "nsz"}}
+#: functions that compiled code alone calls: no entry for Python, kept on disk within their drivers
+INNER_KERNEL = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+#: the same that allocate nothing: arrays taken out of the tables they are passed need no counting,
+#: which would cost more than what most of them do
+LEAF_KERNEL = {**INNER_KERNEL, "_nrt": False}
+#: functions with one caller, which becomes part of it
+SINGLE_KERNEL = {**INNER_KERNEL, "inline": "always"}
+#: loops over points, called from Python, in several threads at once
+DRIVER = {"cache": True, "error_model": "numpy", "nogil": True}
+
+
+def is_compiled(*dispatchers: object) -> bool:
+    """Tell whether every dispatcher has compiled code, in memory or on disk."""
+    return all(d.signatures or _on_disk(d) for d in dispatchers)  # type: ignore[attr-defined]
+
+
+def _on_disk(dispatcher: object) -> bool:
+    function = dispatcher.py_func  # type: ignore[attr-defined]
+    stem = f"{Path(function.__code__.co_filename).stem}.{function.__qualname__}-"
+    return any(CACHE_FOLDER.rglob(f"{stem}*.nbi"))

@@ -1,0 +1,249 @@
+"""Forces against the pattern of the declared cut: axes, signs, teeth, mode of milling, depths.
+
+What is left by the cut as declared is compared with what is left by others; another is said only
+if it fits well in itself and much better.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.case import Case
+from chatter.description.errors import InputError, RunError
+from chatter.explain.data_checks.finding import FATAL, RUN, SignalFinding, of_all_or_some
+from chatter.explain.data_checks.patterns import (
+    Patterns,
+    basis_patterns,
+    factor_of,
+    fitted,
+    force_power,
+    of_most_runs,
+    own_case,
+    share_left,
+    tooth_pattern,
+)
+from chatter.explain.measurement import Measurement, Run
+
+#: share that is left by a cut that fits, and of what the declared one leaves
+_FITS, _BETTER = 0.25, 0.5
+#: share of what all the forces leave by which a multiple of the teeth must do better: it holds less
+#: of them always, unless it is right
+_CLEARER = 0.8
+#: declared cuts that leave less than this are not doubted
+_DOUBTED = 0.3
+#: radial depths and teeth that are tried, the former over the declared one
+_WIDTHS = (0.4, 0.55, 1.6, 2.2)
+_TEETH = range(1, 9)
+#: factor of a run's forces against the others that no effect makes
+_GROSS = 2.0
+_TURNED = {"up": "down", "down": "up"}
+
+
+@dataclass(frozen=True)
+class Arrangement:
+    """How measured channels may really be meant: swapped, then turned."""
+
+    swapped: bool
+    signs: tuple[int, int]
+
+    def applied(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Rows x and y (2, n) put right."""
+        rows = values[::-1] if self.swapped else values
+        return rows * np.array(self.signs, dtype=np.float64)[:, None]
+
+    def says(self, names: tuple[str, str]) -> str:
+        """What would be wrong, in words."""
+        parts = [f"{names[0]} and {names[1]} are swapped"] if self.swapped else []
+        turned = [name for name, sign in zip(names, self.signs, strict=True) if sign < 0]
+        if turned:
+            parts.append(f"the sign of {' and '.join(turned)} is turned")
+        return " and ".join(parts)
+
+
+ARRANGEMENTS = tuple(
+    Arrangement(swapped, signs)
+    for swapped in (False, True)
+    for signs in itertools.product((1, -1), repeat=2)
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Cut:
+    """What may have been cut and measured: patterns of every run, and of each coefficient.
+
+    Parameters
+    ----------
+    says : str
+    measured : list of (2, bins) array of float
+    basis : list of (4, 2, bins) array of float
+    held : list of float
+        Share of the forces' power that is in the measured pattern.
+    """
+
+    says: str
+    measured: list[Patterns]
+    basis: list[NDArray[np.float64]]
+    held: list[float]
+
+    def of_all(self, left: float, runs: Sequence[int] | None = None) -> float:
+        """Share left of the forces as a whole, of that which is left of the pattern."""
+        held = float(np.mean([self.held[k] for k in runs or range(len(self.held))]))
+        return float(np.sqrt(1.0 - held + left**2 * held))
+
+
+def wrong_arrangement(measurement: Measurement) -> list[SignalFinding]:
+    """Force channels swapped or turned, another tool or mode of milling, depths grossly off."""
+    runs = [run for run in measurement.runs if "Fx" in run.signals and "Fy" in run.signals]
+    try:
+        return _compared(measurement, runs) if runs else []
+    except (InputError, RunError):
+        return []  # a case that cannot be simulated is told where it is used
+
+
+def _compared(measurement: Measurement, runs: Sequence[Run]) -> list[SignalFinding]:
+    declared = _cut("", measurement, runs)
+    coefficients, left = fitted(declared.measured, declared.basis)
+    if max([left, *_lefts(declared, coefficients)]) < _DOUBTED:
+        return _multiple(declared, left, measurement, runs)
+    others = _others(declared, measurement, runs)
+    if left > _DOUBTED:
+        tried = [(fitted(cut.measured, cut.basis)[1], cut) for cut in others]
+        good = [(cut.of_all(one), one, cut) for one, cut in tried if one < _FITS]
+        _, best, cut = min(good, key=lambda entry: entry[0], default=(0.0, left, declared))
+        if best < _BETTER * left:
+            return [SignalFinding(FATAL, "", "Fx, Fy", f"{cut.says}: {_numbers(best, left)}")]
+    coefficients = of_most_runs(declared.measured, declared.basis)
+    found = [
+        SignalFinding(RUN, run.name, "Fx, Fy", f"{run.name}: {says}")
+        for place, run in enumerate(runs)
+        if (says := _single(place, declared, others, coefficients))
+    ]
+    about = "the forces of {count} of {runs} runs do not belong to the cut that is declared"
+    return of_all_or_some(found, measurement, about)
+
+
+def _multiple(
+    declared: Cut, left: float, measurement: Measurement, runs: Sequence[Run]
+) -> list[SignalFinding]:
+    """Find a number of teeth that divides the declared one, or is a multiple of it.
+
+    The pattern of the declared teeth then fits, but much of the forces is not in it.
+    """
+    of_all, teeth = declared.of_all(left), measurement.case.tool.teeth
+    if of_all < _DOUBTED:
+        return []
+    for other in _TEETH:
+        if other == teeth or (teeth % other and other % teeth):
+            continue
+        cut = _other_teeth(other, measurement, runs)
+        best = fitted(cut.measured, cut.basis)[1]
+        if best < _FITS and cut.of_all(best) < _CLEARER * of_all:
+            says = f"{cut.says}: {_numbers(cut.of_all(best), of_all)}"
+            return [SignalFinding(FATAL, "", "Fx, Fy", says)]
+    return []
+
+
+def _numbers(best: float, left: float) -> str:
+    return (
+        f"so the cut leaves {100.0 * best:.0f} % of the pattern of the forces, as declared "
+        f"{100.0 * left:.0f} %"
+    )
+
+
+def _lefts(cut: Cut, coefficients: NDArray[np.float64]) -> list[float]:
+    return [
+        share_left(pattern, basis, coefficients)
+        for pattern, basis in zip(cut.measured, cut.basis, strict=True)
+    ]
+
+
+def _single(
+    place: int, declared: Cut, others: Sequence[Cut], coefficients: NDArray[np.float64]
+) -> str:
+    """What is wrong with one run by the coefficients of the others; empty for nothing."""
+    pattern, basis = declared.measured[place], declared.basis[place]
+    left = share_left(pattern, basis, coefficients)
+    if left < _DOUBTED:
+        return ""
+    tried = [
+        (share_left(cut.measured[place], cut.basis[place], coefficients), cut) for cut in others
+    ]
+    best, cut = min(tried, key=lambda entry: entry[1].of_all(entry[0], [place]))
+    factor = factor_of(pattern, basis, coefficients)
+    if factor > _GROSS or 0.0 < factor < 1.0 / _GROSS:
+        scaled = share_left(pattern / factor, basis, coefficients)
+        if scaled < min(_FITS, _BETTER * left, best):
+            return (
+                f"the forces are {factor:.3g} times what the other runs lead to expect: its axial "
+                "depth, its feed, or their unit is declared wrong"
+            )
+    return f"{cut.says}: {_numbers(best, left)}" if best < min(_FITS, _BETTER * left) else ""
+
+
+def _cut(
+    says: str,
+    measurement: Measurement,
+    runs: Sequence[Run],
+    changed: Callable[[Case], Case] = lambda case: case,
+) -> Cut:
+    """Cut whose case is changed in every run."""
+    cases = [changed(own_case(measurement.case, run)) for run in runs]
+    measured = [tooth_pattern(measurement, run) for run in runs]
+    held = [
+        float(np.mean(pattern**2)) / force_power(measurement, run)
+        for pattern, run in zip(measured, runs, strict=True)
+    ]
+    return Cut(says, measured, [basis_patterns(case) for case in cases], held)
+
+
+def _others(declared: Cut, measurement: Measurement, runs: Sequence[Run]) -> list[Cut]:
+    """Cuts that may have been run, and ways they may have been measured, beside the declared."""
+    found = [
+        Cut(
+            one.says(("Fx", "Fy")),
+            [one.applied(pattern) for pattern in declared.measured],
+            declared.basis,
+            declared.held,
+        )
+        for one in ARRANGEMENTS[1:]
+    ]
+    for teeth in _TEETH:
+        if teeth != measurement.case.tool.teeth:
+            found.append(_other_teeth(teeth, measurement, runs))
+    modes = {own_case(measurement.case, run).cut.mode for run in runs}
+    if modes <= {"up", "down"}:
+        says = " and ".join(
+            f"{_TURNED[mode]}-milling, not {mode}-milling" for mode in sorted(modes)
+        )
+        found.append(_cut(f"it was {says}", measurement, runs, _other_mode))
+        for factor in _WIDTHS:
+            says = f"the radial depth was about {factor:g} times the declared one"
+            found.append(_cut(says, measurement, runs, partial(_of_width, factor)))
+    return found
+
+
+def _other_teeth(teeth: int, measurement: Measurement, runs: Sequence[Run]) -> Cut:
+    tool = measurement.case.tool
+    other = {
+        "kind": "end mill",
+        "teeth": teeth,
+        "diameter": tool.diameter,
+        "helix": float(np.mean(tool.helix)),
+    }
+    says = f"the forces repeat {teeth} times a revolution; the case declares {tool.teeth} teeth"
+    return _cut(says, measurement.with_case(measurement.case.patch({"tool": other})), runs)
+
+
+def _other_mode(case: Case) -> Case:
+    return case.patch({"cut.mode": _TURNED[case.cut.mode]})
+
+
+def _of_width(factor: float, case: Case) -> Case:
+    depth = min(factor * case.cut.radial_depth, case.tool.diameter)
+    return case.patch({"cut.radial_depth": depth})

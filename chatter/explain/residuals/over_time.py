@@ -1,0 +1,64 @@
+"""Whether what is left grows or dies away within a run."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import scipy.stats
+from numpy.typing import NDArray
+
+from chatter.explain.residuals.by_channel import is_above
+from chatter.explain.residuals.finding import Curve, Curves, Finding
+from chatter.explain.residuals.normalised_residual import Left, Residual
+
+_SEGMENTS = 12
+#: factor in size that counts, and probability of a chance finding, all channels together
+_FACTOR, _ALLOWED = 1.25, 2e-3
+_FEWEST_RUNS = 4
+
+
+def over_time(residual: Residual) -> Finding:
+    """Size of the residual from the start of a run to its end, over the noise."""
+    curves, told, numbers = [], [], {}
+    for channel in residual.channels:
+        parts = residual.of(channel)
+        sizes = np.array([_sizes(part) for part in parts])
+        curves.append(
+            Curve(
+                (np.arange(_SEGMENTS) + 0.5) / _SEGMENTS,
+                np.sqrt(np.mean(sizes, axis=0)),
+                channel,
+            )
+        )
+        factor, likely = _end_over_start(sizes)
+        numbers[channel] = {"end_over_start": factor, "probability_of_chance": likely}
+        big = max(factor, 1.0 / factor) > _FACTOR
+        if big and is_above(residual, channel) and likely < _ALLOWED / len(residual.channels):
+            told.append(
+                f"{channel} is {max(factor, 1.0 / factor):.2g} times as large in the "
+                f"{'last' if factor > 1.0 else 'first'} third of a run"
+            )
+    says = (
+        f"What is left does not stay the same within a run: {'; '.join(told)}."
+        if told
+        else "the time within a run"
+    )
+    panel = Curves(tuple(curves), "share of the run", "left over noise", floor=1.0)
+    return Finding("time", says, bool(told), numbers, panel)
+
+
+def _sizes(part: Left) -> NDArray[np.float64]:
+    return np.array([np.mean(cut**2) for cut in np.array_split(part.scaled, _SEGMENTS)])
+
+
+def _end_over_start(sizes: NDArray[np.float64]) -> tuple[float, float]:
+    """Size of the last third over that of the first, and how likely chance gives as much."""
+    third = _SEGMENTS // 3
+    change = 0.5 * (
+        np.log(np.mean(sizes[:, -third:], axis=1)) - np.log(np.mean(sizes[:, :third], axis=1))
+    )
+    factor = math.exp(float(np.mean(change)))
+    if len(change) < _FEWEST_RUNS or np.ptp(change) == 0.0:
+        return factor, 1.0
+    return factor, float(scipy.stats.ttest_1samp(change, 0.0).pvalue)

@@ -1,0 +1,131 @@
+"""Headings of columns: names, units and their dimensions, and the spellings that are understood."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from chatter.description.errors import InputError
+from chatter.description.formatting import shown
+from chatter.description.units import QuantityError, parse, registry
+
+#: name of a column -> dimension of its unit; "" for one without
+DIMENSIONS = {
+    "time": "time",
+    "spindle_angle": "angle",
+    "Fx": "force",
+    "Fy": "force",
+    "Fz": "force",
+    "x": "length",
+    "y": "length",
+    "z": "length",
+    "command": "length",
+    "position": "length",
+    "velocity": "velocity",
+    "force": "force",
+    "spindle_speed": "angular_speed",
+    "axial_depth": "length",
+    "stable": "number",
+    "frequency": "frequency",
+    "real": "",
+    "imag": "",
+    "magnitude": "",
+    "phase": "angle",
+}
+#: spellings, in lower case and without spaces and strokes -> name
+_SPELLINGS = {name.lower().replace("_", ""): name for name in DIMENSIONS} | {
+    "t": "time",
+    "angle": "spindle_angle",
+    "speed": "spindle_speed",
+    "depth": "axial_depth",
+    "verdict": "stable",
+    "freq": "frequency",
+    "re": "real",
+    "im": "imag",
+    "imaginary": "imag",
+    "mag": "magnitude",
+}
+_BRACKETS = re.compile(r"\s*(?P<name>[^\[\]()]+?)\s*(?:\[(?P<unit>[^\]]*)\]|\((?P<other>[^)]*)\))?")
+_STROKE = re.compile(
+    r"\s*(?P<name>[A-Za-z_ ]+?)\s*(?:/|,)\s*(?P<unit>[A-Za-z\u00b5\u03bc%/^*0-9 ]+)"
+)
+_UNITLESS = ("", "1", "-")
+
+
+def named(path: Path, heading: str) -> tuple[str, float]:
+    """Name of a column and the factor of its numbers to SI, of a heading such as "Fx [N]".
+
+    Raises
+    ------
+    InputError
+        If it is no heading, or its unit is unknown or of another dimension than the column.
+    """
+    name, unit = _parted(path, heading)
+    known = _SPELLINGS.get(_plain(name))
+    if known is None:
+        return name, _factor_of_any(unit)
+    if unit in _UNITLESS or known == "stable":
+        return known, 1.0
+    return known, _factor(path, heading, known, unit)
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[\s_-]", "", name).lower()
+
+
+def _parted(path: Path, heading: str) -> tuple[str, str]:
+    """Name and unit; "Fx_N" and "Fx / N" are understood where both parts are known."""
+    match = _BRACKETS.fullmatch(heading.strip())
+    if match is None or not match["name"].strip():
+        match = _STROKE.fullmatch(heading)
+        if match is None:
+            raise InputError(f'{path}: {shown(heading)} is no heading such as "Fx [N]"')
+        return match["name"], match["unit"].strip()
+    name, unit = match["name"], (match["unit"] or match["other"] or "").strip()
+    if unit or _plain(name) in _SPELLINGS:
+        return name, unit
+    for parts in (name.rpartition("_"), name.rpartition("/")):
+        stem, _, end = parts
+        known = _SPELLINGS.get(_plain(stem))
+        if known and _fits(DIMENSIONS[known], end.strip()):
+            return stem, end.strip()
+    return name, ""
+
+
+def _fits(dimension: str, unit: str) -> bool:
+    try:
+        return bool(dimension) and parse(f"1 {unit}", dimension) is not None
+    except QuantityError:
+        return False
+
+
+def _factor(path: Path, heading: str, name: str, unit: str) -> float:
+    dimension = DIMENSIONS[name]
+    try:
+        if dimension:
+            return parse(f"1 {unit}", dimension).value
+        return _receptance(unit)
+    except (QuantityError, ValueError) as error:
+        raise InputError(f"{path}: {shown(heading)}: {error}") from error
+
+
+def _receptance(unit: str) -> float:
+    quantity = _quantity(unit)
+    if quantity is None or not quantity.check("[length]/[force]"):
+        raise ValueError(f'"{unit}" is no unit of a displacement per force, such as m/N or um/N')
+    return float(quantity.to_base_units().magnitude)
+
+
+def _factor_of_any(unit: str) -> float:
+    """Factor of a column that nothing asks for: 1 where its unit is not known either."""
+    quantity = None if unit in _UNITLESS else _quantity(unit)
+    return 1.0 if quantity is None else float(quantity.to_base_units().magnitude)
+
+
+def _quantity(unit: str):
+    if len(unit) > 40 or not re.fullmatch(r"[\w\s*/^.\u00b5\u03bc\u00b0-]+", unit):
+        return None
+    try:
+        return registry().Quantity(1.0, unit.replace("^", "**"))
+    except Exception:
+        return None

@@ -1,0 +1,286 @@
+"""Growth of small vibration from period to period, measured in a simulated cut.
+
+The cut takes hold of the structure slowly, so that the tool comes close to its periodic motion
+without being thrown out of the chip; what is left of the start then dies out or grows. Its
+multiplier follows from how the differences between successive periods follow each other: they are
+free of the periodic motion.
+
+Full chatter has multipliers of its own, of 1 or less, and where teeth differ it may repeat from
+turn to turn as forced vibration does. So a motion large enough for teeth to leave the cut is not
+taken for stable by them alone: small pushes tell how vibration grew before.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.case import Case
+from chatter.detection.chatter_line import strongest_line
+from chatter.detection.orbits import kind_of_orbit
+from chatter.engine.loop import COLUMNS, Record, run
+from chatter.simulation.perturbation.divergence import LARGE_SWING, divergence
+from chatter.simulation.setup import Setup, delayed, set_up
+from chatter.simulation.spindle import prescribed
+from chatter.stability.floquet_multiplier import bifurcation_kind
+from cutting.chip.tool_point import tool_point
+from cutting.edge_segments.segments import period_angle
+from dynamics.modal.modal_steps import modal_steps
+from dynamics.modal.modes import Mode
+
+#: periods in which the cut takes hold, and periods that are watched after that, at the least
+_RAMP_PERIODS = 40
+_WATCHED_PERIODS = 120
+#: time constants of the slowest mode in both together, and the most periods
+_TIME_CONSTANTS = 5.0
+_MOST_PERIODS = 1200
+#: differences above this share of the feed leave the chip, below this one they are rounding
+_LARGEST_DIFFERENCE = 0.1
+_SMALLEST_DIFFERENCE = 1e-7
+#: periods that a fit needs at the least
+_LEAST_FITTED = 10
+#: moments of a difference, shapes that differences are made of, the weakest of them that counts,
+#: and the share in the last difference that a multiplier must have
+_FEATURES = 32
+_MOST_SHAPES = 8
+_WEAKEST_SHAPE = 1e-3
+_LEAST_SHARE = 0.02
+#: what is left of the first difference where it has died out for certain
+_DIED_OUT = 0.05
+#: a cut takes hold slower by a factor; what is left of the start is then less than this share
+_SLOWER = 4
+_LEFT_OF_START = 0.5
+#: periods of full chatter that show its kind, at the most and at the least
+_MOST_SHOWN, _LEAST_SHOWN = 60, 6
+#: periods before the tool is thrown out, in which it is little else than what grows
+_LAST_BEFORE_LEFT = 12
+
+
+@dataclass(frozen=True)
+class Growth:
+    """Dominant multiplier of a simulated cut.
+
+    Parameters
+    ----------
+    multiplier : complex
+        Over a period; of magnitude inf where the tool leaves the chip at once, and where chatter
+        is full: how small vibration grew before that is not known.
+    period : float
+        s.
+    frequency : float
+        Of the vibration that grows or dies out slowest, Hz; nan where it is not known.
+    bifurcation : str
+        ``"flip"`` where vibration doubles the period, else ``"hopf"``.
+    """
+
+    multiplier: complex
+    period: float
+    frequency: float
+    bifurcation: str
+
+    @property
+    def radius(self) -> float:
+        """Magnitude of the multiplier over a period."""
+        return abs(self.multiplier)
+
+
+def periods_a_turn(setup: Setup) -> int:
+    """Periods in which the cut repeats within a turn: teeth where they are all alike."""
+    return round(2.0 * math.pi / period_angle(setup.cutter))
+
+
+def growth_of(case: Case, modes: tuple[Mode, ...]) -> Growth:
+    """Simulate a cut that takes hold slowly, and measure how vibration grows.
+
+    Parameters
+    ----------
+    case : Case
+    modes : tuple of Mode
+        Of its structure.
+
+    Raises
+    ------
+    InputError
+        If the case cannot be simulated.
+    """
+    setup = set_up(delayed(case), modes)
+    period = setup.resolution.steps_a_turn // periods_a_turn(setup) * setup.step
+    slowest = max(1.0 / (mode.damping * mode.natural_frequency) for mode in setup.modes)
+    wanted = max(_RAMP_PERIODS + _WATCHED_PERIODS, math.ceil(_TIME_CONSTANTS * slowest / period))
+    count = min(wanted, _MOST_PERIODS)
+    ramp, feed = count // 4, case.cut.feed_per_tooth
+    periods = _periods(setup, ramp, count)
+    watched = periods[ramp:]
+    if len(watched) < _LEAST_FITTED:
+        return _full_chatter(periods[-_LAST_BEFORE_LEFT:], period)
+    fitted = _fit_of(watched, feed)
+    if fitted is None:
+        return _full_chatter(watched, period)
+    difference = np.diff(watched, axis=0)[fitted]
+    found = _fitted(difference, period)
+    swing = 0.5 * float(np.ptp(watched[len(watched) // 2 :], axis=(0, 1)).max())
+    if found.radius >= 1.0 or swing <= LARGE_SWING * feed:
+        return found
+    a_turn = periods_a_turn(setup)
+    if a_turn == setup.cutter.teeth and _dies_out(difference):
+        return found
+    apart = divergence(case, modes)
+    if apart.verdict != "chatter" or apart.from_rest_alone:
+        return found
+    if apart.rate <= 0.0:
+        # neither grows nor dies out for certain
+        slower = _periods(set_up(delayed(case), modes), _SLOWER * ramp, _SLOWER * ramp + count)
+        if not _as_large(slower[_SLOWER * ramp :], watched):
+            return found
+    return replace(_full_chatter(watched, period), frequency=apart.frequency)
+
+
+def _periods(setup: Setup, ramp: int, count: int) -> NDArray[np.float64]:
+    """Motion (k, n, 3), m, over `count` periods; in the first of them the cut takes hold.
+
+    There are fewer where the tool leaves the range of the model.
+    """
+    samples = setup.resolution.steps_a_turn // periods_a_turn(setup)
+    motion, done = motion_of(setup, count * samples, ramp * samples)
+    whole = done // samples
+    return motion[: whole * samples].reshape(whole, samples, 3)
+
+
+def _as_large(slower: NDArray[np.float64], periods: NDArray[np.float64]) -> bool:
+    """Tell full chatter, which is as large (k, n, 3) in a cut that takes hold more slowly.
+
+    Vibration along the cycle of full chatter neither grows nor dies out. A stable forced motion
+    nearly as neutral is disturbed by the cut taking hold alone, in inverse proportion to the time
+    that this takes.
+    """
+    if len(slower) < len(periods):
+        return True
+    size, before = (float(np.linalg.norm(np.diff(part, axis=0))) for part in (slower, periods))
+    return size > _LEFT_OF_START * before
+
+
+def _full_chatter(periods: NDArray[np.float64], period: float) -> Growth:
+    """Kind and frequency of chatter that is full, or throws the tool out, from its motion."""
+    # second differences: free of forced vibration that grows evenly as the cut takes hold
+    shown = np.diff(periods[-_MOST_SHOWN:], 2, axis=0)
+    size = np.linalg.norm(shown, axis=(1, 2))
+    if len(shown) < _LEAST_SHOWN or not size.all():
+        return Growth(complex(math.inf), period, math.nan, "hopf")
+    growth = max(float(np.polyfit(np.arange(len(size)), np.log(size), 1)[0]), 0.0)
+    line = strongest_line(shown, growth)
+    kind, _ = kind_of_orbit(shown, line, growth, 0.0)
+    flip = "flip" if kind == "flip" else "hopf"
+    return Growth(complex(math.inf), period, line.cycles / period, flip)
+
+
+def motion_of(
+    setup: Setup, steps: int, ramp: int = 0, push: float = 0.0
+) -> tuple[NDArray[np.float64], int]:
+    """Displacement (steps + 1, 3) of the tool, m, and the steps that were done.
+
+    Parameters
+    ----------
+    setup : Setup
+        With a delayed chip, for one run.
+    steps, ramp : int
+        Steps of the run, and of them those in which the cut takes hold.
+    push : float
+        Displacement of every mode at the start, m.
+    """
+    modes = modal_steps(setup.modes, setup.step)
+    modes.state[:, 0] = push
+    record = Record(1, np.zeros((steps + 1, len(COLUMNS))))
+    bins = setup.resolution.steps_a_turn
+    turns = prescribed(setup.spindle, setup.path, bins, setup.step, -1, steps + 1, ramp)
+    scratch = np.zeros((len(setup.modes), 2))
+    done = run(
+        setup.groups,
+        modes,
+        setup.frictions,
+        tool_point(),
+        turns,
+        record,
+        scratch,
+        -1,
+        setup.furthest,
+        bins,
+    )
+    return record.rows[:, 3:6], done
+
+
+def _fit_of(periods: NDArray[np.float64], feed: float) -> slice | None:
+    """Differences between periods that are small vibration; None where it is full chatter."""
+    difference = np.diff(periods, axis=0)
+    size = np.sqrt(np.mean(difference**2, axis=(1, 2)) * 3.0)
+    large = np.flatnonzero(size > _LARGEST_DIFFERENCE * feed)
+    gone = np.flatnonzero(size < _SMALLEST_DIFFERENCE * feed)
+    first = 0
+    end = min(large[0] if large.size else len(size), gone[0] if gone.size else len(size))
+    if end < _LEAST_FITTED and large.size and (not gone.size or large[0] < gone[0]):
+        # out of the chip from the beginning: it stays there, or comes back to be looked at
+        first = int(large[-1]) + 1
+        later = gone[gone > first]
+        end = int(later[0]) if later.size else len(size)
+        if end - first < _LEAST_FITTED:
+            return None
+    if end - first < _LEAST_FITTED:
+        return slice(0, 0)
+    # what other modes have left of the start dies out first
+    return slice(first + min((end - first) // 3, end - first - _LEAST_FITTED), end)
+
+
+def _dies_out(difference: NDArray[np.float64]) -> bool:
+    """Whether the differences (k, n, 3) of periods do die out as they are followed."""
+    if len(difference) == 0:
+        return True
+    first, last = np.linalg.norm(difference[[0, -1]], axis=(1, 2))
+    return bool(last < _DIED_OUT * first)
+
+
+def _fitted(difference: NDArray[np.float64], period: float) -> Growth:
+    """Dominant multiplier from differences (k, n, 3) of periods; 0 where there are none."""
+    if len(difference) == 0:
+        return Growth(0j, period, math.nan, "hopf")
+    multiplier = _dominant(difference)
+    kind = bifurcation_kind(multiplier)
+    return Growth(multiplier, period, _frequency(difference, multiplier, period), kind)
+
+
+def _dominant(differences: NDArray[np.float64]) -> complex:
+    """Largest multiplier that takes the differences (k, n, 3) of periods from each to the next.
+
+    Dynamic mode decomposition (Schmid 2010, J. Fluid Mech. 656): the map from row to row is
+    fitted within the few shapes that the rows are made of; several multipliers of nearly the same
+    size, as of like modes in x and y, are so told apart.
+    """
+    # in time, so that no direction of the motion is left out
+    samples = differences[:, :: max(1, differences.shape[1] // _FEATURES)]
+    samples = samples.reshape(len(samples), -1)
+    weight = 1.0 / np.linalg.norm(samples[:-1], axis=1)[:, None]
+    before, after = samples[:-1] * weight, samples[1:] * weight
+    left, size, right = np.linalg.svd(before, full_matrices=False)
+    rank = min(_MOST_SHAPES, int(np.sum(size > _WEAKEST_SHAPE * size[0])))
+    left, size, right = left[:, :rank], size[:rank], right[:rank]
+    step = (left.T @ after @ right.T) / size[:, None]
+    values, shapes = np.linalg.eig(step.T)
+    share = np.abs(np.linalg.solve(shapes, (after[-1] @ right.T).astype(complex)))
+    present = share > _LEAST_SHARE * share.max()
+    return complex(values[present][np.argmax(np.abs(values[present]))])
+
+
+def _frequency(difference: NDArray[np.float64], multiplier: complex, period: float) -> float:
+    """Strongest line among those that the angle of the multiplier allows, Hz."""
+    count, samples, _ = difference.shape
+    growth = np.abs(multiplier) ** np.arange(count)
+    settled = difference / np.maximum(growth, 1e-300)[:, None, None]
+    angle = abs(float(np.angle(multiplier)))
+    time = np.arange(count * samples).reshape(count, samples, 1) / samples
+    # all allowed lines lie whole periods apart: they are the Fourier lines of what is left when
+    # the angle is taken out; the difference over a period weakens them alike
+    shape = np.mean(settled * np.exp(-1j * angle * time), axis=0)
+    size = np.linalg.norm(np.fft.fft(shape, axis=0), axis=1)
+    order = np.fft.fftfreq(samples, 1.0 / samples)
+    return float(abs(angle / (2.0 * math.pi) + order[int(np.argmax(size))])) / period

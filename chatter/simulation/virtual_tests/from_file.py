@@ -1,0 +1,298 @@
+"""FRFs and moves as a machine file asks for them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.errors import InputError
+from chatter.description.machine.frequency_response import (
+    TORQUE_KINDS,
+    FrfSection,
+    StateSection,
+    parse_place,
+)
+from chatter.description.machine.machine_file import MachineFile
+from chatter.description.machine.move import MoveSection
+from chatter.engine.parallel import Progress, no_progress
+from chatter.simulation.virtual_tests.frf import FrfCurve, FrfResult, linearised_frf
+from chatter.simulation.virtual_tests.loop_stability import refuse_unstable_control
+from chatter.simulation.virtual_tests.move import MovePlan, MoveResult, move_axes
+from chatter.simulation.virtual_tests.virtual_tests import FrfTest, frf_by_test
+from dynamics.frf.container import Frf
+from dynamics.machine.description import Machine
+from dynamics.structure.linear_structure import StructureError
+from dynamics.trajectory import TrajectoryError
+
+_AXES = ("x", "y", "z", "rx", "ry", "rz")
+#: velocity below which an axis rests, m/s
+_RESTING = 1e-12
+
+
+def in_state(file: MachineFile, state: StateSection) -> Machine:
+    """Machine of a file in the state of a test.
+
+    Raises
+    ------
+    InputError
+        If it cannot be brought into that state.
+    """
+    machine = file.machine(state.condition, state.position, state.in_cut)
+    return machine if state.friction else machine.without_friction()
+
+
+def default_frfs(file: MachineFile) -> dict[str, FrfSection]:
+    """Tests of a file that names none: blows on the tool point in x, y, z.
+
+    Raises
+    ------
+    InputError
+        If the file has no tool point.
+    """
+    if file.tool_point is None:
+        raise InputError(
+            f"{file.name}: frf: there is no [frf.NAME] and no tool_point; say what is excited, "
+            'such as [frf.table] excite = "table:y", or --excite "table:y"'
+        )
+    against = f"/{file.workpiece}" if file.workpiece else ""
+    return {
+        f"{file.tool_point} {way}": FrfSection(
+            excite=f"{file.tool_point}{against}:{way}", band=(5.0, 500.0)
+        )
+        for way in "xyz"
+    }
+
+
+def frfs(
+    file: MachineFile,
+    sections: dict[str, FrfSection],
+    progress: Progress = no_progress,
+) -> FrfResult:
+    """FRFs of a machine, one a section.
+
+    Parameters
+    ----------
+    file : MachineFile
+    sections : mapping of str to FrfSection
+        By name; all are shown as the quantity of the first.
+    progress : callable, optional
+
+    Raises
+    ------
+    InputError
+        If a section does not fit the machine.
+    RunError
+        If the machine runs away in a test.
+    """
+    quantity = next(iter(sections.values())).kind
+    curves = []
+    for place, (name, section) in enumerate(sections.items()):
+        share = _share_of(progress, place, len(sections))
+        curves.append(one_frf(file, name, section, share).as_quantity(quantity))
+    return FrfResult(file.title or file.name, curves)
+
+
+def frf(
+    file: MachineFile, names: Sequence[str] | None = None, progress: Progress = no_progress
+) -> FrfResult:
+    """FRFs that a machine file asks for, by name, or all of them.
+
+    Raises
+    ------
+    InputError
+        If a name is unknown or a section does not fit the machine.
+    RunError
+        If the machine runs away in a test.
+    """
+    if not file.frf and not names:
+        return frfs(file, default_frfs(file), progress)
+    return frfs(file, {name: _named(file, "frf", name) for name in names or file.frf}, progress)
+
+
+def move(file: MachineFile, name: str, progress: Progress = no_progress) -> MoveResult:
+    """Move that a machine file asks for, by name.
+
+    Raises
+    ------
+    InputError
+        If the name is unknown or the section does not fit the machine.
+    RunError
+        If the machine runs away.
+    """
+    return file_move(file, name, _named(file, "move", name), progress)
+
+
+def one_frf(
+    file: MachineFile, name: str, section: FrfSection, progress: Progress = no_progress
+) -> FrfCurve:
+    """One FRF of a machine, linearised and by its test in time; receptance."""
+    where = f"{file.name}: frf.{name}"
+    with _told_with(where, file.name):
+        return _one_frf(file, where, name, section, progress)
+
+
+def _one_frf(
+    file: MachineFile, where: str, name: str, section: FrfSection, progress: Progress
+) -> FrfCurve:
+    machine = in_state(file, section)
+    if section.by != "linearised" and section.band[1] >= 0.5 / file.step:
+        raise InputError(
+            f"{where}.band: {section.band[1]:g} Hz cannot be tested with a step of "
+            f"{file.step:g} s; below {0.5 / file.step:g} Hz is wanted, or a shorter step"
+        )
+    velocity = {axis: speed for axis, speed in section.moving.items() if abs(speed) > _RESTING}
+    _refuse_unmovable(where, machine, velocity)
+    refuse_unstable_control(machine, file.step)
+    excited, read = _rows(where, machine, section)
+    frequency = np.linspace(*section.band, section.lines)
+    linear = machine
+    motor = parse_place(section.excite).motor
+    if section.by == "torque multisine":
+        # what is identified is what the motor feels with its own loop open
+        linear = replace(machine, drives=tuple(d for d in machine.drives if d.axis != motor))
+    values = linearised_frf(
+        linear, file.step, frequency, excited, read, velocity, section.amplitude
+    )
+    harmonic = Frf(frequency, values, "receptance", source=f"{where}, linearised")
+    tested = None
+    if section.by != "linearised":
+        test = FrfTest(
+            name,
+            section.by,
+            motor if section.by in TORQUE_KINDS else excited,
+            read,
+            section.level,
+            section.band,
+            section.period,
+            section.averages,
+            section.settling,
+            velocity,
+            section.seed,
+            section.spindle_speed or 0.0,
+            section.at_angle,
+        )
+        tested = frf_by_test(machine, file.step, test, progress)
+    return FrfCurve(
+        name,
+        in_words(section),
+        harmonic,
+        tested,
+        "torque" if _turns(section.excite) else "force",
+        "rotation" if _turns(section.read or section.excite) else "displacement",
+    )
+
+
+def _turns(text: str) -> bool:
+    """Whether a place of a test is a motor, or a rotation."""
+    place = parse_place(text)
+    return place.motor is not None or place.direction.startswith("r")
+
+
+def in_words(section: FrfSection) -> str:
+    """State of a test in words."""
+    parts = [f"{axis} moving at {speed * 60e3:g} mm/min" for axis, speed in section.moving.items()]
+    parts += [f"{axis}: {condition}" for axis, condition in section.condition.items()]
+    parts += [f"{axis} at {place * 1e3:g} mm" for axis, place in section.position.items()]
+    if section.in_cut:
+        parts.append("in the cut")
+    if not section.friction:
+        parts.append("no friction")
+    return ", ".join(parts)
+
+
+def file_move(
+    file: MachineFile, name: str, section: MoveSection, progress: Progress = no_progress
+) -> MoveResult:
+    """Move of a machine as a section asks for it.
+
+    Raises
+    ------
+    InputError
+        If the section does not fit the machine.
+    RunError
+        If the machine runs away.
+    """
+    where = f"{file.name}: move.{name}"
+    machine = in_state(file, section)
+    try:
+        course = section.course()
+    except TrajectoryError as error:
+        raise InputError(f"{where}: {error}") from error
+    cycles = [drive.controller.position.timing.sample_time for drive in machine.drives]
+    cycle = section.cycle if section.cycle is not None else max(cycles, default=file.step)
+    plan = MovePlan(
+        course.trajectory,
+        section.axes,
+        cycle,
+        section.standstill,
+        section.afterwards,
+        course.path,
+    )
+    tool = None
+    if file.tool_point is not None:
+        tool = np.array(
+            [machine.structure.port(file.tool_point, way, file.workpiece) for way in np.eye(3)]
+        )
+    title = file.title or file.name
+    with _told_with(where, file.name):
+        return move_axes(f"{title}: {name}", machine, file.step, plan, tool, progress)
+
+
+@contextmanager
+def _told_with(where: str, file: str) -> Iterator[None]:
+    """Name file and section in what is refused, where it does not yet."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(
+            [text if text.startswith(file) else f"{where}: {text}" for text in error.messages]
+        ) from error
+
+
+def _named(file: MachineFile, kind: str, name: str) -> FrfSection | MoveSection:
+    sections = getattr(file, kind)
+    if name not in sections:
+        known = ", ".join(sections) or "none"
+        raise InputError(f"{file.name}: there is no [{kind}.{name}]; there are {known}")
+    return sections[name]
+
+
+def _rows(
+    where: str, machine: Machine, section: FrfSection
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    return (
+        _row(f"{where}.excite", machine, section.excite),
+        _row(f"{where}.read", machine, section.read or section.excite),
+    )
+
+
+def _row(where: str, machine: Machine, text: str) -> NDArray[np.float64]:
+    place = parse_place(text)
+    if place.motor is not None:
+        rows = [drive.row for drive in machine.drives if drive.axis == place.motor]
+        if not rows:
+            raise InputError(f'{where}: axis "{place.motor}" is not under control')
+        return np.mean(rows, axis=0)
+    direction = np.eye(6)[_AXES.index(place.direction)]
+    try:
+        return machine.structure.port(place.point, direction, place.against)
+    except StructureError as error:
+        raise InputError(f"{where}: {error}") from error
+
+
+def _refuse_unmovable(where: str, machine: Machine, velocity: dict[str, float]) -> None:
+    known: Sequence[str] = [drive.axis for drive in machine.drives]
+    for axis in velocity:
+        if axis not in known:
+            there = ", ".join(dict.fromkeys(known)) or "none"
+            raise InputError(
+                f'{where}.moving: axis "{axis}" is not under control; there are {there}'
+            )
+
+
+def _share_of(progress: Progress, place: int, count: int) -> Progress:
+    return lambda done, total: progress(place * total + done, count * total)

@@ -1,0 +1,309 @@
+"""A move of a machine's axes: where they went, and where they should have gone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.compile.rigid_motion import rigid_motion
+from chatter.description.errors import InputError
+from chatter.engine.parallel import Progress, no_progress
+from chatter.io.presentation import presentation
+from chatter.io.result_files import as_json, write_results
+from chatter.simulation.virtual_tests.loop_stability import refuse_unstable_control
+from chatter.simulation.virtual_tests.run import MachineRun, RunInputs, run_machine
+from dynamics.machine.description import Drive, Machine
+from dynamics.trajectory import (
+    Path,
+    SetPoints,
+    Trajectory,
+    TrajectoryError,
+    contour_error,
+    set_points,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, eq=False)
+class MovePlan:
+    """A trajectory for some axes.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        One column an axis.
+    axes : sequence of str
+        Names, in the order of the columns.
+    cycle : float
+        Interpolation cycle of the control, s.
+    standstill : float
+        Before the move, s.
+    afterwards : float
+        Time simulated behind its end, s.
+    path : Path, optional
+        Plane path of the first two axes, for the contour error.
+    """
+
+    trajectory: Trajectory
+    axes: Sequence[str]
+    cycle: float
+    standstill: float = 0.0
+    afterwards: float = 0.1
+    path: Path | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class MoveResult:
+    """Signals of a move; columns are the axes of the plan.
+
+    Parameters
+    ----------
+    name : str
+    axes : tuple of str
+    time : (n,) array of float
+        s.
+    wanted : (n, axes) array of float
+        Set points, m, counted from the start.
+    velocity : (n, axes) array of float
+        At the motor, m/s.
+    motor, scale, tool : (n, axes) array of float
+        Position by the motor's encoder, at the direct measuring system, and at the tool against
+        the workpiece (None without tool point), m.
+    effort : (n, axes) array of float
+        Torque of the motors, N m, or force of linear ones, N; summed over the motors of an axis.
+    contour : (n,) array of float, optional
+        Signed distance of the tool (of the motors without tool point) from the path, m.
+    friction : mapping of str to (n,) array
+        Forces of the frictions, N.
+    interrupted : bool
+    """
+
+    name: str
+    axes: tuple[str, ...]
+    time: NDArray[np.float64]
+    wanted: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    motor: NDArray[np.float64]
+    scale: NDArray[np.float64]
+    tool: NDArray[np.float64] | None
+    effort: NDArray[np.float64]
+    contour: NDArray[np.float64] | None
+    friction: dict[str, NDArray[np.float64]]
+    interrupted: bool
+
+    @property
+    def tracking_error(self) -> NDArray[np.float64]:
+        """Set point less position at the scale, m, (n, axes)."""
+        return self.wanted - self.scale
+
+    def summary(self) -> dict:
+        """Largest errors and efforts, for people and machines."""
+        axes = {}
+        for column, axis in enumerate(self.axes):
+            axes[axis] = {
+                "tracking_error_um": _largest(self.tracking_error[:, column], 1e6),
+                "motor_error_um": _largest((self.wanted - self.motor)[:, column], 1e6),
+                "effort": _largest(self.effort[:, column], 1.0),
+            }
+            if self.tool is not None:
+                error = (self.wanted - self.tool)[:, column]
+                axes[axis]["tool_error_um"] = _largest(error, 1e6)
+        contour = None if self.contour is None else _largest(self.contour, 1e6)
+        return {
+            "machine": self.name,
+            "duration_s": float(self.time[-1]) if self.time.size else 0.0,
+            "axes": axes,
+            "contour_error_um": contour,
+            "interrupted": self.interrupted,
+        }
+
+    def plot(self) -> Figure:
+        """Picture of the move."""
+        return presentation("plots.move").plot_move(self)
+
+    def save(self, folder: str | FilePath) -> list[FilePath]:
+        """Write move.csv, move.png and summary.json."""
+        texts = {"move.csv": self._csv(), "summary.json": as_json(self.summary())}
+        return write_results(folder, texts, {"move.png": self.plot()})
+
+    def _csv(self) -> str:
+        names, columns = ["time [s]"], [self.time]
+        for place, axis in enumerate(self.axes):
+            names += [f"{axis} set [m]", f"{axis} motor [m]", f"{axis} scale [m]"]
+            columns += [self.wanted[:, place], self.motor[:, place], self.scale[:, place]]
+            if self.tool is not None:
+                names.append(f"{axis} tool [m]")
+                columns.append(self.tool[:, place])
+            names += [f"{axis} velocity [m/s]", f"{axis} effort [N or N*m]"]
+            columns += [self.velocity[:, place], self.effort[:, place]]
+        if self.contour is not None:
+            names.append("contour error [m]")
+            columns.append(self.contour)
+        rows = np.column_stack(columns)
+        lines = [",".join(f"{value:.9g}" for value in row) for row in rows]
+        return "\n".join([",".join(names), *lines]) + "\n"
+
+
+def move_axes(
+    name: str,
+    machine: Machine,
+    step: float,
+    plan: MovePlan,
+    tool: NDArray[np.float64] | None = None,
+    progress: Progress = no_progress,
+) -> MoveResult:
+    """Move the axes of a machine along a trajectory.
+
+    Parameters
+    ----------
+    name : str
+        Of the machine.
+    machine : Machine
+    step : float
+        s.
+    plan : MovePlan
+    tool : (3, n) array of float, optional
+        Rows of the tool's displacement against the workpiece, x, y, z.
+    progress : callable, optional
+
+    Raises
+    ------
+    InputError
+        If an axis is unknown or not under control, a loop is unstable, or the interpolation cycle
+        does not fit the step.
+    RunError
+        If the machine runs away.
+    """
+    refuse_unstable_control(machine, step)
+    ways = [rigid_motion(machine, {axis: 1.0}) for axis in plan.axes]
+    points = _set_points(machine, plan, step)
+    rows = {} if tool is None else {f"tool {way}": tool[i] for i, way in enumerate("xyz")}
+    duration = len(points.position) * points.steps * step + plan.afterwards
+    finer = _records_a_cycle(machine, points.steps)
+    inputs = RunInputs(duration, points, outputs=rows, stride=points.steps // finer)
+    run = _by_cycle(run_machine(machine, step, inputs, progress), finer)
+    columns = [machine.axes.index(axis) for axis in plan.axes]
+    # a row is read at the end of its cycle, when the next set point holds
+    place = np.minimum(np.arange(1, len(run.time) + 1), len(points.position) - 1)
+    wanted = points.position[place][:, columns]
+    tip = None if tool is None else _at_tool(run, tool, ways)
+    motor = _mean_of_drives(
+        machine, plan.axes, lambda one: _travel(one) * run.displacement[f"drive {one.name}"]
+    )
+    contour = None
+    if plan.path is not None:
+        start = np.asarray(plan.trajectory.at(0.0).position, dtype=np.float64)[:2]
+        went = (motor if tip is None else tip)[:, :2]
+        contour = contour_error(plan.path, went + start).error
+    return MoveResult(
+        name,
+        tuple(plan.axes),
+        run.time,
+        wanted,
+        _mean_of_drives(
+            machine, plan.axes, lambda one: _travel(one) * run.velocity[f"drive {one.name}"]
+        ),
+        motor,
+        _mean_of_drives(machine, plan.axes, lambda one: run.displacement[f"scale {one.name}"]),
+        tip,
+        _efforts(machine, run, plan.axes),
+        contour,
+        {one.name: -run.force[f"friction {one.name}"] for one in machine.frictions},
+        run.interrupted,
+    )
+
+
+def _records_a_cycle(machine: Machine, steps: int) -> int:
+    """Records in a cycle of the set points: one a sample of the fastest velocity loop."""
+    fastest = min(drive.controller.velocity.timing.sample_time for drive in machine.drives)
+    slowest = max(drive.controller.position.timing.sample_time for drive in machine.drives)
+    wanted = max(1, round(slowest / fastest))
+    return max(count for count in range(1, wanted + 1) if steps % count == 0)
+
+
+def _by_cycle(run: MachineRun, finer: int) -> MachineRun:
+    """Motion at the end of every cycle, and the mean of the forces over it.
+
+    The torque is a staircase of the loops inside; a sample of it would alias them.
+    """
+    rows = len(run.time) // finer
+
+    def last(values: NDArray) -> NDArray[np.float64]:
+        return values[finer - 1 :: finer][:rows]
+
+    def mean(values: NDArray) -> NDArray[np.float64]:
+        return values[: rows * finer].reshape(rows, finer).mean(axis=1)
+
+    return MachineRun(
+        last(run.time),
+        {name: last(values) for name, values in run.displacement.items()},
+        {name: last(values) for name, values in run.velocity.items()},
+        {name: mean(values) for name, values in run.force.items()},
+        run.interrupted,
+    )
+
+
+def _travel(drive: Drive) -> float:
+    """Travel per angle of a drive, m/rad."""
+    return drive.controller.measuring.transmission
+
+
+def _largest(values: NDArray[np.float64], factor: float) -> float:
+    return float(np.max(np.abs(values), initial=0.0)) * factor
+
+
+def _set_points(machine: Machine, plan: MovePlan, step: float) -> SetPoints:
+    try:
+        points = set_points(plan.trajectory, plan.cycle, step, plan.standstill)
+    except TrajectoryError as error:
+        raise InputError(str(error)) from error
+    if points.position.shape[1] != len(plan.axes):
+        raise InputError(
+            f"the move has {points.position.shape[1]} axes, but {len(plan.axes)} are named: "
+            f"{', '.join(plan.axes)}"
+        )
+    for axis in plan.axes:
+        if axis not in machine.axes:
+            known = ", ".join(f'"{one}"' for one in machine.axes)
+            raise InputError(f'the move asks for axis "{axis}"; the machine has {known}')
+    full = [np.zeros((len(points.position), len(machine.axes))) for _ in range(3)]
+    columns = [machine.axes.index(axis) for axis in plan.axes]
+    # the machine stands at rest where the move begins
+    full[0][:, columns] = points.position - points.position[0]
+    full[1][:, columns] = points.velocity
+    full[2][:, columns] = points.acceleration
+    return SetPoints(*full, points.steps)
+
+
+def _at_tool(run: MachineRun, tool: NDArray, ways: Sequence[NDArray]) -> NDArray[np.float64]:
+    """Axis coordinates (n, axes) of the tool against the workpiece."""
+    moved = np.array([run.displacement[f"tool {way}"] for way in "xyz"])
+    directions = np.array([tool @ way for way in ways]).T
+    return np.linalg.lstsq(directions, moved, rcond=None)[0].T
+
+
+def _mean_of_drives(
+    machine: Machine, axes: Sequence[str], signal: Callable[[Drive], NDArray]
+) -> NDArray[np.float64]:
+    """Signal of each axis, (n, axes): the mean over its drives."""
+    return np.array(
+        [
+            np.mean([signal(drive) for drive in machine.drives if drive.axis == axis], axis=0)
+            for axis in axes
+        ]
+    ).T
+
+
+def _efforts(machine: Machine, run: MachineRun, axes: Sequence[str]) -> NDArray[np.float64]:
+    sums = [
+        sum(run.force[f"drive {one.name}"] for one in machine.drives if one.axis == axis)
+        for axis in axes
+    ]
+    return np.array(sums).T

@@ -1,0 +1,301 @@
+"""Workpiece of dexels or voxels that a case describes, and the cut through it.
+
+A case without a stock is cut out of an endless one. What is held of it is a window about the
+tool, which moves along between chunks of steps.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.compile.cutter import edge_law, flank_table
+from chatter.description.case import Case
+from chatter.description.errors import InputError
+from chatter.simulation.resolution import Resolution
+from chatter.simulation.spindle import Spindle, ToolPath
+from cutting.chip.discrete_chip import DiscreteCut
+from cutting.dexel.stock import DexelStock, dexel_remove_path, dexel_stock, dexel_wall_profile
+from cutting.dexel.window import dexel_advanced
+from cutting.tool.cutter import Cutter, EdgeSlices
+from cutting.tool.edge_table import edge_table
+from cutting.voxel.stock import VoxelStock, voxel_remove_path, voxel_stock, voxel_wall_profile
+from cutting.voxel.window import CELLS_A_WORD, voxel_advanced
+from dynamics.modal.modes import Mode
+
+#: stock left behind the wall and ahead of the last place of the tool, in radii
+_MARGIN = 0.15
+#: dexels within the wave that the highest mode leaves and within the thickest chip, and the
+#: coarsest spacing, m
+_DEXELS_A_WAVE = 24
+_COARSEST_DEXEL = 2.5e-5
+_DEXELS_A_CHIP = 4
+#: voxels within the thickest chip
+_VOXELS_A_CHIP = 12
+#: coarsest resolution that is taken, as a share of the diameter
+_COARSEST_SHARE = 0.02
+#: the stock may take this much memory, bytes
+_MOST_MEMORY = 4e9
+#: steps between two moves of a stock that follows the tool, and the way of the tool between them
+#: in radii, at the most
+STEPS_A_CHUNK = 20_000
+_LONGEST_WAY = 2.0
+#: an edge comes no farther from the undisplaced axis than this, in radii
+_REACH = 1.25
+#: turns that the tool carves at rest before the start of a run without a stock
+TURNS_BEFORE = 2
+
+Rectangle = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class DiscreteChip:
+    """A kind of discrete workpiece.
+
+    Parameters
+    ----------
+    build, remove_path, wall_profile : callable
+        Of the module of the workpiece.
+    resolution : callable
+        Spacing (m) for a case, where it gives none.
+    memory : callable
+        Bytes for a rectangle, a number of layers and a spacing.
+    advanced : callable
+        Moves the workpiece along x.
+    cells_a_move : int
+        Lines or cells by whose multiples it moves.
+    """
+
+    build: Callable[..., DexelStock | VoxelStock]
+    remove_path: Callable[..., None]
+    wall_profile: Callable[..., NDArray[np.float64]]
+    resolution: Callable[[Case, tuple[Mode, ...]], float]
+    memory: Callable[[Rectangle, int, float], float]
+    advanced: Callable[..., DexelStock | VoxelStock]
+    cells_a_move: int
+
+
+def _dexel_spacing(case: Case, modes: tuple[Mode, ...]) -> float:
+    """Fine enough for the shortest wave, and for the radius."""
+    highest = max((mode.frequency for mode in modes), default=0.0)
+    speed = 0.5 * case.tool.diameter * case.cut.spindle_speed
+    wave = speed / highest if highest else math.inf
+    chip = case.cut.feed_per_tooth / _DEXELS_A_CHIP
+    return min(_COARSEST_DEXEL, chip, 0.0025 * case.tool.diameter, wave / _DEXELS_A_WAVE)
+
+
+def _voxel_size(case: Case, modes: tuple[Mode, ...]) -> float:
+    """Fine enough for the chip, and for the shortest wave."""
+    return min(case.cut.feed_per_tooth / _VOXELS_A_CHIP, _dexel_spacing(case, modes))
+
+
+def _dexel_memory(box: Rectangle, layers: int, spacing: float) -> float:
+    return 192.0 * layers * max(box[1] - box[0], box[3] - box[2]) / spacing
+
+
+def _voxel_memory(box: Rectangle, layers: int, size: float) -> float:
+    cells = (box[1] - box[0]) * (box[3] - box[2]) / size**2
+    # packed, and a few layers at a time as bytes while the stock is shaped
+    return layers * cells / 8.0 + 4.0 * cells
+
+
+#: name in a case file -> workpiece
+DISCRETE_CHIPS: dict[str, DiscreteChip] = {
+    "dexel": DiscreteChip(
+        dexel_stock,
+        dexel_remove_path,
+        dexel_wall_profile,
+        _dexel_spacing,
+        _dexel_memory,
+        dexel_advanced,
+        1,
+    ),
+    "voxel": DiscreteChip(
+        voxel_stock,
+        voxel_remove_path,
+        voxel_wall_profile,
+        _voxel_size,
+        _voxel_memory,
+        voxel_advanced,
+        CELLS_A_WORD,
+    ),
+}
+
+
+def discrete_cut(
+    case: Case,
+    cutter: Cutter,
+    slices: EdgeSlices,
+    modes: tuple[Mode, ...],
+    resolution: Resolution,
+    spindle: Spindle,
+    path: ToolPath,
+) -> DiscreteCut:
+    """Cut through a workpiece as it is before the first step.
+
+    Raises
+    ------
+    InputError
+        If the workpiece would need too much memory.
+    """
+    kind = DISCRETE_CHIPS[case.simulation.chip]
+    size = case.simulation.resolution or kind.resolution(case, modes)
+    ends = _ends(case, cutter, slices, resolution, spindle, path, size)
+    boxes = _boxes(case, cutter, slices, ends, size)
+    _refuse_too_coarse(case, size)
+    _refuse_too_large(case, kind, boxes, size)
+    stock = kind.build(boxes, len(slices.height), size, cutter.teeth, _window(case, cutter))
+    if case.stock is None:
+        _cut_before(kind, stock, slices, case, path)
+    return DiscreteCut(
+        edges=edge_table(slices, resolution.steps_a_turn),
+        law=edge_law(case),
+        flank=flank_table(case, slices.radius, 2.0 * math.pi / resolution.steps_a_turn),
+        stock=stock,
+        depth=float(slices.thickness.sum()),
+        removed=np.zeros(1),
+    )
+
+
+def _window(case: Case, cutter: Cutter) -> float:
+    """Depth from the edge inwards within which material is looked for, m."""
+    thickest = case.cut.feed_per_tooth * cutter.teeth * max(cutter.pitch) / (2.0 * math.pi)
+    spread = np.ptp(cutter.radial_offsets) + np.ptp(cutter.axial_offsets)
+    return 3.0 * thickest + float(spread) + 5e-5
+
+
+def follows(case: Case, path: ToolPath) -> bool:
+    """Whether the stock moves along with the tool: in a straight cut along x without a stock."""
+    legs = np.diff(path.corners, axis=0)
+    return case.stock is None and bool(np.all(legs[:, 0] > 0.0) and np.all(legs[:, 1] == 0.0))
+
+
+def steps_a_chunk(case: Case, slices: EdgeSlices, resolution: Resolution) -> int:
+    """Steps that a stock which follows the tool is long enough for."""
+    longest = _LONGEST_WAY * float(slices.radius.max())
+    return max(1, min(STEPS_A_CHUNK, int(longest / _feed_a_step(case, resolution))))
+
+
+def _feed_a_turn(case: Case) -> float:
+    return case.cut.feed_per_tooth * case.tool.teeth
+
+
+def _feed_a_step(case: Case, resolution: Resolution) -> float:
+    return _feed_a_turn(case) / resolution.steps_a_turn
+
+
+def reach_of(case: Case, cutter: Cutter, slices: EdgeSlices, size: float) -> float:
+    """Distance from the path of the tool axis beyond which nothing is cut or read, m."""
+    return _REACH * float(slices.radius.max()) + _window(case, cutter) + 4.0 * size
+
+
+def _ends(
+    case: Case,
+    cutter: Cutter,
+    slices: EdgeSlices,
+    resolution: Resolution,
+    spindle: Spindle,
+    path: ToolPath,
+    size: float,
+) -> tuple[float, float]:
+    """Where the stock of a case without one begins and ends along x, m."""
+    far = reach_of(case, cutter, slices, size)
+    if not follows(case, path):
+        x = _swept(resolution, spindle, path)[0]
+        return float(x.min()) - 3.0 * float(slices.radius.max()), float(x.max()) + far
+    way = steps_a_chunk(case, slices, resolution) * _feed_a_step(case, resolution)
+    start = float(path.corners[0, 0]) - TURNS_BEFORE * _feed_a_turn(case)
+    start -= _feed_a_step(case, resolution) + far
+    # a stock that moves by whole steps lags behind by up to one
+    step = DISCRETE_CHIPS[case.simulation.chip].cells_a_move
+    return start, start + (math.ceil((2.0 * far + way) / size) + step) * size
+
+
+def _swept(resolution: Resolution, spindle: Spindle, path: ToolPath) -> NDArray[np.float64]:
+    """Places (2, n) of the tool axis over the run, m, with all corners between."""
+    end = resolution.turns * 2.0 * math.pi / spindle.speed
+    legs = np.hypot(*np.diff(path.corners, axis=0).T)
+    times = np.concatenate([[0.0], np.cumsum(legs) / path.feed, [end]])
+    return path.place_at(np.sort(times[times <= end]))
+
+
+def _boxes(
+    case: Case, cutter: Cutter, slices: EdgeSlices, ends: tuple[float, float], size: float
+) -> list[list[tuple[Rectangle, bool]]]:
+    """Rectangles of every layer: those of the case, else a stock of the radial depth of cut."""
+    if case.stock is not None:
+        layers = [
+            [
+                ((*box.x, *box.y), not box.remove)
+                for box in case.stock.box
+                if box.z[0] <= height < box.z[1]
+            ]
+            for height in slices.height
+        ]
+        if not any(adds for layer in layers for _, adds in layer):
+            raise InputError(
+                f"{case.name}: stock: no box lies at the height of the edge, 0 to "
+                f"{case.cut.axial_depth * 1e3:g} mm above the tip at z = 0"
+            )
+        return layers
+    radius = float(slices.radius.max())
+    margin = _MARGIN * radius
+    low, high = -radius - margin, radius + margin
+    width = case.cut.radial_depth
+    if case.cut.mode == "up":
+        low = cutter.radius - width
+    elif case.cut.mode == "down":
+        high = width - cutter.radius
+    # whole cells, from the border where the teeth come in
+    height = math.ceil((high - low) / size - 1e-9) * size
+    if case.cut.mode == "down":
+        low = high - height
+    else:
+        high = low + height
+    return [[((*ends, low, high), True)] for _ in slices.height]
+
+
+def _refuse_too_coarse(case: Case, size: float) -> None:
+    coarsest = _COARSEST_SHARE * case.tool.diameter
+    if size > coarsest:
+        raise InputError(
+            f"{case.name}: simulation.resolution: {size * 1e3:g} mm is too coarse for a tool of "
+            f"{case.tool.diameter * 1e3:g} mm; at most {coarsest * 1e3:.3g} mm are allowed"
+        )
+
+
+def _refuse_too_large(
+    case: Case, kind: DiscreteChip, boxes: list[list[tuple[Rectangle, bool]]], size: float
+) -> None:
+    shapes = np.array([shape for layer in boxes for shape, adds in layer if adds])
+    low, high = shapes.min(axis=0), shapes.max(axis=0)
+    box = (low[0], high[1], low[2], high[3])
+    needed = kind.memory(box, len(boxes), size)
+    if needed > _MOST_MEMORY:
+        raise InputError(
+            f"{case.name}: simulation.resolution: {size * 1e6:.3g} um over a stock of "
+            f"{(box[1] - box[0]) * 1e3:.3g} by {(box[3] - box[2]) * 1e3:.3g} mm in {len(boxes)} "
+            f"layers needs {needed / 1e9:.3g} GB, at most {_MOST_MEMORY / 1e9:g} GB are allowed; "
+            f"choose a coarser resolution{' or a smaller stock' if case.stock else ''}"
+        )
+
+
+def _cut_before(
+    kind: DiscreteChip,
+    stock: DexelStock | VoxelStock,
+    slices: EdgeSlices,
+    case: Case,
+    path: ToolPath,
+) -> None:
+    """Take away what the tool has cut until the turns before the start."""
+    heading = np.diff(path.corners[:2], axis=0)[0]
+    heading = heading / np.hypot(*heading)
+    end = path.corners[0] - TURNS_BEFORE * _feed_a_turn(case) * heading
+    start = end - (4.0 * slices.radius.max() + stock.window) * heading
+    inner = slices.normal_offset.min(axis=0) / np.sin(slices.immersion)
+    for layer, (radius, offset) in enumerate(zip(slices.radius, inner, strict=True)):
+        kind.remove_path(stock, layer, *start, *end, radius + offset)

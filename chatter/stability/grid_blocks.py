@@ -1,0 +1,77 @@
+"""The grid of a stability diagram in blocks of speeds, here or on a cluster, kept as they end."""
+
+from __future__ import annotations
+
+from functools import lru_cache, partial
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.case import Case
+from chatter.engine.parallel import Progress, no_progress
+from chatter.stability.model import MillingModel, milling_model
+from chatter.stability.registry import GRIDS, radius_by_collocation, resolution
+from chatter.studies.executor import Computing
+from chatter.studies.finished_points import key_of
+from chatter.studies.result_cache import kept_results
+from chatter.studies.whatif.model import fingerprint
+
+_SPEEDS_A_BLOCK = 4
+
+
+def radius_in_blocks(
+    case: Case,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    method: str,
+    cluster: str | Computing | None = None,
+    folder: str | Path | None = None,
+    progress: Progress = no_progress,
+) -> NDArray[np.float64]:
+    """Spectral radius (depths, speeds) on every pair of speed and depth.
+
+    Parameters
+    ----------
+    case : Case
+    speeds, depths : array of float
+        rad/s, m.
+    method : str
+        Key of `chatter.stability.registry.METHODS`.
+    cluster : str or Computing, optional
+        As for `chatter.studies.executor.computing_on`.
+    folder : path, optional
+        Keeps finished blocks in points.jsonl there, and reuses those of the same input.
+    progress : callable
+        Called with (done, total) blocks.
+
+    Raises
+    ------
+    RunError
+        If it is interrupted; finished blocks are in the folder.
+    """
+    blocks = [
+        np.arange(first, min(first + _SPEEDS_A_BLOCK, len(speeds)))
+        for first in range(0, len(speeds), _SPEEDS_A_BLOCK)
+    ]
+    base = key_of("grid", fingerprint(case), method, repr(depths.tolist()))
+    keys = [key_of(base, repr(speeds[block].tolist())) for block in blocks]
+    radius_at = partial(_radius_of_speeds, case, depths, method)
+    wanted = [speeds[block] for block in blocks]
+    found = kept_results(radius_at, wanted, keys, "blocks of the grid", cluster, folder, progress)
+    return np.concatenate([np.array(one, dtype=np.float64) for one in found], axis=1)
+
+
+@lru_cache(maxsize=2)
+def _model_of(case: Case) -> MillingModel:
+    return milling_model(case)
+
+
+def _radius_of_speeds(
+    case: Case, depths: NDArray[np.float64], method: str, speeds: NDArray[np.float64]
+) -> list[list[float]]:
+    """Spectral radius of a block, as JSON knows it."""
+    speed, depth = (part.ravel() for part in np.meshgrid(speeds, depths))
+    radius_at = GRIDS.get(method, radius_by_collocation)
+    radius = radius_at(_model_of(case), speed, depth, resolution(case), no_progress)
+    return radius.reshape(len(depths), len(speeds)).tolist()

@@ -1,0 +1,190 @@
+"""Frequency that is heard of the dominant motion of a cut, eight points at once."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
+from chatter.stability.methods.collocation.monodromy import apply_element_map, element_scratch
+from chatter.stability.simd_batch import LANES, load, spread, store
+
+#: harmonics looked at, up to this factor beyond the highest mode
+_HIGHEST = 2.0
+
+
+class _Turning(NamedTuple):
+    """exp(-(sigma + i omega) t) at N times, and what takes it to the next harmonic (N, 8)."""
+
+    real: NDArray[np.float64]
+    imaginary: NDArray[np.float64]
+    real_step: NDArray[np.float64]
+    imaginary_step: NDArray[np.float64]
+
+
+@njit(**INNER_KERNEL)
+def _vectors(found):
+    """Real and imaginary part of the dominant vector of every lane (2, D, 8)."""
+    vectors = np.zeros((2, found.basis.shape[1], LANES))
+    for lane in range(LANES):
+        for j in range(found.used[lane]):
+            c = found.coordinates[lane, j]
+            for i in range(found.basis.shape[1]):
+                vectors[0, i, lane] += c.real * found.basis[j, i, lane]
+                vectors[1, i, lane] += c.imag * found.basis[j, i, lane]
+    return vectors
+
+
+@njit(**INNER_KERNEL)
+def _weighted(points, plans, members, speeds, lengths, real, imaginary):
+    """Times (N, 8) of all points in the cut and forces there times weights (2, N r, 8)."""
+    cuts, values, _ = real.shape
+    count = points.weight.shape[0]
+    rank = values // count
+    time, force = np.empty((cuts * count, LANES)), np.empty((2, cuts * values, LANES))
+    for lane in range(LANES):
+        plan, speed = plans.of_point[members[lane]], speeds[0, lane]
+        of_plan = plans.number[plans.first_number[plan] : plans.first_number[plan + 1]]
+        first = 1 + lengths
+        for e in range(cuts):
+            start, length = of_plan[first + e] / speed, of_plan[first + cuts + e] / speed
+            for i in range(count):
+                time[e * count + i, lane] = start + length * points.place[i + 1]
+                weight = length * points.weight[i]
+                for k in range(i * rank, (i + 1) * rank):
+                    force[0, e * values + k, lane] = weight * real[e, k, lane]
+                    force[1, e * values + k, lane] = weight * imaginary[e, k, lane]
+    return time, force
+
+
+@njit(**INNER_KERNEL)
+def _turning(time, base, line, lowest):
+    """Values at the lowest harmonic; base (8,) complex, line (8,) rad/s."""
+    out = _Turning(
+        np.empty(time.shape), np.empty(time.shape), np.empty(time.shape), np.empty(time.shape)
+    )
+    for i in range(time.shape[0]):
+        for lane in range(LANES):
+            t = time[i, lane]
+            now = np.exp(-(base[lane] + complex(0.0, lowest * line[lane])) * t)
+            out.real[i, lane], out.imaginary[i, lane] = now.real, now.imag
+            out.real_step[i, lane] = math.cos(line[lane] * t)
+            out.imaginary_step[i, lane] = -math.sin(line[lane] * t)
+    return out
+
+
+@njit(**LEAF_KERNEL)
+def _force_at_harmonic(turning, force, rank, out):
+    """Set out (2, r, 8) to the force at a harmonic, and go on to the next."""
+    for k in range(rank):
+        store(out, (0, k), spread(0.0))
+        store(out, (1, k), spread(0.0))
+    for i in range(turning.real.shape[0]):
+        a, b = load(turning.real, i), load(turning.imaginary, i)
+        for k in range(rank):
+            x, y = load(force, (0, i * rank + k)), load(force, (1, i * rank + k))
+            store(out, (0, k), load(out, (0, k)) + (a * x - b * y))
+            store(out, (1, k), load(out, (1, k)) + (a * y + b * x))
+        c, d = load(turning.real_step, i), load(turning.imaginary_step, i)
+        store(turning.real, i, a * c - b * d)
+        store(turning.imaginary, i, a * d + b * c)
+
+
+@njit(**LEAF_KERNEL)
+def _amplitudes(structure, sigma, omega, force, motion, out):
+    """Set out (1, 8) to the displacement of the tool point, squared, under a force exp(s t).
+
+    s = sigma + i omega, (1, 8) each; force (2, r, 8); motion (2, r, 8) is scratch.
+    """
+    modes, rank = structure.shape.shape
+    re, im = load(sigma, 0), load(omega, 0)
+    for k in range(rank):
+        store(motion, (0, k), spread(0.0))
+        store(motion, (1, k), spread(0.0))
+    for m in range(modes):
+        w, twice = structure.natural_frequency[m], 2.0 * structure.damping[m]
+        below = re * re - im * im + twice * w * re + w * w
+        beside = 2.0 * re * im + twice * w * im
+        size = below * below + beside * beside
+        x, y = spread(0.0), spread(0.0)
+        for k in range(rank):
+            x += structure.force_gain[m, k] * load(force, (0, k))
+            y += structure.force_gain[m, k] * load(force, (1, k))
+        real, imaginary = (x * below + y * beside) / size, (y * below - x * beside) / size
+        for k in range(rank):
+            store(motion, (0, k), load(motion, (0, k)) + structure.shape[m, k] * real)
+            store(motion, (1, k), load(motion, (1, k)) + structure.shape[m, k] * imaginary)
+    total = spread(0.0)
+    for k in range(rank):
+        x, y = load(motion, (0, k)), load(motion, (1, k))
+        total += x * x + y * y
+    store(out, 0, total)
+
+
+@njit(**SINGLE_KERNEL)
+def _loudest(structure, base, line, time, force, out):
+    """Set out (8,) to the frequency (Hz) at which a motion is largest.
+
+    The force is taken apart into exp((sigma + i omega_l) t) over the period, and drives the
+    structure at each omega_l.
+    """
+    rank = structure.shape.shape[1]
+    orders = np.empty(LANES, dtype=np.int64)
+    highest = _HIGHEST * structure.natural_frequency.max()
+    for lane in range(LANES):
+        orders[lane] = math.ceil(highest / line[lane]) + 1
+    order = orders.max()
+    turning = _turning(time, base, line, -order)
+    at_harmonic, motion = np.empty((2, rank, LANES)), np.empty((2, rank, LANES))
+    sigma, omega, amplitude = np.empty((1, LANES)), np.empty((1, LANES)), np.empty((1, LANES))
+    best = np.full(LANES, -1.0)
+    for lane in range(LANES):
+        sigma[0, lane] = base[lane].real
+    for harmonic in range(-order, order + 1):
+        _force_at_harmonic(turning, force, rank, at_harmonic)
+        for lane in range(LANES):
+            omega[0, lane] = base[lane].imag + harmonic * line[lane]
+        _amplitudes(structure, sigma, omega, at_harmonic, motion, amplitude)
+        for lane in range(LANES):
+            # what a lane hears does not depend on its neighbours
+            if abs(harmonic) <= orders[lane] and amplitude[0, lane] > best[lane]:
+                best[lane] = amplitude[0, lane]
+                out[lane] = abs(omega[0, lane]) / (2.0 * math.pi)
+
+
+@njit(**SINGLE_KERNEL)
+def heard_frequencies(arrays, plans, members, speeds, period, found, out):
+    """Set out (8,) to the chatter frequency (Hz) of the dominant motion of every lane.
+
+    Parameters
+    ----------
+    arrays : MapArrays
+    plans : Plans
+    members : (8,) array of int
+        Point of every lane.
+    speeds : (1, 8) array of float
+        rad/s.
+    period : ElementMap
+    found : DominantPairs
+    out : (8,) array of float
+    """
+    vectors, image = _vectors(found), np.empty((found.basis.shape[1], LANES))
+    real, imaginary = element_scratch(period), element_scratch(period)
+    apply_element_map(period, vectors[0], image, real)
+    apply_element_map(period, vectors[1], image, imaginary)
+    time, force = _weighted(
+        arrays.points, plans, members, speeds, period.free.shape[0], real.force, imaginary.force
+    )
+    base, line = np.empty(LANES, dtype=np.complex128), np.empty(LANES)
+    for lane in range(LANES):
+        plan = plans.of_point[members[lane]]
+        lasting = plans.number[plans.first_number[plan]] / speeds[0, lane]
+        value = found.value[lane]
+        base[lane] = np.log(value if value != 0.0 else complex(1e-300, 0.0)) / lasting
+        line[lane] = 2.0 * math.pi / lasting
+        out[lane] = 0.0
+    _loudest(arrays.structure, base, line, time, force, out)

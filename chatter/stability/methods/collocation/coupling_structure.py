@@ -1,0 +1,149 @@
+"""Plans packed into whole numbers that tell their structure and real ones that fill them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
+
+#: whole numbers before the lists of a structure
+_HEADER = 5
+
+
+class Plans(NamedTuple):
+    """Plans of N points, P distinct ones, one behind the other."""
+
+    structure: NDArray[np.int64]  # see `packed_structure`
+    first_structure: NDArray[np.int64]  # where that of each plan begins (P + 1,)
+    number: NDArray[np.float64]  # see `packed_numbers`
+    first_number: NDArray[np.int64]  # (P + 1,)
+    of_point: NDArray[np.int64]  # plan of each point (N,)
+
+
+class PlanStructure(NamedTuple):
+    """Structure of a plan: M elements, E of them in the cut, S distinct lengths, p points each."""
+
+    cut: NDArray[np.int64]  # number of each element among those in the cut, or -1 (M,)
+    shape: NDArray[np.int64]  # number of the length of each element (M,)
+    length_cuts: NDArray[np.int64]  # 1 where an element in the cut has the length (S,)
+    first_source: NDArray[np.int64]  # of each point (E p + 1,)
+    source: NDArray[np.int64]  # element, counted from the period's first; negative before it
+    point: NDArray[np.int64]  # the only one that a source needs of its element, or -1
+    memory: int  # elements before the period that are looked back to
+
+
+@njit(**LEAF_KERNEL)
+def _put(part, out, at):
+    """Copy an array of one axis into another from a place on; returns the next place."""
+    for i in range(part.shape[0]):
+        out[at + i] = part[i]
+    return at + part.shape[0]
+
+
+@njit(**SINGLE_KERNEL)
+def packed_structure(layout, first_source, element, point):
+    """Pack what of a plan is whole numbers."""
+    count = first_source[first_source.shape[0] - 1]
+    elements, lengths = layout.cut.shape[0], layout.length_cuts.shape[0]
+    out = np.empty(
+        _HEADER + 2 * elements + lengths + first_source.shape[0] + 2 * count, dtype=np.int64
+    )
+    out[0], out[1], out[2] = elements, lengths, layout.cut_start.shape[0]
+    memory = 0
+    for entry in range(count):
+        memory = max(memory, -element[entry])
+    out[3], out[4] = count, memory
+    at = _put(layout.cut, out, _HEADER)
+    at = _put(layout.shape, out, at)
+    at = _put(layout.length_cuts, out, at)
+    at = _put(first_source, out, at)
+    at = _put(element[:count], out, at)
+    _put(point[:count], out, at)
+    return out
+
+
+@njit(**SINGLE_KERNEL)
+def packed_numbers(layout, stiffness, dashpot, block, sources):
+    """Pack what of a plan is real: period, lengths, starts, couplings, blocks of the sources."""
+    kept = sources * block.shape[1] * block.shape[2]
+    out = np.empty(
+        1 + layout.length.shape[0] + 2 * layout.cut_start.shape[0] + 2 * stiffness.size + kept
+    )
+    out[0] = layout.period
+    at = _put(layout.length, out, 1)
+    at = _put(layout.cut_start, out, at)
+    at = _put(layout.cut_length, out, at)
+    at = _put(stiffness.reshape(stiffness.size), out, at)
+    at = _put(dashpot.reshape(stiffness.size), out, at)
+    _put(block.reshape(block.size)[:kept], out, at)
+    return out
+
+
+@njit(**SINGLE_KERNEL)
+def packed_plans(structures, numbers, of_point):
+    """Lay lists of packed plans one behind the other.
+
+    Parameters
+    ----------
+    structures : list of arrays of int
+    numbers : list of arrays of float
+    of_point : (N,) array of int
+        Place in the lists.
+
+    Returns
+    -------
+    Plans
+    """
+    count = len(structures)
+    first_structure = np.zeros(count + 1, dtype=np.int64)
+    first_number = np.zeros(count + 1, dtype=np.int64)
+    for plan in range(count):
+        first_structure[plan + 1] = first_structure[plan] + structures[plan].shape[0]
+        first_number[plan + 1] = first_number[plan] + numbers[plan].shape[0]
+    structure, number = np.empty(first_structure[count], np.int64), np.empty(first_number[count])
+    for plan in range(count):
+        _put(structures[plan], structure, first_structure[plan])
+        _put(numbers[plan], number, first_number[plan])
+    return Plans(structure, first_structure, number, first_number, of_point)
+
+
+@njit(**INNER_KERNEL)
+def structure_at(plans, point):
+    """Packed structure of the plan of a point."""
+    plan = plans.of_point[point]
+    return plans.structure[plans.first_structure[plan] : plans.first_structure[plan + 1]]
+
+
+@njit(**INNER_KERNEL)
+def structure_of_plan(packed):
+    """Unpack the structure of a plan.
+
+    Returns
+    -------
+    PlanStructure
+    """
+    elements, lengths, count = packed[0], packed[1], packed[3]
+    points = packed.shape[0] - _HEADER - 2 * elements - lengths - 2 * count
+    a = _HEADER + elements
+    b = a + elements
+    c = b + lengths
+    d = c + points
+    e = d + count
+    return PlanStructure(
+        packed[_HEADER:a], packed[a:b], packed[b:c], packed[c:d], packed[d:e], packed[e:], packed[4]
+    )
+
+
+@njit(**LEAF_KERNEL)
+def alike(one, other):
+    """Tell whether two packed structures are the same: lanes of one map may hold both plans."""
+    if one.shape[0] != other.shape[0]:
+        return False
+    same = 0
+    while same < one.shape[0] and one[same] == other[same]:
+        same += 1
+    return same == one.shape[0]

@@ -1,0 +1,242 @@
+"""Where the elements of a period begin and end.
+
+Between the borders that the cut sets in every period of the tool, elements turn the spindle by the
+same angle. So the motion of an earlier tooth, seen from a place in an element, lies in one element
+also where the speed varies. Where a triangular variation of the speed has its corners, elements are
+cut in two. Where no tooth cuts, the free motion is one element.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
+from chatter.stability.methods.collocation.element_borders import LEVEL_RATIO, SAME_BORDER
+from chatter.stability.spindle_rotation import speed_at, time_at
+
+#: element lengths closer than this share are the same
+_SAME_LENGTH = 1e-9
+#: of more intervals than these, or where the speed varies, elements are counted in steps of the
+#: speed, in powers of two
+_FEW_INTERVALS = 12
+_STEP_OF_MANY = 0.25
+#: over so small an angle the speed is even, and a difference of times would be rounded, rad
+_EVEN = 1e-6
+
+
+class ElementLayout(NamedTuple):
+    """M elements of a period, of which E lie in the cut; places and lengths in mean angle turned.
+
+    Mean angle is time times the mean spindle speed.
+    """
+
+    cut: NDArray[np.int64]  # number among the elements in the cut, -1 for free motion (M,)
+    shape: NDArray[np.int64]  # number of the length (M,)
+    length: NDArray[np.float64]  # distinct lengths, rad (S,)
+    length_cuts: NDArray[np.int64]  # 1 where an element in the cut has the length (S,)
+    cut_start: NDArray[np.float64]  # start of the elements in the cut, rad (E,)
+    cut_length: NDArray[np.float64]  # rad (E,)
+    period: float  # rad
+
+
+class _Spans(NamedTuple):
+    """Elements by the angle that the spindle turns (M,)."""
+
+    start: NDArray[np.float64]  # rad
+    length: NDArray[np.float64]  # rad
+    engaged: NDArray[np.int64]
+
+
+@njit(**LEAF_KERNEL)
+def speed_step(speed, step):
+    """Speed, at most the given one, out of steps of a power of two; rad/s."""
+    return 2.0 ** (step * math.floor(math.log2(speed) / step))
+
+
+@njit(**LEAF_KERNEL)
+def _longest_span(turn, tool_period, start, end):
+    """Longest mean angle that the spindle needs from one angle to another in any tool period."""
+    longest = end - start
+    if turn.amplitude > 0.0:
+        for pattern in range(turn.patterns):
+            turned = pattern * tool_period
+            longest = max(longest, time_at(turn, turned + end) - time_at(turn, turned + start))
+    return longest
+
+
+@njit(**INNER_KERNEL)
+def element_counts(resolution, borders, turn, tool_period, speed, depth):
+    """Elements (I,) that each interval needs at a mean speed (rad/s), in every tool period."""
+    counts = np.empty(borders.engaged.shape[0], dtype=np.int64)
+    if counts.shape[0] > _FEW_INTERVALS or turn.amplitude > 0.0:
+        # one of so many would change its number at every speed, and nothing could be shared
+        speed = speed_step(speed, _STEP_OF_MANY)
+    waves = math.sqrt(1.0 + resolution.stiffening * depth / resolution.fastest**2)
+    for i in range(counts.shape[0]):
+        counts[i] = 1
+        if borders.engaged[i] == 1:
+            start, end = borders.angle[i], borders.angle[i + 1]
+            span = _longest_span(turn, tool_period, start, end) / speed
+            need = max(span * waves / resolution.longest, (end - start) / resolution.longest_angle)
+            counts[i] = max(1, math.ceil(need - 1e-9))
+    return counts
+
+
+@njit(**LEAF_KERNEL)
+def _put_span(spans, m, start, length, engaged):
+    """Set element m; returns the number of the next."""
+    spans.start[m], spans.length[m], spans.engaged[m] = start, length, engaged
+    return m + 1
+
+
+@njit(**SINGLE_KERNEL)
+def _tool_period_spans(borders, counts):
+    """Elements of one period of the tool."""
+    angle, levels, engaged = borders.angle, borders.levels, borders.engaged
+    room = 0
+    for i in range(counts.shape[0]):
+        room += counts[i] + levels[i] + levels[i + 1]
+    spans = _Spans(np.empty(room), np.empty(room), np.empty(room, dtype=np.int64))
+    m = 0
+    for i in range(counts.shape[0]):
+        step = (angle[i + 1] - angle[i]) / counts[i]
+        for k in range(counts[i]):
+            low, high = angle[i] + k * step, angle[i] + (k + 1) * step
+            rising = levels[i] if engaged[i] == 1 and k == 0 else 0
+            falling = levels[i + 1] if engaged[i] == 1 and k == counts[i] - 1 else 0
+            for level in range(rising, 0, -1):
+                inner = step * LEVEL_RATIO ** (level + 1) if level < rising else 0.0
+                m = _put_span(spans, m, low + inner, step * LEVEL_RATIO**level - inner, 1)
+            cut_off = (LEVEL_RATIO if rising > 0 else 0.0) + (LEVEL_RATIO if falling > 0 else 0.0)
+            start = low + step * LEVEL_RATIO if rising > 0 else low
+            m = _put_span(spans, m, start, step * (1.0 - cut_off), engaged[i])
+            for level in range(1, falling + 1):
+                outer = step * LEVEL_RATIO**level
+                inner = step * LEVEL_RATIO ** (level + 1) if level < falling else 0.0
+                m = _put_span(spans, m, high - outer, outer - inner, 1)
+    return _Spans(spans.start[:m], spans.length[:m], spans.engaged[:m])
+
+
+@njit(**LEAF_KERNEL)
+def _until_corner(turn, start, length):
+    """Mean angle to the first corner of a triangular variation within a length, or the length."""
+    if turn.triangle == 0 or turn.amplitude == 0.0:
+        return length
+    half = 0.5 / turn.frequency
+    ahead = half * (math.ceil(start / half - 0.5) + 0.5) - start
+    if ahead <= SAME_BORDER:
+        ahead += half
+    return ahead if length - ahead > SAME_BORDER else length
+
+
+@njit(**LEAF_KERNEL)
+def _lasting(turn, start, angle, length):
+    """Mean angle from one on, at a spindle angle, that the spindle needs for some more."""
+    if turn.amplitude == 0.0:
+        return length
+    if length < _EVEN:
+        return length / speed_at(turn, start)
+    return time_at(turn, angle + length) - start
+
+
+@njit(**INNER_KERNEL)
+def element_layout(borders, counts, turn, tool_period):
+    """Cut a period into elements.
+
+    Parameters
+    ----------
+    borders : PeriodBorders
+    counts : (I,) array of int
+        Elements of each interval.
+    turn : SpindleTurn
+        In mean angle.
+    tool_period : float
+        Angle after which the tool looks the same again, rad.
+
+    Returns
+    -------
+    ElementLayout
+    """
+    spans = _tool_period_spans(borders, counts)
+    # every half of a cycle has a corner
+    room = turn.patterns * spans.start.shape[0] + 2 * turn.cycles * turn.triangle
+    start, length = np.empty(room), np.empty(room)
+    number = np.full(room, -1, dtype=np.int64)
+    m, cuts = 0, 0
+    for pattern in range(turn.patterns):
+        for i in range(spans.start.shape[0]):
+            angle = pattern * tool_period + spans.start[i]
+            begin = time_at(turn, angle)
+            left = _lasting(turn, begin, angle, spans.length[i])
+            while left > 0.0:
+                part = _until_corner(turn, begin, left)
+                start[m], length[m] = begin, part
+                if spans.engaged[i] == 1:
+                    number[m] = cuts
+                    cuts += 1
+                begin, left, m = begin + part, left - part, m + 1
+    shape, cut_start, cut_length = np.empty(m, dtype=np.int64), np.empty(cuts), np.empty(cuts)
+    for i in range(m):
+        if number[i] >= 0:
+            cut_start[number[i]], cut_length[number[i]] = start[i], length[i]
+    distinct, of_cut = _shapes(length, number, m, turn.amplitude == 0.0, shape)
+    period = turn.patterns * tool_period
+    return ElementLayout(number[:m], shape, distinct, of_cut, cut_start, cut_length, period)
+
+
+@njit(**SINGLE_KERNEL)
+def _shapes(length, number, count, even, shape):
+    """Set shape (count,) to the number of each length; returns them and which lie in the cut.
+
+    Where the speed is not even, every element has a length of its own: what is alike by chance
+    would make structures differ.
+    """
+    distinct, of_cut = np.empty(count), np.zeros(count, dtype=np.int64)
+    shapes = 0
+    for m in range(count):
+        found = -1
+        for s in range(shapes if even else 0):
+            if abs(distinct[s] - length[m]) <= _SAME_LENGTH * length[m]:
+                found = s
+                break
+        if found < 0:
+            found = shapes
+            distinct[shapes] = length[m]
+            shapes += 1
+        shape[m] = found
+        if number[m] >= 0:
+            of_cut[found] = 1
+    return distinct[:shapes], of_cut[:shapes]
+
+
+@njit(**LEAF_KERNEL)
+def element_before(layout, angle):
+    """Element in the cut that holds a mean angle, counted on over the periods, and the place in it.
+
+    Between two elements in the cut, by rounding, the end of the nearer one.
+    """
+    cuts = layout.cut_start.shape[0]
+    first = layout.cut_start[0]
+    turn = math.floor((angle - first) / layout.period + SAME_BORDER)
+    local = angle - turn * layout.period
+    low, high = 0, cuts
+    while high - low > 1:
+        middle = (low + high) // 2
+        if layout.cut_start[middle] <= local + SAME_BORDER * layout.period:
+            low = middle
+        else:
+            high = middle
+    place = (local - layout.cut_start[low]) / layout.cut_length[low]
+    if place > 1.0:
+        beyond = local - layout.cut_start[low] - layout.cut_length[low]
+        following = (layout.cut_start[low + 1] if low + 1 < cuts else first + layout.period) - local
+        if following < beyond:
+            if low + 1 < cuts:
+                return low + 1 + turn * cuts, 0.0
+            return (turn + 1) * cuts, 0.0
+    return low + turn * cuts, min(1.0, max(0.0, place))

@@ -1,0 +1,27 @@
+"""What the stability kernels see of a case: flat arrays in SI."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cutting.force.directional_coefficients import DirectionalTable
+
+
+class MillingArrays(NamedTuple):
+    """A milling cut on a modal structure, with speed and depth left open.
+
+    The motion of the tool point against the workpiece lies in the space of the mode directions;
+    r is its dimension (1 to 3) and n the number of modes.
+    """
+
+    natural_frequency: NDArray[np.float64]  # rad/s (n,)
+    damping: NDArray[np.float64]  # ratio (n,)
+    shape: NDArray[np.float64]  # displacement per modal coordinate (n, r)
+    force_gain: NDArray[np.float64]  # modal acceleration per force, 1/kg (n, r)
+    table: DirectionalTable
+    tooth_pitch: float  # rad
+    lag_per_depth: float  # tan(helix)/R, rad/m
+    radius: float  # m, for the cutting speed

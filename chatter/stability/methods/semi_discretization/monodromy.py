@@ -1,0 +1,486 @@
+"""First-order semi-discretization of one tooth period.
+
+The delayed motion is interpolated linearly over a step, the periodic coefficients are averaged
+exactly over it, and the resulting constant-coefficient equation is solved exactly
+(Insperger and Stepan 2004, Int. J. Numer. Meth. Eng. 61, first-order method). Steps end at every
+entry and exit of tip and top of the edge, so that no step straddles a jump; where no tooth cuts,
+the free motion is one exact step and no delayed motion is stored.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit, types
+from numba.extending import overload
+from numpy.typing import NDArray
+
+from chatter.engine.presets import KERNEL, SUMMING_KERNEL
+from chatter.stability.methods.semi_discretization.step_schemes import (
+    FirstOrder,
+    FullDiscretization,
+    SecondOrder,
+    ZerothOrder,
+    fully_discretized,
+    semi_discretized,
+)
+from cutting.force.directional_coefficients import mean_coupling
+
+#: intervals shorter than this share of a tooth period are joined to their neighbour
+_SMALLEST_INTERVAL = 1e-9
+
+
+class PeriodMap(NamedTuple):
+    """The map of state and delayed motion over one tooth period, step by step.
+
+    The state holds ``(omega x, v)`` of every mode, so that its norm is that of velocity. Delayed
+    motion is kept at `nodes` nodes, those that bound a step in the cut. A step leads from node
+    ``left`` to ``left + 1``; a free step has ``left = -1``.
+    """
+
+    transition: NDArray[np.float64]  # (steps, 2n, 2n)
+    from_left: NDArray[np.float64]  # of the delayed motion at the left node, (steps, 2n, r)
+    from_right: NDArray[np.float64]  # at the right node, (steps, 2n, r)
+    left: NDArray[np.int64]  # (steps,)
+    duration: NDArray[np.float64]  # s, (steps,)
+    output: NDArray[np.float64]  # motion of the tool point from the state, (r, 2n)
+    nodes: int
+    further: NDArray[np.int64]  # third node of a parabola (steps,); empty where there is none
+    from_further: NDArray[np.float64]  # (steps, 2n, r)
+
+
+@njit(**KERNEL)
+def interval_borders(arrays, lag):
+    """Angles in one tooth pitch at which an edge enters or leaves, ascending, both ends included.
+
+    Returns
+    -------
+    (k+1,) array of float
+        rad; ``borders[-1] = borders[0] + tooth_pitch``.
+    """
+    pitch = arrays.tooth_pitch
+    entry, leave = arrays.table.entry, arrays.table.exit
+    angles = np.array([entry, leave, entry + lag, leave + lag])
+    for i in range(4):
+        angles[i] -= pitch * math.floor(angles[i] / pitch)
+    angles.sort()
+    borders = np.empty(5)
+    count = 0
+    for i in range(4):
+        if count == 0 or angles[i] - borders[count - 1] > _SMALLEST_INTERVAL * pitch:
+            borders[count] = angles[i]
+            count += 1
+    # the last one may be the first one, a pitch later
+    if count > 1 and borders[0] + pitch - borders[count - 1] <= _SMALLEST_INTERVAL * pitch:
+        count -= 1
+    borders[count] = borders[0] + pitch
+    return borders[: count + 1]
+
+
+@njit(**KERNEL)
+def _is_engaged(arrays, angle, lag):
+    """True where some part of an edge is in the cut when a tooth tip is at the angle."""
+    pitch = arrays.tooth_pitch
+    turn = math.ceil((arrays.table.entry - angle) / pitch)
+    return angle + turn * pitch < arrays.table.exit + lag
+
+
+@njit(**KERNEL)
+def _free_transition(arrays, duration, out):
+    """Exact free motion of every mode over a duration, written into out (2n, 2n)."""
+    out[:, :] = 0.0
+    for i in range(arrays.natural_frequency.shape[0]):
+        w, z = arrays.natural_frequency[i], arrays.damping[i]
+        damped = w * math.sqrt(1.0 - z * z)
+        decay = math.exp(-z * w * duration)
+        c = decay * math.cos(damped * duration)
+        s = decay * math.sin(damped * duration)
+        a, b = z * w / damped, w / damped
+        out[2 * i, 2 * i] = c + a * s
+        out[2 * i, 2 * i + 1] = b * s
+        out[2 * i + 1, 2 * i] = -b * s
+        out[2 * i + 1, 2 * i + 1] = c - a * s
+
+
+@njit(**KERNEL)
+def _multiply_generator(arrays, stiffness, dashpot, x, motion, force, out):
+    """Set out = A x for the state equation in the cut; x and out have shape (2n, m)."""
+    modes, rank = arrays.shape.shape
+    columns = x.shape[1]
+    for j in range(columns):
+        for k in range(rank):
+            motion[0, k] = 0.0
+            motion[1, k] = 0.0
+        for i in range(modes):
+            position = x[2 * i, j] / arrays.natural_frequency[i]
+            for k in range(rank):
+                motion[0, k] += arrays.shape[i, k] * position
+                motion[1, k] += arrays.shape[i, k] * x[2 * i + 1, j]
+        for k in range(rank):
+            force[k] = 0.0
+            for m in range(rank):
+                force[k] -= stiffness[k, m] * motion[0, m] + dashpot[k, m] * motion[1, m]
+        for i in range(modes):
+            w = arrays.natural_frequency[i]
+            out[2 * i, j] = w * x[2 * i + 1, j]
+            rate = -w * x[2 * i, j] - 2.0 * arrays.damping[i] * w * x[2 * i + 1, j]
+            for k in range(rank):
+                rate += arrays.force_gain[i, k] * force[k]
+            out[2 * i + 1, j] = rate
+
+
+@njit(**KERNEL)
+def _generator_norm(arrays, stiffness, dashpot):
+    """Upper bound of the norm of the generator, 1/s."""
+    free, gain_0, gain_1, reach = 0.0, 0.0, 0.0, 0.0
+    modes, rank = arrays.shape.shape
+    for i in range(modes):
+        w = arrays.natural_frequency[i]
+        free = max(free, w * (1.0 + 2.0 * arrays.damping[i]))
+        for k in range(rank):
+            reach += arrays.force_gain[i, k] ** 2
+            gain_0 += (arrays.shape[i, k] / w) ** 2
+            gain_1 += arrays.shape[i, k] ** 2
+    size_0, size_1 = 0.0, 0.0
+    for k in range(rank):
+        for m in range(rank):
+            size_0 += stiffness[k, m] ** 2
+            size_1 += dashpot[k, m] ** 2
+    return free + math.sqrt(reach * size_0 * gain_0) + math.sqrt(reach * size_1 * gain_1)
+
+
+@njit(**KERNEL)
+def _cutting_step(arrays, stiffness, dashpot, duration, transition, from_left, from_right, work):
+    """Exact step with constant coefficients and a delayed motion linear in time.
+
+    Taylor series of exp(A h), h phi_1(A h) B and h^2 phi_2(A h) B on a fraction of the step,
+    then doubling (Al-Mohy and Higham 2011 for the choice of fraction).
+    """
+    size, rank = from_left.shape
+    bound = _generator_norm(arrays, stiffness, dashpot) * duration
+    doublings = max(0, math.ceil(math.log2(max(bound, 1e-300))))
+    h = duration / 2.0**doublings
+    term, following, motion, force, product, constant, ramp = work
+    # columns 0..2n-1 of term carry the identity, the last r the input matrix
+    term[:, :] = 0.0
+    for i in range(size):
+        term[i, i] = 1.0
+    for i in range(size // 2):
+        for k in range(rank):
+            total = 0.0
+            for m in range(rank):
+                total += arrays.force_gain[i, m] * stiffness[m, k]
+            term[2 * i + 1, size + k] = total
+    transition[:, :] = term[:, :size]
+    for i in range(size):
+        for k in range(rank):
+            constant[i, k] = h * term[i, size + k]
+            ramp[i, k] = 0.5 * h * h * term[i, size + k]
+    for order in range(1, 30):
+        _multiply_generator(arrays, stiffness, dashpot, term, motion, force, following)
+        factor = h / order
+        largest = 0.0
+        for i in range(size):
+            for j in range(size + rank):
+                term[i, j] = factor * following[i, j]
+            for j in range(size):
+                transition[i, j] += term[i, j]
+                largest = max(largest, abs(term[i, j]))
+            for k in range(rank):
+                constant[i, k] += h / (order + 1) * term[i, size + k]
+                ramp[i, k] += h * h / ((order + 1) * (order + 2)) * term[i, size + k]
+        if largest < 1e-17:
+            break
+    for _ in range(doublings):
+        for i in range(size):
+            for k in range(rank):
+                moved, moved_ramp = 0.0, 0.0
+                for j in range(size):
+                    moved += transition[i, j] * constant[j, k]
+                    moved_ramp += transition[i, j] * ramp[j, k]
+                from_left[i, k] = moved
+                from_right[i, k] = moved_ramp
+        for i in range(size):
+            for k in range(rank):
+                ramp[i, k] += from_right[i, k] + h * constant[i, k]
+                constant[i, k] += from_left[i, k]
+        for i in range(size):
+            for j in range(size):
+                total = 0.0
+                for k in range(size):
+                    total += transition[i, k] * transition[k, j]
+                product[i, j] = total
+        transition[:, :] = product
+        h *= 2.0
+    for i in range(size):
+        for k in range(rank):
+            from_right[i, k] = ramp[i, k] / duration
+            from_left[i, k] = constant[i, k] - from_right[i, k]
+
+
+@njit(**KERNEL)
+def _set_responses(transition, from_left, from_right, found, at_left, at_right):
+    transition[:, :] = found
+    from_left[:, :] = at_left
+    from_right[:, :] = at_right
+
+
+@njit(**KERNEL)
+def _zeroth_order(arrays, stiffness, dashpot, duration, transition, left, right, work):  # noqa: ARG001
+    found, constant, _, _ = semi_discretized(arrays, stiffness, dashpot, duration)
+    _set_responses(transition, left, right, found, 0.5 * constant, 0.5 * constant)
+
+
+@njit(**KERNEL)
+def _full(arrays, stiffness, dashpot, duration, transition, left, right, work):  # noqa: ARG001
+    found, at_left, at_right = fully_discretized(arrays, stiffness, dashpot, duration)
+    _set_responses(transition, left, right, found, at_left, at_right)
+
+
+@njit(**KERNEL)
+def _linear_and_square(arrays, stiffness, dashpot, duration, transition, left, right, work):
+    found, constant, ramp, square = semi_discretized(arrays, stiffness, dashpot, duration)
+    _set_responses(transition, left, right, found, constant - ramp, ramp)
+    # what a parabola that vanishes at both ends, (s/h)^2 - s/h, adds
+    work[4][:, : ramp.shape[1]] = square - ramp
+
+
+_STEPS = {
+    ZerothOrder: _zeroth_order,
+    FirstOrder: _cutting_step,
+    SecondOrder: _linear_and_square,
+    FullDiscretization: _full,
+}
+
+
+def take_step(scheme, arrays, stiffness, dashpot, duration, transition, left, right, work):
+    """Discretize a step by the scheme."""
+    _STEPS[type(scheme)](arrays, stiffness, dashpot, duration, transition, left, right, work)
+
+
+@overload(take_step)
+def _take_step(scheme, arrays, stiffness, dashpot, duration, transition, left, right, work):  # noqa: ARG001
+    if not isinstance(scheme, types.BaseNamedTuple) or scheme.instance_class not in _STEPS:
+        return None
+    step = _STEPS[scheme.instance_class]
+
+    def stepped(scheme, arrays, stiffness, dashpot, duration, transition, left, right, work):  # noqa: ARG001
+        step(arrays, stiffness, dashpot, duration, transition, left, right, work)
+
+    return stepped
+
+
+def thirds_of(scheme, steps):
+    """Number of steps that refer to a third node."""
+    return steps if isinstance(scheme, SecondOrder) else 0
+
+
+@overload(thirds_of)
+def _thirds_of(scheme, steps):  # noqa: ARG001
+    if isinstance(scheme, types.BaseNamedTuple) and scheme.instance_class is SecondOrder:
+        return lambda scheme, steps: steps  # noqa: ARG005
+    return lambda scheme, steps: 0  # noqa: ARG005
+
+
+@njit(**KERNEL)
+def _bend(excess, from_left, from_right, from_further, before):
+    """Turn the line over a step into a parabola through a node a step further on, or before.
+
+    `excess` (2n, r) is what (s/h)^2 - s/h makes; the parabola adds half the second difference.
+    """
+    from_further[:, :] = 0.5 * excess
+    if before:
+        from_left[:, :] -= excess
+        from_right[:, :] += 0.5 * excess
+    else:
+        from_left[:, :] += 0.5 * excess
+        from_right[:, :] -= excess
+
+
+@njit(**KERNEL)
+def _interval_steps(arrays, borders, lag, steps, refinement, free_steps):
+    """Number of steps of each interval, negative where no tooth cuts."""
+    counts = np.empty(borders.shape[0] - 1, dtype=np.int64)
+    for i in range(counts.shape[0]):
+        share = (borders[i + 1] - borders[i]) / arrays.tooth_pitch
+        if _is_engaged(arrays, 0.5 * (borders[i] + borders[i + 1]), lag):
+            counts[i] = refinement * max(1, math.ceil(share * steps - 1e-6))
+        else:
+            counts[i] = -max(1, math.ceil(share * free_steps - 1e-6))
+    return counts
+
+
+@njit(**KERNEL)
+def build_period_map(arrays, speed, depth, steps, refinement, free_steps):
+    """Assemble the steps of one tooth period by first-order semi-discretization; see below."""
+    return period_map_by(FirstOrder(0.0), arrays, speed, depth, steps, refinement, free_steps)
+
+
+@njit(**KERNEL)
+def period_map_by(scheme, arrays, speed, depth, steps, refinement, free_steps):
+    """Assemble the steps of one tooth period.
+
+    Parameters
+    ----------
+    scheme : ZerothOrder, FirstOrder, SecondOrder or FullDiscretization
+    arrays : MillingArrays
+    speed : float
+        Spindle speed, rad/s.
+    depth : float
+        Axial depth, m.
+    steps : int
+        Steps a tooth period; an interval of engagement gets its share, rounded up.
+    refinement : int
+        Every step in the cut is divided by this, for extrapolation on nested steps.
+    free_steps : int
+        The same as `steps` where no tooth cuts; 1 suffices but for a picture of the motion.
+
+    Returns
+    -------
+    PeriodMap
+    """
+    modes, rank = arrays.shape.shape
+    size = 2 * modes
+    lag = depth * arrays.lag_per_depth
+    borders = interval_borders(arrays, lag)
+    counts = _interval_steps(arrays, borders, lag, steps, refinement, free_steps)
+    total = np.abs(counts).sum()
+    transition = np.zeros((total, size, size))
+    from_left = np.zeros((total, size, rank))
+    from_right = np.zeros((total, size, rank))
+    left = np.full(total, -1, dtype=np.int64)
+    thirds = thirds_of(scheme, total)
+    further = np.zeros(thirds, dtype=np.int64)
+    from_further = np.zeros((thirds, size, rank))
+    duration = np.empty(total)
+    work = (
+        np.empty((size, size + rank)),
+        np.empty((size, size + rank)),
+        np.empty((2, rank)),
+        np.empty(rank),
+        np.empty((size, size)),
+        np.empty((size, rank)),
+        np.empty((size, rank)),
+    )
+    couplings = arrays.table.matrix.shape[0]
+    mean = np.empty((couplings, rank, rank))
+    stiffness = np.zeros((rank, rank))
+    dashpot = np.zeros((rank, rank))
+    cutting_speed = arrays.radius * speed
+    step, nodes = 0, 0
+    for i in range(counts.shape[0]):
+        count = abs(counts[i])
+        width = (borders[i + 1] - borders[i]) / count
+        if counts[i] > 0 and (i == 0 or counts[i - 1] < 0):
+            nodes += 1
+        for k in range(count):
+            duration[step] = width / speed
+            if counts[i] < 0:
+                _free_transition(arrays, duration[step], transition[step])
+            else:
+                start = borders[i] + k * width
+                mean_coupling(arrays.table, arrays.tooth_pitch, start, start + width, lag, mean)
+                stiffness[:, :] = depth * mean[0]
+                if couplings > 1:
+                    dashpot[:, :] = depth / cutting_speed * mean[1]
+                take_step(
+                    scheme,
+                    arrays,
+                    stiffness,
+                    dashpot,
+                    duration[step],
+                    transition[step],
+                    from_left[step],
+                    from_right[step],
+                    work,
+                )
+                left[step] = nodes - 1
+                if thirds > 0 and count > 1:
+                    # the last step of an interval has no node beyond it of the same length
+                    before = k == count - 1
+                    further[step] = nodes - 2 if before else nodes + 1
+                    _bend(
+                        work[4][:, :rank],
+                        from_left[step],
+                        from_right[step],
+                        from_further[step],
+                        before,
+                    )
+                nodes += 1
+            step += 1
+    output = np.zeros((rank, size))
+    for i in range(modes):
+        for k in range(rank):
+            output[k, 2 * i] = arrays.shape[i, k] / arrays.natural_frequency[i]
+    return PeriodMap(
+        transition, from_left, from_right, left, duration, output, nodes, further, from_further
+    )
+
+
+@njit(**KERNEL)
+def _record_motion(output, state, motion):
+    """Set motion (r,) to that of the tool point."""
+    rank, size = output.shape
+    for k in range(rank):
+        total = 0.0
+        for j in range(size):
+            total += output[k, j] * state[j]
+        motion[k] = total
+
+
+@njit(**SUMMING_KERNEL)
+def advance_step(period, step, vector, state, following):
+    """Advance the state over one step; vector holds the motion of the last period after 2n."""
+    _, size, rank = period.from_left.shape
+    for i in range(size):
+        total = 0.0
+        for j in range(size):
+            total += period.transition[step, i, j] * state[j]
+        following[i] = total
+    if period.left[step] >= 0:
+        base = size + period.left[step] * rank
+        for i in range(size):
+            for k in range(rank):
+                following[i] += (
+                    period.from_left[step, i, k] * vector[base + k]
+                    + period.from_right[step, i, k] * vector[base + rank + k]
+                )
+        if period.further.shape[0] > 0:
+            third = size + period.further[step] * rank
+            for i in range(size):
+                for k in range(rank):
+                    following[i] += period.from_further[step, i, k] * vector[third + k]
+    state[:] = following
+
+
+@njit(**KERNEL)
+def period_scratch(period):
+    """Scratch arrays of `apply_period_map`."""
+    size = period.from_left.shape[1]
+    return np.empty(size), np.empty(size)
+
+
+@njit(**KERNEL)
+def apply_period_map(period, vector, out, scratch):
+    """Set out to the image of the vector after one tooth period.
+
+    Parameters
+    ----------
+    period : PeriodMap
+    vector, out : (2n + nodes r,) array of float
+        State, then the motion at the nodes during the last period.
+    scratch : tuple of two (2n,) arrays of float
+    """
+    state, following = scratch
+    steps, size, rank = period.from_left.shape
+    state[:] = vector[:size]
+    for s in range(steps):
+        base = size + period.left[s] * rank
+        if period.left[s] >= 0:
+            _record_motion(period.output, state, out[base : base + rank])
+        advance_step(period, s, vector, state, following)
+        if period.left[s] >= 0:
+            _record_motion(period.output, state, out[base + rank : base + 2 * rank])
+    out[:size] = state

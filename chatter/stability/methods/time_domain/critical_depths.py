@@ -1,0 +1,105 @@
+"""Limits of stability in the time domain: growth measured in simulated cuts."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.case import Case
+from chatter.engine.parallel import Progress, no_progress, sweep
+from chatter.simulation.perturbation.growth_rate import Growth, growth_of
+from chatter.stability.crossings import find_crossings
+from chatter.stability.limit_curve import LimitCurve
+from dynamics.modal.modes import Mode
+
+#: depths looked at, at the most; limits are refined to this share of their depth
+_MOST_DEPTHS = 32
+_DEPTH_TOLERANCE = 5e-4
+#: growth that is out of the chip at once, as a logarithm a period
+_LARGEST_GROWTH = 1.0
+#: growth that stands for that with no cut, where nothing is to be simulated
+_AT_REST = -0.01
+#: the frequency is measured this far beyond the limit
+_BEYOND = 1.005
+
+
+def case_at(case: Case, speed: float, depth: float) -> Case:
+    """Case at another spindle speed (rad/s) and axial depth (m), checked already."""
+    cut = case.cut.model_copy(update={"spindle_speed": speed, "axial_depth": depth})
+    return case.model_copy(update={"cut": cut})
+
+
+def growths(
+    case: Case,
+    modes: tuple[Mode, ...],
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    progress: Progress = no_progress,
+) -> list[Growth]:
+    """Growth at n points of speed (rad/s) and depth (m), in parallel threads."""
+
+    def at(points: NDArray[np.int64]) -> list[Growth]:
+        return [growth_of(case_at(case, float(speeds[i]), float(depths[i])), modes) for i in points]
+
+    return [growth for chunk in sweep(at, len(speeds), progress, 1) for growth in chunk]
+
+
+def time_limit_curve(
+    case: Case,
+    modes: tuple[Mode, ...],
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    progress: Progress = no_progress,
+) -> LimitCurve:
+    """Limits in depth at every speed.
+
+    Parameters
+    ----------
+    case : Case
+    modes : tuple of Mode
+        Of its structure.
+    speeds : (n,) array of float
+        rad/s.
+    depths : (m,) array of float
+        Net, m; thinned to at most 32 depths.
+    progress : callable
+        Called with (done, total) points of the net.
+    """
+    net_depths = depths[:: -(-len(depths) // _MOST_DEPTHS)]
+    if net_depths[-1] != depths[-1]:
+        net_depths = np.append(net_depths, depths[-1])
+    speed, depth = (part.ravel() for part in np.meshgrid(speeds, net_depths, indexing="ij"))
+    net = _logarithms(growths(case, modes, speed, depth, progress))
+
+    def refined(index: NDArray[np.int64], at: NDArray[np.float64]) -> NDArray[np.float64]:
+        found = np.full(len(index), _AT_REST)
+        cut = at > 0.0
+        found[cut] = _logarithms(growths(case, modes, speeds[index[cut]], at[cut]))
+        return found
+
+    crossings = find_crossings(net.reshape(len(speeds), -1), net_depths, refined, _DEPTH_TOLERANCE)
+    first = np.array([found[0] if found.size else np.inf for found in crossings])
+    frequency = np.full(len(speeds), np.nan)
+    kind = ["none"] * len(speeds)
+    lost = np.flatnonzero(np.isfinite(first))
+    beyond = growths(case, modes, speeds[lost], _BEYOND * first[lost])
+    for i, growth in zip(lost, beyond, strict=True):
+        frequency[i] = growth.frequency
+        kind[i] = growth.bifurcation
+    return LimitCurve(
+        spindle_speed=speeds,
+        critical_depth=first,
+        chatter_frequency=frequency,
+        bifurcation=tuple(kind),
+        crossings=tuple(crossings),
+        steps=np.zeros(len(speeds), dtype=np.int64),
+    )
+
+
+def _logarithms(found: list[Growth]) -> NDArray[np.float64]:
+    """Logarithm of the spectral radius, within bounds that a root search can use."""
+    radius = np.array([growth.radius for growth in found])
+    bounded = np.clip(radius, math.exp(-_LARGEST_GROWTH), math.exp(_LARGEST_GROWTH))
+    return np.log(bounded)

@@ -1,0 +1,180 @@
+"""Bifurcation diagram: once-per-period points of simulated cuts over a value of the case."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.case import Case
+from chatter.description.errors import InputError
+from chatter.engine.parallel import Progress, no_progress, sweep
+from chatter.io.presentation import presentation
+from chatter.io.result_files import as_json, finite_or_none, write_results
+from chatter.simulation.perturbation.growth_rate import periods_a_turn
+from chatter.simulation.setup import modes_of, set_up
+from chatter.simulation.simulate import run_setup
+from dynamics.modal.modes import Mode
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: turns of every cut, and turns at its end that are kept
+_TURNS = 200.0
+_KEPT_TURNS = 60
+
+
+@dataclass(frozen=True)
+class BifurcationPoint:
+    """One cut of the diagram.
+
+    Parameters
+    ----------
+    value : float
+        Of the path that varies, SI.
+    once_a_period : (k, 3) array of float
+        Displacement when a tooth is at +y, m, over the last turns: every tooth where all are
+        alike, else the first one; empty where the tool left the range of the model.
+    verdict : str
+        "stable" or "chatter".
+    bifurcation : str
+    chatter_frequency : float
+        Hz; nan where there is none.
+    """
+
+    value: float
+    once_a_period: NDArray[np.float64]
+    verdict: str
+    bifurcation: str
+    chatter_frequency: float
+
+
+@dataclass(frozen=True)
+class BifurcationDiagram:
+    """Points of all cuts.
+
+    Parameters
+    ----------
+    case : Case
+    path : str
+        Dotted path of the value that varies.
+    points : tuple of BifurcationPoint
+    """
+
+    case: Case
+    path: str
+    points: tuple[BifurcationPoint, ...]
+
+    def summary(self) -> dict:
+        """Return the content of summary.json."""
+        return {
+            "title": self.case.title,
+            "path": self.path,
+            "points": [
+                {
+                    "value": point.value,
+                    "verdict": point.verdict,
+                    "bifurcation": point.bifurcation,
+                    "chatter_frequency_Hz": finite_or_none(point.chatter_frequency),
+                    "spread_um": _spread(point) * 1e6,
+                }
+                for point in self.points
+            ],
+        }
+
+    def plot(self) -> Figure:
+        """Return the diagram as a matplotlib figure."""
+        return presentation("plots.bifurcation").plot_bifurcation(self)
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write bifurcation.csv, bifurcation.png and summary.json.
+
+        Returns
+        -------
+        list of Path
+            What was written.
+        """
+        return write_results(
+            folder,
+            {"bifurcation.csv": self._table(), "summary.json": as_json(self.summary())},
+            {"bifurcation.png": self.plot()},
+        )
+
+    def _table(self) -> str:
+        lines = [f"{self.path} [SI],x [um],y [um],z [um],verdict"]
+        for point in self.points:
+            for x, y, z in point.once_a_period * 1e6:
+                lines.append(f"{point.value:.9g},{x:.6g},{y:.6g},{z:.6g},{point.verdict}")
+        return "\n".join(lines) + "\n"
+
+
+def bifurcation(
+    case: Case, path: str, values: Sequence[Any], progress: Progress = no_progress
+) -> BifurcationDiagram:
+    """Simulate a case over the values of one of its keys.
+
+    Parameters
+    ----------
+    case : Case
+        Runs are 200 revolutions long where `[simulation]` does not say.
+    path : str
+        Dotted path, such as "cut.axial_depth" or "cut.spindle_speed".
+    values : sequence
+        Quantities as text, or numbers in SI.
+    progress : callable, optional
+        Called with (done, total) cuts.
+
+    Returns
+    -------
+    BifurcationDiagram
+
+    Raises
+    ------
+    InputError
+        If there are no values, or a patched case is wrong.
+    """
+    if len(values) == 0:
+        raise InputError(f"{case.name}: {path}: no values are given for the bifurcation diagram")
+    if not (case.simulation and (case.simulation.revolutions or case.simulation.duration)):
+        case = case.patch({"simulation.revolutions": _TURNS})
+    cases = [case.patch({path: value}) for value in values]
+    modes = None if path.startswith("structure") else modes_of(case)[0]
+    if modes == ():
+        raise InputError(f"{case.name}: [structure] is missing; a rigid tool does not vibrate")
+
+    def at(points: NDArray[np.int64]) -> list[BifurcationPoint]:
+        return [_point(cases[i], path, modes) for i in points]
+
+    chunks = sweep(at, len(cases), progress, 1)
+    return BifurcationDiagram(case, path, tuple(point for chunk in chunks for point in chunk))
+
+
+def _point(case: Case, path: str, modes: tuple[Mode, ...] | None) -> BifurcationPoint:
+    result, _ = run_setup(set_up(case, modes))
+    value = float(case.get(path))
+    if not result.complete:
+        return BifurcationPoint(value, np.zeros((0, 3)), "chatter", "unknown", math.nan)
+    judgement = result.judgement
+    a_turn = periods_a_turn(result.setup)
+    periods = np.arange(math.floor(result.turns * a_turn) + 1) / a_turn
+    kept = 2.0 * math.pi * periods[-_KEPT_TURNS * a_turn :]
+    points = np.stack(
+        [np.interp(kept, result.spindle_angle, column) for column in result.displacement.T], axis=1
+    )
+    if judgement is None:
+        return BifurcationPoint(value, points, "not judged", "unknown", math.nan)
+    return BifurcationPoint(
+        value, points, judgement.verdict, judgement.bifurcation, judgement.chatter_frequency
+    )
+
+
+def _spread(point: BifurcationPoint) -> float:
+    """Largest extent of the once-per-revolution points, m."""
+    if len(point.once_a_period) == 0:
+        return 0.0
+    return float(np.ptp(point.once_a_period, axis=0).max())

@@ -1,0 +1,224 @@
+"""Modal test: measured FRFs or a folder of hammer records to modal parameters at the tool point."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from chatter.compile.drive_point_check import with_magnitudes
+from chatter.compile.measured_frf import with_direction
+from chatter.description.errors import InputError
+from chatter.io.frf_formats import read_frfs
+from chatter.io.presentation import presentation
+from chatter.io.result_files import as_json, write_results
+from dynamics.frf.container import Frf, MeasurementError
+from dynamics.frf.hammer import HammerTest, hammer_test
+from dynamics.identification import IdentifiedMode, ModalFit, identify_modes
+from dynamics.modal.modes import Side
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True)
+class ModalTest:
+    """Modal parameters of a measured structure.
+
+    Parameters
+    ----------
+    title : str
+    fit : ModalFit
+    side : str
+    hammer : HammerTest or None
+        Records used and left out, where hammer records were given.
+    notes : tuple of str
+        What a person should know.
+    """
+
+    title: str
+    fit: ModalFit
+    side: Side
+    hammer: HammerTest | None = None
+    notes: tuple[str, ...] = ()
+
+    def summary(self) -> dict:
+        """Return the content of summary.json."""
+        errors = self.fit.errors
+        return {
+            "title": self.title,
+            "band_Hz": [self.fit.band.lowest, self.fit.band.highest],
+            "band_reason": self.fit.band.reason,
+            "modes": [_mode_summary(mode) for mode in self.fit.identified],
+            "fit_error": {
+                "metric": "deviation of fitted from measured over the band, relative to the peak",
+                "maximum": max(error.maximum for error in errors),
+                "rms": max(error.rms for error in errors),
+                "maximum_as_receptance": max(error.maximum_receptance for error in errors),
+                "rms_as_receptance": max(error.rms_receptance for error in errors),
+            },
+            "frfs": [
+                {"source": frf.source, "quantity": frf.quantity, "lines": int(frf.frequency.size)}
+                | {"maximum": error.maximum, "rms": error.rms}
+                for frf, error in zip(self.fit.frfs, errors, strict=True)
+            ],
+            "records": _records_summary(self.hammer),
+            "notes": [*self.notes, *self.fit.warnings],
+        }
+
+    def to_toml(self) -> str:
+        """Return the modes as ``[[structure.mode]]`` tables for a case file."""
+        return f"# {self.title}\n" + "".join(
+            _mode_table(mode, self.side) for mode in self.fit.identified
+        )
+
+    def plot(self) -> Figure:
+        """Return the picture of measured against fitted."""
+        return presentation("plots.modes").plot_fit(self.fit, self.title)
+
+    def plot_stabilisation(self) -> Figure:
+        """Return the stabilisation diagram."""
+        return presentation("plots.modes").plot_stabilisation(self.fit, self.title)
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write modes.toml, summary.json, modes.png and stabilisation.png; return their paths."""
+        return write_results(
+            folder,
+            {"modes.toml": self.to_toml(), "summary.json": as_json(self.summary())},
+            {"modes.png": self.plot(), "stabilisation.png": self.plot_stabilisation()},
+        )
+
+
+def _mode_summary(mode: IdentifiedMode) -> dict:
+    return {
+        "frequency_Hz": mode.frequency,
+        "damping": mode.damping,
+        "mass_kg": mode.mass,
+        "direction": None if mode.direction is None else list(mode.direction),
+        "frequency_std_Hz": mode.frequency_std,
+        "damping_std": mode.damping_std,
+        "mass_std_kg": mode.mass_std,
+        "fit_error": mode.fit_error,
+        "warning": mode.warning,
+    }
+
+
+def _records_summary(hammer: HammerTest | None) -> dict:
+    if hammer is None:
+        return {"used": [], "left_out": [], "remarks": []}
+    return {
+        "used": list(hammer.used),
+        "left_out": [
+            {"record": finding.record, "fault": finding.fault, "reason": finding.reason}
+            for finding in hammer.left_out
+        ],
+        "remarks": [
+            {"record": finding.record, "fault": finding.fault, "reason": finding.reason}
+            for finding in hammer.remarks
+        ],
+    }
+
+
+def _mode_table(mode: IdentifiedMode, side: Side) -> str:
+    if mode.mass is None:
+        where = f"mode at {mode.frequency:.6g} Hz, damping {mode.damping:.5g}"
+        return f"\n# {where}: no drive point, so no mass\n"
+    direction = ", ".join(f"{part:.7g}" for part in mode.direction)
+    warning = f"# doubtful: {mode.warning}\n" if mode.warning else ""
+    return (
+        f"\n{warning}[[structure.mode]]\n"
+        f'frequency = "{mode.frequency:.8g} Hz"    # +- {mode.frequency_std:.2g} Hz\n'
+        f"damping = {mode.damping:.6g}    # +- {mode.damping_std:.2g}\n"
+        f'mass = "{mode.mass:.7g} kg"{_spread(mode.mass_std)}\n'
+        f"direction = [{direction}]\n"
+        f'side = "{side}"\n'
+    )
+
+
+def _spread(deviation: float | None) -> str:
+    return "" if deviation is None else f"    # +- {deviation:.2g} kg"
+
+
+def modes(
+    paths: Sequence[str | Path] | str | Path,
+    *,
+    keep: Sequence[str] = (),
+    direction: str | None = None,
+    side: Side = "tool",
+    band: tuple[float, float] | None = None,
+    mode_count: int | None = None,
+) -> ModalTest:
+    """Identify modal parameters from measured FRFs, or from a folder of hammer records.
+
+    Parameters
+    ----------
+    paths : path or sequence of paths
+        FRF files (UFF-58, CSV, CutPro ``.frf``), or one folder of hammer records.
+    keep : sequence of str
+        Names of hammer records that are used in spite of their faults.
+    direction : str, optional
+        ``"x"``, ``"y"`` or ``"z"``, where the files do not say.
+    side : {"tool", "workpiece"}
+    band : (float, float), optional
+        Hz; found from the data where not given.
+    mode_count : int, optional
+        Found from the data where not given.
+
+    Returns
+    -------
+    ModalTest
+
+    Raises
+    ------
+    InputError
+        If the files cannot be read or used.
+    """
+    given = [Path(path) for path in ([paths] if isinstance(paths, (str, Path)) else paths)]
+    if side not in ("tool", "workpiece"):
+        raise InputError(f'side "{side}" is not known; there are "tool" and "workpiece"')
+    if direction is not None and direction not in ("x", "y", "z"):
+        raise InputError(f'direction "{direction}" is not known; there are "x", "y" and "z"')
+    try:
+        frfs, hammer, notes = _read(given, keep)
+        frfs, assumed = _with_default_direction(frfs, direction)
+        fit = with_magnitudes(identify_modes(frfs, band=band, mode_count=mode_count))
+    except MeasurementError as error:
+        raise InputError(str(error)) from error
+    notes += assumed
+    if fit.no_mass_reason:
+        notes.append(f"no modal masses: {fit.no_mass_reason}")
+    title = ", ".join(path.name or str(path) for path in given[:3])
+    return ModalTest(title, fit, side, hammer, (*notes, *fit.notes))
+
+
+def _read(
+    paths: Sequence[Path], keep: Sequence[str]
+) -> tuple[list[Frf], HammerTest | None, list[str]]:
+    """Read FRF files, or the hammer records of one folder; the notes hold the remarks."""
+    folders = [path for path in paths if path.is_dir()]
+    if folders and len(paths) > 1:
+        raise InputError(f"{folders[0]}: is a folder; a folder of hammer records is given alone")
+    if folders:
+        test = hammer_test(folders[0], keep=keep)
+        notes = [f"{finding.record}: {finding.reason}" for finding in test.remarks]
+        return list(test.frfs), test, notes
+    if keep:
+        raise InputError("--keep names hammer records; FRF files were given")
+    return [frf for path in paths for frf in read_frfs(path)], None, []
+
+
+def _with_default_direction(
+    frfs: Sequence[Frf], direction: str | None
+) -> tuple[list[Frf], list[str]]:
+    """Give FRFs without a direction the one asked for, else x, and say so."""
+    unnamed = [not (frf.response.direction and frf.reference.direction) for frf in frfs]
+    if direction is not None:
+        return [with_direction(frf, direction, direction) for frf in frfs], []
+    if not any(unnamed):
+        return list(frfs), []
+    note = "the files name no direction: x is written; --direction says otherwise"
+    return [
+        with_direction(frf, "x", "x") if bare else frf
+        for frf, bare in zip(frfs, unnamed, strict=True)
+    ], [note]

@@ -1,0 +1,176 @@
+"""A cut that was found, with what it uses of every limit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from chatter.description.case import Case
+from chatter.stability.model import MillingModel
+from chatter.studies.optimisation.limits import Limits
+from chatter.studies.optimisation.search import Place, rounded
+from chatter.studies.optimisation.speed_depth_slice import STABILITY, Sheet, sheet_of
+from chatter.studies.optimisation.width_and_feed import at_width_and_feed, model_at
+
+#: a limit is active if it would not be held at a depth larger by this share
+DEEPER = 0.02
+#: multiples of the depth up to which the end of stability is looked for
+_DEEPER_STILL = np.linspace(1.1, 3.0, 20)
+#: a range is exhausted within this share of its end
+_AT_END = 1e-3
+#: what rounding may have to give back, a share of the depth a time
+_GIVEN_BACK, _MOST_TIMES = 1e-3, 20
+
+
+@dataclass(frozen=True)
+class Probability:
+    """Probability that a cut is what it must be, of samples of the uncertain values.
+
+    Parameters
+    ----------
+    stable : float
+        That it is stable.
+    value : float
+        That it is stable and keeps all limits of [optimum].
+    interval : (float, float)
+        95 % confidence of `value`, from the number of samples.
+    quantiles : dict of str to float
+        Key of [optimum] -> what the stable samples do not exceed with the confidence, SI.
+    """
+
+    stable: float
+    value: float
+    interval: tuple[float, float]
+    quantiles: dict[str, float]
+
+
+@dataclass(frozen=True)
+class TimeCheck:
+    """The same cut simulated in the time domain.
+
+    Parameters
+    ----------
+    verdict : str
+    power, torque, deflection, surface_error : float
+        SI; nan where the run shows none.
+    held : bool
+        Stable, and every limit held within the tolerance of the comparison.
+    """
+
+    verdict: str
+    power: float
+    torque: float
+    deflection: float
+    surface_error: float
+    held: bool
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A cut that keeps all limits, SI.
+
+    Parameters
+    ----------
+    place : Place
+    power, torque, deflection, surface_error : float
+        Of the steady cut.
+    limit_depth : float
+        At which stability ends above it, at its own speed; inf where that was not found.
+    usage : dict
+        Share of every limit that is used, the depth that the margins leave among them; nan where
+        that is not known.
+    active : tuple of str
+        Limits that would not be held at a depth 2 % larger, and ends of ranges.
+    probability : Probability or None
+        None where nothing is uncertain.
+    time : TimeCheck or None
+        None where it was not simulated.
+    """
+
+    place: Place
+    power: float
+    torque: float
+    deflection: float
+    surface_error: float
+    limit_depth: float
+    usage: dict[str, float]
+    active: tuple[str, ...]
+    probability: Probability | None = None
+    time: TimeCheck | None = None
+
+    @property
+    def removal_rate(self) -> float:
+        """Volume removed per time, m^3/s."""
+        return self.place.removal_rate
+
+
+def case_at(case: Case, place: Place) -> Case:
+    """Case with a cut written in."""
+    return at_width_and_feed(case, place.radial_depth, place.feed_per_tooth).patch(
+        {"cut.spindle_speed": place.spindle_speed, "cut.axial_depth": place.axial_depth}
+    )
+
+
+def max_usage(candidate: Candidate) -> float:
+    """Largest share of a limit that a candidate uses, of those that are known."""
+    return max((value for value in candidate.usage.values() if not math.isnan(value)), default=0.0)
+
+
+def candidate_at(model: MillingModel, limits: Limits, place: Place) -> Candidate:
+    """Candidate at a place, in round numbers; a little less deep where rounding needs it."""
+    exact = place
+    for _ in range(_MOST_TIMES):
+        place = rounded(exact)
+        here = model_at(model, place.radial_depth, place.feed_per_tooth)
+        sheet = _point(here, limits, place)
+        if sheet.feasible[0, 0]:
+            break
+        exact = exact._replace(axial_depth=exact.axial_depth * (1.0 - _GIVEN_BACK))
+    rate = float(sheet.removal_rate[0, 0])
+    return _read(sheet, limits, place._replace(removal_rate=rate))
+
+
+def _point(here: MillingModel, limits: Limits, place: Place) -> Sheet:
+    """Sheet of the cut itself, of one a little deeper, and of deeper ones to find its limit."""
+    speeds = np.array([place.spindle_speed])
+    depths = place.axial_depth * np.array([1.0, 1.0 + DEEPER, *_DEEPER_STILL])
+    return sheet_of(here, limits, speeds, depths, limits.looked_at(speeds))
+
+
+def _read(sheet: Sheet, limits: Limits, place: Place) -> Candidate:
+    depth, speed = place.axial_depth, place.spindle_speed
+    kept = _end_above(sheet.stable.within(speed, limits.depth_margin, limits.speed_margin), depth)
+    end = _end_above(sheet.stable.within(speed, 0.0, 0.0), depth)
+    usage = {STABILITY: depth / kept if kept < sheet.stable.deepest else math.nan}
+    usage |= {key: float(values[0, 0]) for key, values in sheet.usage.items()}
+    active = [key for key, held in sheet.held.items() if not held[1, 0]]
+    return Candidate(
+        place=place,
+        power=float(sheet.cuts.power[0, 0]),
+        torque=float(sheet.cuts.torque[0, 0]),
+        deflection=float(sheet.cuts.deflection[0, 0]),
+        surface_error=float(sheet.cuts.surface_error[0, 0]),
+        limit_depth=end if end < sheet.stable.deepest else math.inf,
+        usage=usage,
+        active=(*active, *_ends_of_ranges(limits, place)),
+    )
+
+
+def _end_above(stretches: np.ndarray, depth: float) -> float:
+    above = stretches[stretches[:, 1] >= depth * (1.0 - 1e-9), 1]
+    return float(above.min()) if above.size else math.nan
+
+
+def _ends_of_ranges(limits: Limits, place: Place) -> list[str]:
+    """Ranges whose end keeps a place from more."""
+    ranges = (
+        ("speeds.to", place.spindle_speed, limits.speeds),
+        ("depths.to", place.axial_depth, limits.depths),
+        ("widths.to", place.radial_depth, limits.widths),
+        ("feeds.to", place.feed_per_tooth, limits.feeds),
+    )
+    return [
+        name for name, value, net in ranges if net.size > 1 and value >= net[-1] * (1.0 - _AT_END)
+    ]

@@ -1,0 +1,88 @@
+"""What keeps a search from finding anything: which limits exclude how much of the coarse net."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from chatter.studies.optimisation.speed_depth_slice import STABILITY, Sheet
+
+_UNIT = {
+    "max_power": ("power", 1e-3, "kW"),
+    "max_torque": ("torque", 1.0, "N m"),
+    "max_deflection": ("deflection", 1e6, "um"),
+    "max_surface_error": ("surface_error", 1e6, "um"),
+}
+
+
+@dataclass(frozen=True)
+class Exclusion:
+    """What one limit does to the coarse net.
+
+    Parameters
+    ----------
+    limit : str
+        Key of [optimum], or "stability".
+    excluded : float
+        Share of all points that it excludes.
+    alone : int
+        Points that hold every other limit, and not this one.
+    smallest : str
+        Smallest value found where the cut is stable; empty for stability.
+    """
+
+    limit: str
+    excluded: float
+    alone: int
+    smallest: str
+
+    @property
+    def excludes_all(self) -> bool:
+        """Whether no point holds this limit."""
+        return self.excluded >= 1.0
+
+
+def exclusions(sheets: Sequence[Sheet]) -> tuple[Exclusion, ...]:
+    """Tell of every limit what it excludes of the coarse net."""
+    held = {name: np.stack([sheet.held[name] for sheet in sheets]) for name in sheets[0].held}
+    return tuple(
+        Exclusion(
+            limit=name,
+            excluded=float(1.0 - here.mean()),
+            alone=int((_all_but(held, name) & ~here).sum()),
+            smallest=_smallest(sheets, name),
+        )
+        for name, here in held.items()
+    )
+
+
+def _all_but(held: dict[str, np.ndarray], name: str) -> np.ndarray:
+    others = [values for key, values in held.items() if key != name]
+    return np.logical_and.reduce(others) if others else np.ones_like(held[name])
+
+
+def _smallest(sheets: Sequence[Sheet], name: str) -> str:
+    if name == STABILITY:
+        return ""
+    field, factor, unit = _UNIT[name]
+    values = np.stack([np.abs(getattr(sheet.cuts, field)) for sheet in sheets])
+    known = values[np.isfinite(values)]
+    return f"{known.min() * factor:.4g} {unit}" if known.size else ""
+
+
+def why_nothing(found: Sequence[Exclusion]) -> str:
+    """Say in a sentence or two what excludes everything."""
+    alone = [one for one in found if one.excludes_all]
+    if alone:
+        told = "; ".join(
+            f"{one.limit} is held nowhere"
+            + (f" (smallest where the cut is stable: {one.smallest})" if one.smallest else "")
+            for one in alone
+        )
+        return f"no cut of the net keeps all limits: {told}"
+    near = max(found, key=lambda one: one.alone)
+    shares = ", ".join(f"{one.limit} excludes {one.excluded:.1%}" for one in found)
+    hint = f"; without {near.limit}, {near.alone} points would be left" if near.alone else ""
+    return f"no cut of the net keeps all limits together: {shares}{hint}"

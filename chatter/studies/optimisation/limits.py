@@ -1,0 +1,156 @@
+"""What a cut may use: speeds, depths, widths, feeds, and the limits of [optimum]."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.case import Case
+from chatter.description.sections.optimisation import Optimum
+from chatter.stability.model import MillingModel
+from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
+from chatter.stability.registry import zero_order_of
+from chatter.stability.search_range import deepest_depth, spindle_speeds
+from chatter.studies.optimisation.resolution import most_waves, telling
+from chatter.studies.optimisation.steady_cut import SteadyCuts
+from chatter.studies.optimisation.width_and_feed import model_at
+from chatter.studies.whatif.model import deviations_of
+
+Array = NDArray[np.float64]
+
+#: key of [optimum] -> what of a steady cut it limits
+LIMITED: Mapping[str, str] = {
+    "max_power": "power",
+    "max_torque": "torque",
+    "max_deflection": "deflection",
+    "max_surface_error": "surface_error",
+}
+_DEPTHS = 60
+#: depths below the first of an even net, each half of the one above
+_HALVINGS = 4
+#: speeds looked at within the margin on either side, and speeds of the coarse net
+_SPEEDS_A_MARGIN = 2
+_LEAST_SPEEDS, _MOST_SPEEDS = 8, 400
+_COARSEST_STEP = 0.01
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Ranges and limits of a search, SI.
+
+    Parameters
+    ----------
+    speeds : (n,) array of float
+        Coarse net, rad/s, each the same share above the one before.
+    depths : (m,) array of float
+        m.
+    widths, feeds : arrays of float
+        m; one value where they are fixed.
+    most : mapping
+        Key of [optimum] -> what is allowed.
+    depth_margin, speed_margin : float
+    confidence : float
+    waves : float
+        Chatter waves that an element of collocation holds at the most.
+    """
+
+    speeds: Array
+    depths: Array
+    widths: Array
+    feeds: Array
+    most: Mapping[str, float]
+    depth_margin: float
+    speed_margin: float
+    confidence: float
+    waves: float
+
+    @property
+    def speed_step(self) -> float:
+        """Ratio of a speed of the net to the one before."""
+        return float(self.speeds[1] / self.speeds[0])
+
+    def looked_at(self, speeds: Array) -> Array:
+        """Speeds at which stability must be known for the margins at some speeds, ascending."""
+        shares = np.linspace(-self.speed_margin, self.speed_margin, 2 * _SPEEDS_A_MARGIN + 1)
+        return np.unique(np.outer(speeds, 1.0 + shares))
+
+    def looked_at_beyond(self) -> Array:
+        """Speeds of the coarse net, run on by the margin at both ends."""
+        more = math.ceil(math.log1p(self.speed_margin) / math.log(self.speed_step) - 1e-9)
+        steps = self.speed_step ** np.arange(1, more + 1)
+        return np.concatenate([self.speeds[0] / steps[::-1], self.speeds, self.speeds[-1] * steps])
+
+    def usage(self, cuts: SteadyCuts) -> dict[str, Array]:
+        """Share (n,) of every limit that steady cuts use; above 1 is too much."""
+        return {key: np.abs(getattr(cuts, LIMITED[key])) / most for key, most in self.most.items()}
+
+
+def limits_of(case: Case, model: MillingModel, sampled: Sequence[MillingModel] = ()) -> Limits:
+    """Ranges and limits that a case gives, completed where it is silent.
+
+    Parameters
+    ----------
+    case : Case
+    model : MillingModel
+        Of the case as it is.
+    sampled : sequence of MillingModel, optional
+        Of the samples of what is uncertain: elements are as short as these need them too.
+    """
+    section = case.optimum or Optimum()
+    uncertain = bool(deviations_of(case))
+    given = {key: getattr(section, key) for key in LIMITED}
+    margins = [
+        value if value is not None else 0.0 if uncertain else usual
+        for value, usual in (
+            (section.depth_margin, DEPTH_MARGIN),
+            (section.speed_margin, SPEED_MARGIN),
+        )
+    ]
+    speeds, depths = _speeds(case, section, margins[1]), _depths(case, section, model)
+    widths = _values(section.widths, case.width_of_cut)
+    feed = case.cut.feed_per_tooth
+    extremes = [
+        model_at(one, float(width), feed)
+        for one in (model, *telling(sampled))
+        for width in {widths[0], widths[-1]}
+    ]
+    return Limits(
+        speeds=speeds,
+        depths=depths,
+        widths=widths,
+        feeds=_values(section.feeds, case.cut.feed_per_tooth),
+        most={key: value for key, value in given.items() if value is not None},
+        depth_margin=margins[0],
+        speed_margin=margins[1],
+        confidence=section.confidence,
+        waves=min(most_waves(one, speeds, depths) for one in extremes),
+    )
+
+
+def _speeds(case: Case, section: Optimum, margin: float) -> Array:
+    if section.speeds is not None:
+        first, last = section.speeds.from_, section.speeds.to
+    else:
+        first, last = spindle_speeds(case)[[0, -1]]
+    step = min(margin / _SPEEDS_A_MARGIN, _COARSEST_STEP) or _COARSEST_STEP
+    count = math.ceil(math.log(last / first) / math.log1p(step)) + 1
+    return np.geomspace(first, last, min(max(count, _LEAST_SPEEDS), _MOST_SPEEDS))
+
+
+def _depths(case: Case, section: Optimum, model: MillingModel) -> Array:
+    if section.depths is not None and section.depths.from_ is not None:
+        return np.linspace(section.depths.from_, section.depths.to, section.depths.count)
+    if section.depths is not None:
+        deepest, count = section.depths.to, section.depths.count
+    else:
+        deepest, count = deepest_depth(case, zero_order_of(model, spindle_speeds(case))), _DEPTHS
+    even = np.linspace(0.0, deepest, count + 1)[1:]
+    return np.concatenate([even[0] / 2.0 ** np.arange(_HALVINGS, 0, -1), even])
+
+
+def _values(given: object, fixed: float) -> Array:
+    return np.array([fixed]) if given is None else np.linspace(given.from_, given.to, given.count)

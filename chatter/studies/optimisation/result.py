@@ -1,0 +1,243 @@
+"""What a search for the best cut has found: candidates, pictures, files."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from chatter.description.case import Case
+from chatter.io.presentation import presentation
+from chatter.io.result_files import as_json, finite_or_none, write_results
+from chatter.studies.optimisation.candidate import Candidate, case_at
+from chatter.studies.optimisation.exclusion import Exclusion, why_nothing
+from chatter.studies.optimisation.limits import Limits
+from chatter.studies.optimisation.search import Place
+from chatter.studies.optimisation.speed_depth_slice import Sheet
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_RPM = 30.0 / math.pi
+#: m^3/s in cm^3/min
+_PER_MINUTE = 6e7
+#: limit -> name of what it limits in a summary, and factor from SI
+_QUANTILE = {
+    "max_power": ("power_W", 1.0),
+    "max_torque": ("torque_Nm", 1.0),
+    "max_deflection": ("deflection_um", 1e6),
+    "max_surface_error": ("surface_error_um", 1e6),
+}
+_COLUMNS = (
+    "rank,spindle_speed [rpm],axial_depth [mm],radial_depth [mm],feed_per_tooth [mm],"
+    "removal_rate [cm^3/min],power [kW],torque [N m],deflection [um],surface_error [um],"
+    "limit_depth [mm],probability_of_stability,probability,active,verdict_in_time,held_in_time"
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Optimum:
+    """Best cuts within the limits of a case.
+
+    Parameters
+    ----------
+    case : Case
+    limits : Limits
+    candidates : tuple of Candidate
+        Those that hold in the time domain first, highest removal rate first.
+    over_widths : tuple of Place
+        Best place of the coarse net at every width that has one.
+    sheet : Sheet
+        All speeds and depths at the width and feed of the best cut.
+    exclusions : tuple of Exclusion
+        What each limit excludes of the coarse net.
+    points : int
+        Of the coarse net.
+    samples, seed : int
+        Of what is uncertain; no samples where nothing is.
+    notes : tuple of str
+    """
+
+    case: Case
+    limits: Limits
+    candidates: tuple[Candidate, ...]
+    over_widths: tuple[Place, ...]
+    sheet: Sheet
+    exclusions: tuple[Exclusion, ...]
+    points: int
+    samples: int
+    seed: int
+    notes: tuple[str, ...] = ()
+
+    @property
+    def best(self) -> Candidate | None:
+        """The best cut; None where no cut keeps all limits."""
+        held = [one for one in self.candidates if one.time is None or one.time.held]
+        return held[0] if held else None
+
+    @property
+    def best_case(self) -> Case | None:
+        """The case with the best cut written in; None where there is none."""
+        return None if self.best is None else case_at(self.case, self.best.place)
+
+    @property
+    def why_nothing(self) -> str:
+        """What excludes everything; empty where there is a best cut."""
+        if self.best is not None:
+            return ""
+        if self.candidates:
+            return "no candidate of the linear search holds all limits in the time domain"
+        if self.over_widths:
+            return (
+                "no cut is stable and keeps all limits with a probability of "
+                f"{self.limits.confidence:.3g}"
+            )
+        return why_nothing(self.exclusions)
+
+    def summary(self) -> dict:
+        """Return the content of summary.json."""
+        return {
+            "title": self.case.title,
+            "feasible": self.best is not None,
+            "why_nothing": self.why_nothing or None,
+            "best": None if self.best is None else _summary_of(self.best),
+            "candidates": [_summary_of(one) for one in self.candidates],
+            "limits": {
+                **self.limits.most,
+                "confidence": self.limits.confidence if self.samples else None,
+                "depth_margin": self.limits.depth_margin,
+                "speed_margin": self.limits.speed_margin,
+            },
+            "searched": {
+                "spindle_speeds_rpm": _ends(self.limits.speeds * _RPM),
+                "axial_depths_mm": _ends(self.limits.depths * 1e3),
+                "radial_depths_mm": _ends(self.limits.widths * 1e3),
+                "feeds_per_tooth_mm": _ends(self.limits.feeds * 1e3),
+                "points": self.points,
+            },
+            "excluded_share": {one.limit: one.excluded for one in self.exclusions},
+            "over_widths": [_place(place) for place in self.over_widths],
+            "samples": self.samples,
+            "seed": self.seed,
+            "notes": list(self.notes),
+        }
+
+    def told(self) -> list[str]:
+        """Sentences for the terminal; none where there is no best cut, see `why_nothing`."""
+        if self.best is None:
+            return []
+        best = self.best
+        place, known = best.place, best.probability
+        lines = [
+            f"{place.spindle_speed * _RPM:.5g} rpm, {place.axial_depth * 1e3:.4g} mm deep, "
+            f"{place.radial_depth * 1e3:.4g} mm wide, {place.feed_per_tooth * 1e3:.4g} mm a tooth: "
+            f"{best.removal_rate * _PER_MINUTE:.4g} cm^3/min",
+            f"{best.power * 1e-3:.3g} kW, {best.torque:.3g} N m, deflection "
+            f"{best.deflection * 1e6:.3g} um, surface error {best.surface_error * 1e6:.3g} um",
+        ]
+        if known is not None:
+            low, high = known.interval
+            what = "stable and within all limits" if self.limits.most else "stable"
+            lines.append(
+                f"{what} with a probability of {known.value:.1%} (95 % confidence: {low:.1%} to "
+                f"{high:.1%}, {self.samples} samples)"
+            )
+        limited = ", ".join(best.active) or "nothing that a deeper cut would break at once"
+        lines.append(f"limited by {limited}")
+        return lines
+
+    def plot(self) -> Figure:
+        """Return the picture of the search as a matplotlib figure."""
+        return presentation("plots.optimum").plot_optimum(self)
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write optimum.csv, summary.json, optimum.png and, where there is one, case-optimum.toml.
+
+        Returns
+        -------
+        list of Path
+            What was written.
+        """
+        texts = {"optimum.csv": self._table(), "summary.json": as_json(self.summary())}
+        written = write_results(folder, texts, {"optimum.png": self.plot()})
+        path = Path(folder) / "case-optimum.toml"
+        if self.best_case is not None:
+            self.best_case.save(path)
+            return [*written, path]
+        # one of an earlier search would be taken for what was found now
+        path.unlink(missing_ok=True)
+        return written
+
+    def _table(self) -> str:
+        lines = [_COLUMNS]
+        for rank, one in enumerate(self.candidates, start=1):
+            place, time = one.place, one.time
+            limit = f"{one.limit_depth * 1e3:.7g}" if math.isfinite(one.limit_depth) else ""
+            cells = [
+                f"{rank}",
+                f"{place.spindle_speed * _RPM:.8g}",
+                f"{place.axial_depth * 1e3:.7g}",
+                f"{place.radial_depth * 1e3:.7g}",
+                f"{place.feed_per_tooth * 1e3:.7g}",
+                f"{one.removal_rate * _PER_MINUTE:.7g}",
+                f"{one.power * 1e-3:.7g}",
+                f"{one.torque:.7g}",
+                f"{one.deflection * 1e6:.7g}",
+                f"{one.surface_error * 1e6:.7g}",
+                limit,
+                "" if one.probability is None else f"{one.probability.stable:.6g}",
+                "" if one.probability is None else f"{one.probability.value:.6g}",
+                " ".join(name.replace(" ", "-") for name in one.active),
+                "" if time is None else time.verdict,
+                "" if time is None else str(time.held).lower(),
+            ]
+            lines.append(",".join(cells))
+        return "\n".join(lines) + "\n"
+
+
+def _ends(values) -> list[float]:
+    return [float(values[0]), float(values[-1])]
+
+
+def _place(place: Place) -> dict:
+    return {
+        "spindle_speed_rpm": place.spindle_speed * _RPM,
+        "axial_depth_mm": place.axial_depth * 1e3,
+        "radial_depth_mm": place.radial_depth * 1e3,
+        "feed_per_tooth_mm": place.feed_per_tooth * 1e3,
+        "removal_rate_cm3_per_min": place.removal_rate * _PER_MINUTE,
+    }
+
+
+def _summary_of(one: Candidate) -> dict:
+    known, time = one.probability, one.time
+    return {
+        **_place(one.place),
+        **_numbers(one),
+        "limit_depth_mm": finite_or_none(one.limit_depth * 1e3),
+        "usage": {key: finite_or_none(value) for key, value in one.usage.items()},
+        "active": list(one.active),
+        "probability_of_stability": None if known is None else known.stable,
+        "probability": None if known is None else known.value,
+        "confidence_interval_95": None if known is None else list(known.interval),
+        "at_confidence": None
+        if known is None
+        else {_QUANTILE[key][0]: _scaled(key, value) for key, value in known.quantiles.items()},
+        "in_time": None
+        if time is None
+        else {"verdict": time.verdict, "held": time.held, **_numbers(time)},
+    }
+
+
+def _scaled(key: str, value: float) -> float | None:
+    return finite_or_none(value * _QUANTILE[key][1])
+
+
+def _numbers(one) -> dict:
+    return {
+        "power_W": finite_or_none(one.power),
+        "torque_Nm": finite_or_none(one.torque),
+        "deflection_um": finite_or_none(one.deflection * 1e6),
+        "surface_error_um": finite_or_none(one.surface_error * 1e6),
+    }

@@ -1,0 +1,100 @@
+"""State that all pieces of a search share: the case compiled, what is kept of it, progress."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+from chatter.description.case import Case
+from chatter.engine.parallel import Progress
+from chatter.stability.model import milling_model
+from chatter.studies.finished_points import key_of
+from chatter.studies.optimisation.candidate import Candidate, candidate_at
+from chatter.studies.optimisation.limits import limits_of
+from chatter.studies.optimisation.records import candidate_from, record_of_candidate
+from chatter.studies.optimisation.sampled_cuts import samples_of
+from chatter.studies.optimisation.search import Place
+from chatter.studies.result_cache import KeptPieces
+from chatter.studies.whatif.model import fingerprint
+
+
+class KeptSearch:
+    """A case compiled for a search, its pieces on disk, and how far the search is.
+
+    Parameters
+    ----------
+    case : Case
+    samples, seed : int
+        Of what is uncertain.
+    progress : callable
+        Called with (done, total) parts of the work.
+    folder : path or None
+        Keeps finished pieces.
+    """
+
+    def __init__(
+        self,
+        case: Case,
+        samples: int,
+        seed: int,
+        progress: Progress,
+        folder: str | Path | None,
+    ) -> None:
+        self.model = milling_model(case)
+        self.drawn = samples_of(self.model, samples, seed)
+        sampled = self.drawn.models if self.drawn is not None else ()
+        self.limits = limits_of(case, self.model, sampled)
+        self.kept = KeptPieces(folder, key_of("optimum", fingerprint(case)))
+        #: what pieces depend on where something is uncertain
+        self.draw = (samples, seed) if self.drawn is not None else None
+        self._progress, self._lock = progress, threading.Lock()
+        self.total, self.finished = 1, 0
+
+    def expect(self, total: int) -> None:
+        """Say how much work there is in all, at the most."""
+        self.total = total + 1
+
+    def part(self, size: int) -> Progress:
+        """Progress of a piece of this size."""
+        return lambda done, total: self._tell(self.finished + size * done // max(total, 1))
+
+    def parts(self, count: int, size: int) -> list[Progress]:
+        """Progress of pieces of this size that go on at the same time, in threads."""
+        shares = [0] * count
+
+        def of(place: int) -> Progress:
+            def tell(done: int, total: int) -> None:
+                with self._lock:
+                    shares[place] = size * done // max(total, 1)
+                    self._tell(self.finished + sum(shares))
+
+            return tell
+
+        return [of(place) for place in range(count)]
+
+    def done(self, size: int) -> None:
+        """Count a piece of this size."""
+        self.finished += size
+        self._tell(self.finished)
+
+    def _tell(self, finished: int) -> None:
+        self._progress(min(finished, self.total - 1), self.total)
+
+    def end(self) -> None:
+        """Say that nothing is left to do."""
+        self._progress(self.total, self.total)
+
+    def candidate(
+        self, name: str, place: Place, compute: Callable[[], Candidate | None]
+    ) -> Candidate | None:
+        """Candidate of a place, or that it has none, computed if it is not known yet."""
+        inputs = (tuple(place), self.draw)
+        record = self.kept.piece(name, inputs, lambda: record_of_candidate(compute()))
+        return candidate_from(record)
+
+    def at(self, place: Place) -> Candidate:
+        """Candidate at a place in round numbers."""
+        found = self.candidate("place", place, lambda: candidate_at(self.model, self.limits, place))
+        assert found is not None
+        return found

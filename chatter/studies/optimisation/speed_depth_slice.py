@@ -1,0 +1,174 @@
+"""All speeds and depths at one width and feed: stability and what limits the cut."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.case import Case
+from chatter.engine.parallel import Progress, no_progress
+from chatter.stability.model import MillingModel
+from chatter.studies.optimisation.limits import Limits
+from chatter.studies.optimisation.stable_depths import StableDepths, is_inside, stable_depths
+from chatter.studies.optimisation.steady_cut import SteadyCuts, SteadyModel
+from cutting.engagement.removed_section import removed_section
+
+Array = NDArray[np.float64]
+
+_TURN = 2.0 * math.pi
+#: names of what excludes points besides the keys of [optimum]
+STABILITY = "stability"
+#: the search for limits goes beyond the deepest depth by this much, so that its end is no limit
+_BEYOND = 1.02
+#: step of the depths that only the margins ask for, a share of the deepest, at the least
+_STEP_BESIDE = 0.03
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """Points over depth (m) and speed (n) at one width and feed.
+
+    Parameters
+    ----------
+    model : MillingModel
+        At this width and feed.
+    speeds, depths : (n,), (m,) arrays of float
+        rad/s, m.
+    stable : StableDepths
+    kept : (m, n) array of bool
+        Stable with its margins.
+    cuts : SteadyCuts of (m, n) arrays
+        nan where the cut is not stable.
+    usage : dict of (m, n) arrays
+        Share of each limit of [optimum] that is used; nan where the cut is not stable.
+    """
+
+    model: MillingModel
+    speeds: Array
+    depths: Array
+    stable: StableDepths
+    kept: NDArray[np.bool_]
+    cuts: SteadyCuts
+    usage: dict[str, Array]
+
+    @property
+    def case(self) -> Case:
+        """Case at this width and feed."""
+        return self.model.case
+
+    @property
+    def removal_rate(self) -> Array:
+        """Volume removed per time (m, n), m^3/s."""
+        return removal_rates(self.model, self.speeds, self.depths)
+
+    @property
+    def held(self) -> dict[str, NDArray[np.bool_]]:
+        """Where (m, n) each limit is held; stability first."""
+        return {STABILITY: self.kept, **{key: self.usage[key] <= 1.0 for key in self.usage}}
+
+    @property
+    def feasible(self) -> NDArray[np.bool_]:
+        """Where (m, n) all of them are."""
+        return np.logical_and.reduce(list(self.held.values()))
+
+
+def removal_rates(model: MillingModel, speeds: Array, depths: Array) -> Array:
+    """Volume removed per time (m, n), m^3/s, at depths (m,), m, and speeds (n,), rad/s."""
+    case, cutter = model.case, model.cutter
+    area = removed_section(cutter, case.cut.mode, case.width_of_cut, depths)
+    return np.outer(area, speeds) * case.cut.feed_per_tooth * cutter.teeth / _TURN
+
+
+def sheet_of(
+    model: MillingModel,
+    limits: Limits,
+    speeds: Array,
+    depths: Array,
+    looked_at: Array,
+    progress: Progress = no_progress,
+) -> Sheet:
+    """Compute a sheet.
+
+    Parameters
+    ----------
+    model : MillingModel
+        At its width and feed.
+    limits : Limits
+    speeds, depths : (n,), (m,) arrays of float
+        rad/s, m, ascending.
+    looked_at : (p,) array of float
+        Speeds at which stability is computed, with those that the margins need, ascending.
+    progress : callable, optional
+        Called with (done, total) speeds.
+    """
+    net = with_margins(depths, limits.depth_margin)
+    stable = stable_depths(model.cut(float(net[-1]), waves=limits.waves), looked_at, net, progress)
+    return sheet_with(model, limits, speeds, depths, stable)
+
+
+def sheet_with(
+    model: MillingModel,
+    limits: Limits,
+    speeds: Array,
+    depths: Array,
+    stable: StableDepths,
+    cuts: SteadyCuts | None = None,
+) -> Sheet:
+    """Sheet of which the stable depths, and perhaps the steady cuts, are known; else `sheet_of`."""
+    kept = _inside_at(stable, speeds, depths, limits.depth_margin, limits.speed_margin)
+    # a corner or ball may not reach the work: that is no cut
+    kept &= _reached(model, depths)[:, None]
+    if cuts is None:
+        settled = settled_at(model, speeds, depths, stable)
+        cuts = _steady(SteadyModel(model, float(speeds[0])), speeds, depths, settled)
+    return Sheet(model, speeds, depths, stable, kept, cuts, limits.usage(cuts))
+
+
+def settled_at(
+    model: MillingModel, speeds: Array, depths: Array, stable: StableDepths
+) -> NDArray[np.bool_]:
+    """Where (m, n) there is a cut, and it is stable."""
+    settled = _inside_at(stable, speeds, depths, 0.0, 0.0)
+    return settled & _reached(model, depths)[:, None]
+
+
+def _reached(model: MillingModel, depths: Array) -> NDArray[np.bool_]:
+    case = model.case
+    return removed_section(model.cutter, case.cut.mode, case.width_of_cut, depths) > 0.0
+
+
+def with_margins(depths: Array, margin: float) -> Array:
+    """Depths, and others a step apart below and above as far as the margin reaches, m."""
+    step = max(float(np.diff(depths).max(initial=0.0)), _STEP_BESIDE * float(depths[-1]))
+    low, high = depths[0] * (1.0 - margin), _BEYOND * depths[-1] / (1.0 - margin)
+    below = np.arange(depths[0] - step, max(low - step, 0.5 * depths[0]), -step)
+    above = np.append(np.arange(depths[-1] + step, high, step), high)
+    return np.concatenate([below[::-1], depths, above])
+
+
+def _inside_at(
+    stable: StableDepths, speeds: Array, depths: Array, depth_margin: float, speed_margin: float
+) -> NDArray[np.bool_]:
+    """Whether each depth (m) is stable at each speed (n), with margins: (m, n)."""
+    columns = [
+        is_inside(stable.within(speed, depth_margin, speed_margin), depths) for speed in speeds
+    ]
+    return np.stack(columns, axis=1)
+
+
+def _steady(
+    model: SteadyModel, speeds: Array, depths: Array, settled: NDArray[np.bool_]
+) -> SteadyCuts:
+    """Steady cuts (m, n) where the cut is stable; nan elsewhere."""
+    columns = {name: np.full(settled.shape, np.nan) for name in SteadyCuts._fields}
+    for row, depth in enumerate(depths):
+        where = np.flatnonzero(settled[row])
+        if where.size == 0:
+            continue
+        found = model.cuts(speeds[where], float(depth))
+        for name, values in zip(SteadyCuts._fields, found, strict=True):
+            columns[name][row, where] = values
+    return SteadyCuts(**columns)

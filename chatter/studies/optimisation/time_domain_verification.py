@@ -1,0 +1,133 @@
+"""Candidates held against their simulation, side by side; less deep where a limit is missed."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import nullcontext
+from dataclasses import replace
+
+from chatter.engine.parallel import Progress, one_thread, worker_count
+from chatter.studies.optimisation.candidate import Candidate, max_usage
+from chatter.studies.optimisation.confirmation import time_check
+from chatter.studies.optimisation.robustness import with_probability
+from chatter.studies.optimisation.search_state import KeptSearch
+
+#: candidates that are simulated in the time domain; more where these do not hold there
+SIMULATED = 3
+#: what is taken off the depth, a share of it and how often, where a limit is missed in time
+_EASING, _EASINGS = 0.03, 6
+#: size of a run against the other pieces of work, and runs of a candidate that is made less deep
+_A_RUN, _RUNS_A_CHECK = 16, 5
+#: size of a candidate against the other pieces of work
+A_CHECK = _A_RUN * _RUNS_A_CHECK
+#: named as what limits a cut that was made less deep so
+TIME_DOMAIN = "time domain"
+
+
+def confirmed(search: KeptSearch, candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Candidates with their checks in the time domain: those that hold first, best first.
+
+    Which of them are simulated does not depend on how many threads there are.
+    """
+    found = _side_by_side(search, candidates[:SIMULATED])
+    for candidate in candidates[SIMULATED:]:
+        if any(one.time and one.time.held for one in found):
+            found.append(candidate)
+        else:
+            found += _side_by_side(search, [candidate])
+    return sorted(
+        found, key=lambda one: (one.time is not None and not one.time.held, -one.removal_rate)
+    )
+
+
+def _side_by_side(search: KeptSearch, candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Candidates with their checks, each in a thread of its own."""
+    stopped = threading.Event()
+    told = search.parts(len(candidates), A_CHECK)
+    alone = one_thread if len(candidates) > 1 else nullcontext
+
+    def held(place: int) -> Candidate:
+        with alone():
+            return _Check(search, told[place], stopped).held(candidates[place])
+
+    with ThreadPoolExecutor(max_workers=min(worker_count(), max(len(candidates), 1))) as pool:
+        try:
+            futures = [pool.submit(held, place) for place in range(len(candidates))]
+            found = [future.result() for future in futures]
+        except BaseException:
+            # an interruption reaches this thread alone: tell the others
+            stopped.set()
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    search.done(A_CHECK * len(candidates))
+    return found
+
+
+class _Check:
+    """Check of one candidate, in one thread.
+
+    Parameters
+    ----------
+    search : KeptSearch
+    progress : callable
+        Of this candidate.
+    stopped : Event
+        Set where the search is interrupted.
+    """
+
+    def __init__(self, search: KeptSearch, progress: Progress, stopped: threading.Event) -> None:
+        self.search, self.runs = search, 0
+        self._progress, self._stopped = progress, stopped
+
+    def _tell(self, done: int, total: int) -> None:
+        if self._stopped.is_set():
+            # ends a run as Ctrl-C does, and with it the check
+            raise KeyboardInterrupt
+        self._progress(min(self.runs * total + done, _RUNS_A_CHECK * total), _RUNS_A_CHECK * total)
+
+    def held(self, candidate: Candidate) -> Candidate:
+        """Candidate with its check; less deep where a limit is missed.
+
+        The least depth that is tried at all tells whether there is one; a limit that is missed,
+        unlike chatter, is mostly held at the first. Depths between them are tried only where it
+        holds.
+        """
+        first = self._simulated(candidate)
+        if first.time.held:
+            return first
+        fails, holds, best = 0, _EASINGS + 1, first
+        order = (_EASINGS, 1) if first.time.verdict == "chatter" else (1, _EASINGS)
+        while holds - fails > 1 and fails < _EASINGS:
+            number = next((one for one in order if fails < one < holds), (fails + holds) // 2)
+            eased = self._eased(candidate, number)
+            if eased is None:
+                fails = number
+            else:
+                holds, best = number, eased
+        return best
+
+    def _eased(self, candidate: Candidate, number: int) -> Candidate | None:
+        """Candidate made less deep by some steps; None if it does not hold all limits in time."""
+        search = self.search
+        depth = candidate.place.axial_depth * (1.0 - _EASING * number)
+        eased: Candidate | None = search.at(candidate.place._replace(axial_depth=depth))
+        if search.drawn is not None:
+            eased = with_probability(search.model, search.limits, eased, search.drawn)
+        if eased is None or max_usage(eased) > 1.0:
+            return None
+        checked = self._simulated(replace(eased, active=(*eased.active, TIME_DOMAIN)))
+        return checked if checked.time.held else None
+
+    def _simulated(self, candidate: Candidate) -> Candidate:
+        search = self.search
+
+        def compute() -> Candidate:
+            time = time_check(search.model, search.limits, candidate, self._tell)
+            return replace(candidate, time=time)
+
+        checked = search.candidate("in time", candidate.place, compute)
+        self.runs += 1
+        # the rest of the candidate may have come by another way
+        return replace(candidate, time=checked.time)

@@ -1,0 +1,105 @@
+"""Axis of a diagram over any path of a case: `PATH=FROM..TO[:COUNT]`, or values of Python."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from chatter.description.case import Case
+from chatter.description.errors import InputError
+from chatter.description.formatting import shown
+from chatter.description.units import unit_factor
+from chatter.stability.search_range import spindle_speeds
+from chatter.studies.whatif.model import field_of, value_of
+from chatter.studies.whatif.variation import Value, Variation, read_variation, variation
+
+SPEED_PATH, DEPTH_PATH = "cut.spindle_speed", "cut.axial_depth"
+_RPM = 30.0 / math.pi
+_MOST_VALUES = 2000
+_COUNT = re.compile(r":\s*([+-]?\d+)\s*$")
+_EXAMPLE = 'such as cut.radial_depth="0.5 mm..10 mm:40"'
+
+#: text of the command line, or a path and its values
+AxisGiven = str | tuple[str, Sequence[Any]]
+
+
+def axis_of(given: AxisGiven, case: Case, option: str, count: int) -> Variation:
+    """Axis from what is given, its numbers ascending.
+
+    Parameters
+    ----------
+    given : str or (str, sequence)
+        ``"PATH=FROM..TO[:COUNT]"``, or a path and quantities as text or numbers in SI.
+    case : Case
+    option : str
+        Named in messages.
+    count : int
+        Values of a range that gives no count.
+
+    Raises
+    ------
+    InputError
+        If there is no such path, it takes no quantity, or the range is empty.
+    """
+    try:
+        found = _read(given, case, option, count)
+    except InputError as error:
+        told = [text.replace("--vary", option) for text in error.messages]
+        raise InputError(told) from None
+    numbers = found.numbers
+    if numbers is None or len(set(numbers)) < 2:
+        raise InputError(
+            f"{option} {found.path}: the range is empty; two different ends are wanted"
+        )
+    ascending = sorted(found.values, key=lambda value: value.number)
+    return Variation(found.path, tuple(ascending), found.unit)
+
+
+def _read(given: AxisGiven, case: Case, option: str, count: int) -> Variation:
+    if not isinstance(given, str):
+        path, values = given
+        _require_quantity(case, path, option)
+        return variation(path, list(values), case)
+    path, equals, span = given.partition("=")
+    if not (equals and path.strip() and ".." in span):
+        raise InputError(f"{option} {shown(given)}: PATH=FROM..TO[:COUNT] is wanted, {_EXAMPLE}")
+    _require_quantity(case, path.strip(), option)
+    wanted = _COUNT.search(span)
+    if wanted:
+        count, span = int(wanted[1]), span[: wanted.start()]
+    if not 2 <= count <= _MOST_VALUES:
+        raise InputError(
+            f"{option} {path.strip()}: a count of {count} is given; 2 to {_MOST_VALUES} is wanted"
+        )
+    return read_variation(f"{path}={span}", case, count)
+
+
+def _require_quantity(case: Case, path: str, option: str) -> None:
+    if field_of(case, path) is None:
+        raise InputError(
+            f"{option} {shown(path)}: there is no such quantity in a case; a path to one is "
+            f"wanted, {_EXAMPLE}"
+        )
+
+
+def speed_axis(case: Case) -> Variation:
+    """Spindle speeds of the case's diagram, rpm."""
+    values = tuple(
+        Value(f"{speed * _RPM:.6g} rpm", {SPEED_PATH: float(speed)}, float(speed * _RPM))
+        for speed in spindle_speeds(case)
+    )
+    return Variation(SPEED_PATH, values, "rpm")
+
+
+def standing_number(case: Case, axis: Variation) -> float:
+    """What the case itself has at the path of an axis, in its unit; nan where that is no number."""
+    value = value_of(case, axis.path)
+    kind = field_of(case, axis.path)
+    if kind is None or isinstance(value, bool) or not isinstance(value, (int, float, np.floating)):
+        return math.nan
+    sample = f"1 {axis.unit}" if axis.unit else "1"
+    return float(value) / unit_factor(axis.unit, kind.alike(sample).dimension)

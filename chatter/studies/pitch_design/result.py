@@ -1,0 +1,193 @@
+"""What a search for pitch angles has found: designs, pictures, files."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.case import Case
+from chatter.io.presentation import presentation
+from chatter.io.result_files import as_json, write_results
+from chatter.studies.pitch_design.families import regeneration
+from chatter.studies.pitch_design.search import Design
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+
+_RPM = 30.0 / math.pi
+
+
+@dataclass(frozen=True, eq=False)
+class FamilyCurve:
+    """Designs of a family over its difference.
+
+    Parameters
+    ----------
+    name : str
+    differences : (n,) array of float
+        rad.
+    designs : tuple of n Design
+    rule : (k,) array of float
+        Differences at which regeneration cancels by the rule, rad, within the bounds.
+    """
+
+    name: str
+    differences: Array
+    designs: tuple[Design, ...]
+    rule: Array
+
+    @property
+    def best(self) -> Design:
+        """Design with the highest score."""
+        return max(self.designs, key=lambda one: one.score)
+
+
+@dataclass(frozen=True, eq=False)
+class PitchResult:
+    """Pitch angles for a range of speeds.
+
+    Parameters
+    ----------
+    case : Case
+    goal : str
+    largest_chip : float
+        That was allowed, in units of the mean.
+    deepest : float
+        Depth to which limits were looked for, m.
+    standing : Design
+        That of the case.
+    designs : tuple of Design
+        Best first, that of the case among them; their limits are those at `speeds`.
+    curves : tuple of FamilyCurve
+        Their limits are those at the coarser speeds of the search.
+    chatter_frequency, design_speed : float
+        What the rule uses: the chatter frequency of the evenly spaced tool where its limit is
+        lowest, Hz, and the middle of the speeds, rad/s.
+    speeds : (m,) array of float
+        rad/s.
+    notes : tuple of str
+    """
+
+    case: Case
+    goal: str
+    largest_chip: float
+    deepest: float
+    standing: Design
+    designs: tuple[Design, ...]
+    curves: tuple[FamilyCurve, ...]
+    chatter_frequency: float
+    design_speed: float
+    speeds: Array
+    notes: tuple[str, ...] = ()
+
+    @property
+    def best(self) -> Design:
+        """Design with the highest score."""
+        return self.designs[0]
+
+    @property
+    def is_better(self) -> bool:
+        """Whether the best design is another than that of the case."""
+        return self.best.pitch != self.standing.pitch
+
+    @property
+    def best_case(self) -> Case:
+        """The case with the best pitch angles written in."""
+        return self.case.patch({"tool.pitch": [f"{angle:g} deg" for angle in self.best.pitch]})
+
+    def summary(self) -> dict:
+        """Return the content of summary.json."""
+        return {
+            "title": self.case.title,
+            "goal": self.goal,
+            "largest_chip_allowed": self.largest_chip,
+            "spindle_speeds_rpm": [float(end * _RPM) for end in self.speeds[[0, -1]]],
+            "searched_to_mm": self.deepest * 1e3,
+            "better_than_the_case": self.is_better,
+            "best": self._design(self.best),
+            "designs": [self._design(one) for one in self.designs],
+            "lowest_limit_mm": {
+                "before": self.standing.lowest_limit * 1e3,
+                "after": self.best.lowest_limit * 1e3,
+            },
+            "rule": {
+                "chatter_frequency_Hz": self.chatter_frequency,
+                "spindle_speed_rpm": self.design_speed * _RPM,
+                "differences_deg": {
+                    curve.name: np.degrees(curve.rule).round(3).tolist() for curve in self.curves
+                },
+            },
+            "notes": list(self.notes),
+        }
+
+    def _design(self, one: Design) -> dict:
+        frequency = 2.0 * math.pi * self.chatter_frequency
+        return {
+            "name": one.name,
+            "pitch_deg": list(one.pitch),
+            "lowest_limit_mm": one.lowest_limit * 1e3,
+            "mean_limit_mm": float(one.limits.mean()) * 1e3,
+            "largest_chip": one.largest_chip,
+            "regeneration_left": regeneration(np.radians(one.pitch), self.design_speed, frequency),
+        }
+
+    def told(self) -> list[str]:
+        """Sentences for the terminal."""
+        low, high = self.speeds[[0, -1]] * _RPM
+        angles = ", ".join(f"{angle:g}" for angle in self.best.pitch)
+        before, after = self.standing.lowest_limit * 1e3, self.best.lowest_limit * 1e3
+        lines = [
+            f"pitch {angles} deg: lowest limit from {low:.0f} to {high:.0f} rpm "
+            f"{after:.4g} mm, with that of the case {before:.4g} mm",
+            f"largest chip of a tooth {self.best.largest_chip:.3g} of the mean",
+        ]
+        if not self.is_better:
+            lines.append("no pitch within the bounds is better than that of the case")
+        return lines
+
+    def plot(self) -> Figure:
+        """Return lobes before and after, and the limit over the difference of pitch."""
+        return presentation("plots.pitch_design").plot_pitch(self)
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write pitch.csv, lobes.csv, summary.json, pitch.png and case-pitch.toml.
+
+        Returns
+        -------
+        list of Path
+            What was written.
+        """
+        texts = {
+            "pitch.csv": self._table(),
+            "lobes.csv": self._lobes(),
+            "summary.json": as_json(self.summary()),
+        }
+        written = write_results(folder, texts, {"pitch.png": self.plot()})
+        path = Path(folder) / "case-pitch.toml"
+        self.best_case.save(path)
+        return [*written, path]
+
+    def _table(self) -> str:
+        lines = ["rank,name,pitch [deg],lowest_limit [mm],mean_limit [mm],largest_chip"]
+        for rank, one in enumerate(self.designs, start=1):
+            angles = " ".join(f"{angle:g}" for angle in one.pitch)
+            lines.append(
+                f"{rank},{one.name},{angles},{one.lowest_limit * 1e3:.6g},"
+                f"{one.limits.mean() * 1e3:.6g},{one.largest_chip:.5g}"
+            )
+        return "\n".join(lines) + "\n"
+
+    def _lobes(self) -> str:
+        lines = ["spindle_speed [rpm],critical_depth_before [mm],critical_depth_after [mm]"]
+        for speed, before, after in zip(
+            self.speeds, self.standing.limits, self.best.limits, strict=True
+        ):
+            lines.append(f"{speed * _RPM:.4f},{before * 1e3:.6g},{after * 1e3:.6g}")
+        return "\n".join(lines) + "\n"

@@ -1,0 +1,188 @@
+"""Search for pitch angles by the limits of collocation: one-parameter families, then all angles."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.case import Case
+from chatter.stability.model import milling_model
+from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
+from chatter.studies.optimisation.stable_depths import first_limits
+from chatter.studies.pitch_design.families import Family
+from chatter.studies.result_cache import KeptPieces
+
+Array = NDArray[np.float64]
+
+#: angles are whole multiples of this, deg
+GRAIN = 0.1
+#: differences of a family that are looked at
+DIFFERENCES = 16
+#: what is moved from one pitch to another, deg, and evaluations at most
+_STEPS = (6.0, 3.0, 1.5, 0.7, 0.3)
+MOST_MOVES = 60
+#: a gain below this share is none
+_LEAST_GAIN = 1e-3
+#: weight of the mean limit against the lowest, where that is alike
+_MEAN_WEIGHT = 1e-3
+
+
+@dataclass(frozen=True)
+class Design:
+    """Pitch angles and the limits that they give.
+
+    Parameters
+    ----------
+    name : str
+    pitch : tuple of float
+        deg, multiples of 0.1.
+    limits : (n,) array of float
+        First limit at every speed, m; the end of the search where none was found.
+    score : float
+        What the goal makes of them.
+    """
+
+    name: str
+    pitch: tuple[float, ...]
+    limits: Array
+    score: float
+
+    @property
+    def lowest_limit(self) -> float:
+        """Lowest limit over all speeds, m."""
+        return float(self.limits.min())
+
+    @property
+    def largest_chip(self) -> float:
+        """Chip of the tooth that takes most, in units of the mean."""
+        return max(self.pitch) * len(self.pitch) / 360.0
+
+
+def lowest_limit(speeds: Array, limits: Array) -> float:
+    """Goal: the lowest limit, and a little of the mean."""
+    del speeds
+    return float(limits.min() + _MEAN_WEIGHT * limits.mean())
+
+
+def highest_removal(speeds: Array, limits: Array) -> float:
+    """Goal: the highest depth times speed that keeps the usual margins of depth and speed."""
+    robust = [
+        limits[np.abs(speeds / speed - 1.0) <= SPEED_MARGIN * (1.0 + 1e-9)].min()
+        for speed in speeds
+    ]
+    return float((1.0 - DEPTH_MARGIN) * np.max(np.array(robust) * speeds))
+
+
+#: name in a case file -> goal
+GOALS: dict[str, Callable[[Array, Array], float]] = {
+    "lowest limit": lowest_limit,
+    "removal rate": highest_removal,
+}
+
+
+def in_grains(pitch: Sequence[float]) -> tuple[float, ...]:
+    """Angles (deg) as multiples of the grain that make a turn."""
+    parts = np.asarray(pitch) / GRAIN
+    whole = np.floor(parts + 1e-6).astype(int)
+    missing = round(360.0 / GRAIN) - int(whole.sum())
+    order = np.argsort(-(parts - whole), kind="stable")
+    whole[order[:missing]] += 1
+    return tuple(round(float(part) * GRAIN, 6) for part in whole)
+
+
+class PitchSearch:
+    """Limits of a case by its pitch angles, over a range of speeds.
+
+    Parameters
+    ----------
+    case : Case
+    speeds, depths : (n,), (m,) arrays of float
+        rad/s and net of depths, m.
+    goal : str
+        Key of `GOALS`.
+    largest_chip : float
+        Largest pitch, in units of the mean; the smallest is 2 less this.
+    evaluated : callable
+        Called after every evaluation.
+    kept : KeptPieces
+        Limits that are known already.
+    """
+
+    def __init__(
+        self,
+        case: Case,
+        speeds: Array,
+        depths: Array,
+        goal: str,
+        largest_chip: float,
+        evaluated: Callable[[], None],
+        kept: KeptPieces,
+    ) -> None:
+        self.case, self.speeds, self.depths = case, speeds, depths
+        self.goal, self.largest_chip, self.evaluated = GOALS[goal], largest_chip, evaluated
+        self.teeth, self._kept = case.tool.teeth, kept
+        self._known: dict[tuple[float, ...], Array] = {}
+
+    def limits(self, pitch: Sequence[float], speeds: Array) -> Array:
+        """First limits at speeds (n,), m, of pitch angles in deg."""
+        angles = [f"{angle:.6g} deg" for angle in pitch]
+
+        def compute() -> list[float]:
+            model = milling_model(self.case.patch({"tool.pitch": angles}))
+            deepest = float(self.depths[-1])
+            found = first_limits(model.cut(deepest), speeds, self.depths)
+            return np.minimum(found, deepest).tolist()
+
+        inputs = (angles, speeds.tolist())
+        return np.array(self._kept.piece("limits", inputs, compute), dtype=np.float64)
+
+    def design(self, name: str, pitch: Sequence[float]) -> Design:
+        """Design of pitch angles (deg), computed once."""
+        angles = in_grains(pitch)
+        if angles not in self._known:
+            self._known[angles] = self.limits(angles, self.speeds)
+        self.evaluated()
+        limits = self._known[angles]
+        return Design(name, angles, limits, self.goal(self.speeds, limits))
+
+    def may_be(self, pitch: Sequence[float]) -> bool:
+        """Whether all pitch angles (deg) are within the bounds of the chip."""
+        shares = np.asarray(pitch) * self.teeth / 360.0
+        allowed = self.largest_chip + 1e-9
+        return bool(shares.max() <= allowed and shares.min() >= 2.0 - allowed)
+
+    def of_family(self, family: Family) -> tuple[Array, list[Design]]:
+        """Differences, rad, and designs of a family up to the bounds of the chip."""
+        widest = (self.largest_chip - 1.0) * 2.0 * math.pi / self.teeth
+        differences = np.linspace(0.0, widest / family.widest(self.teeth), DIFFERENCES)
+        designs = [
+            self.design(family.name, np.degrees(family.angles(self.teeth, float(difference))))
+            for difference in differences
+        ]
+        return differences, designs
+
+    def improved(self, start: Design) -> Design:
+        """Best design on the way from a start, moving angle from one pitch to another."""
+        best, left = start, MOST_MOVES
+        for step in _STEPS:
+            pairs = list(itertools.permutations(range(self.teeth), 2))
+            unsuccessful = 0
+            for source, target in itertools.cycle(pairs):
+                if left <= 0 or unsuccessful >= len(pairs):
+                    break
+                unsuccessful += 1
+                pitch = list(best.pitch)
+                pitch[source] -= step
+                pitch[target] += step
+                if not self.may_be(pitch):
+                    continue
+                left -= 1
+                found = self.design("free", pitch)
+                if found.score > best.score * (1.0 + _LEAST_GAIN):
+                    best, unsuccessful = found, 0
+        return best

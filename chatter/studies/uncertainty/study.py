@@ -1,0 +1,334 @@
+"""Uncertainty of the limits of stability: band of lobes, probability of a stable cut."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.case import Case
+from chatter.description.errors import InputError
+from chatter.engine.parallel import Progress, no_progress
+from chatter.io.presentation import presentation
+from chatter.io.result_files import as_json, finite_or_none, write_results
+from chatter.studies.executor import Computing, computing_on
+from chatter.studies.finished_points import FinishedPoints, key_of
+from chatter.studies.uncertainty.confidence import wilson_interval
+from chatter.studies.uncertainty.parameters import UncertainParameter, correlation_of, parameters_of
+from chatter.studies.uncertainty.propagation import (
+    Net,
+    SampleLimits,
+    check_counts,
+    sample_limits,
+    shared_net,
+)
+from chatter.studies.uncertainty.sampling import samples
+from chatter.studies.whatif.model import fingerprint, patched
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+
+_RPM = 30.0 / math.pi
+#: probabilities of the band
+LEVELS = (0.05, 0.5, 0.95)
+DEFAULT_SAMPLES, DEFAULT_SPEEDS, DEFAULT_SEED = 200, 31, 1
+_CONVERGENCE_ROWS = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Uncertainty:
+    """Limits of all samples.
+
+    Parameters
+    ----------
+    case : Case
+    parameters : tuple of p UncertainParameter
+    values : (n, p) array of float
+        Of each sample, SI.
+    speeds : (m,) array of float
+        rad/s.
+    limits : (n, m) array of float
+        m; inf where none was found.
+    operating : (n,) array of float
+        Limit at the speed of the cut, m.
+    stable : (n,) array of bool
+        Whether the cut is.
+    searched_to : float
+        m.
+    seed : int
+    """
+
+    case: Case
+    parameters: tuple[UncertainParameter, ...]
+    values: Array
+    speeds: Array
+    limits: Array
+    operating: Array
+    stable: NDArray[np.bool_]
+    searched_to: float
+    seed: int
+
+    @property
+    def probability(self) -> float:
+        """Probability that the cut is stable."""
+        return float(self.stable.mean())
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """95 % confidence interval of that probability, from the number of samples."""
+        return wilson_interval(int(self.stable.sum()), len(self.stable))
+
+    def quantiles(self, levels: Sequence[float] = LEVELS) -> Array:
+        """Quantiles (levels, m) of the limit at every speed, m."""
+        return _quantiles(self.limits, levels)
+
+    def operating_quantiles(self, levels: Sequence[float] = LEVELS) -> Array:
+        """Quantiles (levels,) of the limit at the speed of the cut, m."""
+        return _quantiles(self.operating[:, None], levels)[:, 0]
+
+    def probability_at(self, depth: float) -> Array:
+        """Probability (m,) that the first limit lies above a depth (m), at every speed."""
+        return np.mean(self.limits > depth, axis=0)
+
+    def convergence(self) -> tuple[NDArray[np.int64], Array, Array]:
+        """Numbers of samples (n,), probability from the first of them (n,) and interval (n, 2)."""
+        count = np.arange(1, len(self.stable) + 1)
+        so_far = np.cumsum(self.stable)
+        ends = [wilson_interval(int(k), int(n)) for k, n in zip(so_far, count, strict=True)]
+        return count, so_far / count, np.array(ends)
+
+    def shares(self) -> dict[str, float | None]:
+        """Share of each parameter in the variance of the limit of the cut, to first order.
+
+        Square of the correlation; what is missing to 1 is bent or joint influence.
+        """
+        known = np.isfinite(self.operating)
+        limit = self.operating[known]
+        if known.sum() < 3 or np.ptp(limit) == 0.0:
+            return {one.path: None for one in self.parameters}
+        return {
+            one.path: float(np.corrcoef(column, limit)[0, 1] ** 2) if np.ptp(column) else 0.0
+            for one, column in zip(self.parameters, self.values[known].T, strict=True)
+        }
+
+    def summary(self) -> dict:
+        """Return the content of summary.json."""
+        cut, known = self.case.cut, np.isfinite(self.operating)
+        limit = self.operating[known] * 1e3
+        names = [f"{100.0 * level:.0f}_percent" for level in LEVELS]
+        count, share, ends = self.convergence()
+        rows = np.unique(np.geomspace(1, count[-1], _CONVERGENCE_ROWS).round().astype(int)) - 1
+        return {
+            "title": self.case.title,
+            "samples": len(self.stable),
+            "seed": self.seed,
+            "parameters": [
+                {
+                    "path": one.path,
+                    "mean": one.mean,
+                    "standard_deviation": one.deviation,
+                    "share_of_variance": self.shares()[one.path],
+                }
+                for one in self.parameters
+            ],
+            "operating_point": {
+                "spindle_speed_rpm": cut.spindle_speed * _RPM,
+                "axial_depth_mm": cut.axial_depth * 1e3,
+                "probability_of_stability": self.probability,
+                "confidence_interval_95": list(self.interval),
+            },
+            "limit_at_operating_speed_mm": {
+                **{
+                    name: finite_or_none(value * 1e3)
+                    for name, value in zip(names, self.operating_quantiles(), strict=True)
+                },
+                "mean": float(limit.mean()) if limit.size else None,
+                "standard_deviation": float(limit.std(ddof=1)) if limit.size > 1 else None,
+                "samples_without_limit": int((~known).sum()),
+            },
+            "searched_to_mm": self.searched_to * 1e3,
+            "convergence": [
+                {
+                    "samples": int(count[k]),
+                    "probability": float(share[k]),
+                    "confidence_interval_95": ends[k].tolist(),
+                }
+                for k in rows
+            ],
+        }
+
+    def plot(self) -> Figure:
+        """Return the band of lobes as a matplotlib figure."""
+        return presentation("plots.uncertainty").plot_uncertainty(self)
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write uncertainty.csv, samples.csv, summary.json and uncertainty.png.
+
+        Returns
+        -------
+        list of Path
+            What was written.
+        """
+        texts = {
+            "uncertainty.csv": self._table(),
+            "samples.csv": self._samples(),
+            "summary.json": as_json(self.summary()),
+        }
+        return write_results(folder, texts, {"uncertainty.png": self.plot()})
+
+    def _table(self) -> str:
+        lines = [
+            "spindle_speed [rpm],limit_5_percent [mm],limit_50_percent [mm],limit_95_percent [mm],"
+            "probability_of_stability"
+        ]
+        probability = self.probability_at(self.case.cut.axial_depth)
+        for speed, row, share in zip(self.speeds, self.quantiles().T, probability, strict=True):
+            depths = ",".join("" if np.isinf(depth) else f"{depth * 1e3:.7g}" for depth in row)
+            lines.append(f"{speed * _RPM:.4f},{depths},{share:.6g}")
+        return "\n".join(lines) + "\n"
+
+    def _samples(self) -> str:
+        heads = [f"{one.path} [SI]" for one in self.parameters]
+        lines = [",".join([*heads, "limit [mm]", "stable"])]
+        for values, limit, stable in zip(self.values, self.operating, self.stable, strict=True):
+            found = "" if np.isinf(limit) else f"{limit * 1e3:.7g}"
+            cells = [f"{value:.9g}" for value in values]
+            lines.append(",".join([*cells, found, str(bool(stable)).lower()]))
+        return "\n".join(lines) + "\n"
+
+
+def _quantiles(limits: Array, levels: Sequence[float]) -> Array:
+    """Quantiles along the samples; between a finite and an infinite limit lies an infinite one."""
+    ordered = np.sort(limits, axis=0)
+    place = np.asarray(levels) * (len(limits) - 1)
+    below, above = np.floor(place).astype(int), np.ceil(place).astype(int)
+    share = (place - below)[:, None]
+    low, high = ordered[below], ordered[above]
+    between = np.full(low.shape, np.inf)
+    known = np.isfinite(high)
+    between[known] = (low + share * np.subtract(high, low, out=np.zeros_like(low), where=known))[
+        known
+    ]
+    return np.where(share == 0.0, low, between)
+
+
+def uncertainty(
+    case: Case,
+    count: int = DEFAULT_SAMPLES,
+    seed: int = DEFAULT_SEED,
+    *,
+    speeds: int = DEFAULT_SPEEDS,
+    method: str | None = None,
+    folder: str | Path | None = None,
+    progress: Progress = no_progress,
+    resumed: Callable[[int, int], None] | None = None,
+    cluster: str | Computing | None = None,
+) -> Uncertainty:
+    """Propagate the standard deviations of a case, and of its machine, to its limits.
+
+    Parameters
+    ----------
+    case : Case
+        With values such as "1650 +- 80 MPa".
+    count : int
+        Samples.
+    seed : int
+    speeds : int
+        At which limits are computed.
+    method : str, optional
+        Of stability, as for `chatter.lobes`.
+    folder : path, optional
+        Keeps finished samples in points.jsonl there, and reuses those of the same input.
+    progress : callable, optional
+        Called with (done, total) samples.
+    resumed : callable, optional
+        Called once with (finished before, total) samples.
+    cluster : str or Computing, optional
+        Where samples are computed, as for `chatter.studies.executor.computing_on`; here by default.
+
+    Returns
+    -------
+    Uncertainty
+
+    Raises
+    ------
+    InputError
+        If nothing is uncertain, or a sample describes no cut.
+    RunError
+        If it is interrupted; finished samples are in the folder.
+    """
+    check_counts(count, speeds, seed)
+    parameters = parameters_of(case)
+    correlation = correlation_of(case, parameters)
+    net = shared_net(case, speeds)
+    values = samples(parameters, count, seed, correlation)
+    found = _all_limits(case, parameters, values, net, method, folder, progress, resumed, cluster)
+    return Uncertainty(
+        case=case,
+        parameters=parameters,
+        values=values,
+        speeds=net.speeds,
+        limits=np.array([one.limits for one in found]),
+        operating=np.array([one.operating for one in found]),
+        stable=np.array([one.stable for one in found]),
+        searched_to=float(net.depths[-1]),
+        seed=seed,
+    )
+
+
+def _all_limits(
+    case: Case,
+    parameters: Sequence[UncertainParameter],
+    values: Array,
+    net: Net,
+    method: str | None,
+    folder: str | Path | None,
+    progress: Progress,
+    resumed: Callable[[int, int], None] | None,
+    cluster: str | Computing | None,
+) -> list[SampleLimits]:
+    """Limits of every sample, those finished before read from the folder."""
+    store = FinishedPoints(folder)
+    base = key_of(fingerprint(case), method or "", repr(net.speeds.tolist()), repr(net.depths[-1]))
+    keys = [key_of(base, repr(row.tolist())) for row in values]
+    before = sum(key in store for key in keys)
+    if before and resumed is not None:
+        resumed(before, len(keys))
+    missing = [place for place, key in enumerate(keys) if key not in store]
+    paths = tuple(one.path for one in parameters)
+    limits_of_sample = partial(_one_sample, case, paths, net, method)
+    progress(before, len(keys))
+    try:
+        with computing_on(cluster if missing else None) as computing:
+            wanted = [(place + 1, values[place].tolist()) for place in missing]
+            found = computing.results(limits_of_sample, wanted)
+            for done, (place, record) in enumerate(found, start=before + 1):
+                store.add(keys[missing[place]], record)
+                progress(done, len(keys))
+    except KeyboardInterrupt:
+        raise store.interrupted(keys, "samples") from None
+    return [SampleLimits.from_record(store[key]) for key in keys]
+
+
+def _one_sample(
+    case: Case,
+    paths: tuple[str, ...],
+    net: Net,
+    method: str | None,
+    sample: tuple[int, list[float]],
+) -> dict:
+    """Record of a sample, given by its number and its values."""
+    number, values = sample
+    patch = dict(zip(paths, values, strict=True))
+    try:
+        return sample_limits(patched(case, patch), net, method).record()
+    except InputError as error:
+        raise InputError([f"sample {number}: {text}" for text in error.messages]) from None

@@ -1,0 +1,356 @@
+"""What a study computes at a point: numbers, curves for the picture, and words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.case import Case
+from chatter.description.errors import InputError
+
+if TYPE_CHECKING:
+    from chatter.simulation.result import SimulationResult
+    from chatter.studies.whatif.model import Subject
+
+_RPM = 30.0 / math.pi
+_SHOWN_TURNS = 2.0
+_POINTS_A_TURN = 720
+_PROFILE_TURNS = 12.0
+_SIGNIFICANT = 7
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A line of the picture.
+
+    Parameters
+    ----------
+    panel : str
+        Label of the vertical axis; panels with the same label are one.
+    name : str
+        Which of several of a point.
+    x, y : list of float or None
+        None leaves a gap.
+    across : str
+        Label of the horizontal axis.
+    """
+
+    panel: str
+    name: str
+    x: list[float | None]
+    y: list[float | None]
+    across: str
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Result at a point.
+
+    Parameters
+    ----------
+    numbers : mapping of str to float or None
+    words : mapping of str to str
+        Such as the verdict.
+    curves : tuple of Curve
+    failure : str
+        Why there is no result; empty where there is one.
+    units : mapping of str to str
+        Of numbers whose quantity leaves the unit open.
+    """
+
+    numbers: Mapping[str, float | None] = field(default_factory=dict)
+    words: Mapping[str, str] = field(default_factory=dict)
+    curves: tuple[Curve, ...] = ()
+    failure: str = ""
+    units: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number that a study can show.
+
+    Parameters
+    ----------
+    title : str
+        In a sentence; "{speed}" stands for the speed of the cut.
+    unit : str
+    beyond : str
+        Number that it lies above where it is None.
+    """
+
+    title: str
+    unit: str
+    beyond: str = ""
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A kind of result.
+
+    Parameters
+    ----------
+    name : str
+    quantities : mapping of str to Quantity
+        The first is the main one.
+    evaluate : callable
+        Of subject, method and names, returns an Outcome.
+    logarithmic : bool
+        Scale of the curves.
+    """
+
+    name: str
+    quantities: Mapping[str, Quantity]
+    evaluate: Callable[[Subject, str | None, tuple[str, ...]], Outcome]
+    logarithmic: bool = False
+
+
+def _numbers(values: NDArray[np.float64]) -> list[float | None]:
+    return [
+        float(f"{value:.{_SIGNIFICANT}g}") if math.isfinite(value) else None
+        for value in np.asarray(values, dtype=np.float64)
+    ]
+
+
+def _lobes(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
+    del only
+    from chatter.stability.diagram import lobes
+
+    told = lobes(case, method)
+    summary = told.summary()
+    lowest, operating = summary["lowest_limit"], summary["operating_point"]
+    curve = Curve(
+        "limit depth [mm]",
+        "",
+        _numbers(told.limits.spindle_speed * _RPM),
+        _numbers(told.limits.critical_depth * 1e3),
+        "spindle speed [rpm]",
+    )
+    return Outcome(
+        {
+            "critical_depth_mm": operating["critical_depth_mm"],
+            "lowest_limit_mm": lowest["critical_depth_mm"],
+            "lowest_limit_speed_rpm": lowest["spindle_speed_rpm"],
+            "searched_to_mm": summary["searched_to_mm"],
+        },
+        {"verdict": "stable" if operating["stable"] else "chatter"},
+        (curve,),
+    )
+
+
+def _critical_depth(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
+    del only
+    from chatter.stability.check import check
+
+    told = check(case, method).summary()
+    return Outcome(
+        {
+            "critical_depth_mm": told["critical_depth_mm"],
+            "chatter_frequency_Hz": told["limit"]["chatter_frequency_Hz"],
+            "spectral_radius": told["spectral_radius"],
+            "searched_to_mm": told["limit"]["searched_to_mm"],
+        },
+        {"verdict": "stable" if told["stable"] else "chatter"},
+    )
+
+
+def _simulated(case: Case) -> SimulationResult:
+    from chatter.simulation.simulate import simulate
+
+    result = simulate(case)
+    if result.interrupted:
+        # half a run is no point of a study
+        raise KeyboardInterrupt
+    return result
+
+
+def _forces(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
+    del method, only
+    result = _simulated(case)
+    told = result.summary()
+    mean = told["mean_force_N"]
+    numbers = {
+        "peak_resultant_N": told["peak_resultant_N"],
+        "mean_Fx_N": mean["Fx"],
+        "mean_Fy_N": mean["Fy"],
+        "mean_Fz_N": mean["Fz"],
+        "mean_power_W": told["power"]["mean_W"],
+        "settled_displacement_um": float(_settled_motion(result) * 1e6),
+        "chatter_frequency_Hz": told["chatter_frequency_Hz"],
+    }
+    turned = result.spindle_angle / (2.0 * math.pi)
+    first = int(np.searchsorted(turned, math.floor(turned[-1]) - _SHOWN_TURNS))
+    shown = slice(first, None, max(1, math.ceil((len(turned) - first) / 2 / _POINTS_A_TURN)))
+    x = _numbers(turned[shown])
+    resultant = np.linalg.norm(result.force[shown], axis=1)
+    motion = np.linalg.norm(result.displacement[shown], axis=1) * 1e6
+    curves = [Curve("resultant force [N]", "", x, _numbers(resultant), "turns of the spindle")]
+    if motion.any():
+        label = "displacement of the tool [µm]"
+        curves.append(Curve(label, "", x, _numbers(motion), "turns of the spindle"))
+    return Outcome(numbers, {"verdict": told["verdict"]}, tuple(curves))
+
+
+def _settled_motion(result: SimulationResult) -> float:
+    """Largest extent of the motion after the start, m."""
+    return float(np.ptp(result.displacement[result.settled], axis=0).max(initial=0.0))
+
+
+def _surface(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
+    del method, only
+    result = _simulated(case)
+    told = result.summary()
+    walls = result.finish.walls
+    if not walls:
+        raise InputError(
+            f"{case.name}: no wall is evaluated: {'; '.join(result.finish.notes) or 'none is left'}"
+        )
+    curves = []
+    for wall in walls:
+        profile = wall.profiles
+        turn = case.cut.feed_per_tooth * case.tool.teeth
+        kept = profile.x - profile.x[0] <= _PROFILE_TURNS * turn
+        label = f"wall {profile.side} near the tip [µm]"
+        x, y = (profile.x[kept] - profile.x[0]) * 1e3, profile.deviation[0][kept] * 1e6
+        curves.append(Curve(label, "", _numbers(x), _numbers(y), "along the feed [mm]"))
+    rough = told["roughness"]["wall"]
+    numbers = {
+        "surface_location_error_um": told["surface_location_error_um"],
+        "Ra_um": rough["Ra_um"],
+        "Rz_um": rough["Rz_um"],
+        "chatter_frequency_Hz": told["chatter_frequency_Hz"],
+    }
+    return Outcome(numbers, {"verdict": told["verdict"]}, tuple(curves))
+
+
+def _frf(subject: Subject, method: str | None, only: tuple[str, ...]) -> Outcome:
+    del method
+    frfs = _case_frfs(subject) if isinstance(subject, Case) else _machine_frfs(subject, only)
+    numbers: dict[str, float | None] = {}
+    curves = []
+    highest = (-1.0, "", 0.0, "")
+    for name, quantity, unit, frequency, values in frfs:
+        size = np.abs(values)
+        peak = int(np.argmax(size))
+        if size[peak] > highest[0]:
+            highest = (float(size[peak]), name, float(frequency[peak]), unit)
+        numbers[f"peak of {name} [{unit}]"] = float(size[peak])
+        numbers[f"frequency of {name} [Hz]"] = float(frequency[peak])
+        label = f"{quantity} [{unit}]"
+        curves.append(Curve(label, name, _numbers(frequency), _numbers(size), "frequency [Hz]"))
+    own = {"highest_peak": highest[0], "peak_frequency_Hz": highest[2]}
+    units = {"highest_peak": highest[3]}
+    return Outcome({**own, **numbers}, {"highest": highest[1]}, tuple(curves), units=units)
+
+
+def _case_frfs(case: Case) -> list[tuple[str, str, str, Any, Any]]:
+    """FRFs of the tool against the workpiece that are not zero."""
+    from chatter.compile.structure import structure_of
+
+    case.require("structure")
+    lines, values = structure_of(case).receptance()
+    return [
+        (f"tool {way}", "receptance", "m/N", lines, values[:, k, k])
+        for k, way in enumerate("xyz")
+        if np.any(np.abs(values[:, k, k]) > 0.0)
+    ]
+
+
+def _machine_frfs(machine: Any, only: tuple[str, ...]) -> list[tuple[str, str, str, Any, Any]]:
+    """FRFs that a machine file asks for, of the linearised machine."""
+    from chatter.simulation.virtual_tests.from_file import default_frfs, frfs
+
+    unknown = [name for name in only if name not in machine.frf]
+    if unknown:
+        known = ", ".join(machine.frf) or "none"
+        raise InputError(
+            f"{machine.name}: --only {unknown[0]}: there is no [frf.{unknown[0]}]; there are "
+            f"{known}"
+        )
+    sections = machine.frf or default_frfs(machine)
+    linear = {
+        name: section.model_copy(update={"by": "linearised"})
+        for name, section in sections.items()
+        if not only or name in only
+    }
+    found = []
+    for curve in frfs(machine, linear).curves:
+        frf = curve.harmonic
+        found.append((curve.name, frf.quantity, curve.unit, frf.frequency, frf.values))
+    return found
+
+
+_CRITICAL = Quantity("critical depth at {speed}", "mm", beyond="searched_to_mm")
+_LOWEST = Quantity("lowest limit over speed", "mm", beyond="searched_to_mm")
+_HEARD = Quantity("chatter frequency", "Hz")
+
+#: name -> kind of result
+MEASURES: dict[str, Measure] = {
+    "lobes": Measure("lobes", {"critical_depth_mm": _CRITICAL, "lowest_limit_mm": _LOWEST}, _lobes),
+    "critical depth": Measure(
+        "critical depth",
+        {
+            "critical_depth_mm": _CRITICAL,
+            "chatter_frequency_Hz": Quantity("chatter frequency at the limit", "Hz"),
+            "spectral_radius": Quantity("spectral radius of the cut", ""),
+        },
+        _critical_depth,
+    ),
+    "forces": Measure(
+        "forces",
+        {
+            "peak_resultant_N": Quantity("peak of the resultant force", "N"),
+            "settled_displacement_um": Quantity("motion of the tool after the start", "um"),
+            "mean_power_W": Quantity("mean power", "W"),
+            "mean_Fx_N": Quantity("mean force along x", "N"),
+            "mean_Fy_N": Quantity("mean force along y", "N"),
+            "mean_Fz_N": Quantity("mean force along z", "N"),
+            "chatter_frequency_Hz": _HEARD,
+        },
+        _forces,
+    ),
+    "surface": Measure(
+        "surface",
+        {
+            "surface_location_error_um": Quantity("surface location error", "um"),
+            "Ra_um": Quantity("roughness Ra", "um"),
+            "Rz_um": Quantity("roughness Rz", "um"),
+            "chatter_frequency_Hz": _HEARD,
+        },
+        _surface,
+    ),
+    "frf": Measure(
+        "frf",
+        {
+            "highest_peak": Quantity("highest peak of the FRF", ""),
+            "peak_frequency_Hz": Quantity("frequency of the highest peak", "Hz"),
+        },
+        _frf,
+        logarithmic=True,
+    ),
+}
+
+
+def measure_of(name: str | None, subject: Subject) -> Measure:
+    """Kind of result by its name; lobes of a case and FRFs of a machine by default.
+
+    Raises
+    ------
+    InputError
+        If there is none of that name, or a machine alone cannot have it.
+    """
+    of_case = isinstance(subject, Case)
+    chosen = (name or ("lobes" if of_case else "frf")).replace("-", " ")
+    if chosen not in MEASURES:
+        known = ", ".join(MEASURES)
+        raise InputError(f'--result "{name}" is not known; there are {known}')
+    if not of_case and chosen != "frf":
+        raise InputError(
+            f"{subject.name}: --result {chosen}: a machine alone makes no cut; give a case with "
+            "[structure] machine, or --result frf"
+        )
+    return MEASURES[chosen]

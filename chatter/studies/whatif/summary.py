@@ -1,0 +1,189 @@
+"""What changed, by how much, in words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from chatter.description.case import Case
+from chatter.studies.whatif.measures import Outcome, Quantity
+
+if TYPE_CHECKING:
+    from chatter.studies.whatif.study import WhatIf
+
+_RPM = 30.0 / math.pi
+#: a relative change smaller than this is none
+_NO_CHANGE = 5e-4
+#: quantities beside the main one are told where they change by more than this
+_WORTH_TELLING = 0.01
+#: from this relative change on the ratio is told instead
+_MANY_TIMES = 2.0
+
+
+def title_of(study: WhatIf, quantity: Quantity) -> str:
+    """Title of a quantity, with the speed where that is the same at all points."""
+    case = study.subject
+    speed = "the speed of the cut"
+    varied = any(one.path == "cut.spindle_speed" for one in study.variations)
+    if isinstance(case, Case) and case.cut is not None and not varied:
+        speed = f"{case.cut.spindle_speed * _RPM:.0f} rpm"
+    return quantity.title.format(speed=speed)
+
+
+def unit_of(quantity: Quantity, outcome: Outcome, key: str) -> str:
+    """Unit of a quantity at a point."""
+    return outcome.units.get(key, quantity.unit)
+
+
+def value_text(quantity: Quantity, outcome: Outcome, key: str) -> str:
+    """Value with its unit, or why there is none."""
+    value = outcome.numbers.get(key)
+    unit = unit_of(quantity, outcome, key)
+    if value is not None:
+        return f"{value:.4g} {unit}".strip()
+    beyond = outcome.numbers.get(quantity.beyond)
+    if beyond is not None:
+        return f"above {beyond:.4g} {unit}"
+    return "none"
+
+
+def change_text(before: float | None, after: float | None) -> str:
+    """Relative change in brackets; empty where it has no meaning."""
+    if before is None or after is None or before == 0.0 or before * after < 0.0:
+        return ""
+    share = after / before - 1.0
+    if share > _MANY_TIMES:
+        return f" ({1.0 + share:.3g} times)"
+    return " (no change)" if abs(share) < _NO_CHANGE else f" ({100.0 * share:+.3g} %)"
+
+
+def sentences(study: WhatIf) -> list[str]:
+    """One sentence for each thing that changed."""
+    if study.layout == "tornado":
+        return _tornado(study)
+    told = []
+    for place, one in enumerate(study.variations):
+        first, last = _ends(study, place)
+        if first is last:
+            continue
+        others = _others(study, place)
+        why = f" as {one.path} goes from {one.values[0].label} to {one.values[-1].label}{others}"
+        told += _changes(study, study.outcomes[first], study.outcomes[last], why)
+    return told + _extremes(study) + failures(study)
+
+
+def failures(study: WhatIf) -> list[str]:
+    """Sentences for the points without a result."""
+    return [
+        f"no result at {_where(study, place)}: {outcome.failure}"
+        for place, outcome in enumerate(study.outcomes)
+        if outcome.failure
+    ]
+
+
+def _where(study: WhatIf, place: int) -> str:
+    labels = study.points[place].labels
+    return ", ".join(
+        f"{one.path} = {label}" for one, label in zip(study.variations, labels, strict=True)
+    )
+
+
+def _ends(study: WhatIf, place: int) -> tuple[int, int]:
+    """Points at both ends of a variation, others at their first value."""
+    index = {point.places: k for k, point in enumerate(study.points)}
+    start = [0] * len(study.variations)
+    end = list(start)
+    end[place] = len(study.variations[place].values) - 1
+    return index[tuple(start)], index[tuple(end)]
+
+
+def _others(study: WhatIf, place: int) -> str:
+    held = [
+        f"{one.path} = {one.values[0].label}"
+        for k, one in enumerate(study.variations)
+        if k != place
+    ]
+    return f", with {' and '.join(held)}" if held else ""
+
+
+def _changes(study: WhatIf, before: Outcome, after: Outcome, why: str) -> list[str]:
+    if before.failure or after.failure:
+        return []
+    told = []
+    for key, quantity in _told_quantities(study, before, after).items():
+        pair = value_text(quantity, before, key), value_text(quantity, after, key)
+        share = change_text(before.numbers.get(key), after.numbers.get(key))
+        told.append(f"{title_of(study, quantity)}: {pair[0]} -> {pair[1]}{share}{why}")
+    for key in before.words:
+        if before.words[key] != after.words.get(key):
+            told.append(f"{key}: {before.words[key]} -> {after.words.get(key)}{why}")
+    return told
+
+
+def _told_quantities(study: WhatIf, before: Outcome, after: Outcome) -> Mapping[str, Quantity]:
+    """Main quantity, and others that change."""
+    chosen = {study.quantity: study.measure.quantities[study.quantity]}
+    for key, quantity in study.measure.quantities.items():
+        pair = before.numbers.get(key), after.numbers.get(key)
+        if key != study.quantity and _is_worth_telling(*pair):
+            chosen[key] = quantity
+    return chosen
+
+
+def _is_worth_telling(before: float | None, after: float | None) -> bool:
+    if before is None or after is None:
+        return before is not after
+    return abs(after - before) > _WORTH_TELLING * max(abs(before), abs(after))
+
+
+def _extremes(study: WhatIf) -> list[str]:
+    """Where the main quantity is smallest and largest, where that is not at an end."""
+    values = study.values()
+    known = [k for k, value in enumerate(values) if value is not None]
+    if len(known) < 3:
+        return []
+    low, high = min(known, key=values.__getitem__), max(known, key=values.__getitem__)
+    ends = {known[0], known[-1]} if study.layout == "overlay" else set()
+    spread = _is_worth_telling(values[low], values[high])
+    if not spread or {low, high} <= ends:
+        return []
+    quantity = study.measure.quantities[study.quantity]
+    told = [
+        f"{value_text(quantity, study.outcomes[k], study.quantity)} at {_where(study, k)}"
+        for k in (low, high)
+    ]
+    return [f"{title_of(study, quantity)}: from {told[0]} to {told[1]}"]
+
+
+def _tornado(study: WhatIf) -> list[str]:
+    quantity = study.measure.quantities[study.quantity]
+    base = study.outcomes[0]
+    told = [f"{title_of(study, quantity)}: {value_text(quantity, base, study.quantity)} as given"]
+    for place in ranked(study):
+        one = study.variations[place]
+        low, high = study.outcomes[1 + 2 * place], study.outcomes[2 + 2 * place]
+        shares = [
+            change_text(base.numbers.get(study.quantity), end.numbers.get(study.quantity))
+            for end in (low, high)
+        ]
+        told.append(
+            f"{one.path} from {one.values[0].label} to {one.values[-1].label}: "
+            f"{value_text(quantity, low, study.quantity)}{shares[0]} to "
+            f"{value_text(quantity, high, study.quantity)}{shares[1]}"
+        )
+    return told + failures(study)
+
+
+def ranked(study: WhatIf) -> Sequence[int]:
+    """Variations of a tornado, the one with the greatest effect first."""
+
+    def swing(place: int) -> float:
+        base = study.outcomes[0].numbers.get(study.quantity)
+        ends = [
+            study.outcomes[k].numbers.get(study.quantity) for k in (1 + 2 * place, 2 + 2 * place)
+        ]
+        known = [value for value in (base, *ends) if value is not None]
+        return max(known) - min(known) if known else 0.0
+
+    return sorted(range(len(study.variations)), key=swing, reverse=True)

@@ -1,0 +1,254 @@
+"""Values of a path, as the command line gives them.
+
+``PATH=v1,v2,...``, ``PATH=from..to`` with a count, or ``PATH=+-10%`` about the value that stands.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from chatter.description.assignments import parse_assignments
+from chatter.description.case import Case
+from chatter.description.errors import InputError
+from chatter.description.formatting import printable, shown
+from chatter.description.quantities import QuantityField
+from chatter.description.units import DIMENSIONS, NUMBER, parse, unit_factor
+from chatter.studies.whatif.model import PREFIX, field_of, value_of
+
+if TYPE_CHECKING:
+    from chatter.studies.whatif.model import Subject
+
+#: points of a range where the count is not given
+DEFAULT_COUNT = 5
+_MOST_VALUES = 2000
+_RELATIVE = re.compile(rf"^\s*(?:\+-|\+/-|±)\s*({NUMBER})\s*%\s*$")
+_PLAIN = str.maketrans("", "", '"[]{}')
+#: takes a key away
+_NONE = "none"
+_EXAMPLE = 'such as cut.axial_depth="1 mm, 2 mm" or cut.spindle_speed="3000 rpm..9000 rpm"'
+
+
+@dataclass(frozen=True)
+class Value:
+    """One value of a path.
+
+    Parameters
+    ----------
+    label : str
+        As people read it.
+    patch : mapping of str to object
+        What it changes.
+    number : float, optional
+        In the unit of the variation; None for what is no quantity.
+    """
+
+    label: str
+    patch: Mapping[str, Any] = field(hash=False)
+    number: float | None = None
+
+
+@dataclass(frozen=True)
+class Variation:
+    """A path and its values.
+
+    Parameters
+    ----------
+    path : str
+    values : tuple of Value
+    unit : str
+        Of the numbers.
+    """
+
+    path: str
+    values: tuple[Value, ...]
+    unit: str = ""
+
+    @property
+    def numbers(self) -> list[float] | None:
+        """Numbers of all values, None where some value has none."""
+        found = [value.number for value in self.values]
+        return None if any(number is None for number in found) else found
+
+    @property
+    def axis_label(self) -> str:
+        """Path with the unit of its numbers."""
+        return f"{self.path} [{self.unit}]" if self.unit and self.numbers else self.path
+
+
+def read_variation(text: str, subject: Subject, count: int | None = None) -> Variation:
+    """Read a variation of the command line.
+
+    Parameters
+    ----------
+    text : str
+    subject : Case or MachineFile
+        That it is to change.
+    count : int, optional
+        Values of a range.
+
+    Raises
+    ------
+    InputError
+        If it is none: no path, no values, mixed units.
+    """
+    path, equals, given = text.partition("=")
+    path = path.strip()
+    if not equals or not path:
+        raise InputError(f"--vary {shown(text)}: PATH=VALUES is wanted, {_EXAMPLE}")
+    if not isinstance(subject, Case):
+        path = path.removeprefix(PREFIX)
+    kind = field_of(subject, path)
+    relative = _RELATIVE.match(given)
+    if relative:
+        return _relative(subject, path, float(relative[1]) / 100.0, kind)
+    parts = _split(given)
+    if not parts:
+        raise InputError(f"--vary {path}: there are no values; give some, {_EXAMPLE}")
+    if any(not part for part in parts):
+        raise InputError(f"--vary {path}: a value is empty in {shown(given)}")
+    if len(parts) == 1 and ".." in parts[0] and kind is not None:
+        return _range(path, parts[0], kind, count)
+    values = {part: _value(path, part) for part in parts}
+    _refuse_mixed(path, values, kind)
+    return _listed(path, list(values.items()), kind)
+
+
+def variation(path: str, values: list[Any], subject: Subject) -> Variation:
+    """Variation from values of Python: quantities as text, numbers in SI, None takes a key away.
+
+    Raises
+    ------
+    InputError
+        If there are no values, or one is of the wrong kind.
+    """
+    if len(values) == 0:
+        raise InputError(f"{path}: there are no values")
+    pairs = [(value if isinstance(value, str) else shown(value), value) for value in values]
+    return _listed(path, pairs, field_of(subject, path))
+
+
+def _split(text: str) -> list[str]:
+    """Parts between commas that stand in no bracket and no quotes."""
+    parts, depth, quoted, part = [], 0, False, ""
+    for letter in text.strip():
+        quoted ^= letter == '"'
+        if not quoted:
+            depth += (letter in "[{") - (letter in "]}")
+        if letter == "," and depth == 0 and not quoted:
+            parts.append(part.strip())
+            part = ""
+        else:
+            part += letter
+    return [*parts, part.strip()] if text.strip() else []
+
+
+def _value(path: str, text: str) -> Any:
+    if text == _NONE:
+        return None
+    return parse_assignments([f"{path}={text}"])[path]
+
+
+def _refuse_mixed(path: str, values: Mapping[str, Any], kind: QuantityField | None) -> None:
+    """Refuse "1, 2, 3 mm": a bare number is SI, which is hardly meant."""
+    if kind is None:
+        return
+    bare = [
+        text
+        for text, value in values.items()
+        if isinstance(value, (int, float)) and not isinstance(value, bool) and value != 0
+    ]
+    with_unit = [text for text, value in values.items() if isinstance(value, str)]
+    if bare and with_unit and DIMENSIONS[kind.dimension].unit:
+        raise InputError(
+            f"--vary {path}: {shown(bare[0])} has no unit and {shown(with_unit[0])} has one; give "
+            "every value its unit"
+        )
+
+
+def _listed(path: str, pairs: list[tuple[str, Any]], kind: QuantityField | None) -> Variation:
+    if len(pairs) > _MOST_VALUES:
+        raise InputError(f"{path}: {len(pairs)} values; at most {_MOST_VALUES} are allowed")
+    unit = _unit(path, [value for _, value in pairs], kind)
+    dimension = kind.dimension if kind is not None else "number"
+    values = []
+    for text, given in pairs:
+        number = None
+        if kind is not None and isinstance(given, (int, float, str)):
+            number = _read(path, kind, given) / unit_factor(unit, kind.alike(str(given)).dimension)
+        elif kind is None and isinstance(given, (int, float)) and not isinstance(given, bool):
+            number = float(given)
+        label = printable(text.translate(_PLAIN).strip())
+        bare = number is not None and not isinstance(given, str)
+        if bare and unit and dimension != "number":
+            label = f"{number:.6g} {unit}"
+        values.append(Value(label, {path: given}, number))
+    return Variation(path, tuple(values), unit)
+
+
+def _read(path: str, kind: QuantityField, given: Any) -> float:
+    try:
+        return kind.read(given)
+    except ValueError as error:
+        raise InputError(f"--vary {path}: {error}") from None
+
+
+def _unit(path: str, given: list[Any], kind: QuantityField | None) -> str:
+    """Unit of the first value that has one, else the SI unit."""
+    if kind is None:
+        return ""
+    for value in given:
+        if isinstance(value, str):
+            _read(path, kind, value)
+            found = parse(value, kind.alike(value).dimension).unit
+            if found:
+                return found
+    return DIMENSIONS[kind.dimension].unit
+
+
+def _range(path: str, text: str, kind: QuantityField, count: int | None) -> Variation:
+    count = DEFAULT_COUNT if count is None else count
+    if not 2 <= count <= _MOST_VALUES:
+        raise InputError(f"--count {count}: a number from 2 to {_MOST_VALUES} is wanted")
+    low, _, high = (part.strip().strip('"') for part in text.partition(".."))
+    # "1..4 mm" is meant as 1 mm..4 mm
+    unit = re.sub(rf"^\s*{NUMBER}", "", high).strip()
+    if re.fullmatch(NUMBER, low) and unit:
+        low = f"{low} {unit}"
+    ends = [end if not re.fullmatch(NUMBER, end) else float(end) for end in (low, high)]
+    pair = _listed(path, list(zip((low, high), ends, strict=True)), kind)
+    first, last = (value.number for value in pair.values)
+    values = tuple(
+        Value(f"{number:.6g} {pair.unit}".strip(), {path: _text(number, pair.unit)}, float(number))
+        for number in np.linspace(first, last, count)
+    )
+    return Variation(path, values, pair.unit)
+
+
+def _text(number: float, unit: str) -> str | float:
+    return f"{float(number)!r} {unit}" if unit else float(number)
+
+
+def _relative(subject: Subject, path: str, share: float, kind: QuantityField | None) -> Variation:
+    """Two values a share below and above what stands; of all of them where the path has [*]."""
+    standing = value_of(subject, path)
+    if kind is None or standing is None:
+        raise InputError(
+            f"{subject.name}: --vary {path}: there is no quantity to take {share:.3g} of; "
+            "give values instead"
+        )
+    several = isinstance(standing, tuple)
+    numbers = standing if several else (standing,)
+    values = []
+    for factor in (1.0 - share, 1.0 + share):
+        patch = {
+            path.replace("[*]", f"[{place}]", 1) if several else path: factor * float(number)
+            for place, number in enumerate(numbers)
+        }
+        label = f"{100.0 * (factor - 1.0):+.4g} %"
+        values.append(Value(label, patch, 100.0 * (factor - 1.0)))
+    return Variation(path, tuple(values), "%")

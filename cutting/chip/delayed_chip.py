@@ -1,0 +1,438 @@
+"""Chip thickness from the true positions of the edge against what every earlier tooth left.
+
+The motion of the tool is kept over the last turn, at every bin of the spindle angle. An edge at a
+place meets what each tooth left there within the turn before it, at the moment when that tooth
+passed; the outermost of them bounds the chip, so that a tooth that stayed in the air leaves the
+work of the earlier ones. What lies more than a turn back is forgotten. The memory does not grow
+with the length of the run, nor with the number of slices. Edges that are partly in the cut are
+taken in part, and each slice is integrated by two Gauss points, so that forces of a still tool
+converge with the fourth power of the slice height and vary smoothly in time.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import types
+from numba.extending import overload, register_jitable
+from numpy.typing import NDArray
+
+from cutting.force.edge_force import INLINED, ExponentialEdge, LinearEdge, edge_force
+from cutting.process_damping.flank import BareFlank, end_contact, flank_force, note_surface
+from cutting.process_damping.ploughing import PloughingFlank
+from cutting.process_damping.viscous import ViscousFlank
+from cutting.tool.edge_table import (
+    GAUSS_PLACE,
+    EdgeTable,
+    direction,
+    force_on_tool,
+    place_of,
+    signed_place,
+)
+
+#: an edge that is this many bins outside the arc has left the cut
+_MARGIN = 2.0
+#: half a span, as a share of the distance between its Gauss points
+_HALF_SPAN = 0.5 / GAUSS_PLACE
+#: a straight edge is looked at this many bins late, so that it is on one side of a jump
+_NUDGE = 1e-6
+
+
+class DelayedCut(NamedTuple):
+    """Cut of a tool through the waves that its teeth have left in the last turn."""
+
+    edges: EdgeTable
+    law: LinearEdge | ExponentialEdge
+    flank: BareFlank | ViscousFlank | PloughingFlank
+    entry: NDArray[np.float64]  # of each slice, bins, (L,)
+    exit: NDArray[np.float64]  # bins, (L,)
+    arc: NDArray[np.float64]  # first entry and last exit of all slices, bins, (2,)
+    reach: NDArray[np.float64]  # of an edge behind and before its first slice, bins, (N, 2)
+    helices: int  # 1 where all flutes have one helix, else the number of slices
+    earlier: NDArray[np.int64]  # tooth of the k-th pass back, (N, L, N)
+    delay: NDArray[np.float64]  # turn of the spindle since that pass, bins, (N, helices, N)
+    inset: NDArray[np.float64]  # of the edge behind that of the pass, m, (N, L, N)
+    history: NDArray[np.float64]  # x, y, z of the tool against the work at each bin of the last
+    # turn, path and vibration, m, and its change to the next bin by its slope, m, (2, bins, 3)
+    since: NDArray[np.float64]  # scratch: motion since each pass, m, (N, 3)
+
+
+@register_jitable(**INLINED)
+def _place_now(turn, point):
+    """Place of the tool against the work, m: path and vibration."""
+    u = point.displacement
+    return turn.x + u[0], turn.y + u[1], u[2]
+
+
+@register_jitable(**INLINED)
+def _note_motion_since(cut, tooth, piece, turn, now):
+    """Fill the scratch with the motion of the tool since each earlier pass, m."""
+    bins = cut.edges.bins
+    for k in range(cut.since.shape[0]):
+        place = turn.whole + turn.part - cut.delay[tooth, piece, k]
+        if place < 0.0:
+            place += bins
+        whole = int(place)
+        t = place - whole
+        if whole >= bins:
+            whole -= bins
+        after = whole + 1
+        if after >= bins:
+            after = 0
+        for axis in range(3):
+            left, right = cut.history[0, whole, axis], cut.history[0, after, axis]
+            if t > 0.0:
+                # cubic Hermite, from the values and slopes at the bins on both sides
+                rise, fall = cut.history[1, whole, axis], cut.history[1, after, axis]
+                step = right - left
+                bend = (1.0 - t) * (rise - step) + t * (step - fall)
+                left += t * step + t * (1.0 - t) * bend
+            cut.since[k, axis] = now[axis] - left
+
+
+@register_jitable(**INLINED)
+def _chip(cut, tooth, piece, sine, cosine):
+    """Chip thickness of an edge at an angle, m; negative in the air."""
+    sk, ck = cut.edges.sine_immersion[piece], cut.edges.cosine_immersion[piece]
+    across, along = sk * sine, sk * cosine
+    since, inset = cut.since, cut.inset
+    thinnest = math.inf
+    for k in range(since.shape[0]):
+        chip = since[k, 0] * across + since[k, 1] * along - since[k, 2] * ck
+        chip -= inset[tooth, piece, k]
+        if chip < thinnest:
+            thinnest = chip
+    return thinnest
+
+
+@register_jitable(**INLINED)
+def _add_edge_force(cut, tooth, piece, sine, cosine, chip, length, total):
+    """Add the force and torque of a length of edge to a total (x, y, z, torque, length)."""
+    ft, fr, fa = edge_force(cut.law, tooth, chip)
+    fx, fy, fz = force_on_tool(cut.edges, piece, sine, cosine, ft, fr, fa)
+    return (
+        total[0] + length * fx,
+        total[1] + length * fy,
+        total[2] + length * fz,
+        total[3] + length * ft * cut.edges.radius[piece],
+        total[4] + length,
+    )
+
+
+@register_jitable(**INLINED)
+def _at_ends(first, last):
+    """Chip at the ends of a span whose Gauss points are known, as if it varied linearly."""
+    middle, rise = 0.5 * (first + last), _HALF_SPAN * (last - first)
+    return middle - rise, middle + rise
+
+
+@register_jitable(**INLINED)
+def _chip_since(cut, tooth, piece, sine, cosine, k):
+    """Chip thickness against what the k-th pass back left, m."""
+    sk, ck = cut.edges.sine_immersion[piece], cut.edges.cosine_immersion[piece]
+    since = cut.since
+    chip = since[k, 0] * (sk * sine) + since[k, 1] * (sk * cosine) - since[k, 2] * ck
+    return chip - cut.inset[tooth, piece, k]
+
+
+@register_jitable(**INLINED)
+def _whole_slice(cut, tooth, piece, turn):
+    """Force of a slice that is wholly inside the arc; second value: none of it in the air."""
+    total = (0.0, 0.0, 0.0, 0.0, 0.0)
+    half = 0.5 * cut.edges.edge_length[piece]
+    s1, c1 = direction(cut.edges, tooth, piece, 1, turn)
+    s2, c2 = direction(cut.edges, tooth, piece, 2, turn)
+    sk, ck = cut.edges.sine_immersion[piece], cut.edges.cosine_immersion[piece]
+    chip1 = chip2 = at_low = at_high = best = math.inf
+    # a loop without branches: most of all the time goes here
+    for k in range(cut.since.shape[0]):
+        x, y = sk * cut.since[k, 0], sk * cut.since[k, 1]
+        beside = cut.since[k, 2] * ck + cut.inset[tooth, piece, k]
+        first, last = x * s1 + y * c1 - beside, x * s2 + y * c2 - beside
+        low, high = _at_ends(first, last)
+        chip1, chip2 = min(chip1, first), min(chip2, last)
+        at_low, at_high = min(at_low, low), min(at_high, high)
+        best = min(best, max(low, high))
+    if best <= 0.0:
+        return total, True
+    if at_low > 0.0 and at_high > 0.0:
+        total = _add_edge_force(cut, tooth, piece, s1, c1, chip1, half, total)
+        total = _add_edge_force(cut, tooth, piece, s2, c2, chip2, half, total)
+        return total, True
+    return total, False
+
+
+@register_jitable(**INLINED)
+def _clear_of_air(cut, tooth, piece, low, high):
+    """Part of a span of places in which the chip is positive against every earlier pass.
+
+    Against each of them it varies nearly linearly; the thinnest of all has kinks, often where it
+    vanishes.
+    """
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    angle = 2.0 * math.pi / cut.edges.bins
+    first, last = middle - GAUSS_PLACE * half, middle + GAUSS_PLACE * half
+    s1, c1 = math.sin(first * angle), math.cos(first * angle)
+    s2, c2 = math.sin(last * angle), math.cos(last * angle)
+    begin, end = low, high
+    for k in range(cut.since.shape[0]):
+        at_low, at_high = _at_ends(
+            _chip_since(cut, tooth, piece, s1, c1, k), _chip_since(cut, tooth, piece, s2, c2, k)
+        )
+        if at_low <= 0.0 and at_high <= 0.0:
+            return low, low
+        if at_low > 0.0 and at_high > 0.0:
+            continue
+        root = low + at_low / (at_low - at_high) * (high - low)
+        if at_high > 0.0:
+            begin = max(begin, root)
+        else:
+            end = min(end, root)
+    if end < begin:
+        return low, low
+    return begin, end
+
+
+@register_jitable(**INLINED)
+def _part_of_slice(cut, tooth, piece, low, high, width):
+    """Force of the part of a slice between two places, of a whole that is `width` bins wide."""
+    total = (0.0, 0.0, 0.0, 0.0, 0.0)
+    if high < low:
+        return total
+    clear_low, clear_high = _clear_of_air(cut, tooth, piece, low, high)
+    share = 1.0
+    if width > 0.0:
+        share = (clear_high - clear_low) / width
+    elif clear_high < clear_low:
+        return total
+    if share <= 0.0:
+        return total
+    angle = 2.0 * math.pi / cut.edges.bins
+    middle, half = 0.5 * (clear_low + clear_high), 0.5 * (clear_high - clear_low)
+    length = 0.5 * share * cut.edges.edge_length[piece]
+    for side in range(2):
+        place = middle + (2.0 * side - 1.0) * GAUSS_PLACE * half
+        sine, cosine = math.sin(place * angle), math.cos(place * angle)
+        chip = _chip(cut, tooth, piece, sine, cosine)
+        if chip > 0.0:
+            total = _add_edge_force(cut, tooth, piece, sine, cosine, chip, length, total)
+    return total
+
+
+@register_jitable(**INLINED)
+def _straight_mean(cut, tooth, piece, place, turn):
+    """Force of a straight edge over the turn of a step, so that a jump keeps its impulse."""
+    half = 0.5 * turn.advance
+    low = max(place - half, cut.entry[piece])
+    high = min(place + half, cut.exit[piece])
+    return _part_of_slice(cut, tooth, piece, low, high, turn.advance)
+
+
+@register_jitable(**INLINED)
+def _outward(cut, tooth, piece, sine, cosine, point):
+    """Place of the edge along its outward normal, m, from its nominal path."""
+    sk, ck = cut.edges.sine_immersion[piece], cut.edges.cosine_immersion[piece]
+    u = point.displacement
+    return cut.edges.normal_offset[tooth, piece] + sk * (u[0] * sine + u[1] * cosine) - ck * u[2]
+
+
+@register_jitable(**INLINED)
+def _on_flank(flank, cut, tooth, piece, turn, point, total):
+    """Add the force on the flank of the length of edge that is in the cut."""
+    length = total[4]
+    if length <= 0.0:
+        return total
+    sine, cosine = direction(cut.edges, tooth, piece, 0, turn)
+    sk, ck = cut.edges.sine_immersion[piece], cut.edges.cosine_immersion[piece]
+    v = point.velocity
+    rate = sk * (v[0] * sine + v[1] * cosine) - ck * v[2]
+    own = _outward(cut, tooth, piece, sine, cosine, point)
+    speed = turn.speed * cut.edges.radius[cut.edges.radius.shape[0] - 1]
+    ft, fr = flank_force(flank, tooth, piece, own, rate, speed)
+    fx, fy, fz = force_on_tool(cut.edges, piece, sine, cosine, ft, fr, 0.0)
+    return (
+        total[0] + length * fx,
+        total[1] + length * fy,
+        total[2] + length * fz,
+        total[3] + length * ft * cut.edges.radius[piece],
+        total[4],
+    )
+
+
+@register_jitable(**INLINED)
+def _off_flank(flank, cut, tooth, piece, turn, point, total):  # noqa: ARG001
+    """Add nothing: the flank touches nothing."""
+    return total
+
+
+_ADDING = {BareFlank: _off_flank, ViscousFlank: _on_flank, PloughingFlank: _on_flank}
+
+
+def add_flank_force(flank, cut, tooth, piece, turn, point, total):
+    """Add the force on the flank, where there is one."""
+    return _ADDING[type(flank)](flank, cut, tooth, piece, turn, point, total)
+
+
+@overload(add_flank_force, jit_options=INLINED)
+def _add_flank_force(flank, cut, tooth, piece, turn, point, total):  # noqa: ARG001
+    return _ADDING.get(flank.instance_class) if isinstance(flank, types.BaseNamedTuple) else None
+
+
+@register_jitable(**INLINED)
+def _all_in_air(cut, tooth, turn):
+    """Tell whether no part of an edge is in the arc of the cut."""
+    whole, part = place_of(cut.edges, tooth, 0, turn.whole, turn.part)
+    place = signed_place(cut.edges, whole, part)
+    low, high = place + cut.reach[tooth, 0], place + cut.reach[tooth, 1]
+    for turns in range(-1, 2):
+        shift = turns * cut.edges.bins
+        if high + shift >= cut.arc[0] and low + shift <= cut.arc[1]:
+            return False
+    return True
+
+
+@register_jitable(**INLINED)
+def delayed_forces(group, turn, point):
+    """Add the cutting force on the tool at the motion of the tool point."""
+    cut, edges = group, group.edges
+    now = _place_now(turn, point)
+    teeth, pieces = edges.whole.shape
+    sx = sy = sz = mx = my = mz = torque = contact = 0.0
+    for tooth in range(teeth):
+        if _all_in_air(cut, tooth, turn):
+            continue
+        looked_back = False
+        for piece in range(pieces):
+            whole, part = place_of(edges, tooth, piece, turn.whole, turn.part)
+            place = signed_place(edges, whole, part)
+            half = edges.half_width[tooth, piece]
+            entry, leave = cut.entry[piece], cut.exit[piece]
+            straight = half < 0.5 * turn.advance
+            blur = 0.5 * turn.advance if straight else half
+            if place + blur < entry or place - blur > leave:
+                continue
+            if cut.helices > 1 or not looked_back:
+                _note_motion_since(cut, tooth, piece if cut.helices > 1 else 0, turn, now)
+                looked_back = True
+            settled = False
+            force = (0.0, 0.0, 0.0, 0.0, 0.0)
+            if place - blur >= entry and place + blur <= leave:
+                force, settled = _whole_slice(cut, tooth, piece, turn)
+            if not settled:
+                # at a jump the limit from the right: one tooth leaves as another one enters
+                seen = place + _NUDGE if straight else place
+                low, high = max(seen - half, entry), min(seen + half, leave)
+                force = _part_of_slice(cut, tooth, piece, low, high, 2.0 * half)
+            force = add_flank_force(cut.flank, cut, tooth, piece, turn, point, force)
+            mean = force
+            if straight and not settled:
+                mean = _straight_mean(cut, tooth, piece, place, turn)
+                mean = add_flank_force(cut.flank, cut, tooth, piece, turn, point, mean)
+            sx += force[0]
+            sy += force[1]
+            sz += force[2]
+            torque += force[3]
+            contact += force[4] * edges.share_per_length[piece]
+            mx += mean[0]
+            my += mean[1]
+            mz += mean[2]
+    point.sample[0] += sx
+    point.sample[1] += sy
+    point.sample[2] += sz
+    point.force[0] += mx
+    point.force[1] += my
+    point.force[2] += mz
+    point.torque[0] += torque
+    point.contact[0] += contact
+
+
+@register_jitable(**INLINED)
+def _vibration(point, axis, share, step):
+    """Displacement at a share of the step, m, and its change over the step at that rate, m."""
+    u0, u1 = point.displacement_before[axis], point.displacement[axis]
+    rise, fall = point.velocity_before[axis] * step, point.velocity[axis] * step
+    gain = u1 - u0
+    bend = (1.0 - share) * (rise - gain) + share * (gain - fall)
+    place = u0 + share * gain + share * (1.0 - share) * bend
+    rate = gain + (1.0 - 2.0 * share) * bend + share * (1.0 - share) * (2.0 * gain - rise - fall)
+    return place, rate
+
+
+@register_jitable(**INLINED)
+def _note_motion(cut, turn, point):
+    """Keep the place of the tool at the bins that the spindle has passed in the step."""
+    bins = cut.edges.bins
+    crossed = int(turn.part_before + turn.advance)
+    for k in range(1, crossed + 1):
+        share = (k - turn.part_before) / turn.advance
+        passed = turn.whole_before + k
+        if passed >= bins:
+            passed -= bins
+        for axis in range(3):
+            place, rate = _vibration(point, axis, share, turn.step)
+            if axis == 0:
+                place += turn.x_before + share * (turn.x - turn.x_before)
+                rate += turn.x - turn.x_before
+            if axis == 1:
+                place += turn.y_before + share * (turn.y - turn.y_before)
+                rate += turn.y - turn.y_before
+            cut.history[0, passed, axis] = place
+            cut.history[1, passed, axis] = rate / turn.advance
+
+
+@register_jitable(**INLINED)
+def _note_wave(cut, tooth, piece, place, turn, point):
+    """Tell the flank what surface lies behind the edge now."""
+    if place < cut.entry[piece] or place > cut.exit[piece]:
+        end_contact(cut.flank, tooth, piece)
+        return
+    sine, cosine = direction(cut.edges, tooth, piece, 0, turn)
+    own = _outward(cut, tooth, piece, sine, cosine, point)
+    # where the edge is in the air the old surface stays, further out than the edge
+    note_surface(cut.flank, tooth, piece, own - min(_chip(cut, tooth, piece, sine, cosine), 0.0))
+
+
+@register_jitable(**INLINED)
+def _note_waves(flank, cut, turn, point):  # noqa: ARG001
+    """Tell the flank of every edge what surface lies behind it now."""
+    edges = cut.edges
+    now = _place_now(turn, point)
+    teeth, pieces = edges.whole.shape
+    for tooth in range(teeth):
+        looked_back = False
+        for piece in range(pieces):
+            whole, part = place_of(edges, tooth, piece, turn.whole, turn.part)
+            place = signed_place(edges, whole, part)
+            if place < cut.entry[piece] - _MARGIN or place > cut.exit[piece] + _MARGIN:
+                continue
+            if cut.helices > 1 or not looked_back:
+                _note_motion_since(cut, tooth, piece if cut.helices > 1 else 0, turn, now)
+                looked_back = True
+            _note_wave(cut, tooth, piece, place, turn, point)
+
+
+@register_jitable(**INLINED)
+def _no_waves(flank, cut, turn, point):
+    """Note nothing: the flank has no memory."""
+
+
+_NOTING = {BareFlank: _no_waves, ViscousFlank: _no_waves, PloughingFlank: _note_waves}
+
+
+def note_waves(flank, cut, turn, point):
+    """Let the flank take in the surface behind every edge, where it has a memory."""
+    _NOTING[type(flank)](flank, cut, turn, point)
+
+
+@overload(note_waves, jit_options=INLINED)
+def _note_waves_of(flank, cut, turn, point):  # noqa: ARG001
+    return _NOTING.get(flank.instance_class) if isinstance(flank, types.BaseNamedTuple) else None
+
+
+@register_jitable(**INLINED)
+def delayed_commit(group, turn, point):
+    """Remember the motion of the step: what the edges have left behind."""
+    note_waves(group.flank, group, turn, point)
+    _note_motion(group, turn, point)

@@ -1,0 +1,117 @@
+"""Set up the delayed chip: which teeth passed before, and where the tool was at that time."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cutting.chip.delayed_chip import DelayedCut
+from cutting.force.edge_force import ExponentialEdge, LinearEdge
+from cutting.process_damping.flank import BareFlank
+from cutting.process_damping.ploughing import PloughingFlank
+from cutting.process_damping.viscous import ViscousFlank
+from cutting.tool.cutter import EdgeSlices
+from cutting.tool.edge_table import edge_table
+
+_TURN = 2.0 * math.pi
+
+
+def earlier_passes(
+    angle: NDArray[np.float64],
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Teeth that passed a place within the turn before each tooth, and how far ahead they are.
+
+    Parameters
+    ----------
+    angle : (N, L) array of float
+        Of the edges on the tool, rad.
+
+    Returns
+    -------
+    (N, L, N) array of int, (N, L, N) array of float
+        The teeth, latest pass first, and the angle to them, rad, > 0; the last is the tooth
+        itself, a turn ago.
+    """
+    ahead = np.mod(angle[None, :, :] - angle[:, None, :], _TURN)
+    ahead = np.where(ahead < 1e-9, _TURN, ahead)
+    ahead = np.moveaxis(ahead, 1, 2)
+    order = np.argsort(ahead, axis=2)
+    return order, np.take_along_axis(ahead, order, axis=2)
+
+
+def delayed_cut(
+    slices: EdgeSlices,
+    arc: tuple[NDArray[np.float64], NDArray[np.float64]],
+    law: LinearEdge | ExponentialEdge,
+    flank: BareFlank | ViscousFlank | PloughingFlank,
+    bins: int,
+    path: NDArray[np.float64],
+) -> DelayedCut:
+    """Set up a cut from rest in full immersion.
+
+    Parameters
+    ----------
+    slices : EdgeSlices
+    arc : pair of (L,) arrays of float
+        Entry and exit angle of each slice, rad; entry above exit where a slice cuts nothing.
+    law, flank
+        Tables of the force laws.
+    bins : int
+        Of a turn.
+    path : (2, bins + 1) array of float
+        Place of the tool axis over the last turn before the start, m, which comes last.
+
+    Returns
+    -------
+    DelayedCut
+    """
+    edges = edge_table(slices, bins)
+    earlier, ahead = earlier_passes(slices.angle)
+    delay = ahead * bins / _TURN
+    near = np.round(delay)
+    delay = np.where(np.abs(delay - near) < 1e-9 * bins, near, delay)
+    alike = np.all(np.abs(delay - delay[:, :1]) < 1e-9 * bins)
+    offset = edges.normal_offset
+    pieces = np.arange(offset.shape[1])[None, :, None]
+    entry, leave = (angle * bins / _TURN for angle in arc)
+    return DelayedCut(
+        edges=edges,
+        law=law,
+        flank=flank,
+        entry=entry,
+        exit=leave,
+        arc=np.array([entry.min(), leave.max()]),
+        reach=_reach(slices, bins),
+        helices=1 if alike else offset.shape[1],
+        earlier=earlier,
+        delay=np.ascontiguousarray(delay[:, :1] if alike else delay),
+        inset=np.ascontiguousarray(offset[earlier, pieces] - offset[:, :, None]),
+        history=_history(path),
+        since=np.zeros((len(offset), 3)),
+    )
+
+
+def _history(path: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Motion over the last turn before the start, of a tool that has not vibrated: (2, bins, 3)."""
+    bins = path.shape[1] - 1
+    history = np.zeros((2, bins, 3))
+    history[0, :, :2] = path[:, :-1].T
+    slope = np.diff(path, axis=1)
+    history[1, 1:, :2] = 0.5 * (slope[:, 1:] + slope[:, :-1]).T
+    history[1, 0, :2] = slope[:, 0]
+    return history
+
+
+def _reach(slices: EdgeSlices, bins: int) -> NDArray[np.float64]:
+    """How far each edge reaches behind and before its first slice, bins, (N, 2)."""
+    offset = slices.angle - slices.angle[:, :1]
+    half = 0.5 * np.abs(slices.lag)
+    # half a bin more for the turn of a step, which blurs a straight edge
+    low = (offset - half).min(axis=1) * bins / _TURN - 1.0
+    high = (offset + half).max(axis=1) * bins / _TURN + 1.0
+    reach = np.stack([low, high], axis=1)
+    # an edge that winds around the tool is never known to be in the air as a whole
+    reach[high - low > 0.5 * bins] = [-np.inf, np.inf]
+    return reach

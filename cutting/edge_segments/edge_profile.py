@@ -1,0 +1,181 @@
+"""Profile of the edge of a tool: where the pieces border on each other along its length."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cutting.engagement.immersion import MillingMode
+from cutting.tool.cutter import Cutter, corner_height
+
+_TURN = 2.0 * math.pi
+#: an edge trails by this much within a piece, rad, or a cone widens by this share of its radius
+_PIECE_LAG = 0.03
+
+
+class EdgeLine(NamedTuple):
+    """Profile of the edge at piece borders: heights, radii, immersion angles, lengths between."""
+
+    height: NDArray[np.float64]  # (L+1,)
+    radius: NDArray[np.float64]  # (L+1,)
+    immersion: NDArray[np.float64]  # at both ends of every piece (L, 2)
+    length: NDArray[np.float64]  # (L,)
+
+
+def _radii_of_even_arcs(
+    cutter: Cutter, mode: MillingMode, radial_depth: float, turn: float
+) -> NDArray[np.float64]:
+    """Radii at which the arc has grown by even steps, from none to half a turn.
+
+    Where the edge first meets the stock its arc grows steeply, and again where it is no more cut
+    all around.
+    """
+    reach = cutter.radius - radial_depth
+    if mode == "slot" or abs(reach) >= cutter.radius:
+        return np.empty(0)
+    arcs = np.linspace(0.0, math.pi, math.ceil(math.pi / turn) + 1)
+    with np.errstate(divide="ignore"):
+        radius = reach / np.cos(arcs)
+    return radius[radius > 0.0]
+
+
+def _cone_heights(
+    cutter: Cutter, mode: MillingMode, radial_depth: float, turn: float
+) -> list[float]:
+    """Heights of even arcs on a cone whose edge first meets the stock on it, or nearly so.
+
+    As it is cut all around at its tip but for a little, or hardly touches: the arc is then steep.
+    """
+    top, slope = corner_height(cutter), math.tan(cutter.edge_angle)
+    start = cutter.radius - cutter.corner_radius * (1.0 - math.sin(cutter.edge_angle))
+    if abs(cutter.radius - radial_depth) * (1.0 + _PIECE_LAG) <= start:
+        return []
+    radius = _radii_of_even_arcs(cutter, mode, radial_depth, turn)
+    return list(top + (radius[radius > start] - start) * slope)
+
+
+def _corner_angles(
+    cutter: Cutter, mode: MillingMode, radial_depth: float, turn: float
+) -> NDArray[np.float64]:
+    """Immersion angles of the piece borders within the corner, rad."""
+    count = max(1, math.ceil(cutter.edge_angle / turn))
+    angles = np.linspace(0.0, cutter.edge_angle, count + 1)
+    radius = _radii_of_even_arcs(cutter, mode, radial_depth, turn)
+    sine = (radius - cutter.radius + cutter.corner_radius) / cutter.corner_radius
+    inside = (sine > 0.0) & (sine < math.sin(cutter.edge_angle))
+    angles = np.append(angles, np.arcsin(sine[inside]))
+    angles = np.sort(angles)
+    return angles[np.append(True, np.diff(angles) > 1e-6)]
+
+
+def edge_line(
+    cutter: Cutter,
+    deepest: float,
+    mode: MillingMode,
+    radial_depth: float,
+    heights: list[float],
+    turn: float,
+) -> EdgeLine:
+    """Profile of the nominal edge from the tip to a height.
+
+    Parameters
+    ----------
+    cutter : Cutter
+    deepest, radial_depth : float
+        m.
+    mode : {"up", "down", "slot"}
+    heights : list of float
+        Borders of pieces above the corner, m.
+    turn : float
+        By which a corner turns within a piece, and its arc changes, rad.
+
+    Returns
+    -------
+    EdgeLine
+    """
+    corner = cutter.corner_radius
+    height, radius = [0.0], [cutter.radius - corner]
+    immersion: list[tuple[float, float]] = []
+    length: list[float] = []
+    if corner > 0.0:
+        angles = _corner_angles(cutter, mode, radial_depth, turn)
+        height = list(corner * (1.0 - np.cos(angles)))
+        radius = list(cutter.radius - corner + corner * np.sin(angles))
+        immersion = list(itertools.pairwise(angles))
+        length = list(corner * np.diff(angles))
+    top = corner_height(cutter)
+    if deepest > top:
+        slope = 1.0 / math.tan(cutter.edge_angle) if cutter.edge_angle < 0.5 * math.pi else 0.0
+        start = radius[-1]
+        for place in sorted({h for h in heights if top < h < deepest} | {deepest}):
+            length.append((place - height[-1]) / math.sin(cutter.edge_angle))
+            height.append(place)
+            radius.append(start + slope * (place - top))
+            immersion.append((cutter.edge_angle, cutter.edge_angle))
+    return EdgeLine(np.array(height), np.array(radius), np.array(immersion), np.array(length))
+
+
+def _even_heights(spacing: float, deepest: float) -> list[float]:
+    return list(spacing * np.arange(1, math.ceil(deepest / spacing)))
+
+
+def _cone_borders(cutter: Cutter, deepest: float, share: float, slope: float) -> list[float]:
+    """Heights between which a cone widens by no more than a share of its radius.
+
+    Nor does the edge trail by more than that, rad; it does so by `slope`, rad/m.
+    """
+    top, widening = corner_height(cutter), 1.0 / math.tan(cutter.edge_angle)
+    start = cutter.radius - cutter.corner_radius * (1.0 - math.sin(cutter.edge_angle))
+    heights = [top]
+    while heights[-1] < deepest:
+        radius = max(cutter.radius, start + widening * (heights[-1] - top))
+        heights.append(heights[-1] + share / max(widening / radius, slope))
+    return heights[1:-1]
+
+
+def crossing_heights(cutter: Cutter, deepest: float) -> list[float]:
+    """Heights at which two flutes lie on the same side of the axis: their order changes."""
+    slope = np.tan(np.asarray(cutter.helix)) / cutter.radius
+    angle = cutter.tooth_angles
+    heights = []
+    for i in range(cutter.teeth):
+        for j in range(i):
+            rate = slope[i] - slope[j]
+            if abs(rate) * deepest < 1e-9:
+                continue
+            gap = angle[i] - angle[j]
+            for turn in range(-4, 5):
+                height = (gap + _TURN * turn) / rate
+                if 0.0 < height < deepest:
+                    heights.append(height)
+    return heights
+
+
+def straight_borders(
+    cutter: Cutter,
+    deepest: float,
+    mode: MillingMode,
+    radial_depth: float,
+    own_passes: bool,
+    turn: float,
+    fineness: float,
+) -> list[float]:
+    """Heights of the piece borders above the corner, m; arguments as of `edge_line`.
+
+    Where runout or setting errors give flutes of different helix passes of their own, and along a
+    cone, the pieces are short.
+    """
+    heights = crossing_heights(cutter, deepest)
+    several = len(set(cutter.helix)) > 1
+    slope = max(abs(math.tan(helix)) for helix in cutter.helix) / cutter.radius
+    if own_passes and several and cutter.serration is None:
+        heights += _even_heights(fineness * _PIECE_LAG / slope, deepest)
+    if cutter.edge_angle < 0.5 * math.pi - 1e-9:
+        # the radius, and with it the arc, changes along a cone
+        heights += _cone_borders(cutter, deepest, fineness * _PIECE_LAG, slope)
+        heights += _cone_heights(cutter, mode, radial_depth, turn)
+    return heights

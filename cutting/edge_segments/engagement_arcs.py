@@ -1,0 +1,248 @@
+"""Pieces of the edges of all teeth with the arcs in which they cut."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cutting.chip.regeneration import earlier_passes
+from cutting.edge_segments.earlier_passes import GAUSS, Edges, piece_borders
+from cutting.edge_segments.edge_profile import EdgeLine
+from cutting.engagement.immersion import MillingMode, slice_engagement
+from cutting.tool.cutter import Cutter
+
+Pair = NDArray[np.float64] | tuple[float, float]
+
+#: arcs shorter than this are none, rad
+_SHORTEST_ARC = 1e-9
+
+
+class Piece(NamedTuple):
+    """A piece of an edge and one of its arcs; of a pair the value at the low and the high end."""
+
+    bottom: float  # height of the low end above the tip, m
+    thickness: float  # along the axis, m
+    length: float  # of edge, m
+    angle: Pair  # place on the tool, rad
+    entry: Pair  # rad
+    exit: Pair  # rad
+    delay: Pair  # angle since the pass that left the surface, rad
+    immersion: Pair  # axial immersion angle, rad
+    radius: Pair  # m
+    cutting: NDArray[np.float64]  # slope at the reference chip: tangential .. axial, N/m^2 (3,)
+    inset: Pair  # by which the earlier edge reaches further out, m
+    axial_inset: float  # and further towards the work, m
+    corner: float  # radius of the corner that it lies on, m; 0 for none
+    vanishing: int  # 1, 2: there is no chip at the entry, at the exit
+
+
+class Owner(NamedTuple):
+    """Whose piece it is."""
+
+    piece: int  # number along the edge
+    tooth: int
+    earlier: int  # tooth that left the surface
+
+
+def pieces_of_one_pass(
+    cutter: Cutter,
+    line: EdgeLine,
+    mode: MillingMode,
+    radial_depth: float,
+    slopes: list[NDArray[np.float64]],
+) -> tuple[list[Piece], list[Owner]]:
+    """Pieces of teeth that each cut what the one before them has left.
+
+    Parameters
+    ----------
+    cutter : Cutter
+    line : EdgeLine
+    mode : {"up", "down", "slot"}
+    radial_depth : float
+        m.
+    slopes : list of (3,) arrays of float
+        Of the force law of each tooth at the reference chip, N/m^2.
+
+    Returns
+    -------
+    pieces : list of Piece
+    owners : list of Owner
+    """
+    lag = np.tan(np.asarray(cutter.helix)) / cutter.radius
+    pieces: list[Piece] = []
+    owners: list[Owner] = []
+    entry, leave = _arcs_at_borders(cutter, line, mode, radial_depth)
+    for piece in range(line.length.size):
+        ends = slice(piece, piece + 2)
+        middle = 0.5 * (line.height[piece] + line.height[piece + 1])
+        angle = cutter.tooth_angles[:, None] - np.outer(lag, [*line.height[ends], middle])
+        kappa = line.immersion[piece]
+        arc = _arc_of_piece(entry[ends], leave[ends])
+        if arc is None:
+            continue
+        earlier, ahead = earlier_passes(angle[:, 2:])
+        for tooth in range(cutter.teeth):
+            other = int(earlier[tooth, 0, 0])
+            # flutes of different helix are not as far ahead at the ends as in the middle
+            apart = angle[other] - angle[tooth]
+            gaps = ahead[tooth, 0, 0] + apart - apart[2]
+            owners.append(Owner(piece, tooth, other))
+            pieces.append(
+                Piece(
+                    line.height[piece], line.height[piece + 1] - line.height[piece],
+                    line.length[piece], angle[tooth, :2], arc[0], arc[1], gaps[:2], kappa,
+                    line.radius[ends], slopes[tooth], (0.0, 0.0), 0.0,
+                    cutter.corner_radius if kappa[0] < kappa[1] else 0.0, 0,
+                )
+            )  # fmt: skip
+    return pieces, owners
+
+
+def pieces_of_passes(
+    edges: Edges,
+    line: EdgeLine,
+    deepest: float,
+    slopes: list[NDArray[np.float64]],
+    fineness: float,
+) -> tuple[list[Piece], list[Owner]]:
+    """Pieces of teeth for each of which the earlier pass is found that left the surface.
+
+    Parameters
+    ----------
+    edges : Edges
+    line : EdgeLine
+    deepest : float
+        m.
+    slopes
+        As of `pieces_of_one_pass`.
+    fineness : float
+        1 or less.
+
+    Returns
+    -------
+    pieces : list of Piece
+    owners : list of Owner
+    """
+    borders = np.concatenate([[0.0], np.cumsum(line.length)])
+    # the line runs on to the end of the corner
+    borders = np.minimum(borders, edges.place(deepest))
+    borders = np.append(borders[borders < borders[-1]], borders[-1])
+    pieces: list[Piece] = []
+    owners: list[Owner] = []
+    for tooth in range(edges.cutter.teeth):
+        found, of_tooth = _pieces_of_tooth(edges, tooth, slopes[tooth], borders, fineness)
+        pieces += found
+        owners += of_tooth
+    return pieces, owners
+
+
+def _pieces_of_tooth(
+    edges: Edges, tooth: int, slope: NDArray[np.float64], borders: NDArray[np.float64],
+    fineness: float,
+) -> tuple[list[Piece], list[Owner]]:  # fmt: skip
+    """The same of one tooth.
+
+    What bends along a piece is the line through its values at two Gauss points: so the area in
+    the cut, and all that is linear along it, is right to the fourth order.
+    """
+    places = piece_borders(edges, tooth, borders, fineness)
+    low, high = places[:-1], places[1:]
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    own = np.full(middle.size, tooth)
+    inner = (middle - GAUSS * half, middle + GAUSS * half)
+    at_ends, at_middle = edges.profile(places), edges.profile(middle)
+    radial = _through(*(edges.radial(edges.profile(place).height) for place in inner))
+    angle, between = edges.angle(at_ends.height), edges.angle(at_middle.height)
+    ahead = edges.ahead(own, at_middle.height)
+    one, other, central = (edges.arcs(own, place) for place in (*inner, middle))
+    alike = np.all(one.kind == other.kind, axis=1)
+    ends = np.where(
+        alike[:, None, None], _through(one.angle, other.angle), central.angle[..., None]
+    )
+    met = np.where(alike[:, None], one.tooth, central.tooth)
+    vanishing = _where_chip_vanishes(np.where(alike[:, None], one.kind, central.kind))
+    axial, corner = edges.cutter.axial_offsets, edges.cutter.corner_radius
+    pieces: list[Piece] = []
+    owners: list[Owner] = []
+    for piece, arc in zip(*np.nonzero(met >= 0), strict=True):
+        k, pair = int(met[piece, arc]), slice(piece, piece + 2)
+        apart = angle[pair, k] - angle[pair, tooth]
+        gaps = ahead[piece, k] + apart - (between[piece, k] - between[piece, tooth])
+        owners.append(Owner(int(piece), tooth, k))
+        pieces.append(
+            Piece(
+                at_ends.height[piece], at_ends.height[piece + 1] - at_ends.height[piece],
+                high[piece] - low[piece], angle[pair, tooth],
+                ends[piece, arc], ends[piece, arc + 1], gaps, at_ends.immersion[pair],
+                at_ends.radius[pair], slope, radial[piece, k] - radial[piece, tooth],
+                axial[k] - axial[tooth], corner if middle[piece] < edges.on_corner else 0.0,
+                vanishing[piece, arc],
+            )
+        )  # fmt: skip
+    return pieces, owners
+
+
+def _where_chip_vanishes(kind: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Tell for each arc (P, W) whether its chip is none at its entry (1), at its exit (2), or not.
+
+    For a chip against the surface of one pass it is so where the arc borders on air.
+    """
+    air = np.pad(kind, ((0, 0), (1, 1)), constant_values=-1) // 4 == 0
+    inner = np.pad(kind, ((0, 0), (1, 1)), constant_values=-1) % 4 >= 2
+    begins = inner[:, 1:-1] & (air[:, :-2] | (np.arange(kind.shape[1]) == 0))
+    ends = air[:, 2:] & inner[:, 2:]
+    return np.where(begins, 1, np.where(ends, 2, 0))
+
+
+def _through(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values (..., 2) at the ends of lines through those at two Gauss points."""
+    middle, rise = 0.5 * (one + other), 0.5 / GAUSS * (other - one)
+    return np.stack([middle - rise, middle + rise], axis=-1)
+
+
+def _arcs_at_borders(
+    cutter: Cutter, line: EdgeLine, mode: MillingMode, radial_depth: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Entry and exit (L + 1,) at the borders of the pieces, rad, of which each piece has the mean.
+
+    Within a piece the arc follows a chord, which all along lies on one side of it. At a border the
+    arc is taken off by the mean distance (Simpson) on both sides of it: what a force is short of
+    falls with the fourth power of the length of the pieces, not the second.
+    """
+
+    def arcs(radius: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        return slice_engagement(mode, radial_depth, cutter.radius, np.maximum(radius, 1e-12))
+
+    bent = line.immersion[:, 0] < line.immersion[:, 1]
+    on_corner = cutter.corner_radius * (1.0 - np.sin(line.immersion.mean(axis=1)))
+    straight = 0.5 * (line.radius[:-1] + line.radius[1:])
+    middle = arcs(np.where(bent, cutter.radius - on_corner, straight))
+    ends = arcs(line.radius)
+    inside = (ends[1] - ends[0] > _SHORTEST_ARC) & (ends[1] - ends[0] < math.pi - _SHORTEST_ARC)
+    both = inside[:-1] & inside[1:]
+    for at_ends, at_middle in zip(ends, middle, strict=True):
+        apart = np.zeros(line.length.size)
+        chord = 0.5 * (at_ends[:-1][both] + at_ends[1:][both])
+        apart[both] = (at_middle[both] - chord) * 2.0 / 3.0
+        beside = np.append(both, False).astype(float) + np.append(False, both)
+        shift = np.append(apart, 0.0) + np.append(0.0, apart)
+        at_ends[inside] += shift[inside] / np.maximum(beside[inside], 1.0)
+    return ends
+
+
+def _arc_of_piece(
+    entry: NDArray[np.float64], leave: NDArray[np.float64]
+) -> NDArray[np.float64] | None:
+    """Entry and exit at both ends (2, 2); where one end is out of the stock its arc is a point."""
+    cuts = entry < leave
+    if not cuts.any():
+        return None
+    if not cuts.all():
+        inside = int(np.argmax(cuts))
+        # down-milling ends at pi, up-milling starts at 0: the arc shrinks towards that side
+        place = leave[inside] if leave[inside] > math.pi - 1e-12 else entry[inside]
+        entry, leave = np.where(cuts, entry, place), np.where(cuts, leave, place)
+    return np.stack([entry, leave])

@@ -1,0 +1,220 @@
+"""Ploughing: the flank pressed into the wave that the edge has just cut.
+
+The force is the specific indentation force times the volume of work material that the flank
+displaces (Shaw and DeSalvo 1970; Wu 1989, J. Eng. Ind. 111, eqs. 9 to 14). The volume follows from
+the wave behind the edge, the clearance angle, the flank wear and the edge radius. What a still
+tool displaces with its rounded edge belongs to the edge coefficients and is taken off.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numba.extending import register_jitable
+from numpy.typing import NDArray
+
+from cutting.force.edge_force import INLINED
+
+#: material parts at this angle before the lowest point of a rounded edge (Basuray et al. 1977)
+_SEPARATION_ANGLE = math.radians(37.6)
+#: nodes of the flank along the contact at rest, and behind it
+_NODES_OF_CONTACT = 40
+_NODES_BEHIND = 20
+#: samples of the wave, at the most
+_MOST_SAMPLES = 96
+#: the wave is followed until the clearance is this high, m
+_HIGHEST_WAVE = 2e-4
+
+
+@dataclass(frozen=True)
+class Ploughing:
+    """Indentation of the flank.
+
+    Parameters
+    ----------
+    indentation_force : float
+        Specific indentation force, N/m^3.
+    clearance_angle : float
+        rad.
+    flank_wear : float
+        Length of the land worn parallel to the cutting speed, m.
+    edge_radius : float
+        m.
+    friction : float
+        mu, tangential over radial force.
+    """
+
+    indentation_force: float
+    clearance_angle: float
+    flank_wear: float = 0.0
+    edge_radius: float = 0.0
+    friction: float = 0.0
+
+    @property
+    def contact_length(self) -> float:
+        """Length of contact of a still tool, m: rounded edge and worn land."""
+        arc = self.edge_radius * math.sin(_SEPARATION_ANGLE)
+        recovery = self.edge_radius * (1.0 - math.cos(_SEPARATION_ANGLE))
+        behind = min(arc, recovery / math.tan(self.clearance_angle))
+        return arc + self.flank_wear + behind
+
+    def profile(self, distance: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Depth of the flank below the line of the new surface, m, behind the parting point.
+
+        Parameters
+        ----------
+        distance : (n,) array of float
+            Along the cutting speed, m, >= 0.
+
+        Returns
+        -------
+        (n,) array of float
+            Positive where a still tool displaces material, negative where there is clearance.
+        """
+        radius = self.edge_radius
+        lowest = radius * math.sin(_SEPARATION_ANGLE)
+        depth = radius * (1.0 - math.cos(_SEPARATION_ANGLE))
+        before = np.minimum(distance - lowest, 0.0)
+        after = np.maximum(distance - lowest - self.flank_wear, 0.0)
+        arc_end = radius * math.sin(self.clearance_angle)
+        on_arc = np.minimum(after, arc_end)
+        rise = radius - np.sqrt(radius**2 - before**2) + radius - np.sqrt(radius**2 - on_arc**2)
+        return depth - rise - np.maximum(after - arc_end, 0.0) * math.tan(self.clearance_angle)
+
+
+class PloughingFlank(NamedTuple):
+    """Flank of the edge, and the wave that each slice of it has just cut."""
+
+    indentation_force: float  # N/m^3
+    friction: float
+    distance: NDArray[np.float64]  # of the nodes of the flank behind the parting point, m, (J,)
+    depth: NDArray[np.float64]  # of the flank below the new surface there, m, (J,)
+    spacing: NDArray[np.float64]  # of the samples along the cut, m, (L,)
+    stride: int  # steps between samples
+    wave: NDArray[np.float64]  # surface left at the last samples, outwards, m, (N, L, K)
+    newest: NDArray[np.int64]  # column of the last sample, (N, L)
+    filled: NDArray[np.int64]  # samples since the edge came into the cut, (N, L)
+    age: NDArray[np.int64]  # steps since the last sample, (N, L)
+
+
+def ploughing_flank(
+    law: Ploughing, radius: NDArray[np.float64], teeth: int, step_angle: float
+) -> PloughingFlank:
+    """Lay out the samples of the wave for every tooth and slice.
+
+    Parameters
+    ----------
+    law : Ploughing
+    radius : (L,) array of float
+        Of the edge slices, m.
+    teeth : int
+    step_angle : float
+        Rotation in a time step, rad.
+    """
+    contact = law.contact_length
+    length = contact + _HIGHEST_WAVE / math.tan(law.clearance_angle)
+    nodes = np.concatenate(
+        [
+            np.linspace(0.0, contact, _NODES_OF_CONTACT + 1),
+            contact + (length - contact) * np.linspace(0.0, 1.0, _NODES_BEHIND + 1)[1:] ** 2,
+        ]
+    )
+    arc = np.maximum(radius, 1e-3 * radius.max()) * step_angle
+    stride = max(1, math.ceil(length / (_MOST_SAMPLES - 2) / arc.max()))
+    samples = min(_MOST_SAMPLES, math.ceil(length / (stride * arc.max())) + 2)
+    shape = (teeth, radius.size)
+    return PloughingFlank(
+        indentation_force=law.indentation_force,
+        friction=law.friction,
+        distance=nodes,
+        depth=law.profile(nodes),
+        spacing=stride * arc,
+        stride=stride,
+        wave=np.zeros((*shape, samples)),
+        newest=np.zeros(shape, dtype=np.int64),
+        filled=np.zeros(shape, dtype=np.int64),
+        age=np.zeros(shape, dtype=np.int64),
+    )
+
+
+@register_jitable(**INLINED)
+def _area_above(left, right, width):
+    """Area above zero of a straight line from `left` to `right` over a width."""
+    if left >= 0.0 and right >= 0.0:
+        return 0.5 * (left + right) * width
+    if left <= 0.0 and right <= 0.0:
+        return 0.0
+    high = left if left > right else right
+    low = right if left > right else left
+    return 0.5 * high * high / (high - low) * width
+
+
+@register_jitable(**INLINED)
+def ploughing_force(flank, tooth, piece, place, rate, speed):  # noqa: ARG001
+    """Tangential and radial force per length of edge, N/m.
+
+    Parameters
+    ----------
+    flank : PloughingFlank
+    tooth, piece : int
+    place : float
+        Of the edge along its outward normal, m, in the frame of the samples.
+    rate, speed : float
+        Not used: the wave itself says how fast the edge moves.
+    """
+    count = flank.filled[tooth, piece]
+    samples = flank.wave.shape[2]
+    spacing = flank.spacing[piece]
+    # the newest sample was taken `age` steps before the last one, the others a stride earlier each
+    further = spacing * (flank.age[tooth, piece] + 1) / flank.stride
+    nearer, near_wave = 0.0, place
+    column, seen = flank.newest[tooth, piece], 1
+    area = 0.0
+    if count == 0:
+        return 0.0, 0.0
+    far_wave = flank.wave[tooth, piece, column]
+    left = at_rest = flank.depth[0]
+    for node in range(1, flank.distance.shape[0]):
+        distance = flank.distance[node]
+        while distance > further and seen < count:
+            column = column - 1 if column > 0 else samples - 1
+            nearer, near_wave = further, far_wave
+            further, far_wave = further + spacing, flank.wave[tooth, piece, column]
+            seen += 1
+        if distance > further:
+            break
+        share = (distance - nearer) / (further - nearer)
+        depth = flank.depth[node]
+        right = place - (near_wave + share * (far_wave - near_wave)) + depth
+        width = distance - flank.distance[node - 1]
+        # what a still tool displaces belongs to the edge coefficients
+        area += _area_above(left, right, width) - _area_above(at_rest, depth, width)
+        left, at_rest = right, depth
+    radial = flank.indentation_force * area
+    return flank.friction * radial, radial
+
+
+@register_jitable(**INLINED)
+def note_wave(flank, tooth, piece, surface):
+    """Take the surface left by the edge in this step, m, into the samples."""
+    age = flank.age[tooth, piece] + 1
+    if flank.filled[tooth, piece] == 0 or age >= flank.stride:
+        samples = flank.wave.shape[2]
+        column = flank.newest[tooth, piece] + 1
+        if column >= samples:
+            column = 0
+        flank.newest[tooth, piece] = column
+        flank.wave[tooth, piece, column] = surface
+        flank.filled[tooth, piece] = min(samples, flank.filled[tooth, piece] + 1)
+        age = 0
+    flank.age[tooth, piece] = age
+
+
+@register_jitable(**INLINED)
+def forget_wave(flank, tooth, piece):
+    """The edge has left the cut: there is nothing behind it any more."""
+    flank.filled[tooth, piece] = 0
+    flank.age[tooth, piece] = 0

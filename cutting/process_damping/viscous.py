@@ -1,0 +1,71 @@
+"""Process damping in its viscous form.
+
+The flank ploughs into the wave that it cuts; for small waves the mean force is that of a dashpot
+in the radial direction, F_r = C (b/V) r_dot, with friction mu in the tangential one
+(Tlusty 1978; Schmitz and Smith 2019, Machining Dynamics, section 4.5).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from numba.extending import register_jitable
+
+from cutting.force.edge_force import INLINED
+
+
+@dataclass(frozen=True)
+class ViscousProcessDamping:
+    """Radial dashpot of the engaged flank.
+
+    Parameters
+    ----------
+    coefficient : float
+        C, N/m.
+    friction : float
+        mu, tangential over radial ploughing force.
+    """
+
+    coefficient: float
+    friction: float = 0.0
+
+    @property
+    def force_per_radial_velocity(self) -> tuple[float, float, float]:
+        """C mu, C, 0: tangential, radial, axial force per b r_dot / V, N/m."""
+        return (self.coefficient * self.friction, self.coefficient, 0.0)
+
+
+class ViscousFlank(NamedTuple):
+    """The viscous form as the time-domain kernels see it."""
+
+    coefficient: float  # C, N/m
+    friction: float  # mu
+
+
+@register_jitable(**INLINED)
+def viscous_force(flank, tooth, piece, place, rate, speed):  # noqa: ARG001
+    """Tangential and radial force per length of edge, N/m.
+
+    Parameters
+    ----------
+    flank : ViscousFlank
+    tooth, piece : int
+        Not used: all edges are alike.
+    place : float
+        Not used.
+    rate, speed : float
+        Velocity of the edge along its outward normal, and cutting speed, m/s.
+    """
+    radial = flank.coefficient * rate / speed
+    return flank.friction * radial, radial
+
+
+@register_jitable(**INLINED)
+def no_wave(flank, tooth, piece):
+    """Forget nothing: the viscous form has no memory."""
+
+
+@register_jitable(**INLINED)
+def no_note(flank, tooth, piece, surface):
+    """Note nothing: the viscous form has no memory."""

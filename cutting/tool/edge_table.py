@@ -1,0 +1,111 @@
+"""The edges of a tool as the time-domain kernels see them."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba.extending import register_jitable
+from numpy.typing import NDArray
+
+from cutting.force.edge_force import INLINED
+from cutting.tool.cutter import EdgeSlices
+
+#: Gauss points of order 2 lie at this share of the half width
+GAUSS_PLACE = 1.0 / math.sqrt(3.0)
+
+
+class EdgeTable(NamedTuple):
+    """N teeth by L slices; angles in bins of the spindle turn where nothing else is said."""
+
+    bins: int
+    whole: NDArray[np.int64]  # angle of the middle of the slice on the tool, (N, L)
+    part: NDArray[np.float64]  # its fraction, (N, L)
+    half_width: NDArray[np.float64]  # half the lag within the slice, (N, L)
+    sine: NDArray[np.float64]  # of the angles of middle and two Gauss points, (N, L, 3)
+    cosine: NDArray[np.float64]  # (N, L, 3)
+    normal_offset: NDArray[np.float64]  # of the edge, outwards, m, (N, L)
+    radius: NDArray[np.float64]  # m, (L,)
+    sine_immersion: NDArray[np.float64]  # (L,)
+    cosine_immersion: NDArray[np.float64]  # (L,)
+    edge_length: NDArray[np.float64]  # m, (L,)
+    share: NDArray[np.float64]  # of the axial depth, (L,)
+    share_per_length: NDArray[np.float64]  # of edge, 1/m, (L,)
+
+
+def edge_table(slices: EdgeSlices, bins: int) -> EdgeTable:
+    """Lay out edge slices for kernels that count angles in `bins` a turn."""
+    place = np.mod(slices.angle * bins / (2.0 * math.pi), bins)
+    # the last bit of an angle must not make a tooth start a turn early
+    near = np.round(place)
+    place = np.where(np.abs(place - near) < 1e-9 * bins, near, place) % bins
+    whole = np.floor(place).astype(np.int64)
+    middle = place * 2.0 * math.pi / bins
+    reach = 0.5 * np.abs(slices.lag) * GAUSS_PLACE
+    points = np.stack([middle, middle - reach, middle + reach], axis=-1)
+    upright = np.abs(slices.immersion - 0.5 * math.pi) < 1e-12
+    return EdgeTable(
+        bins=bins,
+        whole=whole,
+        part=place - whole,
+        half_width=0.5 * np.abs(slices.lag) * bins / (2.0 * math.pi),
+        sine=np.sin(points),
+        cosine=np.cos(points),
+        normal_offset=slices.normal_offset,
+        radius=slices.radius,
+        sine_immersion=np.sin(slices.immersion),
+        # an upright edge has none at all, not the rounding of pi/2
+        cosine_immersion=np.where(upright, 0.0, np.cos(slices.immersion)),
+        edge_length=slices.edge_length,
+        share=slices.thickness / slices.thickness.sum(),
+        share_per_length=slices.thickness / slices.thickness.sum() / slices.edge_length,
+    )
+
+
+@register_jitable(**INLINED)
+def place_of(edges, tooth, piece, whole, part):
+    """Place of the middle of an edge slice at a spindle place: whole bin and fraction."""
+    whole = whole + edges.whole[tooth, piece]
+    part = part + edges.part[tooth, piece]
+    if part >= 1.0:
+        part -= 1.0
+        whole += 1
+    if whole >= edges.bins:
+        whole -= edges.bins
+    return whole, part
+
+
+@register_jitable(**INLINED)
+def signed_place(edges, whole, part):
+    """Place as a number that runs on below zero, so that an arc from zero is in one piece."""
+    if whole >= edges.bins - edges.bins // 4:
+        return whole - edges.bins + part
+    return whole + part
+
+
+@register_jitable(**INLINED)
+def direction(edges, tooth, piece, point, turn):
+    """Sine and cosine of the angle of a point of the slice (0 middle, 1 and 2 Gauss points)."""
+    s, c = edges.sine[tooth, piece, point], edges.cosine[tooth, piece, point]
+    return turn.sine * c + turn.cosine * s, turn.cosine * c - turn.sine * s
+
+
+@register_jitable(**INLINED)
+def force_on_tool(edges, piece, sine, cosine, tangential, radial, axial):
+    """Force (x, y, z) on the tool from the force on an edge.
+
+    Notes
+    -----
+    The tangential force acts against the motion of the edge, the radial one along its inward
+    normal (-sin k sin p, -sin k cos p, cos k), the axial one along (cos k sin p, cos k cos p,
+    sin k), with k the axial immersion and p the rotation angle (Altintas and Engin 2001, eq. 12,
+    with the axial force counted positive upwards along the axis).
+    """
+    sk, ck = edges.sine_immersion[piece], edges.cosine_immersion[piece]
+    in_plane = axial * ck - radial * sk
+    return (
+        in_plane * sine - tangential * cosine,
+        in_plane * cosine + tangential * sine,
+        radial * ck + axial * sk,
+    )

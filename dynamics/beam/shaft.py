@@ -1,0 +1,323 @@
+"""Shafts, spindles and tools as lines of beam elements, with discs and bearings.
+
+A line is a part that `dynamics.structure.assembly.assemble` joins with bodies and other lines.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from dynamics.beam.element import (
+    Material,
+    Segment,
+    cowper,
+    element_mass,
+    element_stiffness,
+    hutchinson,
+    positive,
+    shape_functions,
+)
+from dynamics.structure.bodies import GROUND, Connector, finite, rigid_motion
+from dynamics.structure.linear_structure import StructureError
+
+__all__ = ["BeamLine", "Bearing", "Disc", "Material", "Segment", "cowper", "hutchinson"]
+
+# Places closer together than this part of an element share a node: a sliver of an element would
+# spoil the numbers, and the shape functions tell the motion beside a node as well.
+NEAREST_NODES = 0.02
+
+
+@dataclass(frozen=True)
+class Disc:
+    """Rigid disc on a line: a chuck, pulley, rotor or nut, centred on the axis.
+
+    Parameters
+    ----------
+    station : float
+        Place of its centre along the line, m.
+    mass : float
+        kg.
+    polar_inertia, diametral_inertia : float
+        About the axis and about a diameter through the centre, kg m^2.
+    """
+
+    station: float
+    mass: float
+    polar_inertia: float
+    diametral_inertia: float
+
+    def __post_init__(self) -> None:
+        for what in ("mass", "polar_inertia", "diametral_inertia"):
+            positive(f"disc at {self.station} m", what, getattr(self, what))
+
+    @classmethod
+    def from_size(
+        cls, station: float, width: float, inner: float, outer: float, density: float
+    ) -> Disc:
+        """Disc of given width, inner and outer diameter (m) and density (kg/m^3)."""
+        mass = 0.25 * np.pi * (outer**2 - inner**2) * width * density
+        polar = mass * (outer**2 + inner**2) / 8.0
+        return cls(station, mass, polar, 0.5 * polar + mass * width**2 / 12.0)
+
+
+@dataclass(frozen=True)
+class Bearing:
+    """Springs and dampers between a line and ground or another part, in the line's own axes.
+
+    Parameters
+    ----------
+    name : str
+    station : float
+        Along the line, m.
+    radial : (float, float)
+        Stiffness in the line's two radial directions, N/m.
+    axial : float
+        N/m.
+    tilt : (float, float)
+        Stiffness against rotation about the two radial directions, N m/rad.
+    torsion : float
+        Stiffness against rotation about the axis, N m/rad; a drive holds it, a bearing does not.
+    radial_damping, axial_damping, tilt_damping, torsion_damping
+        N s/m and N m s/rad.
+    body : str
+        What carries the bearing; "ground" by default.
+    """
+
+    name: str
+    station: float
+    radial: tuple[float, float]
+    axial: float = 0.0
+    tilt: tuple[float, float] = (0.0, 0.0)
+    torsion: float = 0.0
+    radial_damping: tuple[float, float] = (0.0, 0.0)
+    axial_damping: float = 0.0
+    tilt_damping: tuple[float, float] = (0.0, 0.0)
+    torsion_damping: float = 0.0
+    body: str = GROUND
+
+
+@dataclass(frozen=True, eq=False)
+class BeamLine:
+    """Line of stepped round segments along an axis.
+
+    Parameters
+    ----------
+    name : str
+    segments : sequence of Segment
+        From the origin on.
+    origin : (3,) array of float
+        Place of the first end, m.
+    axis : (3,) array of float
+        Direction from the first end to the last; of any length.
+    discs : sequence of Disc
+    bearings : sequence of Bearing
+    first_radial : (3,) array of float, optional
+        Direction of the first radial axis, made perpendicular to the axis; the second is axis x
+        first. Default: x for an axis along z, y for x, z for y, and in between by the nearest.
+    stiffness_damping : float
+        Damping matrix over stiffness matrix of the line, s: damping ratio pi f times this.
+    stations : sequence of float
+        Further places that get a node, m.
+
+    Raises
+    ------
+    StructureError
+        If there is no segment, a place lies off the line, or a direction is not one.
+    """
+
+    name: str
+    segments: Sequence[Segment]
+    origin: ArrayLike = (0.0, 0.0, 0.0)
+    axis: ArrayLike = (0.0, 0.0, 1.0)
+    discs: Sequence[Disc] = ()
+    bearings: Sequence[Bearing] = ()
+    first_radial: ArrayLike | None = None
+    stiffness_damping: float = 0.0
+    stations: Sequence[float] = ()
+
+    def __post_init__(self) -> None:
+        where = f'beam "{self.name}"'
+        if self.name == GROUND:
+            raise StructureError(f'{where}: "{GROUND}" is what does not move; name it otherwise')
+        if not self.segments:
+            raise StructureError(f"{where} has no segments")
+        if not (np.isfinite(self.stiffness_damping) and self.stiffness_damping >= 0.0):
+            raise StructureError(f"{where}: stiffness_damping is {self.stiffness_damping}")
+        object.__setattr__(self, "origin", finite(where, "origin", self.origin, (3,)))
+        object.__setattr__(self, "axis", finite(where, "axis", self.axis, (3,)))
+        if not np.any(self.axis):
+            raise StructureError(f"{where}: axis has no length")
+        for item in (*self.discs, *self.bearings):
+            self._within(item.station)
+        for station in self.stations:
+            self._within(station)
+        _ = self.axes
+
+    @property
+    def length(self) -> float:
+        """Length of all segments, m."""
+        return float(sum(segment.length for segment in self.segments))
+
+    @cached_property
+    def axes(self) -> NDArray[np.float64]:
+        """(3, 3): rows are the axis, the first and the second radial direction."""
+        along = self.axis / np.linalg.norm(self.axis)
+        if self.first_radial is None:
+            guide = np.roll(np.eye(3)[np.argmax(np.abs(along))], 1)
+        else:
+            guide = finite(f'beam "{self.name}"', "first_radial", self.first_radial, (3,))
+        first = guide - (guide @ along) * along
+        if np.linalg.norm(first) <= 1e-6 * np.linalg.norm(guide):
+            raise StructureError(f'beam "{self.name}": first_radial lies along the axis')
+        first /= np.linalg.norm(first)
+        return np.array([along, first, np.cross(along, first)])
+
+    @cached_property
+    def nodes(self) -> NDArray[np.float64]:
+        """(nodes,): places of the nodes along the line, m."""
+        asked = [item.station for item in (*self.discs, *self.bearings)] + list(self.stations)
+        marks = [0.0]
+        start = 0.0
+        for segment in self.segments:
+            end = start + segment.length
+            element = segment.length / segment.elements
+            inside = [start]
+            for station in sorted(set(asked)):
+                near = NEAREST_NODES * element
+                if inside[-1] + near < station < end - near:
+                    inside.append(station)
+            for left, right in zip(inside, [*inside[1:], end], strict=True):
+                count = int(np.ceil((right - left) / element - 1e-9))
+                marks += list(np.linspace(left, right, max(count, 1) + 1)[1:])
+            start = end
+        return np.array(marks)
+
+    @cached_property
+    def mass_matrix(self) -> NDArray[np.float64]:
+        """(6 nodes, 6 nodes), kg, kg m and kg m^2, in the machine's directions."""
+        mass = self._over_elements(element_mass)
+        for disc in self.discs:
+            motion = self._own_motion(disc.station)
+            inertia = [disc.mass] * 3 + [disc.polar_inertia] + [disc.diametral_inertia] * 2
+            mass += motion.T @ (np.array(inertia)[:, None] * motion)
+        return mass
+
+    @property
+    def damping_matrix(self) -> NDArray[np.float64]:
+        """(6 nodes, 6 nodes), N s/m and kin, without the bearings."""
+        return self.stiffness_damping * self.stiffness_matrix
+
+    @cached_property
+    def stiffness_matrix(self) -> NDArray[np.float64]:
+        """(6 nodes, 6 nodes), N/m and kin, without the bearings."""
+        return self._over_elements(element_stiffness)
+
+    @property
+    def rigid_motions(self) -> NDArray[np.float64]:
+        """(6 nodes, 6): along and about x, y, z of the first end."""
+        along = self.axis / np.linalg.norm(self.axis)
+        return np.vstack([rigid_motion(station * along) for station in self.nodes])
+
+    @property
+    def connectors(self) -> tuple[Connector, ...]:
+        """The bearings as connectors, each named "line: bearing"."""
+        return tuple(
+            Connector(
+                name=f"{self.name}: {one.name}",
+                first=self.name,
+                second=one.body,
+                at=self.place(one.station),
+                stiffness=(one.axial, *one.radial, one.torsion, *one.tilt),
+                damping=(
+                    one.axial_damping,
+                    *one.radial_damping,
+                    one.torsion_damping,
+                    *one.tilt_damping,
+                ),
+                axes=self.axes,
+            )
+            for one in self.bearings
+        )
+
+    def place(self, station: float) -> NDArray[np.float64]:
+        """Place (3,) in m on the axis at a station."""
+        return self.origin + self._within(station) * self.axes[0]
+
+    def with_nodes_at(self, places: Iterable[ArrayLike]) -> BeamLine:
+        """Same line with nodes at the stations of places (3,) in m."""
+        found = [self._station(place) for place in places]
+        return replace(self, stations=(*self.stations, *found))
+
+    def motion_at(self, place: ArrayLike) -> NDArray[np.float64]:
+        """Displacements and rotations at a place per freedom of the nodes.
+
+        The section at the place's station moves by the shape functions; a place off the axis
+        moves with it rigidly.
+
+        Parameters
+        ----------
+        place : (3,) array of float
+            m.
+
+        Returns
+        -------
+        (6, 6 nodes) array of float
+
+        Raises
+        ------
+        StructureError
+            If the place lies beyond an end.
+        """
+        station = self._station(place)
+        section = self._turned(6).T @ self._own_motion(station)
+        return rigid_motion(np.asarray(place, dtype=np.float64) - self.place(station)) @ section
+
+    def _station(self, place: ArrayLike) -> float:
+        where = finite(f'beam "{self.name}"', "place", place, (3,))
+        return self._within(float(self.axes[0] @ (where - self.origin)))
+
+    def _within(self, station: float) -> float:
+        if not -1e-9 * self.length <= station <= (1.0 + 1e-9) * self.length:
+            raise StructureError(
+                f'beam "{self.name}": station {station:g} m is off the line, '
+                f"which is {self.length:g} m long"
+            )
+        return min(max(float(station), 0.0), self.length)
+
+    def _turned(self, size: int) -> NDArray[np.float64]:
+        """(size, size): turns vectors in the machine's directions into the line's own."""
+        return np.kron(np.eye(size // 3), self.axes)
+
+    def _element(self, station: float) -> int:
+        last = len(self.nodes) - 2
+        return int(np.clip(np.searchsorted(self.nodes, station, side="right") - 1, 0, last))
+
+    def _section_of(self, element: int) -> Segment:
+        middle = 0.5 * (self.nodes[element] + self.nodes[element + 1])
+        ends = np.cumsum([segment.length for segment in self.segments])
+        return self.segments[int(np.searchsorted(ends[:-1], middle))]
+
+    def _own_motion(self, station: float) -> NDArray[np.float64]:
+        """(6, 6 nodes): motion of the section at a station in the line's own directions."""
+        element = self._element(station)
+        left, right = self.nodes[element : element + 2]
+        functions = shape_functions(
+            self._section_of(element), right - left, (station - left) / (right - left)
+        )
+        motion = np.zeros((6, 6 * len(self.nodes)))
+        motion[:, 6 * element : 6 * element + 12] = functions @ self._turned(12)
+        return motion
+
+    def _over_elements(self, matrix: Callable[[Segment, float], NDArray]) -> NDArray[np.float64]:
+        whole = np.zeros((6 * len(self.nodes),) * 2)
+        turned = self._turned(12)
+        for element, length in enumerate(np.diff(self.nodes)):
+            part = slice(6 * element, 6 * element + 12)
+            own = matrix(self._section_of(element), float(length))
+            whole[part, part] += turned.T @ own @ turned
+        return whole

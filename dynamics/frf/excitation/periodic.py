@@ -1,0 +1,301 @@
+"""FRFs of periodic excitation: averages over periods and realisations, and their variances."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from dynamics.frf.container import Frf, MeasurementError, Point, Quantity
+from dynamics.frf.excitation.holds import Hold, laplace, without_hold
+from dynamics.frf.excitation.segments import averaged_frf, require_force, spectra_of_segments
+from dynamics.frf.hammer.spectra import Estimator, coherence, h1
+
+#: of the period in samples of two records, from one another
+_SAME_STEP = 1e-9
+
+
+@dataclass(frozen=True)
+class PeriodicRecord:
+    """Input and response under a periodic excitation, one realisation, SI units.
+
+    Parameters
+    ----------
+    force, response : (n,) array of float
+        Input and response sampled together, a force that is held at the beginning of the step
+        over which it acts. N (N m) and m, m/s or m/s^2 (rad, ...).
+    step : float
+        s.
+    period : int
+        Samples.
+    lines : (l,) array of int
+        Excited harmonics of the period, rising.
+    leading : int
+        First periods, which hold transients and are passed over.
+    quantity : str
+        Quantity of the FRF the pair gives.
+    reference : (n,) array of float, optional
+        Signal injected into a closed loop, of which force and response are both answers.
+    name : str
+    response_point, reference_point : Point
+    """
+
+    force: NDArray[np.float64]
+    response: NDArray[np.float64]
+    step: float
+    period: int
+    lines: NDArray[np.int64]
+    leading: int = 1
+    quantity: Quantity = "receptance"
+    reference: NDArray[np.float64] | None = None
+    name: str = "periodic record"
+    response_point: Point = field(default_factory=Point)
+    reference_point: Point = field(default_factory=Point)
+
+    def __post_init__(self) -> None:
+        """Check shapes, finiteness, periods and lines; raise MeasurementError."""
+        for key in ("force", "response", "reference"):
+            column = getattr(self, key)
+            if column is None and key == "reference":
+                continue
+            column = np.asarray(column, dtype=np.float64)
+            if column.ndim != 1 or column.shape != np.shape(self.force):
+                raise MeasurementError(
+                    f"{self.name}: {key} has shape {column.shape} and force "
+                    f"{np.shape(self.force)}; all must be one column of the same length"
+                )
+            if not np.isfinite(column).all():
+                raise MeasurementError(
+                    f"{self.name}: {key} at sample {int(np.argmin(np.isfinite(column)))} is not a "
+                    "finite number"
+                )
+            object.__setattr__(self, key, column)
+        lines = np.asarray(self.lines, dtype=np.int64)
+        object.__setattr__(self, "lines", lines)
+        if not 0.0 < self.step < np.inf:
+            raise MeasurementError(f"{self.name}: step is {self.step} s")
+        if self.period < 3 or self.leading < 0 or self.periods < 1:
+            raise MeasurementError(
+                f"{self.name}: {self.force.size} samples hold no period of {self.period} behind "
+                f"{self.leading} leading ones"
+            )
+        if lines.ndim != 1 or lines.size < 2 or np.any(np.diff(lines) < 1):
+            raise MeasurementError(f"{self.name}: lines must be two at least, rising")
+        if lines[0] < 1 or 2 * lines[-1] >= self.period:
+            raise MeasurementError(
+                f"{self.name}: lines {lines[0]} to {lines[-1]} of a period of {self.period} "
+                f"samples; they must lie from 1 to {(self.period - 1) // 2}"
+            )
+
+    @property
+    def periods(self) -> int:
+        """Whole periods behind the leading ones."""
+        return self.force.size // self.period - self.leading
+
+    @property
+    def frequency(self) -> NDArray[np.float64]:
+        """Frequencies of the excited lines, Hz, shape (l,)."""
+        return self.lines / (self.period * self.step)
+
+    def transforms(self, column: NDArray[np.float64]) -> NDArray[np.complex128]:
+        """Return the transforms of a column over each period at the lines, shape (periods, l)."""
+        first = self.leading * self.period
+        kept = column[first : first + self.periods * self.period]
+        return np.fft.rfft(kept.reshape(self.periods, self.period))[:, self.lines]
+
+
+@dataclass(frozen=True)
+class PeriodicFrf:
+    """FRF of a periodic excitation and how sure it is.
+
+    With friction or another nonlinearity the FRF is the best linear approximation for excitations
+    of its spectrum and power. Variances are of the FRF averaged over all periods and
+    realisations, sum of those of real and imaginary part, squared unit of the FRF.
+
+    Parameters
+    ----------
+    frf : Frf
+        On the excited lines; its coherence is that over all periods and realisations.
+    realisations : int
+    noise_variance : (l,) array of float, optional
+        Seen from period to period; None for one period.
+    total_variance : (l,) array of float, optional
+        Seen from realisation to realisation, of noise and nonlinear distortion together; None for
+        one realisation.
+    """
+
+    frf: Frf
+    realisations: int
+    noise_variance: NDArray[np.float64] | None
+    total_variance: NDArray[np.float64] | None
+
+    @property
+    def distortion_variance(self) -> NDArray[np.float64]:
+        """Variance of nonlinear distortion that one realisation has, (l,); 0 where noise hides it.
+
+        Raises
+        ------
+        MeasurementError
+            With one period or one realisation, from which it cannot be told.
+        """
+        if self.noise_variance is None or self.total_variance is None:
+            raise MeasurementError(
+                f"{self.frf.source}: nonlinear distortion is told from noise by at least two "
+                "periods in each of two realisations"
+            )
+        return self.realisations * np.maximum(self.total_variance - self.noise_variance, 0.0)
+
+
+def without_drift(response: ArrayLike, period: int, leading: int = 0) -> NDArray[np.float64]:
+    """Return a response less the even drift of a machine that moves at constant speed.
+
+    A drift differs at the two ends of a period and leaks onto all lines.
+
+    Parameters
+    ----------
+    response : (n,) array of float
+        m or rad.
+    period, leading : int
+        Samples, and periods passed over in finding the drift; two more are needed.
+
+    Raises
+    ------
+    MeasurementError
+        If there are fewer than two periods behind the leading ones.
+    """
+    response = np.asarray(response, dtype=np.float64)
+    periods = response.size // period - leading
+    if periods < 2:
+        raise MeasurementError(f"drift: {periods} periods behind the leading ones; 2 are needed")
+    first, last = leading * period, (leading + periods - 1) * period
+    means = [response[start : start + period].mean() for start in (first, last)]
+    slope = (means[1] - means[0]) / (last - first)
+    return response - slope * np.arange(response.size)
+
+
+def frf_of_periods(records: Sequence[PeriodicRecord], hold: Hold) -> PeriodicFrf:
+    """Estimate the FRF of periodic excitation, open or closed loop, by averages over periods.
+
+    The transforms of force and response are averaged over the periods of a realisation, in step
+    with the excitation, before their ratio is taken; noise then averages out even where a loop
+    feeds it back into the force. The ratios are averaged over realisations.
+
+    Parameters
+    ----------
+    records : sequence of PeriodicRecord
+        Realisations, of other phases but the same step, period, lines and quantity.
+    hold : Hold
+        What lay between the samples of the force.
+
+    Returns
+    -------
+    PeriodicFrf
+
+    Raises
+    ------
+    MeasurementError
+        If the records are not of one kind or a line holds no force.
+
+    Notes
+    -----
+    Source: R. Pintelon and J. Schoukens, 2012, System Identification: A Frequency Domain Approach,
+    2nd ed., chapter 4, the robust method for the best linear approximation.
+    """
+    require_one_excitation(records)
+    first = records[0]
+    pairs = [
+        (record.transforms(record.force), record.transforms(record.response)) for record in records
+    ]
+    means = np.array([(force.mean(axis=0), response.mean(axis=0)) for force, response in pairs])
+    for record, (force, _) in zip(records, means, strict=True):
+        require_force(first.frequency, np.abs(force) ** 2, record.name)
+    ratios = means[:, 1] / means[:, 0]
+    force, response = (np.concatenate(column) for column in zip(*pairs, strict=True))
+    spectra = spectra_of_segments(first.frequency, force, response, first.quantity)
+    frf = Frf(
+        first.frequency,
+        ratios.mean(axis=0),
+        first.quantity,
+        first.response_point,
+        first.reference_point,
+        coherence(spectra) if spectra.count > 1 else None,
+        _names(records),
+    )
+    gain = np.abs(hold.transfer(laplace(frf), first.step)) ** 2
+    count = len(records)
+    noise = total = None
+    if min(record.periods for record in records) > 1:
+        noise = sum(_ratio_variance(*pair) for pair in pairs) / count**2 / gain
+    if count > 1:
+        spread = np.sum(np.abs(ratios - ratios.mean(axis=0)) ** 2, axis=0)
+        total = spread / (count * (count - 1)) / gain
+    return PeriodicFrf(without_hold(frf, hold, first.step), count, noise, total)
+
+
+def direct_frf(records: Sequence[PeriodicRecord], hold: Hold, estimator: Estimator = h1) -> Frf:
+    """Estimate the FRF from force and response by power spectra over periods and realisations.
+
+    In a closed loop it is biased, towards the negative inverse of the controller as noise grows;
+    see `dynamics.frf.excitation.joint_input_output_frf`.
+
+    Parameters
+    ----------
+    records : sequence of PeriodicRecord
+    hold : Hold
+    estimator : callable
+        `dynamics.frf.hammer.h1` or `h2`.
+
+    Returns
+    -------
+    Frf
+        With the coherence where there are several periods.
+    """
+    require_one_excitation(records)
+    first = records[0]
+    spectra = spectra_of_segments(
+        first.frequency,
+        np.concatenate([record.transforms(record.force) for record in records]),
+        np.concatenate([record.transforms(record.response) for record in records]),
+        first.quantity,
+        points=(first.response_point, first.reference_point),
+    )
+    return without_hold(averaged_frf(spectra, estimator, _names(records)), hold, first.step)
+
+
+def require_one_excitation(records: Sequence[PeriodicRecord]) -> None:
+    """Raise MeasurementError unless records share step, period, lines and quantity."""
+    if not records:
+        raise MeasurementError("no periodic record to estimate an FRF from")
+    first = records[0]
+    for record in records[1:]:
+        same = (
+            abs(record.step - first.step) <= _SAME_STEP * first.step
+            and record.period == first.period
+            and np.array_equal(record.lines, first.lines)
+            and record.quantity == first.quantity
+        )
+        if not same:
+            raise MeasurementError(
+                f"{record.name} and {first.name} differ in step, period, lines or quantity; "
+                "realisations must share them"
+            )
+
+
+def _names(records: Sequence[PeriodicRecord]) -> str:
+    return ", ".join(dict.fromkeys(record.name for record in records))
+
+
+def _ratio_variance(
+    force: NDArray[np.complex128], response: NDArray[np.complex128]
+) -> NDArray[np.float64]:
+    """Variance of the ratio of means over periods, to first order.
+
+    Source: Pintelon and Schoukens (2012), chapter 2; here as the mean square of
+    (Y_p - G U_p) / U, which holds the three (co)variances together.
+    """
+    periods = len(force)
+    mean = force.mean(axis=0)
+    off = (response - response.mean(axis=0) / mean * force) / mean
+    return np.sum(np.abs(off) ** 2, axis=0) / (periods * (periods - 1))

@@ -1,0 +1,204 @@
+"""One record against what the others make of its blow: gain, timing, and what is left over."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d
+from scipy.stats import chi2
+
+from dynamics.frf.hammer.consensus import AlignedSet, common_function, predicted, unpredictable
+from dynamics.frf.hammer.hit import NORMAL_MAD
+
+#: lengths of the stretches in which the residual is judged, samples
+STRETCHES = (1, 8, 32, 128, 512)
+#: chance that noise alone exceeds the limit of a stretch
+_CHANCE = 1e-10
+#: share of the largest response below which nothing left over matters
+_LEAST_SHARE = 0.002
+#: the noise of a prediction comes in bursts, where a blow has force the others lack
+_BURSTS = 1.6
+#: crest of a slow movement over its standard deviation
+_CREST = 2.5
+#: allowance for a noise estimate that is a little low
+_NOISE_MARGIN = 1.08
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """How one record differs from the prediction of others.
+
+    Parameters
+    ----------
+    gain : float
+        Response over predicted response; negative where the sign is turned.
+    delay : float
+        Samples by which the response comes late.
+    misfit : float
+        Root of the share of the energy of the ringing that gain and delay do not explain, what
+        noise and the unpredictable part may contribute taken off.
+    response, residual : (m,) array of float
+        Response, and response minus prediction with that gain and delay, in the unit of the
+        response.
+    envelope : (m,) array of float
+        Largest predicted response nearby.
+    unpredictable : (m,) array of float
+        Response that the blow may cause beyond what the others can tell.
+    noise : (m,) array of float
+        Standard deviation of the residual where nothing but noise is left over.
+    wander : float
+        Standard deviation of slow movements of the rest level.
+    """
+
+    gain: float
+    delay: float
+    misfit: float
+    response: NDArray[np.float64]
+    residual: NDArray[np.float64]
+    envelope: NDArray[np.float64]
+    unpredictable: NDArray[np.float64]
+    noise: NDArray[np.float64]
+    wander: float
+
+
+@dataclass(frozen=True)
+class Excess:
+    """Where a residual exceeds most what noise and tolerance allow.
+
+    Parameters
+    ----------
+    ratio : float
+        Root mean square over its limit; above 1 it is no chance.
+    start, stop : int
+        Stretch of the aligned record, samples.
+    size : float
+        Largest absolute residual in the stretch.
+    """
+
+    ratio: float
+    start: int
+    stop: int
+    size: float
+
+
+def compare(aligned: AlignedSet, row: int, members: NDArray[np.bool_]) -> Comparison:
+    """Compare one record with the prediction of the members, itself left out.
+
+    Parameters
+    ----------
+    aligned : AlignedSet
+    row : int
+        Record to judge.
+    members : (n,) array of bool
+        Records to judge it by.
+
+    Returns
+    -------
+    Comparison
+    """
+    others = members.copy()
+    others[row] = False
+    function = common_function(aligned, others)
+    prediction, prediction_noise = predicted(aligned, function, row)
+    spectrum = function.values * aligned.force_spectra[row]
+    correlation = np.fft.irfft(
+        aligned.response_spectra[row] * np.conj(spectrum), aligned.transform_length
+    )
+    energy = float(np.sum(prediction**2))
+    height, delay = _peak(correlation)
+    response = aligned.response[row]
+    # a steady gain and delay are judged as such; what is left over is judged without them
+    lines = np.arange(spectrum.size) / aligned.transform_length
+    shifted = (height / energy) * spectrum * np.exp(-2j * np.pi * lines * delay)
+    residual = response - np.fft.irfft(shifted, aligned.transform_length)[: response.size]
+    unknown = unpredictable(aligned, function, row, int(others.sum()))
+    explained = height**2 / energy + float(np.sum(unknown**2))
+    return Comparison(
+        gain=height / energy,
+        delay=delay,
+        misfit=_misfit(aligned, row, explained, prediction_noise),
+        response=response,
+        residual=residual,
+        envelope=maximum_filter1d(np.abs(prediction), 65, mode="nearest"),
+        unpredictable=unknown,
+        noise=_expected_noise(aligned, row, residual, prediction_noise),
+        wander=float(np.hypot(aligned.wander[row], np.median(aligned.wander[others]))),
+    )
+
+
+def _misfit(aligned: AlignedSet, row: int, explained: float, prediction_noise: float) -> float:
+    """Root of the share of the energy of the ringing that neither is explained nor can be noise."""
+    samples = aligned.ringing
+    total = float(np.sum(aligned.response[row, :samples] ** 2))
+    noise = (aligned.noise[row] ** 2 + prediction_noise**2) * samples
+    at_most_noise = noise * (_NOISE_MARGIN**2 + 6.0 * np.sqrt(2.0 / samples))
+    left = max(total - explained - at_most_noise, 0.0)
+    return float(np.sqrt(left / max(total - noise, 1e-3 * total)))
+
+
+def _expected_noise(
+    aligned: AlignedSet, row: int, residual: NDArray[np.float64], prediction_noise: float
+) -> NDArray[np.float64]:
+    """Standard deviation of the residual, sample by sample, where only noise is left over."""
+    quiet = float(np.median(np.abs(residual))) / NORMAL_MAD
+    noise = np.full(residual.size, max(quiet, float(aligned.noise[row])))
+    known = slice(0, aligned.ringing + aligned.ringing // 4)  # the gate falls off behind it
+    noise[known] = np.hypot(noise[known], _BURSTS * prediction_noise)
+    if aligned.ringing == residual.size:
+        # the end cuts the ringing off, and with it what would predict the last of it
+        noise[-max(residual.size // 20, 1) :] = float(np.max(np.abs(aligned.response[row])))
+    return noise
+
+
+def _peak(correlation: NDArray[np.float64]) -> tuple[float, float]:
+    """Signed height and lag in samples of the largest absolute value, between samples too."""
+    count = correlation.size
+    top = int(np.argmax(np.abs(correlation)))
+    sign = 1.0 if correlation[top] > 0.0 else -1.0
+    before, here, after = (sign * correlation[(top + k) % count] for k in (-1, 0, 1))
+    curvature = before - 2.0 * here + after
+    offset = 0.5 * (before - after) / curvature if curvature < 0.0 else 0.0
+    height = here - 0.25 * (before - after) * offset
+    lag = top if top <= count // 2 else top - count
+    return sign * float(height), float(lag + offset)
+
+
+def _means(values: NDArray[np.float64], length: int) -> NDArray[np.float64]:
+    """Means of every stretch of `length` samples, by its first sample."""
+    sums = np.concatenate(([0.0], np.cumsum(values)))
+    return np.maximum(sums[length:] - sums[:-length], 0.0) / length
+
+
+def largest_excess(comparison: Comparison, tolerance: float) -> Excess:
+    """Stretch where the residual exceeds most what is allowed, over several lengths.
+
+    Allowed are the noise, up to what chance makes of it, and a share of the predicted response
+    nearby: no two blows of a hand are quite alike.
+
+    Parameters
+    ----------
+    comparison : Comparison
+    tolerance : float
+        Share of the predicted response nearby, 1.
+
+    Returns
+    -------
+    Excess
+    """
+    worst = Excess(0.0, 0, 0, 0.0)
+    allowed = tolerance * comparison.envelope + comparison.unpredictable
+    allowed += _LEAST_SHARE * float(np.max(comparison.envelope))
+    square = comparison.residual**2
+    for length in STRETCHES:
+        if length > square.size:
+            break
+        by_chance = float(np.sqrt(chi2.isf(_CHANCE, length) / length)) * _NOISE_MARGIN
+        limit = by_chance * comparison.noise + _CREST * comparison.wander + allowed
+        ratio = np.sqrt(_means(square, length) / _means(limit**2, length))
+        start = int(np.argmax(ratio))
+        if ratio[start] > worst.ratio:
+            size = float(np.max(np.abs(comparison.residual[start : start + length])))
+            worst = Excess(float(ratio[start]), start, start + length, size)
+    return worst

@@ -1,0 +1,269 @@
+"""Averaged spectra of hammer records and the estimators of the FRF."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import binary_opening, uniform_filter1d
+
+from dynamics.frf.container import Frf, Point, Quantity
+from dynamics.frf.hammer.examine import require_one_kind
+from dynamics.frf.hammer.hit import Hit, locate_hit
+from dynamics.frf.hammer.record import HammerRecord
+from dynamics.frf.hammer.windows import (
+    Windows,
+    choose_windows,
+    exponential_window,
+    force_window,
+    response_window,
+    window_width,
+)
+
+#: force power below this share of its largest is no longer of use (-40 dB)
+_FORCE_FLOOR = 1e-4
+#: least force power over that of its noise
+_FORCE_OVER_NOISE = 20.0
+#: least coherence, averaged over neighbouring lines, in the usable band
+_LEAST_COHERENCE = 0.9
+#: lines over which coherence is averaged, and fewest of good coherence in a row that count
+_SMOOTHED_LINES = 5
+_FEWEST_LINES = 3
+#: widest dip of the coherence at an antiresonance, as a share of its frequency
+_WIDEST_DIP = 0.25
+
+
+@dataclass(frozen=True)
+class Spectra:
+    """Spectra averaged over records, unscaled.
+
+    Parameters
+    ----------
+    frequency : (n,) array of float
+        Hz, from 0 to half the sampling rate.
+    force_power : (n,) array of float
+        Mean of |F|^2.
+    response_power : (n,) array of float
+        Mean of |X|^2.
+    cross : (n,) array of complex
+        Mean of X F*.
+    count : int
+        Records averaged.
+    noise_power, force_noise_power : float
+        Power that the noise of the response, and of the force, puts on each line.
+    quantity : str
+        Quantity of the FRF.
+    added_decay : float
+        Decay rate of the exponential window, 1/s.
+    response, reference : Point
+        Where the response was measured and where the blows fell.
+    """
+
+    frequency: NDArray[np.float64]
+    force_power: NDArray[np.float64]
+    response_power: NDArray[np.float64]
+    cross: NDArray[np.complex128]
+    count: int
+    noise_power: float
+    force_noise_power: float
+    quantity: Quantity
+    added_decay: float
+    response: Point
+    reference: Point
+
+
+Estimator = Callable[[Spectra], NDArray[np.complex128]]
+
+
+def h1(spectra: Spectra) -> NDArray[np.complex128]:
+    """FRF estimate S_xf / S_ff: free of bias from response noise, low where the force has noise.
+
+    Source: J. S. Bendat and A. G. Piersol, 2010, Random Data, 4th ed., section 6.1.
+    """
+    return spectra.cross / np.maximum(spectra.force_power, np.finfo(np.float64).tiny)
+
+
+def h2(spectra: Spectra) -> NDArray[np.complex128]:
+    """FRF estimate S_xx / S_fx: free of bias from force noise, high where the response has noise.
+
+    Source: L. D. Mitchell, 1982, "Improved methods for the FFT calculation of the frequency
+    response function", Journal of Mechanical Design 104.
+    """
+    cross = np.conj(spectra.cross)
+    return spectra.response_power / np.where(cross == 0.0, np.finfo(np.float64).tiny, cross)
+
+
+def coherence(spectra: Spectra) -> NDArray[np.float64]:
+    """Ordinary coherence |S_xf|^2 / (S_ff S_xx), which is H1 / H2, 0 to 1.
+
+    Of one record alone it is 1 everywhere and says nothing.
+    """
+    product = spectra.force_power * spectra.response_power
+    value = np.abs(spectra.cross) ** 2 / np.maximum(product, np.finfo(np.float64).tiny)
+    return np.clip(value, 0.0, 1.0)
+
+
+def averaged_spectra(
+    records: Sequence[HammerRecord],
+    windows: Windows | None = None,
+    hits: Sequence[Hit] | None = None,
+    transform_length: int | None = None,
+) -> Spectra:
+    """Window and transform the records and average their spectra.
+
+    Parameters
+    ----------
+    records : sequence of HammerRecord
+        Of one sampling rate and quantity; cut to the shortest.
+    windows : Windows, optional
+        By default chosen for these records.
+    hits : sequence of Hit, optional
+        By default located in the records.
+    transform_length : int, optional
+        Samples, by default those the windows keep; longer (padded with zeros) gives closer lines
+        that say no more.
+
+    Returns
+    -------
+    Spectra
+
+    Raises
+    ------
+    MeasurementError
+        If the records are not of one kind or one holds no hit.
+    """
+    require_one_kind(records)
+    hits = [locate_hit(record) for record in records] if hits is None else hits
+    windows = choose_windows(records, hits) if windows is None else windows
+    samples = max(windows.length, transform_length or 0)
+    transforms = [
+        np.fft.rfft(windowed(record, hit, windows), samples)
+        for record, hit in zip(records, hits, strict=True)
+    ]
+    force = np.stack([transform[0] for transform in transforms])
+    response = np.stack([transform[1] for transform in transforms])
+    rate = records[0].sampling_rate
+    weight = response_window(windows) * exponential_window(windows, rate)
+    noise = np.mean([hit.response.noise**2 for hit in hits])
+    force_noise = np.mean([hit.force.noise**2 * window_width(hit) for hit in hits])
+    return Spectra(
+        frequency=np.fft.rfftfreq(samples, 1.0 / rate),
+        force_power=np.mean(np.abs(force) ** 2, axis=0),
+        response_power=np.mean(np.abs(response) ** 2, axis=0),
+        cross=np.mean(response * np.conj(force), axis=0),
+        count=len(records),
+        noise_power=float(noise * np.sum(weight**2)),
+        force_noise_power=float(force_noise),
+        quantity=records[0].quantity,
+        added_decay=windows.added_decay,
+        response=records[0].response_point,
+        reference=records[0].reference_point,
+    )
+
+
+def windowed(record: HammerRecord, hit: Hit, windows: Windows) -> NDArray[np.float64]:
+    """Force and response of one record, rest levels removed, windowed, shape (2, length)."""
+    first = hit.onset - windows.lead
+    kept = slice(first, first + windows.length)
+    weight = exponential_window(windows, record.sampling_rate)
+    force = (record.force[kept] - hit.force.level) * force_window(hit, first, windows)
+    response = (record.response[kept] - hit.response.level) * response_window(windows)
+    return np.stack([force * weight, response * weight])
+
+
+def frf_from_records(
+    records: Sequence[HammerRecord],
+    estimator: Estimator = h1,
+    transform_length: int | None = None,
+) -> Frf:
+    """Estimate the FRF of hammer records averaged together.
+
+    The blow is windowed off the noise of the force, the response is let down to zero once nothing
+    but noise is left, and an exponential window is used only where the ringing outlasts the
+    record; `Frf.added_decay` then tells by how much.
+
+    Parameters
+    ----------
+    records : sequence of HammerRecord
+        Good ones; see `dynamics.frf.hammer.examine.examine_records`.
+    estimator : callable
+        `h1` or `h2`.
+    transform_length : int, optional
+        Samples; see `averaged_spectra`.
+
+    Returns
+    -------
+    Frf
+        From 0 Hz to half the sampling rate, with the coherence where there are several records;
+        `usable_band` tells where it holds.
+
+    Raises
+    ------
+    MeasurementError
+        If the records are not of one kind or one holds no hit.
+    """
+    spectra = averaged_spectra(records, transform_length=transform_length)
+    return frf_of(spectra, estimator, ", ".join(record.name for record in records))
+
+
+def frf_of(spectra: Spectra, estimator: Estimator, source: str) -> Frf:
+    """FRF of averaged spectra."""
+    return Frf(
+        frequency=spectra.frequency,
+        values=estimator(spectra),
+        quantity=spectra.quantity,
+        response=spectra.response,
+        reference=spectra.reference,
+        coherence=coherence(spectra) if spectra.count > 1 else None,
+        source=source,
+        added_decay=spectra.added_decay,
+    )
+
+
+def usable_band(spectra: Spectra) -> tuple[float, float]:
+    """Band over which the blows had force enough and the response followed it.
+
+    The force must stand within 40 dB of its strongest line and clear of its noise, and the
+    coherence (for one record, the share of the response power that is not noise) must be 0.9 on
+    average over neighbouring lines. From the largest response the band reaches up and down over
+    all such lines; dips narrower than a quarter of their frequency, antiresonances, are passed
+    over.
+
+    Returns
+    -------
+    lowest, highest : float
+        Hz.
+    """
+    frequency = spectra.frequency
+    least_force = max(
+        _FORCE_FLOOR * float(spectra.force_power.max()),
+        _FORCE_OVER_NOISE * spectra.force_noise_power,
+    )
+    good = (spectra.force_power >= least_force) & (_followed(spectra) >= _LEAST_COHERENCE)
+    good = binary_opening(good, structure=np.ones(_FEWEST_LINES, dtype=bool))
+    good[0] = False
+    if not good.any():
+        strong = spectra.force_power >= least_force
+        return float(frequency[1]), float(max(frequency[strong][-1], frequency[2]))
+    peak = int(np.argmax(np.where(good, spectra.response_power, 0.0)))
+    lines = frequency[good]
+    wide = np.flatnonzero(lines[1:] > (1.0 + _WIDEST_DIP) * lines[:-1] + 2.0 * frequency[1])
+    place = int(np.searchsorted(lines, frequency[peak]))
+    below, above = wide[wide < place], wide[wide >= place]
+    first = int(below[-1]) + 1 if below.size else 0
+    last = int(above[0]) if above.size else lines.size - 1
+    return float(lines[first]), float(lines[last])
+
+
+def _followed(spectra: Spectra) -> NDArray[np.float64]:
+    """Share of the response power that follows the force, averaged over neighbouring lines."""
+    power = uniform_filter1d(spectra.response_power, _SMOOTHED_LINES, mode="nearest")
+    share = 1.0 - spectra.noise_power / np.maximum(power, np.finfo(np.float64).tiny)
+    if spectra.count == 1:
+        return share
+    measured = uniform_filter1d(
+        coherence(spectra) * spectra.response_power, _SMOOTHED_LINES, mode="nearest"
+    )
+    return np.minimum(share, measured / np.maximum(power, np.finfo(np.float64).tiny))

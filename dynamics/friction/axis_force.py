@@ -1,0 +1,148 @@
+"""Force that moves an axis: inertia, friction in its forms, cogging, a load.
+
+The axis is a mass on its guide; the force is that of the motor, referred to the slide.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.friction.identification import friction_along
+from dynamics.friction.lugre import LuGre
+
+#: speed within which a direction is not one, m/s: sliding friction passes through zero there
+SMOOTH = 2e-5
+#: bristle damping where only the stiffness is known, as a damping ratio of the mass on it
+_BRISTLE_DAMPING = 0.3
+
+
+@dataclass(frozen=True)
+class AxisForce:
+    """Parameters of the force of an axis.
+
+    Parameters
+    ----------
+    mass : float
+        kg.
+    viscous : float
+        N s/m.
+    coulomb : float
+        N.
+    static : float, optional
+        Friction at the onset of motion, N; with `stribeck_velocity`.
+    stribeck_velocity : float
+        m/s.
+    presliding_stiffness, presliding_damping : float, optional
+        Of the contact before it slides, N/m, N s/m.
+    asymmetry : float
+        Coulomb friction forwards above the mean of both directions, N.
+    offset : float
+        Constant force held, N.
+    quadratic_drag : float
+        N s^2/m^2.
+    cogging_amplitude, cogging_period, cogging_phase : float
+        N, m, rad.
+    backlash : float
+        Way of the motor in which it does not drive the slide, m.
+    motor_mass : float
+        Part of the mass on the motor's side of the backlash, kg.
+    warm_up_share, warm_up_time : float
+        Of the viscous friction at the start, 1, that decays with a time constant, s.
+    """
+
+    mass: float
+    viscous: float = 0.0
+    coulomb: float = 0.0
+    static: float | None = None
+    stribeck_velocity: float = 0.01
+    presliding_stiffness: float | None = None
+    presliding_damping: float | None = None
+    asymmetry: float = 0.0
+    offset: float = 0.0
+    quadratic_drag: float = 0.0
+    cogging_amplitude: float = 0.0
+    cogging_period: float = 0.01
+    cogging_phase: float = 0.0
+    backlash: float = 0.0
+    motor_mass: float = 0.0
+    warm_up_share: float = 0.0
+    warm_up_time: float = 1.0
+
+    def along(
+        self,
+        position: NDArray[np.float64],
+        velocity: NDArray[np.float64],
+        acceleration: NDArray[np.float64],
+        step: float,
+        begun: float = 0.0,
+        motor_acceleration: NDArray[np.float64] | None = None,
+    ) -> NDArray[np.float64]:
+        """Force (n,), N, along a motion.
+
+        Parameters
+        ----------
+        position, velocity, acceleration : (n,) array of float
+            m, m/s, m/s^2.
+        step : float
+            Between samples, s.
+        begun : float
+            Time that the axis had moved before, s, for the warm-up.
+        motor_acceleration : (n,) array of float, optional
+            m/s^2, where the motor's own motion is known: the motion is then that of the slide,
+            and what drives it through the backlash follows from it; else it is the motor's.
+        """
+        time = begun + step * np.arange(position.size)
+        warm = 1.0 + self.warm_up_share * np.exp(-time / self.warm_up_time)
+        force = self.mass * acceleration + self.viscous * warm * velocity
+        force = force + self.offset + self.quadratic_drag * velocity * np.abs(velocity)
+        turn = 2.0 * math.pi / self.cogging_period
+        force = force + self.cogging_amplitude * np.sin(turn * position + self.cogging_phase)
+        friction = self._dry(position, velocity, step)
+        if motor_acceleration is not None:
+            return force + friction + self.motor_mass * (motor_acceleration - acceleration)
+        if self.backlash > 0.0:
+            driven = drives_slide(position, self.backlash)
+            return np.where(driven, force + friction, 0.0)
+        return force + friction
+
+    def _dry(
+        self, position: NDArray[np.float64], velocity: NDArray[np.float64], step: float
+    ) -> NDArray[np.float64]:
+        """Coulomb friction with its onset, its presliding and its asymmetry, N."""
+        way = np.tanh(velocity / SMOOTH)
+        level = self.coulomb + self.asymmetry * way
+        above = 0.0 if self.static is None else self.static - self.coulomb
+        if self.presliding_stiffness is None or self.coulomb <= 0.0:
+            bump = np.exp(-((velocity / self.stribeck_velocity) ** 2))
+            return (level + above * bump) * way
+        damping = self.presliding_damping
+        if damping is None:
+            damping = 2.0 * _BRISTLE_DAMPING * math.sqrt(self.mass * self.presliding_stiffness)
+        law = LuGre(
+            stiffness=self.presliding_stiffness,
+            bristle_damping=damping,
+            viscous=0.0,
+            coulomb=self.coulomb,
+            static=self.coulomb + max(above, 0.0),
+            stribeck_velocity=self.stribeck_velocity,
+        )
+        return friction_along(law, position, step) + self.asymmetry * way * way
+
+
+def drives_slide(position: NDArray[np.float64], backlash: float) -> NDArray[np.bool_]:
+    """Samples (n,) at which a motor with backlash is in touch with the slide.
+
+    The slide follows as in play: it stays where it is until the motor has crossed the gap.
+    """
+    slide = np.empty_like(position)
+    place, half = position[0], 0.5 * backlash
+    touching = np.empty(position.size, dtype=bool)
+    for i, x in enumerate(position):
+        moved = min(max(place, x - half), x + half)
+        touching[i] = abs(abs(x - moved) - half) < 1e-12
+        slide[i] = place = moved
+    return touching

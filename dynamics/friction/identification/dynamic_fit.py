@@ -1,0 +1,253 @@
+"""A whole friction law fitted to time records, presliding and reversals included.
+
+The law runs along the measured motion with its own time-stepping leaves, and the effort it
+predicts, with inertia and offset, is compared with the measured one:
+effort = inertia x acceleration + friction(motion) + offset. Nothing is simulated in closed loop,
+so an error of the law at one reversal does not move the next.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from dynamics.frf.container import MeasurementError
+from dynamics.friction.identification.filtering import LowPass
+from dynamics.friction.identification.intervals import Estimate
+from dynamics.friction.identification.law_fit import law_parameters, search
+from dynamics.friction.identification.record import DriveRecord
+from dynamics.friction.laws import BY_SPEC, FrictionLaw
+
+
+@cache
+def _runner(kind: type) -> Callable[..., None]:
+    """Compiled run of one kind of law along motions."""
+    force, advance = BY_SPEC[kind].force, BY_SPEC[kind].advance
+
+    @njit
+    def run(law, motions, time, resisted):
+        for k in range(len(motions)):
+            resisted[k] = force(law, 0, motions[k], time)
+            advance(law, 0, motions[k], time)
+
+    return run
+
+
+def friction_along(
+    law: FrictionLaw, position: NDArray[np.float64], sample_time: float
+) -> NDArray[np.float64]:
+    """Friction along a measured motion that starts with a law at rest.
+
+    Parameters
+    ----------
+    law : LuGre, TanhHysteresis or CoulombStribeck
+    position : (n,) array of float
+        m or rad, every `sample_time` seconds.
+    sample_time : float
+        s.
+
+    Returns
+    -------
+    (n,) array of float
+        N or N m, positive against positive motion; at a sample the mean of the two intervals
+        beside it.
+    """
+    if type(law) not in BY_SPEC:
+        raise TypeError(
+            f"friction fit: {type(law).__name__} is none of "
+            f"{', '.join(kind.__name__ for kind in BY_SPEC)}"
+        )
+    motions = np.diff(np.asarray(position, dtype=np.float64))
+    resisted = np.empty(len(motions))
+    _runner(type(law))(BY_SPEC[type(law)].columns([law], [0]), motions, sample_time, resisted)
+    ends = np.concatenate((resisted[:1], resisted, resisted[-1:]))
+    return 0.5 * (ends[1:] + ends[:-1])
+
+
+@dataclass(frozen=True)
+class AxisModel:
+    """An axis as a drive feels it: inertia, friction and a constant load.
+
+    Parameters
+    ----------
+    law : LuGre, TanhHysteresis or CoulombStribeck
+    inertia : float
+        kg or kg m^2.
+    offset : float
+        Constant effort such as weight, N or N m.
+    """
+
+    law: FrictionLaw
+    inertia: float
+    offset: float = 0.0
+
+    def effort(self, record: DriveRecord, low_pass: LowPass) -> NDArray[np.float64]:
+        """Effort (n,) that the measured motion of a record needs, N or N m.
+
+        Parameters
+        ----------
+        record : DriveRecord
+            Its effort is not used.
+        low_pass : LowPass
+            For the acceleration alone, which is noise without it.
+        """
+        friction = friction_along(self.law, record.position, record.sample_time)
+        acceleration = low_pass.apply(_acceleration(record), record.sample_time)
+        return self.inertia * acceleration + friction + self.offset
+
+
+@dataclass(frozen=True)
+class AxisFit:
+    """Result of `fit_axis`.
+
+    Parameters
+    ----------
+    model : AxisModel
+        With the fitted values.
+    estimates : dict of str to Estimate
+        Fitted parameters with 95 % intervals.
+    relative_residual : float
+        Root mean square of what is left of the judged low-passed effort over its standard
+        deviation.
+    unsupported : tuple of str
+        Parameters that the records do not decide.
+    agreeing_starts : int
+        Starts of the search that ended at this optimum.
+    """
+
+    model: AxisModel
+    estimates: dict[str, Estimate]
+    relative_residual: float
+    unsupported: tuple[str, ...]
+    agreeing_starts: int
+
+
+def fit_axis(
+    records: Sequence[DriveRecord],
+    guess: AxisModel,
+    free: Sequence[str],
+    *,
+    low_pass: LowPass,
+    minimum_speed: float = 0.0,
+    settling: float = 0.0,
+    starts: int = 4,
+    seed: int = 0,
+) -> AxisFit:
+    """Fit parameters of a friction law, inertia and offset to drive records.
+
+    Parameters
+    ----------
+    records : sequence of DriveRecord
+        In the same units; each starts with the law unbent, at rest.
+    guess : AxisModel
+        First values; what is not free stays as it is here.
+    free : sequence of str
+        Parameters of the law by name, ``"inertia"``, ``"offset"``.
+    low_pass : LowPass
+        Acts alike on measured effort, acceleration and predicted friction.
+    minimum_speed : float
+        Slower samples, m/s or rad/s, are not judged; needed for a law without presliding.
+    settling : float
+        Time at the start of each record that is not judged, s: where the axis was at rest under
+        load, or already moving, the law's state is not known at first.
+    starts, seed : int
+        Starts of the search and the seed of those after the first.
+
+    Returns
+    -------
+    AxisFit
+
+    Raises
+    ------
+    MeasurementError
+        If too few samples are judged.
+    ValueError
+        If a parameter is unknown or its guess is out of range.
+    """
+    if not records:
+        raise MeasurementError("drive records: none given")
+    own = {"inertia": guess.inertia, "offset": guess.offset}
+    of_law = [name for name in free if name not in own]
+    first = law_parameters(guess.law, of_law)
+    first |= {name: own[name] for name in free if name in own}
+    prepared = [_prepare(r, low_pass, minimum_speed, settling) for r in records]
+    judged = np.concatenate([effort[kept] for effort, _, kept in prepared])
+    if len(judged) < 10 * len(first):
+        raise MeasurementError(
+            f"{records[0].name}: {len(judged)} samples are judged; {len(first)} parameters need "
+            f"at least {10 * len(first)}"
+        )
+
+    def model(values: dict[str, float]) -> AxisModel:
+        law = replace(guess.law, **{name: values[name] for name in of_law})
+        changed = {name: values[name] for name in own if name in values}
+        return replace(guess, law=law, **changed)
+
+    def residual(values: dict[str, float]) -> NDArray[np.float64]:
+        tried = model(values)
+        parts = []
+        for record, (effort, acceleration, kept) in zip(records, prepared, strict=True):
+            friction = friction_along(tried.law, record.position, record.sample_time)
+            smooth = low_pass.apply(friction, record.sample_time)
+            parts.append((tried.inertia * acceleration + smooth + tried.offset - effort)[kept])
+        return np.concatenate(parts)
+
+    scale = max(float(np.std(judged)), np.finfo(float).tiny)
+    signed = {"offset": scale} if "offset" in first else {}
+    found = search(residual, first, signed=signed, starts=starts, seed=seed)
+    return AxisFit(
+        model(found.values),
+        found.estimates,
+        float(np.sqrt(np.mean(found.residual**2))) / scale,
+        found.unsupported,
+        found.agreeing_starts,
+    )
+
+
+def _acceleration(record: DriveRecord) -> NDArray[np.float64]:
+    if record.acceleration is not None:
+        return record.acceleration
+    return np.gradient(record.velocity, record.sample_time)
+
+
+def _prepare(
+    record: DriveRecord, low_pass: LowPass, minimum_speed: float, settling: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+    """Low-passed effort and acceleration (n,), and the samples (n,) that are judged."""
+    both = np.column_stack((record.effort, _acceleration(record)))
+    smooth = low_pass.apply(both, record.sample_time)
+    kept = np.abs(record.velocity) >= minimum_speed
+    kept &= record.time - record.time[0] >= settling
+    return smooth[:, 0], smooth[:, 1], kept
+
+
+def friction_over_position(
+    record: DriveRecord, inertia: float, low_pass: LowPass
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Position and friction of a record: low-passed effort less the force of acceleration.
+
+    Parameters
+    ----------
+    record : DriveRecord
+    inertia : float
+        kg or kg m^2.
+    low_pass : LowPass
+
+    Returns
+    -------
+    position, friction : (n,) arrays of float
+        N over m or N m over rad: friction curves of sine moves, as the modelling of the test
+        machine with drive control and friction draws them (section 2.3, Figure 4).
+    """
+    effort, acceleration, _ = _prepare(record, low_pass, 0.0, 0.0)
+    return record.position, effort - inertia * acceleration
+
+
+def relative_error(record: DriveRecord, predicted: NDArray[np.float64]) -> float:
+    """Root mean square of predicted less measured effort, over the measured standard deviation."""
+    return float(np.sqrt(np.mean((predicted - record.effort) ** 2)) / np.std(record.effort))

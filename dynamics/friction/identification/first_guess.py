@@ -1,0 +1,95 @@
+"""Starting values of a friction law from the linear fit and the way a reversal takes."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from dynamics.frf.container import MeasurementError
+from dynamics.friction.coulomb_stribeck import CoulombStribeck
+from dynamics.friction.identification.dynamic_fit import friction_over_position
+from dynamics.friction.identification.filtering import LowPass
+from dynamics.friction.identification.least_squares import LinearFriction
+from dynamics.friction.identification.record import DriveRecord
+from dynamics.friction.lugre import LuGre
+from dynamics.friction.tanh_hysteresis import TanhHysteresis
+
+#: first guess of static over Coulomb friction
+_STATIC = 1.2
+
+
+def reversal_way(record: DriveRecord, linear: LinearFriction, low_pass: LowPass) -> float:
+    """Median way after a reversal at which friction changes its sign, m or rad.
+
+    Raises
+    ------
+    MeasurementError
+        If the record has no reversal after which friction turns.
+    """
+    position, friction = friction_over_position(record, linear.value("inertia"), low_pass)
+    friction = friction - linear.value("offset")
+    velocity = low_pass.apply(record.velocity, record.sample_time)
+    turns = np.flatnonzero(velocity[1:] * velocity[:-1] < 0.0) + 1
+    ways = []
+    for k, start in enumerate(turns):
+        stop = turns[k + 1] if k + 1 < len(turns) else len(velocity)
+        against = friction[start:stop] * np.sign(velocity[start]) > 0.0
+        if not against[0] and against.any():
+            ways.append(abs(position[start + int(np.argmax(against))] - position[start]))
+    ways = [way for way in ways if way > 0.0]
+    if not ways:
+        raise MeasurementError(
+            f"{record.name}: no reversal shows the presliding of friction; record a slow reversal"
+        )
+    return float(np.median(ways))
+
+
+def guess_lugre(linear: LinearFriction, way: float, speed: float) -> LuGre:
+    """LuGre friction with the sliding force of a linear fit.
+
+    Parameters
+    ----------
+    linear : LinearFriction
+    way : float
+        Of `reversal_way`: a Dahl curve crosses zero at g ln 2.
+    speed : float
+        Order of magnitude of the Stribeck velocity, m/s or rad/s.
+    """
+    coulomb = _coulomb(linear)
+    stiffness = coulomb * math.log(2.0) / way
+    return LuGre(stiffness, 0.0, _viscous(linear), coulomb, _STATIC * coulomb, speed)
+
+
+def guess_tanh(linear: LinearFriction, way: float, speed: float) -> TanhHysteresis:
+    """Tanh hysteresis with the sliding force of a linear fit; parameters as `guess_lugre`.
+
+    Notes
+    -----
+    2 tanh(ah x') - 1 = 0 at ah x' = artanh(1/2). The slow part begins with a tenth of the
+    Coulomb force at its peak, Cv / (e av).
+    """
+    coulomb, viscous = _coulomb(linear), _viscous(linear)
+    slow = 0.1 * math.e * coulomb / speed
+    return TanhHysteresis(coulomb, viscous, slow, 1.0 / speed, math.atanh(0.5) / way)
+
+
+def guess_coulomb_stribeck(linear: LinearFriction, speed: float) -> CoulombStribeck:
+    """Dry friction with the sliding force of a linear fit; parameters as `guess_lugre`."""
+    coulomb = _coulomb(linear)
+    return CoulombStribeck(coulomb, _STATIC * coulomb, speed, _viscous(linear))
+
+
+def _coulomb(linear: LinearFriction) -> float:
+    found = linear.value("coulomb")
+    if not found > 0.0:
+        raise MeasurementError(
+            f"drive records: the linear fit has a Coulomb friction of {found:g}; friction "
+            "opposes motion, check the sign of the effort"
+        )
+    return found
+
+
+def _viscous(linear: LinearFriction) -> float:
+    # a small negative value is noise; a search in logarithms needs a positive start
+    return max(linear.value("viscous"), 1e-3 * _coulomb(linear))

@@ -1,0 +1,99 @@
+"""Friction referred through a transmission, and split between its two sides."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import fields, replace
+
+from dynamics.friction.identification.dynamic_fit import FrictionLaw
+
+#: each parameter's powers of force and of motion
+_POWERS = {
+    "coulomb": (1, 0),
+    "static": (1, 0),
+    "logarithmic": (1, 0),
+    "stiffness": (1, -1),
+    "bristle_damping": (1, -1),
+    "viscous": (1, -1),
+    "slow_viscous": (1, -1),
+    "slow_decay": (0, -1),
+    "inclination": (0, -1),
+    "stribeck_velocity": (0, 1),
+    "logarithmic_velocity": (0, 1),
+    "stribeck_shape": (0, 0),
+}
+
+
+def share_of(law: FrictionLaw, share: float) -> FrictionLaw:
+    """Return the law with a share of its force at every motion.
+
+    Parameters
+    ----------
+    law : LuGre, TanhHysteresis or CoulombStribeck
+    share : float
+        From above 0 to 1.
+    """
+    if not 0.0 < share <= 1.0:
+        raise ValueError(f"friction: a share must be above 0 and at most 1, not {share}")
+    return _scaled(law, share, 1.0)
+
+
+def referred_to_slide(law: FrictionLaw, lead: float) -> FrictionLaw:
+    """Law along the slide that is felt about the shaft as the given one.
+
+    Parameters
+    ----------
+    law : LuGre, TanhHysteresis or CoulombStribeck
+        About the shaft: N m, rad.
+    lead : float
+        Motion of the slide for a turn of the shaft, m/rad (pitch / 2 pi); above 0.
+
+    Returns
+    -------
+    The same kind of law
+        N, m. Torque = lead x force, motion = lead x angle.
+    """
+    if not 0.0 < lead < math.inf:
+        raise ValueError(f"friction: lead must be above 0 m/rad, not {lead}")
+    return _scaled(law, 1.0 / lead, lead)
+
+
+def split_about_shaft(
+    law: FrictionLaw, lead: float, rotational_share: float = 0.5
+) -> tuple[FrictionLaw, FrictionLaw]:
+    """Split friction found about the motor shaft into a rotational and a translational law.
+
+    Parameters
+    ----------
+    law : LuGre, TanhHysteresis or CoulombStribeck
+        All friction, about the shaft: N m, rad.
+    lead : float
+        Motion of the slide for a turn of the shaft, m/rad; above 0.
+    rotational_share : float
+        Share of the torque from screw and bearings, between 0 and 1. The motor's torque alone
+        cannot tell it; an equal share is the assumption of the source.
+
+    Returns
+    -------
+    rotational : law about the shaft, N m, rad
+    translational : law along the slide, N, m
+
+    Notes
+    -----
+    "Time domain coupled simulation of machine tool dynamics and cutting forces considering the
+    influences of nonlinear friction characteristics and process damping", section 3.
+    """
+    if not 0.0 < rotational_share < 1.0:
+        raise ValueError(
+            f"friction: the rotational share must be between 0 and 1, not {rotational_share}"
+        )
+    slide = referred_to_slide(share_of(law, 1.0 - rotational_share), lead)
+    return share_of(law, rotational_share), slide
+
+
+def _scaled(law: FrictionLaw, force: float, motion: float) -> FrictionLaw:
+    changed = {}
+    for field in fields(law):
+        of_force, of_motion = _POWERS[field.name]
+        changed[field.name] = getattr(law, field.name) * force**of_force * motion**of_motion
+    return replace(law, **changed)

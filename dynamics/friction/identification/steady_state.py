@@ -1,0 +1,212 @@
+"""Friction curve from moves at constant speed, and its shares about the motor and along the slide.
+
+As in "Time domain coupled simulation of machine tool dynamics and cutting forces considering the
+influences of nonlinear friction characteristics and process damping", section 3: the mean torque of
+each constant-speed move is set against its speed, and rotational and translational friction share
+the torque about the motor shaft, there equally.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.frf.container import MeasurementError
+from dynamics.friction.identification.dynamic_fit import FrictionLaw
+from dynamics.friction.identification.filtering import LowPass
+from dynamics.friction.identification.intervals import Estimate, correlation_length
+from dynamics.friction.identification.law_fit import law_parameters, search
+from dynamics.friction.identification.record import DriveRecord
+
+
+@dataclass(frozen=True)
+class SteadyPoint:
+    """Mean of one stretch at constant speed.
+
+    Parameters
+    ----------
+    velocity : float
+        m/s or rad/s, with its sign.
+    effort : float
+        N or N m.
+    standard_error : float
+        Of the mean effort, allowing for ripple.
+    start, end : float
+        Of the stretch, s.
+    """
+
+    velocity: float
+    effort: float
+    standard_error: float
+    start: float
+    end: float
+
+
+def constant_speed_points(
+    record: DriveRecord,
+    *,
+    low_pass: LowPass,
+    minimum_duration: float,
+    settling: float,
+    minimum_speed: float,
+    tolerance: float = 0.05,
+) -> list[SteadyPoint]:
+    """Find the stretches at constant speed and average their effort.
+
+    Parameters
+    ----------
+    record : DriveRecord
+    low_pass : LowPass
+        For the velocity that is judged; the effort is averaged as it is.
+    minimum_duration : float
+        Of a stretch after settling, s.
+    settling : float
+        Start of each stretch that is left out, s: presliding after a reversal and the ringing of
+        the controller.
+    minimum_speed : float
+        Slower stretches are rest, m/s or rad/s.
+    tolerance : float
+        Largest deviation of the low-passed speed within a stretch, of the stretch's first speed.
+
+    Returns
+    -------
+    list of SteadyPoint
+        In order of time.
+
+    Raises
+    ------
+    MeasurementError
+        If the record has no such stretch.
+    """
+    velocity = low_pass.apply(record.velocity, record.sample_time)
+    settled = round(settling / record.sample_time)
+    # the braking that follows begins before the low-passed velocity leaves its tolerance
+    blurred = 2 * round(low_pass.settling / record.sample_time)
+    points = []
+    start = 0
+    while start < len(velocity):
+        reference = velocity[start]
+        away = np.abs(velocity[start:] - reference) > tolerance * abs(reference)
+        length = int(np.argmax(away)) if away.any() else len(away)
+        if abs(reference) < minimum_speed:
+            start += max(length, 1) if reference == 0.0 else 1
+            continue
+        stretch = slice(start + settled, start + length - blurred)
+        long_enough = (stretch.stop - stretch.start) * record.sample_time >= minimum_duration
+        if not long_enough:
+            start += 1
+            continue
+        points.append(_mean(record, stretch))
+        start += length
+    if not points:
+        raise MeasurementError(
+            f"{record.name}: no stretch of {minimum_duration:g} s at a speed constant within "
+            f"{100 * tolerance:g} % after {settling:g} s of settling"
+        )
+    return points
+
+
+def _mean(record: DriveRecord, stretch: slice) -> SteadyPoint:
+    effort = record.effort[stretch]
+    repeats = correlation_length(effort)
+    error = float(np.std(effort)) * math.sqrt(2.0 * repeats / len(effort))
+    return SteadyPoint(
+        float(np.mean(record.velocity[stretch])),
+        float(np.mean(effort)),
+        error,
+        float(record.time[stretch][0]),
+        float(record.time[stretch][-1]),
+    )
+
+
+@dataclass(frozen=True)
+class SteadyFit:
+    """Result of `fit_steady_state`.
+
+    Parameters
+    ----------
+    law : LuGre, TanhHysteresis or CoulombStribeck
+        With the fitted values.
+    offset : float
+        Effort that does not turn with the motion (weight, preload), N or N m.
+    estimates : dict of str to Estimate
+        Fitted parameters with 95 % intervals.
+    residual : float
+        Root mean square over the points, N or N m.
+    unsupported : tuple of str
+        Parameters that the points do not decide.
+    """
+
+    law: FrictionLaw
+    offset: float
+    estimates: dict[str, Estimate]
+    residual: float
+    unsupported: tuple[str, ...]
+
+
+def fit_steady_state(
+    points: Sequence[SteadyPoint],
+    guess: FrictionLaw,
+    free: Sequence[str],
+    *,
+    starts: int = 8,
+    seed: int = 0,
+) -> SteadyFit:
+    """Fit the sliding part of a friction law to mean efforts at constant speeds.
+
+    Parameters
+    ----------
+    points : sequence of SteadyPoint
+        More than there are parameters; each counts alike.
+    guess : LuGre, TanhHysteresis or CoulombStribeck
+        First values; parameters that are not free, presliding above all, stay as they are here.
+    free : sequence of str
+        Parameters of the law, and ``"offset"``, which needs moves in both directions.
+    starts, seed : int
+        Starts of the search and the seed of those after the first.
+
+    Returns
+    -------
+    SteadyFit
+
+    Raises
+    ------
+    MeasurementError
+        If there are too few points, or only one direction for an offset.
+    ValueError
+        If a parameter is unknown or its guess is out of range.
+    """
+    of_law = [name for name in free if name != "offset"]
+    first = law_parameters(guess, of_law)
+    velocity = np.array([point.velocity for point in points])
+    effort = np.array([point.effort for point in points])
+    if len(points) <= len(free):
+        raise MeasurementError(
+            f"constant-speed moves: {len(points)} points for {len(free)} parameters; more points "
+            "than parameters are needed"
+        )
+    signed = {}
+    if "offset" in free:
+        if not (np.any(velocity > 0.0) and np.any(velocity < 0.0)):
+            raise MeasurementError("constant-speed moves: an offset needs moves in both directions")
+        first["offset"] = 0.0
+        signed["offset"] = float(np.max(np.abs(effort)))
+
+    def law(values: dict[str, float]) -> FrictionLaw:
+        return replace(guess, **{name: values[name] for name in of_law})
+
+    def residual(values: dict[str, float]) -> NDArray[np.float64]:
+        return law(values).steady_state_force(velocity) + values.get("offset", 0.0) - effort
+
+    found = search(residual, first, signed=signed, starts=starts, seed=seed, fewest=1)
+    return SteadyFit(
+        law(found.values),
+        found.values.get("offset", 0.0),
+        found.estimates,
+        float(np.sqrt(np.mean(found.residual**2))),
+        found.unsupported,
+    )

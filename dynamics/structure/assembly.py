@@ -1,0 +1,200 @@
+"""Bodies, beams, rotors and imported parts joined into one structure.
+
+Displacements and rotations are small; an axis may travel far along its guides, since nothing
+resists it there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import ArrayLike, NDArray
+
+from dynamics.structure.bodies import GROUND, Body, Connector, MeshedPart, Part, Point
+from dynamics.structure.linear_structure import LinearStructure, StructureError
+from dynamics.structure.rigid_body_motion import DIRECTIONS, refuse_free_motion
+from dynamics.structure.spring_coupling import Coupling, Term
+
+
+@dataclass(frozen=True, eq=False)
+class Assembly:
+    """Structure that still knows its parts.
+
+    Parameters
+    ----------
+    structure : LinearStructure
+    parts : mapping of str to Part
+    columns : mapping of str to slice
+        Freedoms of each part.
+    """
+
+    structure: LinearStructure
+    parts: Mapping[str, Part]
+    columns: Mapping[str, slice]
+
+    def motion(self, who: str, part: str, at: ArrayLike) -> NDArray[np.float64]:
+        """Motion (6, n) of a part at a place, m, per freedom; none of the ground.
+
+        Raises
+        ------
+        StructureError
+            If there is no such part; the message begins with `who`.
+        """
+        size = max(column.stop for column in self.columns.values())
+        motion = np.zeros((6, size))
+        if part == GROUND:
+            return motion
+        if part not in self.parts:
+            known = ", ".join(f'"{name}"' for name in self.parts)
+            raise StructureError(f'{who}: there is no body or beam "{part}"; there are {known}')
+        motion[:, self.columns[part]] = self.parts[part].motion_at(at)
+        return motion
+
+    def row(self, who: str, terms: Sequence[Term]) -> NDArray[np.float64]:
+        """Row (n,) of the sum of motions, as a port of the structure."""
+        return sum(
+            np.asarray(term.direction) @ self.motion(who, term.part, term.at) for term in terms
+        )
+
+
+def assembly(
+    bodies: Sequence[Part],
+    connectors: Sequence[Connector],
+    points: Sequence[Point],
+    beams: Sequence[MeshedPart] = (),
+    allowed_rigid_motions: int = 0,
+    rotors: Sequence[Part] = (),
+    couplings: Sequence[Coupling] = (),
+) -> Assembly:
+    """Join parts by connectors and couplings into one structure.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        Six freedoms each, in order: x, y, z of the centre of gravity and rotations. Imported
+        parts may stand among them.
+    connectors : sequence of Connector
+    points : sequence of Point
+    beams : sequence of MeshedPart
+        Lines of beam elements (`dynamics.beam.shaft.BeamLine`); their freedoms follow the bodies'.
+        Their bearings join the connectors.
+    allowed_rigid_motions : int
+        How many independent motions may be left that no connector resists (6 for a free machine,
+        1 for an axis whose drive is free to turn).
+    rotors : sequence of Part
+        What turns in the drives (`dynamics.structure.rotor.Rotor`); their freedoms come last.
+    couplings : sequence of Coupling
+        Transmissions.
+
+    Returns
+    -------
+    Assembly
+        With dense matrices.
+
+    Raises
+    ------
+    StructureError
+        If names are unknown or twice given, nothing is there to move, or parts move freely.
+    """
+    joints = [*connectors, *(bearing for beam in beams for bearing in beam.connectors)]
+    meshed = _with_nodes_where_joined(beams, joints, points, couplings)
+    parts = _named("body or beam", [*bodies, *meshed, *rotors])
+    for kind, items in (("connector", joints), ("coupling", couplings), ("point", points)):
+        _named(kind, items)
+    if not parts:
+        raise StructureError("a structure needs at least one body or beam")
+    columns = _columns({name: part.mass_matrix.shape[0] for name, part in parts.items()})
+    blocks = (
+        scipy.linalg.block_diag(*(getattr(part, f"{what}_matrix") for part in parts.values()))
+        for what in ("mass", "damping", "stiffness")
+    )
+    bare = Assembly(LinearStructure(*blocks, points={}), parts, columns)
+    stretches = [joint.stretch(_relative_motion(joint, bare)) for joint in joints]
+    stretches += [bare.row(f'coupling "{one.name}"', one.terms)[None, :] for one in couplings]
+    stiffness = [np.atleast_1d(one.stiffness) for one in (*joints, *couplings)]
+    damping = [np.atleast_1d(one.damping) for one in (*joints, *couplings)]
+    _refuse_free_parts(parts, stretches, stiffness, allowed_rigid_motions)
+    whole = LinearStructure(
+        bare.structure.mass,
+        bare.structure.damping + _over(stretches, damping),
+        bare.structure.stiffness + _over(stretches, stiffness),
+        {one.name: bare.motion(f'point "{one.name}"', one.body, one.at) for one in points},
+    )
+    return Assembly(whole, parts, columns)
+
+
+def assemble(
+    bodies: Sequence[Body],
+    connectors: Sequence[Connector],
+    points: Sequence[Point],
+    beams: Sequence[MeshedPart] = (),
+    allowed_rigid_motions: int = 0,
+    rotors: Sequence[Part] = (),
+    couplings: Sequence[Coupling] = (),
+) -> LinearStructure:
+    """Structure of an `assembly`, which see."""
+    return assembly(
+        bodies, connectors, points, beams, allowed_rigid_motions, rotors, couplings
+    ).structure
+
+
+def _with_nodes_where_joined(
+    beams: Sequence[MeshedPart],
+    joints: Sequence[Connector],
+    points: Sequence[Point],
+    couplings: Sequence[Coupling],
+) -> list[MeshedPart]:
+    places = [(part, joint.at) for joint in joints for part in (joint.first, joint.second)]
+    places += [(point.body, point.at) for point in points]
+    places += [(term.part, term.at) for one in couplings for term in one.terms]
+    return [beam.with_nodes_at([at for name, at in places if name == beam.name]) for beam in beams]
+
+
+def _named(kind: str, items: Iterable) -> dict:
+    named: dict = {}
+    for item in items:
+        if item.name in named:
+            raise StructureError(f'{kind} "{item.name}" is there twice; names must differ')
+        named[item.name] = item
+    return named
+
+
+def _columns(sizes: Mapping[str, int]) -> dict[str, slice]:
+    ends = np.cumsum(list(sizes.values()))
+    return {
+        name: slice(int(end) - size, int(end))
+        for (name, size), end in zip(sizes.items(), ends, strict=True)
+    }
+
+
+def _relative_motion(joint: Connector, bare: Assembly) -> NDArray[np.float64]:
+    who = f'connector "{joint.name}"'
+    return bare.motion(who, joint.first, joint.at) - bare.motion(who, joint.second, joint.at)
+
+
+def _over(stretches: Sequence[NDArray], rates: Sequence[NDArray]) -> NDArray[np.float64]:
+    if not stretches:
+        return 0.0
+    rows = np.vstack(stretches)
+    return rows.T @ (np.concatenate(rates)[:, None] * rows)
+
+
+def _refuse_free_parts(
+    parts: Mapping[str, Part],
+    stretches: Sequence[NDArray],
+    stiffness: Sequence[NDArray],
+    allowed: int,
+) -> None:
+    """Refuse rigid motions of parts that no spring resists."""
+    rigid = scipy.linalg.block_diag(*(part.rigid_motions for part in parts.values()))
+    turning, labels = [], []
+    for name, part in parts.items():
+        single = part.rigid_motions.shape[1] == 1
+        turning += [True] if single else [False] * 3 + [True] * 3
+        labels += [f'"{name}" {way}' for way in (("rotation",) if single else DIRECTIONS)]
+    held = [stretch[rate > 0.0] for stretch, rate in zip(stretches, stiffness, strict=True)]
+    rows = np.vstack([*held, np.zeros((1, len(rigid)))]) @ rigid
+    refuse_free_motion(rows, np.array(turning), labels, allowed)

@@ -1,0 +1,239 @@
+"""Rigid bodies, the connectors that hold them, and named points on them.
+
+A column, a table or a headstock is a rigid body; guides, joints, feet and bushings are
+connectors with six stiffnesses at a place. Displacements and rotations are small.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from dynamics.structure.linear_structure import StructureError
+from dynamics.structure.rigid_body_motion import DIRECTIONS
+
+GROUND = "ground"
+
+
+class Part(Protocol):
+    """What `dynamics.structure.assembly` joins: a rigid body, a line of beam elements."""
+
+    @property
+    def name(self) -> str:
+        """Name that connectors and points refer to."""
+
+    @property
+    def mass_matrix(self) -> NDArray[np.float64]:
+        """(n, n), kg and kin."""
+
+    @property
+    def damping_matrix(self) -> NDArray[np.float64]:
+        """(n, n), N s/m and kin."""
+
+    @property
+    def stiffness_matrix(self) -> NDArray[np.float64]:
+        """(n, n), N/m and kin."""
+
+    @property
+    def rigid_motions(self) -> NDArray[np.float64]:
+        """(n, 6): motions without strain: along and about x, y, z of a place of the part's own.
+
+        (n, 1) for what only turns.
+        """
+
+    def motion_at(self, place: ArrayLike) -> NDArray[np.float64]:
+        """(6, n): displacements and rotations of the material at a place, per freedom."""
+
+
+class MeshedPart(Part, Protocol):
+    """Part whose nodes may be put where something is joined, and that brings bearings."""
+
+    @property
+    def connectors(self) -> Sequence[Connector]:
+        """The part's own bearings."""
+
+    def with_nodes_at(self, places: Iterable[ArrayLike]) -> MeshedPart:
+        """Same part with nodes at places (3,) in m."""
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """Rigid body: translation of its centre of gravity and small rotations.
+
+    Parameters
+    ----------
+    name : str
+    mass : float
+        kg.
+    inertia : (3,) or (3, 3) array of float
+        Moments of inertia about the centre of gravity, kg m^2: principal ones along x, y, z, or
+        the tensor (products of inertia with a minus sign, as in a tensor).
+    centre : (3,) array of float
+        Centre of gravity, m.
+
+    Raises
+    ------
+    StructureError
+        If the mass or a principal moment of inertia is not positive, or an entry not finite.
+    """
+
+    name: str
+    mass: float
+    inertia: ArrayLike
+    centre: ArrayLike
+
+    def __post_init__(self) -> None:
+        where = f'body "{self.name}"'
+        if self.name == GROUND:
+            raise StructureError(f'{where}: "{GROUND}" is what does not move; name it otherwise')
+        if not (np.isfinite(self.mass) and self.mass > 0.0):
+            raise StructureError(f"{where}: mass is {self.mass}; it must be positive, in kg")
+        inertia = np.array(self.inertia, dtype=np.float64)
+        if inertia.shape == (3,):
+            inertia = np.diag(inertia)
+        if inertia.shape != (3, 3) or not np.all(np.isfinite(inertia)):
+            raise StructureError(f"{where}: inertia must be 3 or 3 x 3 finite numbers")
+        if np.max(np.abs(inertia - inertia.T)) > 1e-9 * np.max(np.abs(inertia)):
+            raise StructureError(f"{where}: the inertia tensor is not symmetric")
+        principal = np.linalg.eigvalsh(inertia)
+        if principal[0] <= 0.0:
+            raise StructureError(
+                f"{where}: a principal moment of inertia is {principal[0]:g} kg m^2; "
+                "all three must be positive"
+            )
+        object.__setattr__(self, "inertia", 0.5 * (inertia + inertia.T))
+        object.__setattr__(self, "centre", finite(where, "centre", self.centre, (3,)))
+
+    @property
+    def mass_matrix(self) -> NDArray[np.float64]:
+        """(6, 6), kg and kg m^2."""
+        matrix = np.zeros((6, 6))
+        matrix[:3, :3] = self.mass * np.eye(3)
+        matrix[3:, 3:] = self.inertia
+        return matrix
+
+    @property
+    def damping_matrix(self) -> NDArray[np.float64]:
+        """(6, 6) of zeros: a rigid body dissipates nothing."""
+        return np.zeros((6, 6))
+
+    @property
+    def stiffness_matrix(self) -> NDArray[np.float64]:
+        """(6, 6) of zeros."""
+        return np.zeros((6, 6))
+
+    @property
+    def rigid_motions(self) -> NDArray[np.float64]:
+        """(6, 6): about the centre of gravity, the body's own freedoms."""
+        return np.eye(6)
+
+    def motion_at(self, place: ArrayLike) -> NDArray[np.float64]:
+        """(6, 6): displacements and rotations at a place per freedom of the body."""
+        return rigid_motion(np.asarray(place, dtype=np.float64) - self.centre)
+
+
+@dataclass(frozen=True, eq=False)
+class Connector:
+    """Six springs and dampers between two parts, or a part and ground, at a place.
+
+    Parameters
+    ----------
+    name : str
+    first, second : str
+        Names of bodies or beams; one may be "ground".
+    at : (3,) array of float
+        Place where both parts are joined, m.
+    stiffness : (6,) array of float
+        Along x, y, z in N/m and about x, y, z in N m/rad, of `axes`.
+    damping : (6,) array of float
+        N s/m and N m s/rad; none by default.
+    axes : (3, 3) array of float
+        Rows are the connector's own x, y, z directions; the machine's by default.
+
+    Raises
+    ------
+    StructureError
+        If a number is negative or not finite, or the axes are not orthonormal.
+    """
+
+    name: str
+    first: str
+    second: str
+    at: ArrayLike
+    stiffness: ArrayLike
+    damping: ArrayLike = (0.0,) * 6
+    axes: ArrayLike = field(default_factory=lambda: np.eye(3))
+
+    def __post_init__(self) -> None:
+        where = f'connector "{self.name}"'
+        if self.first == self.second:
+            raise StructureError(f'{where} joins "{self.first}" with itself')
+        object.__setattr__(self, "at", finite(where, "at", self.at, (3,)))
+        for what in ("stiffness", "damping"):
+            values = finite(where, what, getattr(self, what), (6,))
+            for direction, value in zip(DIRECTIONS, values, strict=True):
+                if value < 0.0:
+                    raise StructureError(f"{where}: {what} {direction} is {value:g}, negative")
+            object.__setattr__(self, what, values)
+        axes = finite(where, "axes", self.axes, (3, 3))
+        if np.max(np.abs(axes @ axes.T - np.eye(3))) > 1e-6:
+            raise StructureError(f"{where}: the rows of axes must be perpendicular unit vectors")
+        object.__setattr__(self, "axes", axes)
+
+    def stretch(self, relative: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Turn relative motion (6, n) at the place into the connector's own axes."""
+        return np.vstack([self.axes @ relative[:3], self.axes @ relative[3:]])
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """Named place on a body or beam, moving with it.
+
+    Parameters
+    ----------
+    name : str
+    body : str
+        Name of the body or beam.
+    at : (3,) array of float
+        m.
+    """
+
+    name: str
+    body: str
+    at: ArrayLike
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "at", finite(f'point "{self.name}"', "at", self.at, (3,)))
+
+
+def rigid_motion(offset: ArrayLike) -> NDArray[np.float64]:
+    """Motion (6, 6) at an offset (3,) in m from the point whose motion is given.
+
+    Displacement u + theta x r, rotation theta (small rotations).
+    """
+    x, y, z = np.asarray(offset, dtype=np.float64)
+    motion = np.eye(6)
+    motion[:3, 3:] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
+    return motion
+
+
+def finite(where: str, what: str, values: ArrayLike, shape: tuple[int, ...]) -> NDArray:
+    """Values as an array of finite numbers of a shape.
+
+    Raises
+    ------
+    StructureError
+        If they are not; the message begins with `where` and `what`.
+    """
+    try:
+        array = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        array = np.empty(0)
+    if array.shape != shape or not np.all(np.isfinite(array)):
+        size = " x ".join(str(length) for length in shape)
+        raise StructureError(f"{where}: {what} must be {size} finite numbers, not {values!r}")
+    return array

@@ -1,0 +1,82 @@
+"""Rigid-body motions of parts that nothing holds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from dynamics.structure.linear_structure import StructureError
+
+DIRECTIONS = ("x", "y", "z", "rotation about x", "rotation about y", "rotation about z")
+# Of rows scaled to unit length; a true constraint is far above it.
+RANK_TOLERANCE = 1e-9
+# Part of a free motion, scaled to the machine's size, that is worth naming.
+NAMED = 0.05
+
+
+def free_motions(held: NDArray[np.float64], turning: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Motions of parts that strain no spring.
+
+    Whatever strains no part is a rigid motion of every part, so the rank of the springs on those
+    decides: a question of geometry, and not of stiffness.
+
+    Parameters
+    ----------
+    held : (springs, n) array of float
+        Stretch of each spring per rigid motion of each part: displacements (m), rotations (rad).
+    turning : (n,) array of bool
+        Which of them are rotations.
+
+    Returns
+    -------
+    (n, free) array of float
+        Rotations times the longest lever. Each motion has a 1 where the others have 0.
+    """
+    lever = np.max(np.abs(held[:, turning]), initial=0.0)
+    rows = held / np.where(turning, lever if lever > 0.0 else 1.0, 1.0)
+    norms = np.linalg.norm(rows, axis=1)
+    rows = rows[norms > 0.0] / norms[norms > 0.0, None]
+    if not len(rows):
+        return np.eye(len(turning))
+    free = scipy.linalg.null_space(rows, rcond=RANK_TOLERANCE)
+    if not free.shape[1]:
+        return free
+    pivots = scipy.linalg.qr(free.T, mode="r", pivoting=True)[1][: free.shape[1]]
+    return free @ np.linalg.inv(free[pivots])
+
+
+def refuse_free_motion(
+    held: NDArray[np.float64],
+    turning: NDArray[np.bool_],
+    labels: Sequence[str],
+    allowed: int,
+) -> None:
+    """Refuse more free motions than allowed.
+
+    Parameters
+    ----------
+    held, turning
+        As for `free_motions`.
+    labels : sequence of str
+        Names of the rigid motions, (n,).
+    allowed : int
+
+    Raises
+    ------
+    StructureError
+        Naming parts and directions.
+    """
+    free = free_motions(held, turning)
+    if free.shape[1] <= allowed:
+        return
+    motions = [
+        " with ".join(labels[row] for row in np.flatnonzero(np.abs(motion) > NAMED))
+        for motion in free.T
+    ]
+    raise StructureError(
+        f"rigid-body motions that no connector holds: {free.shape[1]}, allowed: {allowed}; "
+        "free are " + "; ".join(motions)
+    )
