@@ -31,7 +31,8 @@ class ScrewOnBeam:
 
     Between nut and screw is the stiffness of
     `dynamics.structure.spring_coupling.screw_nut_matrix`: springs in the radial
-    directions and against tilt, and one along the screw that its turning stretches too. The beam brings the screw's bearings, inertia and compliance.
+    directions and against tilt, and one along the screw that its turning stretches too.
+    The beam brings the screw's bearings, inertia and compliance.
 
     Parameters
     ----------
