@@ -15,6 +15,8 @@ from pathlib import Path
 
 import numba
 
+from chatter.description.registry import extension_sources
+
 #: compiled code of other versions is kept this long, s
 _KEEP_OLD_CACHES = 30 * 86400.0
 
@@ -22,12 +24,15 @@ _PACKAGES = ("chatter", "cutting", "dynamics")
 
 
 def source_hash(root: Path) -> str:
-    """Hash of every Python source below the three packages in `root`."""
+    """Hash of every Python source below the three packages in `root` and of every extension."""
     digest = hashlib.sha256()
     for package in _PACKAGES:
         for path in sorted((root / package).rglob("*.py")):
             digest.update(path.relative_to(root).as_posix().encode())
             digest.update(path.read_bytes())
+    for path in extension_sources():
+        digest.update(path.as_posix().encode())
+        digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
 
 
