@@ -41,7 +41,7 @@ def lobes(
         typer.Option(
             "--x",
             metavar="PATH=FROM..TO[:COUNT]",
-            help='Limit depth over any value, such as cut.radial_depth="0.5 mm..10 mm:40".',
+            help='Critical depth over any value, such as cut.radial_depth="0.5 mm..10 mm:40".',
         ),
     ] = None,
     y: Annotated[
@@ -84,7 +84,7 @@ def lobes(
         raise InputError(
             "--cluster computes the grid of a diagram, or one over --x and --y; give one of them"
         )
-    from chatter.stability.diagram import lobes as run_lobes
+    from chatter.studies.diagram_over_axes import lobes as run_lobes
 
     announce_compilation()
     folder = output_folder(out, case.stem)
@@ -119,7 +119,7 @@ def _over_paths(
     if json:
         print_json(diagram.summary())
     else:
-        for line in diagram.told():
+        for line in diagram.report():
             print_line(line)
     print_notes(diagram.notes)
     print_written(written)

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.explain.before_after import STEPS
-from chatter.stability.diagram import LobeDiagram, lobes
+from chatter.stability.diagram import StabilityDiagram
+from chatter.stability.lobes import lobes
 
 if TYPE_CHECKING:
     from chatter.explain.explanation import Explanation
@@ -40,7 +41,7 @@ class LobesBeforeAfter:
 
     Parameters
     ----------
-    diagrams : dict of str to LobeDiagram
+    diagrams : dict of str to StabilityDiagram
         By step: declared, refitted, with what was added.
     speed, depth : (n,) array of float
         Cuts measured, rad/s and m.
@@ -50,7 +51,7 @@ class LobesBeforeAfter:
         Sentences.
     """
 
-    diagrams: dict[str, LobeDiagram]
+    diagrams: dict[str, StabilityDiagram]
     speed: Array
     depth: Array
     stable: NDArray[np.bool_] | None
@@ -146,7 +147,7 @@ def _acts(explanation: Explanation, ranged: dict[str, dict[str, str | int]]) -> 
     return _largest_change(without, with_effects) >= _SAME
 
 
-def _sentences(explanation: Explanation, diagrams: dict[str, LobeDiagram], acts: bool) -> list[str]:
+def _sentences(explanation: Explanation, diagrams: dict[str, StabilityDiagram], acts: bool) -> list[str]:
     says = []
     steps = list(diagrams)
     for before, after in pairwise(steps):
@@ -170,13 +171,13 @@ def _names(before: str, after: str) -> str:
     return f"From {before} to {after}, "
 
 
-def _finite(before: LobeDiagram, after: LobeDiagram) -> tuple[Array, Array, Array]:
+def _finite(before: StabilityDiagram, after: StabilityDiagram) -> tuple[Array, Array, Array]:
     old, new = before.limits.critical_depth, after.limits.critical_depth
     both = np.isfinite(old) & np.isfinite(new)
     return before.limits.spindle_speed[both] * _RPM, old[both], new[both]
 
 
-def _largest_change(before: LobeDiagram, after: LobeDiagram) -> float:
+def _largest_change(before: StabilityDiagram, after: StabilityDiagram) -> float:
     _, old, new = _finite(before, after)
     appeared = np.isfinite(before.limits.critical_depth) != np.isfinite(after.limits.critical_depth)
     if appeared.any() or old.size == 0:
@@ -184,7 +185,7 @@ def _largest_change(before: LobeDiagram, after: LobeDiagram) -> float:
     return float(np.max(np.abs(new / old - 1.0)))
 
 
-def _change(before: LobeDiagram, after: LobeDiagram) -> str:
+def _change(before: StabilityDiagram, after: StabilityDiagram) -> str:
     speed, old, new = _finite(before, after)
     if old.size == 0:
         return "no limit lies within the depths looked at in both."

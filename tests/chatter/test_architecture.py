@@ -146,7 +146,8 @@ def sources(tmp_path):
 
 
 def test_cache_folder_changes_with_every_source(sources):
-    from chatter.engine.presets import CACHE_FOLDER, source_hash
+    from chatter.stability.methods.semi_discretization.arrays import milling_arrays
+from chatter.engine.presets import CACHE_FOLDER, source_hash
 
     first = source_hash(sources)
     assert CACHE_FOLDER.name == f"kernels-{first}"
@@ -199,7 +200,7 @@ def test_an_edited_leaf_is_compiled_anew(sources):
 def test_other_values_and_counts_compile_nothing_new():
     from chatter import Case
     from chatter.stability.methods.collocation.drivers import multipliers_at
-    from chatter.stability.methods.semi_discretization.method import multipliers
+    from chatter.stability.methods.semi_discretization.multipliers import multipliers
     from chatter.stability.model import milling_model
 
     case = Case.from_dict(CASE)
@@ -220,7 +221,7 @@ def test_other_values_and_counts_compile_nothing_new():
         point = (
             np.array([value]) for value in (patched.cut.spindle_speed, patched.cut.axial_depth)
         )
-        value = multipliers(milling_model(patched).arrays, *point, 24)
+        value = multipliers(milling_arrays(milling_model(patched)), *point, 24)
         assert abs(value[0]) > 0.0
     assert len(multipliers_at.signatures) == 1
 
@@ -232,7 +233,7 @@ from chatter import Case
 from chatter.stability.model import milling_model
 from chatter.stability.methods.collocation.drivers import multipliers_at
 case = Case.from_dict(json.loads({case!r}))
-arrays = milling_model(case).arrays
+arrays = milling_arrays(milling_model(case))
 point = [np.array([float(v)]) for v in (case.cut.spindle_speed, case.cut.axial_depth)]
 value = multipliers_at(arrays, *point, np.array([16]), 1)[0]
 print(json.dumps([value.real, value.imag]))

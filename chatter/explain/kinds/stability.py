@@ -16,6 +16,7 @@ from chatter.explain.kinds.milling import structural_paths
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.selection.fitting import Parameter
 from chatter.explain.selection.prior import tolerated
+from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.methods.collocation.multipliers import multipliers
 from chatter.stability.model import milling_model
 
@@ -120,7 +121,7 @@ def stability_margins(
     for speed in groups:
         chosen = slice(None) if speed is None else speeds == speed
         own = case if speed is None else case.patch({"cut.spindle_speed": float(speed)})
-        cut = milling_model(own).cut((1.0 + _STEP) * float(depths[chosen].max()))
+        cut = element_cut(milling_model(own), (1.0 + _STEP) * float(depths[chosen].max()))
         at = multipliers(cut, speeds[chosen], depths[chosen])
         above = multipliers(cut, speeds[chosen], depths[chosen] * (1.0 + _STEP))
         growth[chosen] = np.log(np.maximum(np.abs(at), 1e-12))

@@ -19,13 +19,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
+from chatter.detection.bifurcation_kind import bifurcation_kind
 from chatter.detection.chatter_line import strongest_line
 from chatter.detection.orbits import kind_of_orbit
 from chatter.engine.loop import COLUMNS, Record, run
 from chatter.simulation.perturbation.divergence import LARGE_SWING, divergence
 from chatter.simulation.setup import Setup, delayed, set_up
 from chatter.simulation.spindle import prescribed
-from chatter.stability.floquet_multiplier import bifurcation_kind
 from cutting.chip.tool_point import tool_point
 from cutting.edge_segments.segments import period_angle
 from dynamics.modal.modal_steps import modal_steps

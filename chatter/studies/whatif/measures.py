@@ -118,13 +118,13 @@ def _numbers(values: NDArray[np.float64]) -> list[float | None]:
 
 def _lobes(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
     del only
-    from chatter.stability.diagram import lobes
+    from chatter.stability.lobes import lobes
 
     told = lobes(case, method)
     summary = told.summary()
     lowest, operating = summary["lowest_limit"], summary["operating_point"]
     curve = Curve(
-        "limit depth [mm]",
+        "critical depth [mm]",
         "",
         _numbers(told.limits.spindle_speed * _RPM),
         _numbers(told.limits.critical_depth * 1e3),

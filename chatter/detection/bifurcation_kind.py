@@ -1,19 +1,9 @@
-"""A dominant multiplier and what kind of instability it makes."""
+"""Kind of instability of a dominant Floquet multiplier."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 #: |Im| below this share of |mu| is a real multiplier
 _REAL_SHARE = 1e-6
-
-
-class Multiplier(NamedTuple):
-    """Dominant Floquet multiplier over one period."""
-
-    value: complex
-    steps: int  # steps or points a period of the finest resolution
-    error: float  # estimated error of |value|
 
 
 def bifurcation_kind(multiplier: complex) -> str:

@@ -1,4 +1,4 @@
-"""The grid of a stability diagram in blocks of speeds, here or on a cluster, kept as they end."""
+"""Spectral radius on the grid of a stability diagram, in blocks of speeds on a cluster."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from chatter.description.case import Case
 from chatter.engine.parallel import Progress, no_progress
 from chatter.stability.model import MillingModel, milling_model
-from chatter.stability.registry import GRIDS, radius_by_collocation, resolution
+from chatter.stability.registry import METHODS, fixed_steps, with_radius
 from chatter.studies.executor import Computing
 from chatter.studies.finished_points import key_of
 from chatter.studies.result_cache import kept_results
 from chatter.studies.whatif.model import fingerprint
 
-_SPEEDS_A_BLOCK = 4
+_SPEEDS_PER_BLOCK = 4
 
 
 def radius_in_blocks(
@@ -37,7 +37,7 @@ def radius_in_blocks(
     speeds, depths : array of float
         rad/s, m.
     method : str
-        Key of `chatter.stability.registry.METHODS`.
+        Name in `chatter.stability.registry.METHODS`.
     cluster : str or Computing, optional
         As for `chatter.studies.executor.computing_on`.
     folder : path, optional
@@ -51,8 +51,8 @@ def radius_in_blocks(
         If it is interrupted; finished blocks are in the folder.
     """
     blocks = [
-        np.arange(first, min(first + _SPEEDS_A_BLOCK, len(speeds)))
-        for first in range(0, len(speeds), _SPEEDS_A_BLOCK)
+        np.arange(first, min(first + _SPEEDS_PER_BLOCK, len(speeds)))
+        for first in range(0, len(speeds), _SPEEDS_PER_BLOCK)
     ]
     base = key_of("grid", fingerprint(case), method, repr(depths.tolist()))
     keys = [key_of(base, repr(speeds[block].tolist())) for block in blocks]
@@ -72,6 +72,6 @@ def _radius_of_speeds(
 ) -> list[list[float]]:
     """Spectral radius of a block, as JSON knows it."""
     speed, depth = (part.ravel() for part in np.meshgrid(speeds, depths))
-    radius_at = GRIDS.get(method, radius_by_collocation)
-    radius = radius_at(_model_of(case), speed, depth, resolution(case), no_progress)
+    chosen = with_radius(METHODS[method])
+    radius = chosen.radius(_model_of(case), speed, depth, fixed_steps(case), no_progress)
     return radius.reshape(len(depths), len(speeds)).tolist()
