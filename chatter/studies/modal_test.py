@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from chatter.compile.drive_point_check import with_magnitudes
 from chatter.compile.measured_frf import with_direction
 from chatter.description.errors import InputError
-from chatter.io.frf_formats import read_frfs
+from chatter.io.formats import read_frfs
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, write_results
 from dynamics.frf.container import Frf, MeasurementError

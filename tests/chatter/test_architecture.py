@@ -54,7 +54,7 @@ def test_machine_and_cutting_know_nothing_of_each_other(package, others):
     for path in modules(package):
         names = {name.split(".")[0] for name in imported(path)}
         # units are read where files are read, and nowhere else
-        allowed = {"pint"} if path.parent.name == "frf_formats" else set()
+        allowed = {"pint"} if path.parent.name == "formats" else set()
         assert not names & (FOREIGN - allowed | others), path
 
 

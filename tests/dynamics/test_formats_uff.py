@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from chatter.io.frf_formats import read_frfs
+from chatter.io.formats import read_frfs
 from dynamics.frf.container import MeasurementError, Point
 
 BEAM = Path(__file__).resolve().parents[2] / "../shared/data/frf-beam"

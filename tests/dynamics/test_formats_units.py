@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from chatter.io.frf_formats.units import channel_unit, frf_unit
+from chatter.io.formats.units import channel_unit, frf_unit
 from dynamics.frf.container import MeasurementError
 
 INCH, POUND_FORCE, GRAVITY = 0.0254, 0.45359237 * 9.80665, 9.80665  # exact by definition

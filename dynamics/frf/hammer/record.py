@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.io.frf_formats.text import Column, Table, read_table
-from chatter.io.frf_formats.units import Channel, channel_unit
+from chatter.io.formats.units import Channel, channel_unit
+from chatter.io.text_files import Column, Table, read_table
 from dynamics.frf.container import MeasurementError, Point, Quantity
 
 #: quantity of the FRF that a response of each kind gives

@@ -10,7 +10,7 @@ import pytest
 from chatter.description.errors import InputError
 from chatter.explain.measurement import read_measurement
 from chatter.io.headings import named
-from chatter.io.signal_tables import read_signals
+from chatter.io.signals import read_signals
 
 TIME = np.arange(20) * 1e-3
 FORCE = 100.0 + 5.0 * np.arange(20)

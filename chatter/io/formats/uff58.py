@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.io.frf_formats.units import Channel, channel_unit, frf_unit
-from chatter.io.frf_formats.universal import Dataset, FileUnits, file_units, read_datasets
+from chatter.io.formats.units import Channel, channel_unit, frf_unit
+from chatter.io.formats.universal import Dataset, FileUnits, file_units, read_datasets
 from dynamics.frf.container import Frf, MeasurementError, Point, Quantity
 
 #: names of function types met in measured files (record 6, field 1)

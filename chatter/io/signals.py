@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from chatter.description.errors import InputError
 from chatter.description.formatting import shown
-from chatter.io.frf_formats import read_frfs
-from chatter.io.frf_formats.records58 import TimeRecord, read_time_records
+from chatter.io.formats import read_frfs
+from chatter.io.formats.records58 import TimeRecord, read_time_records
 from chatter.io.headings import named
 from dynamics.frf.container import Frf, MeasurementError
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from chatter.io.frf_formats.text import require_readable
+from chatter.io.text_files import require_readable
 from dynamics.frf.container import MeasurementError
 
 #: largest universal file read, bytes

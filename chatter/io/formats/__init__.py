@@ -5,7 +5,7 @@ module     responsibility                                               layout
 ========== ============================================================ ====================
 uff58      universal files, text and binary                             SDRC dataset 58, 58b
 universal  datasets of a universal file, its units                      SDRC dataset 164
-csv_frf    tables with names and units in the heading
+csv    tables with names and units in the heading
 cutpro     ``.frf`` text of CutPro
 text       opening text, tables of numbers
 units      units in measured files, by the units library
@@ -20,11 +20,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from chatter.io.frf_formats.csv_frf import read_csv
-from chatter.io.frf_formats.cutpro import read_cutpro
-from chatter.io.frf_formats.text import read_head, require_readable
-from chatter.io.frf_formats.uff58 import read_uff58
-from chatter.io.frf_formats.universal import LARGEST_UNIVERSAL_FILE, looks_universal
+from chatter.io.formats.csv import read_csv
+from chatter.io.formats.cutpro import read_cutpro
+from chatter.io.formats.uff58 import read_uff58
+from chatter.io.formats.universal import LARGEST_UNIVERSAL_FILE, looks_universal
+from chatter.io.text_files import read_head, require_readable
 from dynamics.frf.container import Frf, MeasurementError
 
 __all__ = ["READERS", "Reader", "read_frfs"]

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.io.frf_formats.uff58 import axis_content, point_of, read_heading, read_values
-from chatter.io.frf_formats.units import Channel
-from chatter.io.frf_formats.universal import FileUnits, file_units, read_datasets
+from chatter.io.formats.uff58 import axis_content, point_of, read_heading, read_values
+from chatter.io.formats.units import Channel
+from chatter.io.formats.universal import FileUnits, file_units, read_datasets
 from dynamics.frf.container import MeasurementError, Point
 
 #: general functions are taken for time records too, where their abscissa is time

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from chatter.io.frf_formats.text import is_number, read_lines
-from chatter.io.frf_formats.units import channel_unit, frf_unit
+from chatter.io.formats.units import channel_unit, frf_unit
+from chatter.io.text_files import is_number, read_lines
 from dynamics.frf.container import Frf, MeasurementError, Quantity
 
 _EXAMPLE = "10.0  1.2e-8  -3.4e-10  Freq  Hz  Real  m/N  Imag"

@@ -11,8 +11,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.io.frf_formats.text import Column, Table, read_table
-from chatter.io.frf_formats.units import channel_unit, frf_unit
+from chatter.io.formats.units import channel_unit, frf_unit
+from chatter.io.text_files import Column, Table, read_table
 from dynamics.frf.container import Frf, MeasurementError, Point, Quantity
 
 T = TypeVar("T")
