@@ -5,9 +5,6 @@ import math
 
 import numpy as np
 import pytest
-from reference import dense_cases
-from reference.general_cases import case_dict, load
-from reference.general_cut import GeneralCut, spectral_radius
 from scipy.integrate import quad
 
 from chatter.description.case import Case
@@ -27,6 +24,9 @@ from chatter.stability.registry import (
     operating_multiplier,
 )
 from cutting.edge_segments.segments import period_angle
+from tests.validation.reference import dense_cases
+from tests.validation.reference.general_cases import case_dict, load
+from tests.validation.reference.general_cut import GeneralCut, spectral_radius
 
 RPM = math.pi / 30.0
 CASES = load()
