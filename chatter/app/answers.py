@@ -14,7 +14,7 @@ from chatter.app.followed import followed_limits
 from chatter.app.parameters import Parameter, case_parameters, checked_values, view_parameters
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.engine.parallel import Progress
+from chatter.description.progress import Progress
 from chatter.stability.model import milling_model
 from chatter.stability.registry import chosen_method, resolution, zero_order_of
 from chatter.stability.search_range import deepest_depth, spindle_speeds

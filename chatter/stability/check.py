@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from chatter.description.case import Case
-from chatter.engine.parallel import no_progress
+from chatter.description.progress import no_progress
 from chatter.io.result_files import as_json, finite_or_none, write_results
 from chatter.stability.floquet_multiplier import Multiplier, bifurcation_kind
 from chatter.stability.forced_vibration import notes_on_steady_cut

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
+from chatter.engine.parallel import Executor
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, write_results
 from chatter.stability.forced_vibration import notes_on_steady_cut
@@ -31,7 +32,6 @@ from chatter.stability.registry import (
     zero_order_of,
 )
 from chatter.stability.search_range import axial_depths, deepest_depth, spindle_speeds
-from chatter.studies.executor import Computing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -218,7 +218,7 @@ def lobes(
     method: str | None = None,
     grid: bool = False,
     progress: Progress = no_progress,
-    cluster: str | Computing | None = None,
+    cluster: str | Executor | None = None,
     folder: str | Path | None = None,
 ) -> LobeDiagram:
     """Compute the stability lobe diagram of a case.
@@ -233,8 +233,8 @@ def lobes(
         Also the spectral radius on the whole grid of speeds and depths.
     progress : callable, optional
         Called with (done, total) speeds.
-    cluster : str or Computing, optional
-        Where the grid is computed, as for `chatter.studies.executor.computing_on`; here by default.
+    cluster : str or Executor, optional
+        Where the grid is computed, as for `chatter.studies.executor.open_executor`; None: here.
     folder : path, optional
         On a cluster, keeps finished blocks of the grid in points.jsonl there.
 

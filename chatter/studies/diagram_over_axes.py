@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.engine.parallel import Progress, no_progress, one_thread, sweep
+from chatter.description.progress import Progress, no_progress
+from chatter.engine.parallel import Executor, one_thread, sweep
 from chatter.io.result_files import finite_or_none
 from chatter.stability.model import milling_model
 from chatter.stability.registry import (
@@ -23,7 +24,6 @@ from chatter.stability.registry import (
     zero_order_of,
 )
 from chatter.stability.search_range import depths_at_one_speed
-from chatter.studies.executor import Computing
 from chatter.studies.finished_points import key_of
 from chatter.studies.parameter_axis import (
     DEPTH_PATH,
@@ -62,7 +62,7 @@ def lobes_over(
     y: AxisGiven | None = None,
     method: str | None = None,
     progress: Progress = no_progress,
-    cluster: str | Computing | None = None,
+    cluster: str | Executor | None = None,
     folder: str | Path | None = None,
 ) -> PathLimits | StabilityMap:
     """Limit depth over a path of a case; with `y`, the spectral radius over two.
@@ -79,8 +79,8 @@ def lobes_over(
         As for `chatter.lobes`.
     progress : callable, optional
         Called with (done, total) points or columns.
-    cluster : str or Computing, optional
-        Where they are computed, as for `chatter.studies.executor.computing_on`; here by default.
+    cluster : str or Executor, optional
+        Where they are computed, as for `chatter.studies.executor.open_executor`; here by default.
     folder : path, optional
         On a cluster, keeps finished points or columns in points.jsonl there.
 
@@ -256,7 +256,7 @@ def _each(
 
 
 def _kept(
-    cluster: str | Computing,
+    cluster: str | Executor,
     folder: str | Path | None,
     progress: Progress,
     function: Callable[[_Point], dict[str, Any]],

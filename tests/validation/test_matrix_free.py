@@ -9,8 +9,8 @@ from scipy.integrate import quad
 
 from chatter.description.case import Case
 from chatter.description.errors import RunError
+from chatter.description.progress import no_progress
 from chatter.engine import parallel as sweep
-from chatter.engine.parallel import no_progress
 from chatter.stability.methods.collocation import multipliers as collocation
 from chatter.stability.methods.matrix_free import method as matrix_free
 from chatter.stability.methods.matrix_free.modal_response import PLACES, drawn_answer, mode_answer

@@ -12,7 +12,7 @@ import pytest
 
 import chatter
 from chatter.description.case import Case
-from chatter.engine.parallel import no_progress
+from chatter.description.progress import no_progress
 from chatter.simulation.perturbation.divergence import divergence
 from chatter.simulation.perturbation.growth_rate import delayed, motion_of
 from chatter.simulation.setup import modes_of, set_up

@@ -11,7 +11,7 @@ import pytest
 
 import chatter
 from chatter.description.case import Case
-from chatter.engine.parallel import no_progress
+from chatter.description.progress import no_progress
 from chatter.simulation.perturbation.growth_rate import growth_of
 from chatter.simulation.setup import modes_of
 from chatter.stability.methods.time_domain.critical_depths import time_limit_curve

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import RunError
+from chatter.description.progress import Progress, no_progress
 from chatter.engine.loop import COLUMNS, Record
 from chatter.engine.machine_cut_loop import CoupledRecord, run_coupled
 from chatter.engine.machine_loop import advance
-from chatter.engine.parallel import Progress, no_progress
 from chatter.simulation.carved_workpiece import after_run
 from chatter.simulation.on_machine.setup import MachineSetup, set_up_machine, tool_side
 from chatter.simulation.result import SimulationResult

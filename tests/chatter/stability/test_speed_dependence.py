@@ -10,7 +10,7 @@ from chatter.app.answers import LiveCase
 from chatter.compile.structure import structure_of
 from chatter.description.case import Case, loads
 from chatter.description.errors import InputError
-from chatter.engine.parallel import no_progress
+from chatter.description.progress import no_progress
 from chatter.stability.grid_blocks import radius_in_blocks
 from chatter.stability.model import milling_model
 from chatter.stability.registry import METHODS, zero_order_of

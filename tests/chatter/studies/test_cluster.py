@@ -19,8 +19,8 @@ import pytest
 
 import chatter
 from chatter.description.errors import InputError, RunError
-from chatter.engine.parallel import one_thread, worker_count
-from chatter.studies.executor import Here, OnDask, _Cost, computing_on
+from chatter.engine.parallel import SerialExecutor, one_thread, worker_count
+from chatter.studies.executor import DaskExecutor, _TaskSize, open_executor
 from chatter.studies.finished_points import FILE
 from tests.chatter.simulation.on_machine.coupled_machines import (
     body,
@@ -182,15 +182,15 @@ def test_same_bytes_as_without_a_cluster(name, client, here, tmp_path):
     # tasks of one item and of several
     for seconds in (1e-9, 30.0):
         folder = tmp_path / str(seconds)
-        found = STUDIES[name](folder, OnDask(client, seconds))
+        found = STUDIES[name](folder, DaskExecutor(client, seconds))
         assert without_grid_archive(found) == without_grid_archive(here[name])
 
 
 @pytest.mark.parametrize("name", STUDIES)
 def test_finished_points_are_not_computed_again(name, client, here, tmp_path):
-    STUDIES[name](tmp_path, OnDask(client))
+    STUDIES[name](tmp_path, DaskExecutor(client))
     lines = (tmp_path / FILE).read_text(encoding="utf-8")
-    again = STUDIES[name](tmp_path, OnDask(None))
+    again = STUDIES[name](tmp_path, DaskExecutor(None))
     assert without_grid_archive(again) == without_grid_archive(here[name])
     assert (tmp_path / FILE).read_text(encoding="utf-8") == lines
 
@@ -209,7 +209,7 @@ def pids_of(client):
 def test_a_lost_worker_costs_its_own_tasks_alone(client, tmp_path):
     square = partial(slow_square, str(tmp_path), 0.05)
     killed, found = None, {}
-    for place, result in OnDask(client, 0.15).results(square, range(40)):
+    for place, result in DaskExecutor(client, 0.15).results(square, range(40)):
         found[place] = result
         if killed is None and len(found) >= 8:
             killed = pids_of(client)[0]
@@ -224,7 +224,7 @@ def test_a_lost_worker_costs_its_own_tasks_alone(client, tmp_path):
     client.wait_for_workers(2, timeout=60)
 
 
-class LosingAWorker(OnDask):
+class LosingAWorker(DaskExecutor):
     """Kills a worker process when some results have come."""
 
     killed = None
@@ -239,17 +239,17 @@ class LosingAWorker(OnDask):
 
 @pytest.mark.parametrize("name", ["workspace", "path"])
 def test_a_study_of_the_workspace_bears_the_loss_of_a_worker(name, client, here, tmp_path):
-    computing = LosingAWorker(client, 1e-9)
-    assert STUDIES[name](tmp_path, computing) == here[name]
-    assert computing.killed is not None
+    executor = LosingAWorker(client, 1e-9)
+    assert STUDIES[name](tmp_path, executor) == here[name]
+    assert executor.killed is not None
     keys = [json.loads(line)["key"] for line in (tmp_path / FILE).read_text().splitlines()]
     assert len(keys) == len(set(keys)) == 6
     client.wait_for_workers(2, timeout=60)
-    assert computing.killed not in pids_of(client)
+    assert executor.killed not in pids_of(client)
 
 
 def test_a_study_of_the_workspace_goes_on_where_it_was(client, here, tmp_path):
-    class Interrupted(OnDask):
+    class Interrupted(DaskExecutor):
         def results(self, function, items):
             for count, found in enumerate(super().results(function, items)):
                 if count == 3:
@@ -259,7 +259,7 @@ def test_a_study_of_the_workspace_goes_on_where_it_was(client, here, tmp_path):
     with pytest.raises(RunError, match="interrupted: 3 of 6 values"):
         run_path(tmp_path, Interrupted(client, 1e-9))
     assert len((tmp_path / FILE).read_text(encoding="utf-8").splitlines()) == 3
-    assert run_path(tmp_path, OnDask(client)) == here["path"]
+    assert run_path(tmp_path, DaskExecutor(client)) == here["path"]
     assert len((tmp_path / FILE).read_text(encoding="utf-8").splitlines()) == 6
 
 
@@ -271,7 +271,7 @@ def test_the_workspace_makes_a_difference(here):
 
 
 def test_interruption_keeps_what_is_finished(client, here, tmp_path):
-    class Interrupted(OnDask):
+    class Interrupted(DaskExecutor):
         def results(self, function, items):
             for count, found in enumerate(super().results(function, items)):
                 if count == 5:
@@ -281,7 +281,7 @@ def test_interruption_keeps_what_is_finished(client, here, tmp_path):
     with pytest.raises(RunError, match="interrupted: 5 of 12 samples"):
         run_uncertainty(tmp_path, Interrupted(client, 1e-9))
     assert len((tmp_path / FILE).read_text(encoding="utf-8").splitlines()) == 5
-    assert run_uncertainty(tmp_path, OnDask(client)) == here["uncertainty"]
+    assert run_uncertainty(tmp_path, DaskExecutor(client)) == here["uncertainty"]
     assert len((tmp_path / FILE).read_text(encoding="utf-8").splitlines()) == 12
 
 
@@ -291,23 +291,23 @@ def fails(number):
 
 def test_errors_of_the_input_come_back_as_such(client):
     with pytest.raises(InputError) as raised:
-        list(OnDask(client).results(fails, [3]))
+        list(DaskExecutor(client).results(fails, [3]))
     assert raised.value.messages == ("number 3 is wrong", "and so is all else")
 
 
 def test_tasks_take_some_seconds():
-    cost = _Cost(3.0)
-    assert cost.items_a_task(1000, 4) == 1
+    cost = _TaskSize(3.0)
+    assert cost.items_per_task(1000, 4) == 1
     cost.add(2, 0.5)
-    assert cost.items_a_task(1000, 4) == 12
+    assert cost.items_per_task(1000, 4) == 12
     # towards the end every worker gets a share
-    assert cost.items_a_task(8, 4) == 2
+    assert cost.items_per_task(8, 4) == 2
     cost.add(1, 100.0)
-    assert cost.items_a_task(1000, 4) == 1
+    assert cost.items_per_task(1000, 4) == 1
 
 
 def test_here_keeps_the_order():
-    assert list(Here().results(np.sqrt, [4.0, 9.0])) == [(0, 2.0), (1, 3.0)]
+    assert list(SerialExecutor().results(np.sqrt, [4.0, 9.0])) == [(0, 2.0), (1, 3.0)]
 
 
 def test_a_task_uses_one_thread():
@@ -326,22 +326,22 @@ def test_a_task_uses_one_thread():
     "address", ["localhost", "tcp://", "tcp://host", "file:///etc/passwd:1", "http://a:1", ""]
 )
 def test_what_is_no_address_is_told(address):
-    with pytest.raises(InputError, match="is no cluster"), computing_on(address):
+    with pytest.raises(InputError, match="is no cluster"), open_executor(address):
         pass
 
 
 def test_an_address_without_scheduler_is_told(monkeypatch):
-    monkeypatch.setattr("chatter.studies.executor._PATIENCE_FOR_SCHEDULER", 0.5)
+    monkeypatch.setattr("chatter.studies.executor._SCHEDULER_TIMEOUT", 0.5)
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         address = f"tcp://127.0.0.1:{taken.getsockname()[1]}"
-        with pytest.raises(InputError, match="no scheduler answers"), computing_on(address):
+        with pytest.raises(InputError, match="no scheduler answers"), open_executor(address):
             pass
 
 
 def test_a_missing_distributed_is_told(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(InputError, match=r"chatter\[cluster\]"), computing_on("local"):
+    with pytest.raises(InputError, match=r"chatter\[cluster\]"), open_executor("local"):
         pass
 
 
@@ -350,8 +350,8 @@ def test_cluster_by_address(client, here, tmp_path):
 
 
 def compute_until_killed(address, scheduler):
-    with computing_on(address) as computing:
-        for place, _ in computing.results(time.sleep, [0.1] * 100):
+    with open_executor(address) as executor:
+        for place, _ in executor.results(time.sleep, [0.1] * 100):
             if place == 2:
                 scheduler.kill()
 

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.errors import RunError
-from chatter.engine.parallel import Progress, kept_threads, no_progress, sweep, worker_count
+from chatter.description.progress import Progress, no_progress
+from chatter.engine.parallel import kept_threads, sweep, worker_count
 from chatter.stability.boundary_continuation import followed_crossings
 from chatter.stability.brackets import Growth
 from chatter.stability.floquet_multiplier import Multiplier

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.errors import RunError
-from chatter.engine.parallel import Progress, no_progress, sweep
+from chatter.description.progress import Progress, no_progress
+from chatter.engine.parallel import sweep
 from chatter.stability.arnoldi import dominant_multiplier
 from chatter.stability.floquet_multiplier import Multiplier
 from chatter.stability.limit_curve import LimitCurve
