@@ -246,3 +246,17 @@ def test_without_the_compiler_the_multiplier_is_the_same():
     plain = complex(*python(code, NUMBA_DISABLE_JIT="1"))
     assert abs(compiled) > 0.1
     assert plain == pytest.approx(compiled, abs=1e-12)
+
+
+def test_leaves_of_both_packages_are_compiled_alike():
+    """Neither package may know the other, so that both have the presets and the dispatch."""
+    from chatter.engine import presets
+    from cutting import compiled
+
+    text = [(ROOT / package / "compiled.py").read_text() for package in ("cutting", "dynamics")]
+    assert text[0] == text[1]
+    assert compiled.UNCOUNTED.items() <= presets.TIME_LOOP.items()
+    for package in ("chatter", "cutting", "dynamics"):
+        for path in modules(package):
+            if path.name not in ("compiled.py", "presets.py"):
+                assert "_nrt" not in path.read_text(encoding="utf-8"), path

@@ -7,10 +7,10 @@ import pytest
 
 from cutting.process_damping.ploughing import (
     Ploughing,
-    forget_wave,
-    note_wave,
+    clear_surface_history,
     ploughing_flank,
     ploughing_force,
+    store_surface_history,
 )
 
 CLEARANCE = math.radians(7.0)
@@ -78,7 +78,7 @@ class Edge:
         for here in place:
             tangential, radial = ploughing_force(self.flank, 0, 0, here, 0.0, 1.0)
             forces.append((radial, tangential))
-            note_wave(self.flank, 0, 0, here)
+            store_surface_history(self.flank, 0, 0, here)
         return np.array(forces)
 
 
@@ -184,5 +184,5 @@ def test_samples_of_the_wave_do_not_shape_the_force():
 def test_an_edge_that_left_the_cut_starts_anew():
     edge = Edge(worn())
     edge.run(wave(2e-6, 1e-3)[1][:200])
-    forget_wave(edge.flank, 0, 0)
+    clear_surface_history(edge.flank, 0, 0)
     assert edge.run(np.array([5e-6]))[0, 0] == 0.0
