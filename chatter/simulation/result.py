@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.errors import InputError
+from chatter.description.units import rpm
 from chatter.detection.record import CutRecord
 from chatter.detection.verdict import Judgement, judge
 from chatter.io.presentation import presentation
@@ -27,7 +28,6 @@ from cutting.dexel.stock import DexelStock
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_RPM = 30.0 / math.pi
 #: a record of fewer turns, or of fewer cycles of the lowest mode, is not judged
 _LEAST_TURNS_TO_JUDGE = 8.0
 _LEAST_CYCLES_TO_JUDGE = 12.0
@@ -232,7 +232,7 @@ class SimulationResult:
         return {
             "title": self.case.title,
             **self._verdict(),
-            "spindle_speed_rpm": cut.spindle_speed * _RPM,
+            "spindle_speed_rpm": rpm(cut.spindle_speed),
             "axial_depth_mm": cut.axial_depth * 1e3,
             "peak_force_N": {
                 name: float(np.abs(self.force[:, axis]).max()) for axis, name in enumerate(names)

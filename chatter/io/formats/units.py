@@ -1,98 +1,48 @@
-"""Units written in measured files: what a column holds and its factor to SI."""
+"""What a column of a measured file holds, by its unit, and its factor to SI."""
 
 from __future__ import annotations
 
 import math
-import re
-from functools import lru_cache
-from typing import TYPE_CHECKING, Any, Literal
+from collections.abc import Mapping
+from typing import Literal, TypeVar
 
+from chatter.description.units import dimension_of, measured_unit
 from dynamics.frf.container import MeasurementError, Quantity
-
-if TYPE_CHECKING:
-    import pint
 
 #: what a column of a measured file can hold
 Channel = Literal["time", "frequency", "force", "displacement", "velocity", "acceleration"]
 
-#: quantity of an FRF by its dimension, exponents of (length, mass, time)
-_QUANTITIES: dict[tuple[int, int, int], Quantity] = {
-    (0, -1, 2): "receptance",
-    (0, -1, 1): "mobility",
-    (0, -1, 0): "accelerance",
+#: quantity of an FRF -> its SI unit
+_QUANTITIES: dict[Quantity, str] = {
+    "receptance": "m/N",
+    "mobility": "m/s/N",
+    "accelerance": "m/s**2/N",
 }
-
-#: content of a time or frequency column by its dimension, exponents of (length, mass, time)
-_CHANNELS: dict[tuple[int, int, int], Channel] = {
-    (0, 0, 1): "time",
-    (0, 0, -1): "frequency",
-    (1, 1, -2): "force",
-    (1, 0, 0): "displacement",
-    (1, 0, -1): "velocity",
-    (1, 0, -2): "acceleration",
+#: content of a column of a record, or of a frequency axis -> its SI unit
+_CHANNELS: dict[Channel, str] = {
+    "time": "s",
+    "frequency": "1/s",
+    "force": "N",
+    "displacement": "m",
+    "velocity": "m/s",
+    "acceleration": "m/s**2",
 }
-
-_SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁻", "01234-")
-#: how measurement software writes a unit -> how the units library does
-_SPELLINGS = {
-    "g": "standard_gravity",
-    "G": "standard_gravity",
-    "mg": "millistandard_gravity",
-    "lb": "lbf",
-    "Ns": "(N*s)",
-    "mil": "thou",
-    "ips": "(inch/s)",
-}
-_ALLOWED = re.compile(r"[A-Za-zµμ0-9 ()*/^.·⋅⁰¹²³⁴⁻-]{1,60}")
-_SMALL_POWER = re.compile(r"\*\*\s*(-?[1-4]|\(\s*-?[1-4]\s*\))(?![\d.]|\s*\*\*)")
+_Content = TypeVar("_Content", Quantity, Channel)
 
 
-@lru_cache(maxsize=1)
-def _registry() -> pint.UnitRegistry[Any]:
-    import pint
-
-    return pint.UnitRegistry()
-
-
-def _spelled_for_library(unit: str) -> str:
-    text = unit.strip().replace("μ", "µ").replace("·", "*").replace("⋅", "*")
-    text = re.sub(r"([⁰¹²³⁴⁻]+)", lambda m: "^" + m.group(1).translate(_SUPERSCRIPTS), text)
-    text = re.sub(r"\bNs\^?2\b", "(N*s^2)", text)
-    text = re.sub(r"([A-Za-zµ])(\d)", r"\1^\2", text)
-    text = re.sub(r"[A-Za-zµ]+", lambda m: _SPELLINGS.get(m.group(0), m.group(0)), text)
-    return re.sub(r"^\s*1\s*/", "dimensionless/", text).replace("^", "**")
-
-
-@lru_cache(maxsize=256)
-def _dimension_and_factor(unit: str) -> tuple[tuple[int, int, int], float]:
-    """Exponents of length, mass and time, and the factor to the SI unit of that dimension."""
-    text = unit.strip()
-    refused = MeasurementError(f"unit {text[:60]!r} is not understood")
-    if not _ALLOWED.fullmatch(text):
-        raise refused
-    spelled = _spelled_for_library(text)
-    # the units library computes powers of numbers: untrusted text must not ask for huge ones
-    if re.search(r"\d|\*\*", _SMALL_POWER.sub("", spelled)):
-        raise refused
-    registry = _registry()
-    try:
-        parsed = registry.parse_units(spelled)
-    except Exception as error:  # whatever the library's parser raises on odd text
-        raise refused from error
-    base = registry.Quantity(1.0, parsed).to_base_units()
-    powers = dict(base.dimensionality)
-    exponents = tuple(powers.pop(name, 0) for name in ("[length]", "[mass]", "[time]"))
-    if powers or any(float(power) != int(power) for power in exponents):
-        raise refused
-    length, mass, time = (int(power) for power in exponents)
-    factor = float(base.magnitude)
-    if (length, mass, time) == (0, 0, -1) and "radian" in str(base.units):
-        factor /= 2.0 * math.pi  # the library takes a radian as 1; a cycle is 2 pi of them
-    return (length, mass, time), factor
+def _content(unit: str, known: Mapping[_Content, str], wanted: str) -> tuple[_Content, float]:
+    found = measured_unit(unit)
+    if found is None:
+        raise MeasurementError(f"unit {unit.strip()[:60]!r} is not understood")
+    for content, si_unit in known.items():
+        if found.dimension == dimension_of(si_unit):
+            cycles = content == "frequency" and found.has_angle
+            return content, found.factor / (2.0 * math.pi) if cycles else found.factor
+    raise MeasurementError(f"unit {unit.strip()!r} is {wanted}")
 
 
 def frf_unit(unit: str) -> tuple[Quantity, float]:
-    """Tell the quantity of a unit of response per force and its factor to SI.
+    """Quantity of an FRF in a unit of response per force, and its factor to SI.
 
     Parameters
     ----------
@@ -112,17 +62,15 @@ def frf_unit(unit: str) -> tuple[Quantity, float]:
     MeasurementError
         If `unit` is not understood or is not a response per force.
     """
-    dimension, factor = _dimension_and_factor(unit)
-    if dimension not in _QUANTITIES:
-        raise MeasurementError(
-            f"unit {unit.strip()!r} is not a response per force; "
-            "allowed are units such as m/N, um/N, mm/s/N, m/s^2/N, g/N, in/lbf, 1/kg"
-        )
-    return _QUANTITIES[dimension], factor
+    wanted = (
+        "not a response per force; "
+        "allowed are units such as m/N, um/N, mm/s/N, m/s^2/N, g/N, in/lbf, 1/kg"
+    )
+    return _content(unit, _QUANTITIES, wanted)
 
 
 def channel_unit(unit: str) -> tuple[Channel, float]:
-    """Tell what a column of a time record or a frequency axis holds, and its factor to SI.
+    """Content of a column of a time record or of a frequency axis, and its factor to SI.
 
     Parameters
     ----------
@@ -142,10 +90,5 @@ def channel_unit(unit: str) -> tuple[Channel, float]:
     MeasurementError
         If `unit` is not understood or is none of these.
     """
-    dimension, factor = _dimension_and_factor(unit)
-    if dimension not in _CHANNELS:
-        raise MeasurementError(
-            f"unit {unit.strip()!r} is none of a time, frequency, force, displacement, velocity "
-            "or acceleration"
-        )
-    return _CHANNELS[dimension], factor
+    wanted = "none of a time, frequency, force, displacement, velocity or acceleration"
+    return _content(unit, _CHANNELS, wanted)

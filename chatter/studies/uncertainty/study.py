@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -15,6 +14,7 @@ from numpy.typing import NDArray
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
+from chatter.description.units import rpm
 from chatter.engine.parallel import Executor
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, write_results
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_RPM = 30.0 / math.pi
 #: probabilities of the band
 LEVELS = (0.05, 0.5, 0.95)
 DEFAULT_SAMPLES, DEFAULT_SPEEDS, DEFAULT_SEED = 200, 31, 1
@@ -141,7 +140,7 @@ class Uncertainty:
                 for one in self.parameters
             ],
             "operating_point": {
-                "spindle_speed_rpm": cut.spindle_speed * _RPM,
+                "spindle_speed_rpm": rpm(cut.spindle_speed),
                 "axial_depth_mm": cut.axial_depth * 1e3,
                 "probability_of_stability": self.probability,
                 "confidence_interval_95": list(self.interval),
@@ -193,7 +192,7 @@ class Uncertainty:
         probability = self.probability_at(self.case.cut.axial_depth)
         for speed, row, share in zip(self.speeds, self.quantiles().T, probability, strict=True):
             depths = ",".join("" if np.isinf(depth) else f"{depth * 1e3:.7g}" for depth in row)
-            lines.append(f"{speed * _RPM:.4f},{depths},{share:.6g}")
+            lines.append(f"{rpm(speed):.4f},{depths},{share:.6g}")
         return "\n".join(lines) + "\n"
 
     def _samples(self) -> str:
