@@ -104,9 +104,9 @@ def _refuse_endless(cut: CutArrays, speeds: NDArray[np.float64]) -> None:
     slowest = rpm(float(np.min(speeds)))
     if of_tool > _MOST_VIBRATIONS:
         raise RunError(
-            f"at {slowest:.4g} rpm the tool takes {of_tool:.3g} vibrations of {hertz:.4g} Hz to look "
-            f"the same again; at most {_MOST_VIBRATIONS} can be computed: raise the lowest spindle "
-            "speed, or leave out modes that are far too stiff to chatter"
+            f"at {slowest:.4g} rpm the tool takes {of_tool:.3g} vibrations of {hertz:.4g} Hz to "
+            f"look the same again; at most {_MOST_VIBRATIONS} can be computed: raise the lowest "
+            "spindle speed, or leave out modes that are far too stiff to chatter"
         )
     if not varies(cut):
         return
