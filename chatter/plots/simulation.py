@@ -90,7 +90,7 @@ def _title(result: SimulationResult) -> str:
         f"{rpm(cut.spindle_speed):.0f} rpm, axial depth {cut.axial_depth * 1e3:.4g} mm, "
         f"feed {cut.feed_per_tooth * 1e3:.4g} mm a tooth"
     )
-    found = result.judgement
+    found = result.detection
     if found is None:
         why = "the tool is rigid" if not result.setup.modes else "the run is too short"
         return f"{case}\nnot judged: {why}"
@@ -236,7 +236,7 @@ def _mark_harmonics(axes: Axes, tooth: float, teeth: int, top: float) -> None:
 
 
 def _mark_chatter(axes: Axes, result: SimulationResult) -> None:
-    found = result.judgement
+    found = result.detection
     if found is None or not math.isfinite(found.chatter_frequency):
         return
     heard = found.chatter_frequency

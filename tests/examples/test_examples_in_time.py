@@ -31,7 +31,7 @@ def test_chattering_cut():
     case = load("chattering-cut")
     limit = chatter.check(case.patch({"tool.runout": None})).critical_depth
     shallow, deep = (
-        chatter.simulate(case.patch({"cut.axial_depth": f"{depth * 1e3} mm"})).judgement
+        chatter.simulate(case.patch({"cut.axial_depth": f"{depth * 1e3} mm"})).detection
         for depth in (0.75 * limit, 1.4 * limit)
     )
     assert shallow.stable

@@ -39,4 +39,4 @@ def test_vibration_grows_in_the_published_order(example, entering):
     assert grown["neither"] > example.CHATTERING
     assert grown["friction"] < 0.2 * grown["neither"]
     assert grown["friction and contact"] < 0.2 * grown["friction"]
-    assert entering["neither"].judgement.chatter_frequency == pytest.approx(50.0, rel=0.05)
+    assert entering["neither"].detection.chatter_frequency == pytest.approx(50.0, rel=0.05)

@@ -59,7 +59,7 @@ def test_four_inserts_without_edge_forces_load_y_evenly(example, case):
 def test_a_flexible_cutter_chatters_for_want_of_damping(example, case, percent, chatters):
     changes = {"tool_point": "tool", "damping_ratio": percent / 100}
     result = chatter.simulate(example.varied(case, {"simulation.duration": "1.5 s"}, changes))
-    heard = result.judgement.chatter_frequency
+    heard = result.detection.chatter_frequency
     assert np.isnan(heard) != chatters
     if chatters:
         # the unreduced machine has this mode as well: no artefact of the static shapes

@@ -69,7 +69,7 @@ def _modes(model: MillingModel, here: Case) -> tuple[Mode, ...]:
 
 
 def _verdict(result: SimulationResult) -> str:
-    return "not judged" if result.judgement is None else result.judgement.verdict
+    return "not judged" if result.detection is None else result.detection.verdict
 
 
 def _measured(result: SimulationResult) -> dict[str, float]:

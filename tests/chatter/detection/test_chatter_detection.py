@@ -7,8 +7,8 @@ import pytest
 from scipy.linalg import expm
 
 from chatter.description.errors import InputError
-from chatter.detection.record import CutRecord
-from chatter.detection.verdict import judge
+from chatter.detection.chatter_detection import detect_chatter
+from chatter.detection.cut_record import CutRecord
 from tests.chatter.detection import made_up_signals as made
 
 TRUTH_TURNS = 400
@@ -102,11 +102,11 @@ def random_records(seed, count):
 def test_random_records():
     right = 0
     for stable, has_runout, record in random_records(7, 60):
-        judgement = judge(record)
-        assert not (stable and has_runout and not judgement.stable), judgement.reason
-        right += judgement.stable == stable
-        assert 0.0 <= judgement.confidence <= 1.0
-        assert math.isnan(judgement.chatter_frequency) == judgement.stable
+        detection = detect_chatter(record)
+        assert not (stable and has_runout and not detection.stable), detection.reason
+        right += detection.stable == stable
+        assert 0.0 <= detection.confidence <= 1.0
+        assert math.isnan(detection.chatter_frequency) == detection.stable
     assert right >= 58
 
 
@@ -120,11 +120,11 @@ def test_runout_of_a_feed_per_tooth_is_no_chatter(teeth, known):
     depth = 0.35 * made.limit_depth(cut)
     cut = cut._replace(runout=tuple(cut.feed * np.cos(0.4 - cut.tooth_angles)))
     assert repeats_with_turn(cut, depth)
-    judgement = judge(record_of(cut, depth, 40, rng, 0.02, known))
-    assert judgement.stable
-    assert judgement.bifurcation == "none"
-    assert np.ptp(judgement.once_a_tooth[-teeth:], axis=0).max() > 1e-6
-    assert judgement.metrics["off_harmonic_share"] < 0.01
+    detection = detect_chatter(record_of(cut, depth, 40, rng, 0.02, known))
+    assert detection.stable
+    assert detection.bifurcation == "none"
+    assert np.ptp(detection.once_per_tooth[-teeth:], axis=0).max() > 1e-6
+    assert detection.metrics["off_harmonic_share"] < 0.01
 
 
 def hopf_cut():
@@ -145,10 +145,10 @@ def test_hopf_frequency_is_the_strongest_line_of_a_long_run(runout):
     harmonic = frequency / (cut.speed / (2.0 * math.pi))
     spectrum[np.abs(harmonic - np.round(harmonic)) < 0.03] = 0.0
     expected = frequency[np.argmax(spectrum)]
-    judgement = judge(record_of(cut, depth, 40, np.random.default_rng(0), 0.02))
-    assert judgement.verdict == "chatter"
-    assert judgement.bifurcation == "hopf"
-    assert judgement.chatter_frequency == pytest.approx(expected, rel=3e-3)
+    detection = detect_chatter(record_of(cut, depth, 40, np.random.default_rng(0), 0.02))
+    assert detection.verdict == "chatter"
+    assert detection.bifurcation == "hopf"
+    assert detection.chatter_frequency == pytest.approx(expected, rel=3e-3)
 
 
 def flip_cut(lags):
@@ -164,9 +164,9 @@ def flip_cut(lags):
 @pytest.mark.parametrize("teeth", [1, 2, 3, 4])
 def test_flip_lies_at_an_odd_multiple_of_half_the_tooth_frequency(teeth):
     cut, depth = flip_cut(tuple(range(0, 720, 720 // teeth)))
-    judgement = judge(record_of(cut, depth, 60, np.random.default_rng(1), 0.01))
-    assert (judgement.verdict, judgement.bifurcation) == ("chatter", "flip")
-    halves = judgement.chatter_frequency / (0.5 * teeth * cut.speed / (2.0 * math.pi))
+    detection = detect_chatter(record_of(cut, depth, 60, np.random.default_rng(1), 0.01))
+    assert (detection.verdict, detection.bifurcation) == ("chatter", "flip")
+    halves = detection.chatter_frequency / (0.5 * teeth * cut.speed / (2.0 * math.pi))
     assert halves == pytest.approx(round(halves), abs=3e-3)
     assert round(halves) % 2 == 1
 
@@ -175,42 +175,42 @@ def test_growth_rate_is_that_of_the_multiplier():
     cut, _ = hopf_cut()
     depth = 0.8 * made.limit_depth(cut)
     expected = made.growth_a_turn(cut, depth, 200) * cut.speed / (2.0 * math.pi)
-    judgement = judge(record_of(cut, depth, 30, np.random.default_rng(2)))
-    assert judgement.stable
-    assert judgement.growth_rate == pytest.approx(expected, rel=0.15)
+    detection = detect_chatter(record_of(cut, depth, 30, np.random.default_rng(2)))
+    assert detection.stable
+    assert detection.growth_rate == pytest.approx(expected, rel=0.15)
 
 
 def test_forces_alone():
     cut, depth = hopf_cut()
     rng = np.random.default_rng(3)
-    assert not judge(record_of(cut, depth, 40, rng, 0.02, forces_alone=True)).stable
-    assert judge(record_of(cut, 0.4 * depth, 60, rng, 0.02, forces_alone=True)).stable
+    assert not detect_chatter(record_of(cut, depth, 40, rng, 0.02, forces_alone=True)).stable
+    assert detect_chatter(record_of(cut, 0.4 * depth, 60, rng, 0.02, forces_alone=True)).stable
 
 
 def test_speed_that_varies_is_no_chatter():
     cut, depth = hopf_cut()
     record = record_of(cut._replace(swing=1e-3), 0.4 * depth, 60, np.random.default_rng(4), 0.01)
-    assert judge(record).stable
+    assert detect_chatter(record).stable
 
 
-def test_samples_once_a_turn_lie_at_whole_turns():
+def test_sections_lie_at_whole_revolutions():
     time = np.linspace(0.0, 1.0, 4001)
     angle = 2.0 * math.pi * 20.0 * time + 1.0
     record = CutRecord(time, angle, np.column_stack([np.cos(angle), np.sin(angle)]), [0.0], 1e-4)
-    samples = judge(record).once_a_turn
+    samples = detect_chatter(record).once_per_revolution
     assert samples == pytest.approx(np.tile([1.0, 0.0], (20, 1)), abs=1e-6)
 
 
-def test_period_of_three_turns():
+def test_period_of_three_revolutions():
     time = np.linspace(0.0, 3.0, 9001)
     angle = 2.0 * math.pi * 20.0 * time
-    judgement = judge(
+    detection = detect_chatter(
         CutRecord(time, angle, np.cos(angle) + 0.5 * np.cos(7 * angle / 3), [0], 1e-4)
     )
-    assert (judgement.bifurcation, judgement.period, judgement.period_unit) == (
-        "period-n", 3, "turn",
+    assert (detection.bifurcation, detection.period, detection.period_unit) == (
+        "period-n", 3, "revolution",
     )  # fmt: skip
-    assert judgement.chatter_frequency == pytest.approx(20.0 * 7 / 3, rel=1e-4)
+    assert detection.chatter_frequency == pytest.approx(20.0 * 7 / 3, rel=1e-4)
 
 
 GOOD = {
@@ -223,7 +223,7 @@ GOOD = {
 
 
 def test_a_tool_at_rest_is_stable():
-    assert judge(CutRecord(**GOOD)).stable
+    assert detect_chatter(CutRecord(**GOOD)).stable
 
 
 @pytest.mark.parametrize(
@@ -232,8 +232,8 @@ def test_a_tool_at_rest_is_stable():
         ("time", np.linspace(0.0, 1.0, 2000), "samples"),
         ("time", np.linspace(0.0, 1.0, 2001) ** 2, "uniform"),
         ("spindle_angle", np.zeros(2001), "increase"),
-        ("spindle_angle", np.linspace(0.0, 10.0, 2001), "turns"),
-        ("spindle_angle", np.linspace(0.0, 1e4, 2001), "samples a turn"),
+        ("spindle_angle", np.linspace(0.0, 10.0, 2001), "revolutions"),
+        ("spindle_angle", np.linspace(0.0, 1e4, 2001), "samples per revolution"),
         ("displacements", np.full((2001, 2), np.nan), "finite"),
         ("displacements", np.zeros((2001, 4)), "columns"),
         ("displacements", None, "neither"),

@@ -156,7 +156,7 @@ def test_picture_names_its_axes(modes, changes, tmp_path):
         assert unit in labels
     title = figure.get_suptitle()
     assert "6000 rpm" in title
-    judged = result.judgement
+    judged = result.detection
     assert (judged.verdict if judged else "not judged") in title
 
 

@@ -55,7 +55,7 @@ def test_verdict_under_a_varying_speed(case):
     swing = {"cut.speed_variation": {"amplitude": 0.01, "frequency": "5 Hz"}}
     for depth, verdict in (("1 mm", "stable"), ("2.5 mm", "chatter")):
         varied = case.patch({"cut.axial_depth": depth, **swing})
-        found = chatter.simulate(varied).judgement
+        found = chatter.simulate(varied).detection
         assert found.verdict == verdict
         assert (found.growth_rate < 0.0) == (verdict == "stable")
 
@@ -64,9 +64,9 @@ def test_a_period_that_cannot_be_watched_is_not_judged(case):
     # 250 turns a second, and a period of 2000 seconds
     slow = {"cut.speed_variation": {"amplitude": 0.01, "frequency": "0.0005 Hz"}}
     found = chatter.simulate(case.patch({"cut.axial_depth": "1 mm", **slow}))
-    assert found.judgement is None
+    assert found.detection is None
     assert found.summary()["verdict"] == "not judged"
-    assert "5e+05 turns" in found.why_not_judged
+    assert "5e+05 turns" in found.why_no_verdict
 
 
 def test_the_cut_takes_hold_without_a_jerk():
@@ -207,7 +207,7 @@ def test_full_chatter_that_nearly_repeats_is_chatter_at_a_constant_speed(name):
     for depth, verdict in zip(depths, ("stable", "chatter"), strict=True):
         here = case.patch({"cut.axial_depth": depth})
         assert chatter.check(here).stable == (verdict == "stable")
-        assert chatter.simulate(here).judgement.verdict == verdict
+        assert chatter.simulate(here).detection.verdict == verdict
         radius = growth_of(here, modes_of(here)[0]).radius
         assert (radius < 1.0) == (verdict == "stable")
 

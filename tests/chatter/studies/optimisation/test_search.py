@@ -74,7 +74,7 @@ def test_the_best_cut_keeps_its_limits_and_its_margins(limited):
     for speed in place.spindle_speed * np.array([0.985, 0.99, 1.0, 1.01, 1.015]):
         assert stable(here, speed, place.axial_depth / 0.85 * 0.999)
     run = chatter.simulate(here)
-    assert run.judgement.verdict == "stable"
+    assert run.detection.verdict == "stable"
     assert run.power[run.settled].mean() < 1.5e3
     assert np.linalg.norm(run.displacement[run.settled], axis=1).max() < 1.03 * 40e-6
     assert abs(run.finish.walls[0].largest_location_error) < 1.03 * 8e-6

@@ -32,7 +32,7 @@ def steady(case):
 def test_steady_cut_is_that_of_the_simulation(changes):
     case = end_mill(changes)
     found, run = steady(case), chatter.simulate(case)
-    assert run.judgement.verdict == "stable"
+    assert run.detection.verdict == "stable"
     settled = run.settled
     deflection = np.linalg.norm(run.displacement[settled], axis=1).max()
     walls = [wall.largest_location_error for wall in run.finish.walls]

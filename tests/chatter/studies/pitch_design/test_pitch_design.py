@@ -96,13 +96,13 @@ def test_the_gain_is_that_of_another_method(designed):
         for speed in (4700.0, 5100.0, designed.speeds[lowest] / RPM):
             cut = {"cut.spindle_speed": speed * RPM, "cut.axial_depth": depth}
             run = chatter.simulate(case.patch(cut))
-            verdicts.setdefault(name, set()).add(run.judgement.verdict)
+            verdicts.setdefault(name, set()).add(run.detection.verdict)
     assert verdicts == {"before": {"chatter"}, "after": {"stable"}}
     deeper = {
         "cut.spindle_speed": float(designed.speeds[lowest]),
         "cut.axial_depth": 1.2 * designed.best.lowest_limit,
     }
-    assert chatter.simulate(designed.best_case.patch(deeper)).judgement.verdict == "chatter"
+    assert chatter.simulate(designed.best_case.patch(deeper)).detection.verdict == "chatter"
 
 
 def test_angles_in_tenths_make_a_turn():

@@ -1,4 +1,4 @@
-"""The line of a chatter motion: how far it turns a period, and its frequency in the spectrum."""
+"""Chatter frequency: argument of the multiplier of a motion, and its line in the spectrum."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from scipy.optimize import minimize_scalar
 
 from chatter.detection.deviations import directions_of
 
-#: directions of the motion from period to period that are looked at
+#: directions of the motion from period to period that are fitted
 _MOST_DIRECTIONS = 12
-#: zero padding of the first look, and points of the second around its peak
+#: zero padding of the spectrum in which the rotation is first sought
 _PADDING = 8
 #: combination of columns, against the strongest, that is too weak to be fitted
 _WEAK_COLUMN = 0.05
@@ -65,12 +65,12 @@ def strongest_line(
         rotation = _rotation(scores, growth)
     base = _columns(rotation, growth, count)
     # at a doubled period the sine vanishes and must not be fitted
-    parts, *_ = np.linalg.lstsq(base, scores, rcond=_WEAK_COLUMN)
-    share = 1.0 - float(np.sum((scores - base @ parts) ** 2)) / total
-    shape = ((parts[1] - 1j * parts[2]) @ right[:kept]).reshape(points, channels)
+    coefficients, *_ = np.linalg.lstsq(base, scores, rcond=_WEAK_COLUMN)
+    share = 1.0 - float(np.sum((scores - base @ coefficients) ** 2)) / total
+    shape = ((coefficients[1] - 1j * coefficients[2]) @ right[:kept]).reshape(points, channels)
     # a multiplier rotates within the period as well: without it whole cycles are left
-    place = np.arange(points) / points
-    lines = np.fft.fft(shape * np.exp(-1j * rotation * place)[:, None], axis=0) / points
+    share_of_period = np.arange(points) / points
+    lines = np.fft.fft(shape * np.exp(-1j * rotation * share_of_period)[:, None], axis=0) / points
     strength = np.linalg.norm(lines, axis=1)
     strongest = int(np.argmax(strength))
     cycles = abs(np.fft.fftfreq(points, 1.0 / points)[strongest] + rotation / (2.0 * math.pi))
@@ -78,10 +78,11 @@ def strongest_line(
 
 
 def _columns(rotation: float, growth: float, count: int) -> NDArray[np.float64]:
-    place = np.arange(count) - 0.5 * count
-    swell = np.exp(growth * (place - place[-1]))
+    period = np.arange(count) - 0.5 * count
+    swell = np.exp(growth * (period - period[-1]))
     return np.stack(
-        [np.ones(count), swell * np.cos(rotation * place), swell * np.sin(rotation * place)], axis=1
+        [np.ones(count), swell * np.cos(rotation * period), swell * np.sin(rotation * period)],
+        axis=1,
     )
 
 
@@ -94,15 +95,15 @@ def _rotation(scores: NDArray[np.float64], growth: float) -> float:
     step = 2.0 * math.pi / padded
     start = step * int(np.argmax(power))
 
-    def left_over(rotation: float) -> float:
+    def negative_explained(rotation: float) -> float:
         base, _ = np.linalg.qr(_columns(rotation, growth, count))
         return -float(np.sum((base.T @ scores) ** 2))
 
     reach = 0.6 * _PADDING * step
     grid = np.linspace(max(start - reach, 0.5 * step), min(start + reach, math.pi), 4 * _PADDING)
-    best = int(np.argmin([left_over(angle) for angle in grid]))
+    best = int(np.argmin([negative_explained(angle) for angle in grid]))
     low, high = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
     found = minimize_scalar(
-        left_over, bounds=(low, high), method="bounded", options={"xatol": 1e-4 / count}
+        negative_explained, bounds=(low, high), method="bounded", options={"xatol": 1e-4 / count}
     )
-    return float(found.x if found.fun <= left_over(grid[best]) else grid[best])
+    return float(found.x if found.fun <= negative_explained(grid[best]) else grid[best])

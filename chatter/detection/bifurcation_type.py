@@ -1,4 +1,4 @@
-"""Kind of a sustained motion: quasi-periodic, of double period, of a period of n."""
+"""Bifurcation of a sustained motion: quasi-periodic (Hopf), of double (flip) or n-fold period."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.detection.chatter_line import ChatterLine
+from chatter.detection.chatter_frequency import ChatterLine
 from chatter.detection.deviations import directions_of
 
 #: periods of an orbit that are looked for
@@ -22,7 +22,7 @@ _ONE_SHAPE = 0.97
 _STEADY = 0.3
 
 
-def kind_of_orbit(
+def bifurcation_of(
     values: NDArray[np.float64], line: ChatterLine, growth: float, noise: float
 ) -> tuple[str, int]:
     """Name the bifurcation of a motion that does not repeat from period to period.

@@ -1,4 +1,4 @@
-"""A measured or simulated record of a cut, as it is given to be judged."""
+"""Measured or simulated signals of a cut, as chatter detection takes them."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from chatter.description.errors import InputError
 
-_TURN = 2.0 * math.pi
-#: fewest turns of the spindle that can be judged
-FEWEST_TURNS = 6
-#: fewest samples a turn and a tooth
-_FEWEST_SAMPLES_A_TOOTH = 6
+_REVOLUTION = 2.0 * math.pi
+#: fewest revolutions of the spindle that suffice
+FEWEST_REVOLUTIONS = 6
+#: fewest samples per tooth passing
+_FEWEST_SAMPLES_PER_TOOTH = 6
 #: angles between teeth that differ by less count as equal, rad
 _EQUAL_PITCH = 1e-4
 #: runout below this share of the feed per tooth counts as none
@@ -30,15 +30,15 @@ class CutRecord:
     time : (n,) array of float
         s, uniform step.
     spindle_angle : (n,) array of float
-        rad, increasing; the first tooth is at zero angle at whole turns.
+        rad, increasing; the first tooth is at zero angle at whole revolutions.
     displacements : (n, k) array of float or None
         m, of the tool relative to the workpiece, k from 1 to 3; None if forces alone are known.
     tooth_angles : (N,) array of float
-        rad, places of the teeth on the tool, in the order in which they cut.
+        rad, angles of the teeth on the tool, in the order in which they cut.
     feed_per_tooth : float
         m.
     forces : (n, 3) array of float or None
-        N. Judged only where there are no displacements.
+        N. Used only where there are no displacements.
     runout : (N,) array of float or None
         m, radial offset of each tooth; None if it is not known. Zeros declare the tool true.
     negligible : float
@@ -74,7 +74,7 @@ class CutRecord:
 
     @property
     def signals(self) -> NDArray[np.float64]:
-        """What is judged, (n, k): displacements in m, or forces in N where there are none."""
+        """Signals (n, k) of the detection: displacements, m, or forces, N, without them."""
         signals = self.forces if self.displacements is None else self.displacements
         assert signals is not None
         return signals
@@ -85,22 +85,25 @@ class CutRecord:
         return len(self.tooth_angles)
 
     @property
-    def turns(self) -> float:
-        """Turns of the spindle in the record."""
-        return float(self.spindle_angle[-1] - self.spindle_angle[0]) / _TURN
+    def revolutions(self) -> float:
+        """Revolutions of the spindle in the record."""
+        return float(self.spindle_angle[-1] - self.spindle_angle[0]) / _REVOLUTION
 
     @property
-    def turn_period(self) -> float:
-        """Mean time of a turn of the spindle, s."""
-        return float(self.time[-1] - self.time[0]) / self.turns
+    def revolution_period(self) -> float:
+        """Mean time of a revolution of the spindle, s."""
+        return float(self.time[-1] - self.time[0]) / self.revolutions
 
     @property
     def has_equal_pitch(self) -> bool:
         """Whether the teeth are equally spaced."""
-        places = np.sort(np.mod(self.tooth_angles - self.tooth_angles[0] + 1e-9, _TURN))
+        angles = np.sort(np.mod(self.tooth_angles - self.tooth_angles[0] + 1e-9, _REVOLUTION))
         return bool(
             np.allclose(
-                places, np.arange(self.teeth) * _TURN / self.teeth, rtol=0.0, atol=_EQUAL_PITCH
+                angles,
+                np.arange(self.teeth) * _REVOLUTION / self.teeth,
+                rtol=0.0,
+                atol=_EQUAL_PITCH,
             )
         )
 
@@ -168,14 +171,14 @@ def _check_motion(record: CutRecord) -> None:
         )
     if not np.all(np.diff(record.spindle_angle) > 0.0):
         raise InputError("cut record: spindle_angle: must increase from sample to sample")
-    if record.turns < FEWEST_TURNS:
+    if record.revolutions < FEWEST_REVOLUTIONS:
         raise InputError(
-            f"cut record: {record.turns:.1f} turns of the spindle; at least {FEWEST_TURNS} are "
-            "needed"
+            f"cut record: {record.revolutions:.1f} revolutions of the spindle; at least "
+            f"{FEWEST_REVOLUTIONS} are needed"
         )
-    fewest = _FEWEST_SAMPLES_A_TOOTH * record.teeth
-    if len(record.time) < fewest * record.turns:
+    fewest = _FEWEST_SAMPLES_PER_TOOTH * record.teeth
+    if len(record.time) < fewest * record.revolutions:
         raise InputError(
-            f"cut record: {len(record.time) / record.turns:.1f} samples a turn; at least {fewest} "
-            f"are needed for {record.teeth} teeth"
+            f"cut record: {len(record.time) / record.revolutions:.1f} samples per revolution; at "
+            f"least {fewest} are needed for {record.teeth} teeth"
         )
