@@ -1,235 +1,170 @@
-"""FRFs from tables: CSV, tab or space separated, with names and units in the heading."""
+"""Tables in text: comma, semicolon, tab or space separated, names and units in the heading."""
 
 from __future__ import annotations
 
+import csv
 import re
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
+from chatter.io.files import read_lines
+from chatter.io.formats.format import Format
+from chatter.io.formats.frf_columns import frfs_of_table
+from chatter.io.table import Column, Table, is_number
+from dynamics.frf.container import Frf, MeasurementError
 
-from chatter.io.formats.units import channel_unit, frf_unit
-from chatter.io.text_files import Column, Table, read_table
-from dynamics.frf.container import Frf, MeasurementError, Point, Quantity
-
-T = TypeVar("T")
-
-#: words in a heading -> what the column holds
-_PARTS = {
-    "frequency": ("frequency", "freq", "f"),
-    "real": ("real", "re"),
-    "imaginary": ("imag", "imaginary", "im"),
-    "magnitude": ("magnitude", "mag", "amplitude", "amp", "abs", "modulus"),
-    "phase": ("phase", "angle", "arg"),
-    "coherence": ("coherence", "coh"),
-}
-_PART_OF_WORD = {word: part for part, words in _PARTS.items() for word in words}
-_DEGREES = {"deg", "°", "degree", "degrees"}
-_RADIANS = {"rad", "radian", "radians"}
-_EXAMPLE = "frequency [Hz],real [m/N],imag [m/N]"
+_COMMENT = ("#", "%", "//", "!")
+_DECIMAL_COMMA = re.compile(r"[+-]?\d+(,\d+)?([eE][+-]?\d+)?")
 
 
-@dataclass
-class _Parts:
-    """Columns that make one FRF, by what they hold, with index into the table."""
+def read_table(path: Path) -> Table:
+    """Read a table with a heading line.
 
-    label: str
-    columns: dict[str, tuple[int, Column]] = field(default_factory=dict)
-
-
-def read_csv(path: Path) -> list[Frf]:
-    """Read the FRFs of a table whose heading names each column and its unit.
-
-    The first column is the frequency; each FRF is a pair real and imaginary or magnitude and phase
-    (deg or rad), with an optional coherence. A label in the name (``"real xy [m/N]"``, response
-    first, then reference) tells several FRFs apart and gives their directions.
+    Separators may be comma, semicolon, tab or spaces; where it is not the comma, a decimal comma
+    is understood. Lines that begin with ``#``, ``%``, ``!`` or ``//`` are comments; the last of
+    them may be the heading. Cells may be words.
 
     Parameters
     ----------
     path : Path
-        File such as ``frequency [Hz],real [m/N],imag [m/N]`` followed by rows of numbers.
+        Text file.
 
     Returns
     -------
-    list of Frf
-        In SI units, in the order of the file.
+    Table
 
     Raises
     ------
     MeasurementError
-        If the file is not such a table; the message names file, line or column, and the reason.
+        If the file is not text, has no rows of numbers, no heading, or a row with too few or too
+        many cells; the message names file and line.
     """
-    table = read_table(path)
-    _require_headings(path, table)
-    frequency = _frequency_axis(path, table)
-    groups, coherences = _grouped(path, table.columns)
-    frfs = [_frf(path, table, frequency, group) for group in groups.values()]
-    return [
-        _with_coherence(path, table, frf, group.label, coherences)
-        for frf, group in zip(frfs, groups.values(), strict=True)
-    ]
-
-
-def _require_headings(path: Path, table: Table) -> None:
-    if not table.columns or not any(column.unit for column in table.columns):
+    lines = read_lines(path)
+    first = _first_row(lines)
+    if first is None:
+        raise MeasurementError(f"{path}: no line of numbers; the file is text only")
+    separator = _separator(lines[first])
+    headings, begin = _headings(lines[:first], separator, _cells(lines[first], separator))
+    if not headings:
         raise MeasurementError(
-            f"{path}: no heading with names and units above the numbers; "
-            f"the first line must be like: {_EXAMPLE}"
+            f"{path}: no heading with names and units above the numbers; the first line must be "
+            'like "frequency [Hz],real [m/N],imag [m/N]" or "time [s],force [N]"'
         )
-    if table.values.shape[0] < 2:
-        raise MeasurementError(f"{path}: {table.values.shape[0]} row of numbers; at least 2 needed")
-
-
-def _frequency_axis(path: Path, table: Table) -> NDArray[np.float64]:
-    column = table.columns[0]
-    if not column.unit:
-        raise MeasurementError(f"{path}: column {column.name!r} has no unit; write {_EXAMPLE}")
-    channel, factor = _named(path, column, channel_unit)
-    if channel == "time":
-        raise MeasurementError(
-            f"{path}: holds a time record ({column.name} [{column.unit}]), not an FRF; "
-            "an FRF is estimated from a folder of hammer records"
-        )
-    if channel != "frequency":
-        raise MeasurementError(
-            f"{path}: the first column must be a frequency in Hz, not {column.name} [{column.unit}]"
-        )
-    frequency = table.values[:, 0] * factor
-    falling = np.flatnonzero(np.diff(frequency) <= 0.0)
-    if falling.size:
-        row = int(falling[0])
-        raise MeasurementError(
-            f"{path}: line {table.line_numbers[row + 1]}: frequency {frequency[row + 1]:g} Hz "
-            f"after {frequency[row]:g} Hz; frequencies must rise"
-        )
-    return frequency
-
-
-def _named(
-    path: Path, column: Column, convert: Callable[[str], tuple[T, float]]
-) -> tuple[T, float]:
-    """Convert the unit of a column, naming file and column where it fails."""
-    try:
-        return convert(column.unit)
-    except MeasurementError as error:
-        raise MeasurementError(f"{path}: column {column.name!r}: {error}") from None
-
-
-def _part_and_label(path: Path, column: Column) -> tuple[str, str]:
-    words = re.findall(r"[A-Za-z0-9]+", column.name)
-    parts = [_PART_OF_WORD[word.lower()] for word in words if word.lower() in _PART_OF_WORD]
-    if len(parts) != 1 or parts[0] == "frequency":
-        raise MeasurementError(
-            f"{path}: column {column.name!r} is neither real, imag, magnitude, phase nor "
-            f"coherence; the heading must be like: {_EXAMPLE}"
-        )
-    label = " ".join(word.lower() for word in words if word.lower() not in _PART_OF_WORD)
-    return parts[0], label
-
-
-def _grouped(path: Path, columns: tuple[Column, ...]) -> tuple[dict[str, _Parts], dict[str, int]]:
-    groups: dict[str, _Parts] = {}
-    coherences: dict[str, int] = {}
-    for index, column in enumerate(columns[1:], start=1):
-        part, label = _part_and_label(path, column)
-        if part == "coherence":
-            coherences[label] = index
+    rows, numbers = [], []
+    for index in range(begin, len(lines)):
+        if not lines[index].strip() or _is_comment(lines[index]):
             continue
-        group = groups.setdefault(label, _Parts(label))
-        if part in group.columns:
+        row = _cells(lines[index], separator)
+        if len(row) == len(headings) + 1 and not row[-1].strip():
+            row.pop()
+        if len(row) != len(headings):
+            if index < first:
+                continue
             raise MeasurementError(
-                f"{path}: two columns {column.name!r}; tell FRFs apart by a label, "
-                "such as 'real xx [m/N]' and 'real yy [m/N]'"
+                f"{path}: line {index + 1} has {len(row)} columns where the heading has "
+                f"{len(headings)}: {lines[index].strip()[:60]!r}"
             )
-        group.columns[part] = (index, column)
-    if not groups:
-        raise MeasurementError(f"{path}: no response column; the heading must be like: {_EXAMPLE}")
-    return groups, coherences
+        rows.append(row)
+        numbers.append(index + 1)
+    columns = zip(headings, zip(*rows, strict=True), strict=True)
+    return Table(path, tuple(Column(heading, cells) for heading, cells in columns), numbers)
 
 
-def _frf(path: Path, table: Table, frequency: NDArray[np.float64], group: _Parts) -> Frf:
-    if set(group.columns) == {"real", "imaginary"}:
-        values, quantity = _cartesian(path, table, group)
-    elif set(group.columns) == {"magnitude", "phase"}:
-        values, quantity = _polar(path, table, group)
-    else:
-        names = ", ".join(repr(column.name) for _, column in group.columns.values())
-        raise MeasurementError(
-            f"{path}: {names} make no FRF; real and imag, or magnitude and phase, are needed"
-        )
-    response, reference = _points(group.label)
-    source = f"{path}: {group.label}" if group.label else str(path)
-    return Frf(frequency, values, quantity, response, reference, source=source)
+def _read_frfs(path: Path) -> list[Frf]:
+    return frfs_of_table(read_table(path))
 
 
-def _scaled(path: Path, column: Column) -> tuple[Quantity, float]:
-    if column.unit.lower().startswith("db"):
-        raise MeasurementError(
-            f"{path}: column {column.name!r} is in {column.unit}; decibels are not read, "
-            "write the linear magnitude, such as [m/N]"
-        )
-    return _named(path, column, frf_unit)
+def _is_comment(line: str) -> bool:
+    return line.lstrip().startswith(_COMMENT)
 
 
-def _cartesian(path: Path, table: Table, group: _Parts) -> tuple[NDArray[np.complex128], Quantity]:
-    (real_index, real), (imaginary_index, imaginary) = (
-        group.columns["real"],
-        group.columns["imaginary"],
-    )
-    real_unit, imaginary_unit = real.unit or imaginary.unit, imaginary.unit or real.unit
-    quantity, real_factor = _scaled(path, Column(real.name, real_unit))
-    other, imaginary_factor = _scaled(path, Column(imaginary.name, imaginary_unit))
-    if other != quantity:
-        raise MeasurementError(
-            f"{path}: {real.name!r} in {real_unit} and {imaginary.name!r} in {imaginary_unit} "
-            "are different quantities"
-        )
-    values = (
-        table.values[:, real_index] * real_factor
-        + 1j * table.values[:, imaginary_index] * imaginary_factor
-    )
-    return values, quantity
+def _separator(line: str) -> str | None:
+    """Separator of a line of numbers; None for white space."""
+    words = line.split()
+    if len(words) > 1 and all(_DECIMAL_COMMA.fullmatch(word) for word in words):
+        return None
+    return next((one for one in (";", "\t", ",") if one in line.strip()), None)
 
 
-def _polar(path: Path, table: Table, group: _Parts) -> tuple[NDArray[np.complex128], Quantity]:
-    (magnitude_index, magnitude), (phase_index, phase) = (
-        group.columns["magnitude"],
-        group.columns["phase"],
-    )
-    quantity, factor = _scaled(path, magnitude)
-    unit = phase.unit.lower()
-    if unit not in _DEGREES | _RADIANS:
-        raise MeasurementError(
-            f"{path}: column {phase.name!r} has unit {phase.unit!r}; allowed are deg and rad"
-        )
-    angle = table.values[:, phase_index]
-    angle = np.deg2rad(angle) if unit in _DEGREES else angle
-    return table.values[:, magnitude_index] * factor * np.exp(1j * angle), quantity
+def _cells(line: str, separator: str | None) -> list[str]:
+    """Cells of a line of numbers, with decimal points."""
+    if separator != ",":
+        line = line.replace(",", ".")
+    if separator is None:
+        return line.split()
+    if '"' in line:
+        return next(csv.reader([line], delimiter=separator, skipinitialspace=True))
+    return line.split(separator)
 
 
-def _points(label: str) -> tuple[Point, Point]:
-    """Directions from a label: ``xy`` or ``hxy`` is response x, reference y; ``x`` is both."""
-    for word in label.split():
-        found = re.fullmatch(r"(?:h|g|frf)?([xyz])([xyz])?", word)
-        if found:
-            response = found.group(1)
-            return Point(direction=response), Point(direction=found.group(2) or response)
-    return Point(), Point()
+def _first_row(lines: Sequence[str]) -> int | None:
+    """First line that begins with a number, else the first with a number in it."""
+    with_numbers = None
+    for index, line in enumerate(lines):
+        if not line.strip() or _is_comment(line):
+            continue
+        are_numbers = [is_number(cell) for cell in _cells(line, _separator(line))]
+        if are_numbers[0]:
+            return index
+        if with_numbers is None and any(are_numbers):
+            with_numbers = index
+    return with_numbers
 
 
-def _with_coherence(
-    path: Path, table: Table, frf: Frf, label: str, coherences: dict[str, int]
-) -> Frf:
-    if label not in coherences:
-        return frf
-    index = coherences[label]
-    coherence = table.values[:, index] * (0.01 if table.columns[index].unit == "%" else 1.0)
-    if np.any((coherence < 0.0) | (coherence > 1.0 + 1e-6)):
-        row = int(np.argmax((coherence < 0.0) | (coherence > 1.0 + 1e-6)))
-        raise MeasurementError(
-            f"{path}: line {table.line_numbers[row]}: coherence {coherence[row]:g} is outside 0..1"
-        )
-    return replace(frf, coherence=coherence)
+def _headings(
+    lines: Sequence[str], separator: str | None, row: Sequence[str]
+) -> tuple[list[str], int]:
+    """Headings among the lines above the first row, and the line on which rows may begin."""
+    counts = (len(row), len(row) - (not row[-1].strip()))
+    for are_comments in (False, True):
+        found = [
+            (cells, index)
+            for cells, index in _candidates(lines, separator, len(row))
+            if len(cells) in counts and (are_comments or not _is_comment(lines[index]))
+        ]
+        if not found:
+            continue
+        headings, index = found[-1]
+        if len(found) > 1 and not any("[" in cell or "(" in cell for cell in headings):
+            # names on one line, units on the next
+            pairs = zip(found[-2][0], headings, strict=True)
+            headings = [_with_unit(name, unit) for name, unit in pairs]
+        return headings, index + 1
+    return [], len(lines)
+
+
+def _with_unit(name: str, unit: str) -> str:
+    unit = unit.strip('" ') if "/" in unit else unit.strip('" ()[]')
+    return f"{name.strip(chr(34) + ' ')} [{unit}]"
+
+
+def _candidates(
+    lines: Sequence[str], separator: str | None, count: int
+) -> Iterator[tuple[list[str], int]]:
+    """Cells and number of every line that may be a heading; the unit "1" is one."""
+    for index, line in enumerate(lines):
+        if line.strip():
+            cells = _heading_cells(line, separator, count)
+            if cells and not any(is_number(cell) and cell != "1" for cell in cells):
+                yield cells, index
+
+
+def _heading_cells(line: str, separator: str | None, count: int) -> list[str]:
+    line = line.strip().lstrip("#%!/").strip()
+    if separator is None or separator not in line:
+        separator = _separator(re.sub(r"\[[^\]]*\]", "", line))
+    if separator is not None:
+        return [cell.strip().strip('"') for cell in line.rstrip(separator).split(separator)]
+    cells = re.findall(r"[^\[\]]+\[[^\]]*\]|\S+", line) if "[" in line else line.split()
+    return [cell.strip() for cell in cells] if len(cells) == count else []
+
+
+CSV = Format(
+    name="csv",
+    label="table in text",
+    help="name and unit of every column in the heading; comma, semicolon, tab or spaces between "
+    "columns; with any of the last three also decimal commas",
+    extensions=(".csv", ".txt", ".tsv", ".dat", ".asc"),
+    read_frfs=_read_frfs,
+    read_signals=read_table,
+)

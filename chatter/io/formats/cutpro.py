@@ -7,8 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
+from chatter.io.files import read_lines
+from chatter.io.formats.format import Format
 from chatter.io.formats.units import channel_unit, frf_unit
-from chatter.io.text_files import is_number, read_lines
+from chatter.io.table import is_number
 from dynamics.frf.container import Frf, MeasurementError, Quantity
 
 _EXAMPLE = "10.0  1.2e-8  -3.4e-10  Freq  Hz  Real  m/N  Imag"
@@ -112,3 +114,12 @@ def _frequency_factor(words: list[str]) -> float:
         if channel == "frequency":
             return factor
     return 1.0
+
+
+CUTPRO = Format(
+    name="cutpro",
+    label="CutPro",
+    help="lines of frequency, real and imaginary part; words behind them name the units",
+    extensions=(".frf",),
+    read_frfs=read_cutpro,
+)

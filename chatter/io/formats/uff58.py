@@ -1,17 +1,33 @@
-"""FRFs from universal files: dataset 58 (text) and 58b (binary), function at nodal DOF."""
+"""FRFs and time records of universal files: dataset 58 (text) and 58b (binary).
+
+The package pyuff (2.5.8) is no substitute. Of a dataset 58b with eight-byte values at uneven
+abscissae, which the standard stores in four bytes each, it returns wrong numbers without a word; of
+a file that is cut short or has a stray line of -1 it returns nothing; exponents written with D, and
+datasets of another kind that it cannot parse, end the reading of the whole file. The tests write
+files with it.
+"""
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.io.formats.format import Format
 from chatter.io.formats.units import Channel, channel_unit, frf_unit
-from chatter.io.formats.universal import Dataset, FileUnits, file_units, read_datasets
-from dynamics.frf.container import Frf, MeasurementError, Point, Quantity
+from chatter.io.formats.universal import (
+    Dataset,
+    FileUnits,
+    file_units,
+    looks_universal,
+    read_datasets,
+)
+from chatter.io.table import Column, Table
+from dynamics.frf.container import QUANTITY_OF_MOTION, Frf, MeasurementError, Point, Quantity
 
 #: names of function types met in measured files (record 6, field 1)
 _FUNCTION_TYPES = {
@@ -26,6 +42,8 @@ _FUNCTION_TYPES = {
     12: "spectrum",
 }
 _FREQUENCY_RESPONSE, _COHERENCE = 4, 6
+#: general functions are taken for time records too, where their abscissa is time
+_TIME_RECORD = (0, 1)
 #: specific data types (records 8 to 11, field 1)
 _CONTENT: dict[int, Channel] = {
     8: "displacement",
@@ -35,11 +53,6 @@ _CONTENT: dict[int, Channel] = {
     13: "force",
     17: "time",
     18: "frequency",
-}
-_QUANTITY: dict[Channel, Quantity] = {
-    "displacement": "receptance",
-    "velocity": "mobility",
-    "acceleration": "accelerance",
 }
 _DIRECTIONS = {0: "", 1: "x", 2: "y", 3: "z"}
 #: numbers a value takes by ordinate data type (record 7, field 1), and bytes a number
@@ -73,7 +86,40 @@ class Heading:
     denominator: Axis
 
 
-def read_uff58(path: Path) -> list[Frf]:
+@dataclass(frozen=True)
+class _Function:
+    """One dataset 58 with the units that hold for it."""
+
+    dataset: Dataset
+    heading: Heading
+    first_byte: int
+    units: FileUnits
+    where: str
+
+    def values(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+        """Abscissa and ordinate, as stored."""
+        return _values(self.dataset, self.heading, self.first_byte, self.where)
+
+    @property
+    def title(self) -> str:
+        """Title; empty where there is none."""
+        return "" if self.heading.title.upper() == "NONE" else self.heading.title
+
+
+def _functions(path: Path, others: Counter[str]) -> Iterator[_Function]:
+    """Functions of a file in order; other datasets are counted, save 164 (units)."""
+    units = FileUnits()
+    for dataset in read_datasets(path):
+        if dataset.number == 164:
+            units = file_units(dataset, path)
+        if dataset.number != 58:
+            others[f"dataset {dataset.number}"] += 1
+            continue
+        where = f"{path}: dataset {dataset.order}"
+        yield _Function(dataset, *_heading(dataset, where), units, where)
+
+
+def read_frfs(path: Path) -> list[Frf]:
     """Read every FRF between translations of a universal file.
 
     Datasets other than 58 are passed over, save 164 (units). A coherence function between the same
@@ -99,31 +145,56 @@ def read_uff58(path: Path) -> list[Frf]:
     -----
     Layout: SDRC universal dataset 58, "Function at Nodal DOF", and its binary form 58b by UC-SDRL.
     """
-    units = FileUnits()
     frfs: list[Frf] = []
     coherences: list[tuple[Heading, NDArray[np.float64]]] = []
     held: Counter[str] = Counter()
-    for dataset in read_datasets(path):
-        if dataset.number == 164:
-            units = file_units(dataset, path)
-        if dataset.number != 58:
-            held[f"dataset {dataset.number}"] += 1
-            continue
-        where = f"{path}: dataset {dataset.order}"
-        heading, first_byte = read_heading(dataset, where)
+    for function in _functions(path, held):
+        heading = function.heading
         held[_described(heading)] += 1
         if heading.function_type == _FREQUENCY_RESPONSE and _is_translation(heading):
-            abscissa, values = read_values(dataset, heading, first_byte, where)
-            frfs.append(_frf(heading, abscissa, values, units, where))
+            frfs.append(_frf(function))
         elif heading.function_type == _COHERENCE:
-            _, values = read_values(dataset, heading, first_byte, where)
-            coherences.append((heading, values.real))
+            coherences.append((heading, function.values()[1].real))
     if not frfs:
-        content = ", ".join(f"{count} x {name}" for name, count in held.items()) or "no dataset"
         raise MeasurementError(
-            f"{path}: holds no frequency response function between translations; it holds {content}"
+            f"{path}: holds no frequency response function between translations; it holds "
+            + _counted(held)
         )
     return [_with_coherence(frf, coherences) for frf in frfs]
+
+
+def read_time_records(path: Path) -> Table:
+    """Read every time record of a universal file: a column of time, then one a record.
+
+    Raises
+    ------
+    MeasurementError
+        If the file is cut short, malformed, or holds no time record, or records differ in time.
+    """
+    columns: list[Column] = []
+    held: Counter[str] = Counter()
+    for function in _functions(path, held):
+        heading, where = function.heading, function.where
+        abscissa, factor = _content(heading.abscissa, function.units, where)
+        if heading.function_type not in _TIME_RECORD or abscissa not in (None, "time"):
+            held[_described(heading)] += 1
+            continue
+        time, values = function.values()
+        if not columns:
+            columns.append(Column("time [s]", time * factor))
+        first = columns[0].cells
+        if time.size != first.size or not np.allclose(time * factor, first, rtol=1e-6, atol=1e-9):
+            raise MeasurementError(f"{where}: has other times than the first record")
+        content, unit = _content(heading.numerator, function.units, where)
+        name = function.title or f"record {function.dataset.order}"
+        columns.append(Column(name, values.real * unit, content, _point(heading.response)))
+    if not columns:
+        raise MeasurementError(f"{path}: holds no time record; it holds {_counted(held)}")
+    return Table(path, tuple(columns))
+
+
+def _counted(held: Counter[str]) -> str:
+    return ", ".join(f"{count} x {name}" for name, count in held.items()) or "no dataset"
 
 
 def _described(heading: Heading) -> str:
@@ -135,7 +206,7 @@ def _is_translation(heading: Heading) -> bool:
     return max(abs(heading.response[1]), abs(heading.reference[1])) <= 3
 
 
-def read_heading(dataset: Dataset, where: str) -> tuple[Heading, int]:
+def _heading(dataset: Dataset, where: str) -> tuple[Heading, int]:
     """Parse the eleven text records; also return where in the body the numbers begin."""
     end = 0
     for _ in range(_HEADING_LINES):
@@ -179,7 +250,7 @@ def _axis(line: str) -> Axis:
     return Axis(code=int(line[0:10]), unit="" if unit.upper() == "NONE" else unit)
 
 
-def read_values(
+def _values(
     dataset: Dataset, heading: Heading, first_byte: int, where: str
 ) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
     """Abscissa and ordinate of a function, as stored."""
@@ -246,29 +317,24 @@ def _binary_table(
     )
 
 
-def _frf(
-    heading: Heading,
-    abscissa: NDArray[np.float64],
-    values: NDArray[np.complex128],
-    units: FileUnits,
-    where: str,
-) -> Frf:
+def _frf(function: _Function) -> Frf:
+    heading, units, where = function.heading, function.units, function.where
+    abscissa, values = function.values()
     if heading.ordinate_type in (2, 4):
         raise MeasurementError(
             f"{where}: the frequency response is stored as real numbers; its phase is missing"
         )
     quantity, factor = _quantity_and_factor(heading, units, where)
-    content, frequency_factor = axis_content(heading.abscissa, units, where)
+    content, frequency_factor = _content(heading.abscissa, units, where)
     if content not in (None, "frequency"):
         raise MeasurementError(f"{where}: the abscissa is a {content}, not a frequency")
-    name = "" if heading.title.upper() == "NONE" else f" ({heading.title})"
     return Frf(
         frequency=abscissa * frequency_factor,
         values=values * factor,
         quantity=quantity,
-        response=point_of(heading.response),
-        reference=point_of(heading.reference),
-        source=f"{where}{name}",
+        response=_point(heading.response),
+        reference=_point(heading.reference),
+        source=f"{where} ({function.title})" if function.title else where,
     )
 
 
@@ -279,18 +345,18 @@ def _quantity_and_factor(heading: Heading, units: FileUnits, where: str) -> tupl
             return frf_unit(heading.numerator.unit)  # the label holds the whole ratio
         except MeasurementError:
             pass
-    response, response_factor = axis_content(heading.numerator, units, where)
-    force, force_factor = axis_content(heading.denominator, units, where)
-    if response not in _QUANTITY or force != "force":
+    response, response_factor = _content(heading.numerator, units, where)
+    force, force_factor = _content(heading.denominator, units, where)
+    if response not in QUANTITY_OF_MOTION or force != "force":
         raise MeasurementError(
             f"{where}: neither unit labels nor data types ({heading.numerator.code} over "
             f"{heading.denominator.code}) say that it is a displacement (8), velocity (11) or "
             "acceleration (12) per force (13)"
         )
-    return _QUANTITY[response], response_factor / force_factor
+    return QUANTITY_OF_MOTION[response], response_factor / force_factor
 
 
-def axis_content(axis: Axis, units: FileUnits, where: str) -> tuple[Channel | None, float]:
+def _content(axis: Axis, units: FileUnits, where: str) -> tuple[Channel | None, float]:
     """What an axis holds and its factor to SI; None where nothing tells."""
     by_code = _CONTENT.get(axis.code)
     if axis.unit:
@@ -305,12 +371,12 @@ def axis_content(axis: Axis, units: FileUnits, where: str) -> tuple[Channel | No
         return by_label, factor
     if by_code == "force":
         return by_code, 1.0 / units.force
-    if by_code in _QUANTITY:
+    if by_code in QUANTITY_OF_MOTION:
         return by_code, 1.0 / units.length
     return by_code, 1.0
 
 
-def point_of(node_and_direction: tuple[int, int]) -> Point:
+def _point(node_and_direction: tuple[int, int]) -> Point:
     """Point of a node number and a direction code of a dataset 58."""
     node, code = node_and_direction
     return Point(
@@ -322,7 +388,19 @@ def point_of(node_and_direction: tuple[int, int]) -> Point:
 
 def _with_coherence(frf: Frf, coherences: list[tuple[Heading, NDArray[np.float64]]]) -> Frf:
     for heading, values in coherences:
-        points = (point_of(heading.response), point_of(heading.reference))
+        points = (_point(heading.response), _point(heading.reference))
         if points == (frf.response, frf.reference) and values.shape == frf.frequency.shape:
             return replace(frf, coherence=values)
     return frf
+
+
+UFF58 = Format(
+    name="uff58",
+    label="universal file",
+    help="datasets 58 and 58b (functions: text, or binary of either byte order) in the units of "
+    "dataset 164; others are passed over",
+    extensions=(".uff", ".unv", ".uf"),
+    read_frfs=read_frfs,
+    read_signals=read_time_records,
+    recognises=looks_universal,
+)

@@ -8,11 +8,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from chatter.io.text_files import require_readable
+from chatter.io.files import read_content
 from dynamics.frf.container import MeasurementError
-
-#: largest universal file read, bytes
-LARGEST_UNIVERSAL_FILE = 1024 * 1024**2
 
 _DELIMITER = re.compile(rb"^[ \t]*-1[ \t]*\r?(?:\n|\Z)", re.MULTILINE)
 _CLOSING_AFTER_BINARY = re.compile(rb"(?:\r?\n)? {4}-1[ \t]*\r?(?:\n|\Z)")
@@ -74,11 +71,7 @@ def read_datasets(path: Path) -> Iterator[Dataset]:
     MeasurementError
         If the file cannot be read or a dataset is not closed by a line of -1 (truncated file).
     """
-    require_readable(path, LARGEST_UNIVERSAL_FILE)
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise MeasurementError(f"{path}: cannot be read ({error.strerror})") from error
+    content = read_content(path)
     position, line, order = 0, 1, 1
     while (opening := _DELIMITER.search(content, position)) is not None:
         if _DELIMITER.match(content, opening.end()) is not None:  # a stray line of -1

@@ -89,7 +89,7 @@ def test_universal_time_records_of_an_axis(tmp_path):
 def test_a_universal_file_without_time_records_is_told(tmp_path):
     path = tmp_path / "run.uff"
     path.write_text(HEADERS)
-    with pytest.raises(InputError, match="holds no time record; it holds dataset 151"):
+    with pytest.raises(InputError, match="holds no time record; it holds 1 x dataset 151"):
         read_signals(path, "milling")
 
 

@@ -9,9 +9,9 @@ import scipy.io
 import scipy.linalg
 import scipy.sparse
 
-from dynamics.structure.imported import imported_structure, read_matrix, read_nodes, tied_structure
+from chatter.io.matrices import imported_structure, read_matrix, read_nodes
+from dynamics.structure.imported import refuse_indefinite, tied_structure
 from dynamics.structure.linear_structure import LinearStructure, StructureError
-from dynamics.structure.matrix_file import refuse_indefinite
 from dynamics.structure.surface_constraint import (
     InterpolatedPoint,
     Nodes,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from chatter.io.formats import read_frfs
+from chatter.io.formats.registry import read_frfs
 from dynamics.frf.container import MeasurementError
 from tests.places import SHARED
 
@@ -139,6 +139,6 @@ def test_an_unknown_suffix_lists_the_known(tmp_path):
 
 
 def test_a_file_too_large_is_not_read(tmp_path, monkeypatch):
-    monkeypatch.setattr("chatter.io.text_files.LARGEST_TEXT_FILE", 10)
+    monkeypatch.setattr("chatter.io.files.LARGEST_FILE", 10)
     with pytest.raises(MeasurementError, match="MB"):
         read_frfs(write(tmp_path, HEAD + "1,2,3\n2,3,4\n"))

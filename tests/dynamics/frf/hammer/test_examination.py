@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 import tomlkit
 
-from dynamics.frf.hammer import examine_records, read_hammer_folder
+from chatter.io.hammer_records import read_hammer_folder
+from dynamics.frf.hammer import examine_records
 from tests.dynamics.frf.hammer import hammer_records as made
 from tests.places import SHARED
 

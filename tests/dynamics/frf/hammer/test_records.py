@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from chatter.io.hammer_records import read_hammer_folder, read_hammer_record
 from dynamics.frf.container import MeasurementError
-from dynamics.frf.hammer import HammerRecord, read_hammer_folder, read_hammer_record
+from dynamics.frf.hammer import HammerRecord
 
 RATE, COUNT = 25600.0, 400
 

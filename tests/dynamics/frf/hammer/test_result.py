@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from chatter.io.hammer_records import read_hammer_folder
 from dynamics.frf.container import MeasurementError
 from dynamics.frf.hammer import h2, hammer_test
 from tests.dynamics.frf.hammer import hammer_records as made
@@ -117,9 +118,10 @@ def test_a_folder_with_a_file_that_cannot_be_read(tmp_path):
         )
     (tmp_path / "tap0.csv").write_text("time [s],force [N],acceleration [m/s^2]\n0,1,nan\n")
     (tmp_path / "notes.md").write_text("words\n")
-    test = hammer_test(tmp_path)
+    folder = read_hammer_folder(tmp_path)
+    test = hammer_test(folder.records, unreadable=folder.unreadable)
     assert test.used == ("tap1.csv", "tap2.csv", "tap3.csv", "tap4.csv")
     assert [(f.record, f.fault) for f in test.left_out] == [("tap0.csv", "unreadable")]
     assert "line 2" in test.left_out[0].reason
     with pytest.raises(MeasurementError, match=r"tap0.csv cannot be kept"):
-        hammer_test(tmp_path, keep=["tap0.csv"])
+        hammer_test(folder.records, keep=["tap0.csv"], unreadable=folder.unreadable)
