@@ -129,7 +129,7 @@ def _serve(description: Case, method: str | None, port: int, no_browser: bool) -
     """Serve the page until Ctrl-C."""
     from chatter.app.answers import LiveCase
     from chatter.app.server import LiveServer
-    from chatter.engine.parallel import no_progress
+    from chatter.description.progress import no_progress
 
     announce_compilation()
     page = LiveCase(description, method)

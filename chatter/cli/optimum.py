@@ -12,7 +12,7 @@ from chatter.cli.options import Assignments, CaseFile, Json, OutputFolder
 from chatter.cli.search import searched
 from chatter.description.case import Case
 from chatter.description.errors import RunError
-from chatter.engine.parallel import Progress
+from chatter.description.progress import Progress
 
 if TYPE_CHECKING:
     from chatter.studies.optimisation.result import Optimum

@@ -9,6 +9,7 @@ import typer
 
 from chatter.description.assignments import parse_assignments
 from chatter.description.case import Case, load
+from chatter.stability.registry import AUTO, METHODS
 
 if TYPE_CHECKING:
     from chatter.description.machine.machine_file import MachineFile
@@ -39,8 +40,7 @@ Method = Annotated[
     str | None,
     typer.Option(
         "--method",
-        help="auto (default), collocation, semi-discretization (also -0 and -2), "
-        "full-discretization, matrix-free, multi-frequency, zero-order or time.",
+        help=f"{AUTO} (default), {', '.join(METHODS.names())}.",
     ),
 ]
 

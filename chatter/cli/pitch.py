@@ -9,7 +9,7 @@ from chatter.cli.errors import reports_errors
 from chatter.cli.options import Assignments, CaseFile, Json, OutputFolder
 from chatter.cli.search import searched
 from chatter.description.case import Case
-from chatter.engine.parallel import Progress
+from chatter.description.progress import Progress
 
 if TYPE_CHECKING:
     from chatter.studies.pitch_design.result import PitchResult

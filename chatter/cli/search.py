@@ -16,7 +16,7 @@ from chatter.cli.report import (
     progress_bar,
 )
 from chatter.description.case import Case
-from chatter.engine.parallel import Progress
+from chatter.description.progress import Progress
 
 
 class Found(Protocol):

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
+from chatter.description.units import rpm
 from chatter.explain.before_after import STEPS
 from chatter.stability.diagram import StabilityDiagram
 from chatter.stability.lobes import lobes
@@ -23,7 +24,6 @@ Array = NDArray[np.float64]
 
 #: what lobes need of a case
 _NEEDED = ("tool", "material", "cut", "structure")
-_RPM = 30.0 / math.pi
 _SPEEDS, _DEPTHS = 100, 60
 #: speeds at which it is asked whether an effect acts in lobes at all
 _ASKED = 16
@@ -118,8 +118,8 @@ def _ranged(cuts: _Cuts, count: int) -> dict[str, dict[str, str | int]]:
     speed, depth = cuts.speed, cuts.depth
     beyond = _BEYOND if speed.size > 1 else _AROUND_ONE
     speeds = {
-        "from": f"{speed.min() / beyond * _RPM:.6g} rpm",
-        "to": f"{speed.max() * beyond * _RPM:.6g} rpm",
+        "from": f"{rpm(speed.min() / beyond):.6g} rpm",
+        "to": f"{rpm(speed.max() * beyond):.6g} rpm",
         "count": count,
     }
     deepest = max(_DEEPER * float(depth.max()), _LOWEST_LIMITS * cuts.lowest_limit)
@@ -174,7 +174,7 @@ def _names(before: str, after: str) -> str:
 def _finite(before: StabilityDiagram, after: StabilityDiagram) -> tuple[Array, Array, Array]:
     old, new = before.limits.critical_depth, after.limits.critical_depth
     both = np.isfinite(old) & np.isfinite(new)
-    return before.limits.spindle_speed[both] * _RPM, old[both], new[both]
+    return rpm(before.limits.spindle_speed[both]), old[both], new[both]
 
 
 def _largest_change(before: StabilityDiagram, after: StabilityDiagram) -> float:

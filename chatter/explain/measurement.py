@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from chatter.description.case import Case, load
 from chatter.description.errors import InputError
 from chatter.description.formatting import shown
-from chatter.io.signal_tables import read_signals
+from chatter.io.signals import read_signals
 
 KINDS = ("milling", "axis", "stability", "frf")
 #: keys of [[run]] that are no override of the case

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -12,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
+from chatter.description.units import rpm
 from chatter.plots import style
 from chatter.plots.residual_diagnostics import plot_findings
 
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 _SHOWN_RUNS = 3
 #: deepest over shallowest cut beyond which depths are drawn on a logarithmic scale
 _WIDE = 15.0
-_RPM = 30.0 / math.pi
 _STEP_COLOURS = (style.GREY, style.ORANGE, style.BLUE)
 _STEP_LINES = ("--", "-.", "-")
 
@@ -143,7 +142,7 @@ def _abscissa(signals: Signals, count: int) -> tuple[NDArray[np.float64], str]:
     told = (
         ("time", "time [s]", 1.0),
         ("frequency", "frequency [Hz]", 1.0),
-        ("spindle_speed", "spindle speed [rpm]", _RPM),
+        ("spindle_speed", "spindle speed [rpm]", rpm(1.0)),
     )
     for name, label, scale in told:
         if name in signals and signals[name].size == count:
@@ -206,7 +205,7 @@ def plot_lobes_before_after(found: LobesBeforeAfter) -> Figure:
     for number, (step, diagram) in enumerate(found.diagrams.items()):
         limit = diagram.limits.critical_depth
         axes.plot(
-            diagram.limits.spindle_speed * _RPM,
+            rpm(diagram.limits.spindle_speed),
             1e3 * np.where(np.isfinite(limit), limit, np.nan),
             color=_STEP_COLOURS[number],
             ls=_STEP_LINES[number],
@@ -230,7 +229,7 @@ def plot_lobes_before_after(found: LobesBeforeAfter) -> Figure:
 
 
 def _draw_cuts(axes: Axes, found: LobesBeforeAfter) -> None:
-    speed, depth = found.speed * _RPM, 1e3 * found.depth
+    speed, depth = rpm(found.speed), 1e3 * found.depth
     if found.stable is None:
         axes.plot(speed, depth, "D", color="black", mfc="white", ms=5, label="cuts")
         return

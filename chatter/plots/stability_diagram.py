@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
+from chatter.description.units import rpm
 from chatter.plots import style
 from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
 from chatter.stability.registry import METHODS
@@ -19,7 +20,6 @@ from chatter.stability.registry import METHODS
 if TYPE_CHECKING:
     from chatter.stability.diagram import StabilityDiagram, StabilityMap
 
-_RPM = 30.0 / math.pi
 _FILL_ROWS = 1000
 #: more values than this make a line without markers
 _FEW_VALUES = 150
@@ -141,7 +141,7 @@ def _mark_case(axes: Axes, x: float, y: float, inside: NDArray[np.float64]) -> N
 
 def _mark_pockets(axes: Axes, diagram: StabilityDiagram) -> None:
     for number, pocket in enumerate(diagram.pockets, start=1):
-        x, y = pocket.spindle_speed * _RPM, pocket.axial_depth * 1e3
+        x, y = rpm(pocket.spindle_speed), pocket.axial_depth * 1e3
         label = "pocket, with margin" if number == 1 else None
         axes.plot(x, y, "o", color=style.GREEN, markersize=11, linestyle="none", label=label)
         axes.annotate(
@@ -152,7 +152,7 @@ def _mark_pockets(axes: Axes, diagram: StabilityDiagram) -> None:
 def _pocket_list(diagram: StabilityDiagram) -> str:
     """List below the picture what the numbers in it stand for."""
     lines = [
-        f"{number}: {pocket.spindle_speed * _RPM:.0f} rpm, {pocket.axial_depth * 1e3:.3g} mm, "
+        f"{number}: {rpm(pocket.spindle_speed):.0f} rpm, {pocket.axial_depth * 1e3:.3g} mm, "
         f"{pocket.removal_rate * 6e7:.3g} cm³/min"
         for number, pocket in enumerate(diagram.pockets, start=1)
     ]
@@ -165,7 +165,7 @@ def _mark_operating_point(axes: Axes, diagram: StabilityDiagram) -> None:
     cut = diagram.case.cut
     stable = diagram.operating_is_stable
     axes.plot(
-        cut.spindle_speed * _RPM,
+        rpm(cut.spindle_speed),
         cut.axial_depth * 1e3,
         marker="o" if stable else "X",
         markersize=9,

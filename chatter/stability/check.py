@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from chatter.description.case import Case
-from chatter.detection.bifurcation_kind import bifurcation_kind
-from chatter.engine.parallel import no_progress
+from chatter.description.progress import no_progress
+from chatter.description.units import rpm
+from chatter.detection.bifurcation_type import bifurcation_of_multiplier
 from chatter.io.result_files import as_json, finite_or_none, write_results
 from chatter.stability.forced_vibration import notes_on_steady_cut
 from chatter.stability.limit_curve import LimitCurve
@@ -24,8 +24,6 @@ from chatter.stability.registry import (
     with_multiplier,
 )
 from chatter.stability.search_range import depths_at_one_speed
-
-_RPM = 30.0 / math.pi
 
 
 @dataclass(frozen=True)
@@ -72,7 +70,7 @@ class StabilityCheck:
     @property
     def bifurcation(self) -> str:
         """Kind of the instability at the operating point; ``"none"`` where it is stable."""
-        return "none" if self.stable else bifurcation_kind(self.multiplier.value)
+        return "none" if self.stable else bifurcation_of_multiplier(self.multiplier.value)
 
     @property
     def critical_depth(self) -> float:
@@ -88,7 +86,7 @@ class StabilityCheck:
             "chatter_frequency_Hz": finite_or_none(self.chatter_frequency),
             "bifurcation": self.bifurcation,
             "critical_depth_mm": finite_or_none(self.critical_depth * 1e3),
-            "spindle_speed_rpm": cut.spindle_speed * _RPM,
+            "spindle_speed_rpm": rpm(cut.spindle_speed),
             "axial_depth_mm": cut.axial_depth * 1e3,
             "limit": {
                 "chatter_frequency_Hz": finite_or_none(float(self.limit.chatter_frequency[0])),

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
+from chatter.description.units import rpm
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, write_results
 from chatter.stability.limit_curve import LimitCurve
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
 
 #: values left out that are reported on the terminal
 _MOST_REPORTED = 3
-_RPM = 30.0 / math.pi
 
 
 @dataclass(frozen=True)
@@ -259,7 +259,7 @@ class StabilityDiagram:
                 "chatter_frequency_Hz": limits.chatter_frequency[lowest] if found else None,
             },
             "operating_point": {
-                "spindle_speed_rpm": cut.spindle_speed * _RPM,
+                "spindle_speed_rpm": rpm(cut.spindle_speed),
                 "axial_depth_mm": cut.axial_depth * 1e3,
                 "critical_depth_mm": finite_or_none(float(self.operating.critical_depth[0]) * 1e3),
                 "stable": self.operating_is_stable,
@@ -341,7 +341,7 @@ class StabilityDiagram:
 
 def _pocket_summary(pocket: Pocket) -> dict:
     return {
-        "spindle_speed_rpm": pocket.spindle_speed * _RPM,
+        "spindle_speed_rpm": rpm(pocket.spindle_speed),
         "axial_depth_mm": pocket.axial_depth * 1e3,
         "limit_depth_mm": finite_or_none(pocket.critical_depth * 1e3),
         "removal_rate_cm3_per_min": pocket.removal_rate * 1e6 * 60.0,

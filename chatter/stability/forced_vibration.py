@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.description.units import rpm
 from chatter.stability.method import StabilityMethod
 from chatter.stability.model import MillingModel
 from cutting.edge_segments.coupling import arc_at, delay_at, part_below, share_of_height
@@ -126,7 +127,7 @@ def notes_on_steady_cut(model: MillingModel, method: StabilityMethod) -> tuple[s
     if found.loss_of_contact < _REPORTED_LOSS and found.chip_change < _LARGE_CHANGE * found.chip:
         return ()
     return (
-        f"at {speed * 30.0 / math.pi:.0f} rpm and {depth * 1e3:.3g} mm the forced vibration of "
+        f"at {rpm(speed):.0f} rpm and {depth * 1e3:.3g} mm the forced vibration of "
         f"{found.amplitude * 1e6:.3g} um changes the chip of {found.chip * 1e6:.3g} um by up to "
         f"{found.chip_change * 1e6:.3g} um: teeth lose contact over {found.loss_of_contact:.0%} of "
         "their arc, which linear methods leave out; the limit in the time domain may differ "

@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.detection.bifurcation_kind import bifurcation_kind
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
+from chatter.detection.bifurcation_type import bifurcation_of_multiplier
 from chatter.stability.crossings import find_crossings, growth_rate_on_grid
 from chatter.stability.limit_curve import LimitCurve, limits_at
 
@@ -42,7 +42,7 @@ def growth_rate(values: NDArray[np.complex128]) -> NDArray[np.float64]:
 
 def kinds_of(values: NDArray[np.complex128]) -> list[str]:
     """Bifurcations of multipliers at limits."""
-    return [bifurcation_kind(complex(value)) for value in values]
+    return [bifurcation_of_multiplier(complex(value)) for value in values]
 
 
 def extrapolated(

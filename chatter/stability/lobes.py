@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
+from chatter.description.units import rpm
 from chatter.stability.diagram import DiagramAxis, StabilityDiagram, StabilityMap
 from chatter.stability.forced_vibration import notes_on_steady_cut
 from chatter.stability.limit_curve import LimitCurve
@@ -21,8 +22,6 @@ from chatter.stability.registry import chosen_method, fixed_steps, with_radius
 from chatter.stability.search_range import axial_depths, maximum_depth, spindle_speeds
 
 Array = NDArray[np.float64]
-
-_RPM = 30.0 / math.pi
 
 
 def lobes(
@@ -82,7 +81,7 @@ def lobes(
 
 
 def _speed_axis(case: Case, speeds: Array) -> DiagramAxis:
-    return DiagramAxis("spindle_speed", "rpm", speeds * _RPM, (), case.cut.spindle_speed * _RPM)
+    return DiagramAxis("spindle_speed", "rpm", rpm(speeds), (), rpm(case.cut.spindle_speed))
 
 
 def map_over_speed(

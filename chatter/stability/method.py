@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.errors import InputError
-from chatter.engine.parallel import Progress
+from chatter.description.progress import Progress
 from chatter.stability.limit_curve import LimitCurve, joined_limits
 
 if TYPE_CHECKING:

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.compile.structure import reference_speeds
-from chatter.engine.parallel import Progress, no_progress, one_thread, sweep, worker_count
+from chatter.description.progress import Progress, no_progress
+from chatter.engine.parallel import one_thread, sweep, worker_count
 from chatter.stability.model import MillingModel
 
 Result = TypeVar("Result")

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.engine.parallel import Progress, no_progress, one_thread, sweep
+from chatter.description.progress import Progress, no_progress
+from chatter.engine.parallel import Executor, one_thread, sweep
 from chatter.io.result_files import finite_or_none
 from chatter.stability.diagram import DiagramAxis, StabilityDiagram, StabilityMap
 from chatter.stability.limit_curve import LimitCurve, first_crossings
@@ -28,7 +29,6 @@ from chatter.stability.search_range import (
     maximum_depth,
     spindle_speeds,
 )
-from chatter.studies.executor import Computing
 from chatter.studies.finished_points import key_of
 from chatter.studies.grid_blocks import radius_in_blocks
 from chatter.studies.parameter_axis import (
@@ -66,7 +66,7 @@ def lobes(
     method: str | None = None,
     grid: bool = False,
     progress: Progress = no_progress,
-    cluster: str | Computing | None = None,
+    cluster: str | Executor | None = None,
     folder: str | Path | None = None,
 ) -> StabilityDiagram:
     """Compute the stability lobe diagram of a case.
@@ -75,8 +75,8 @@ def lobes(
     ----------
     case, method, grid, progress
         As of `chatter.stability.lobes.lobes`.
-    cluster : str or Computing, optional
-        Where the grid is computed, as for `chatter.studies.executor.computing_on`; here by default.
+    cluster : str or Executor, optional
+        Where the grid is computed, as for `chatter.studies.executor.open_executor`; here by default.
     folder : path, optional
         On a cluster, keeps finished blocks of the grid in points.jsonl there.
 
@@ -101,7 +101,7 @@ def lobes_over(
     y: AxisGiven | None = None,
     method: str | None = None,
     progress: Progress = no_progress,
-    cluster: str | Computing | None = None,
+    cluster: str | Executor | None = None,
     folder: str | Path | None = None,
 ) -> StabilityDiagram | StabilityMap:
     """Critical depth over a path of a case; with `y`, the spectral radius over two.
@@ -118,8 +118,8 @@ def lobes_over(
         As for `chatter.lobes`.
     progress : callable, optional
         Called with (done, total) points or columns.
-    cluster : str or Computing, optional
-        Where they are computed, as for `chatter.studies.executor.computing_on`; here by default.
+    cluster : str or Executor, optional
+        Where they are computed, as for `chatter.studies.executor.open_executor`; here by default.
     folder : path, optional
         On a cluster, keeps finished points or columns in points.jsonl there.
 
@@ -310,7 +310,7 @@ def _each(
 
 
 def _kept(
-    cluster: str | Computing,
+    cluster: str | Executor,
     folder: str | Path | None,
     progress: Progress,
     function: Callable[[_Point], dict[str, Any]],

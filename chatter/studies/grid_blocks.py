@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
+from chatter.engine.parallel import Executor
 from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.registry import METHODS, fixed_steps, with_radius
-from chatter.studies.executor import Computing
 from chatter.studies.finished_points import key_of
 from chatter.studies.result_cache import kept_results
 from chatter.studies.whatif.model import fingerprint
@@ -25,7 +25,7 @@ def radius_in_blocks(
     speeds: NDArray[np.float64],
     depths: NDArray[np.float64],
     method: str,
-    cluster: str | Computing | None = None,
+    cluster: str | Executor | None = None,
     folder: str | Path | None = None,
     progress: Progress = no_progress,
 ) -> NDArray[np.float64]:
@@ -38,8 +38,8 @@ def radius_in_blocks(
         rad/s, m.
     method : str
         Name in `chatter.stability.registry.METHODS`.
-    cluster : str or Computing, optional
-        As for `chatter.studies.executor.computing_on`.
+    cluster : str or Executor, optional
+        As for `chatter.studies.executor.open_executor`.
     folder : path, optional
         Keeps finished blocks in points.jsonl there, and reuses those of the same input.
     progress : callable

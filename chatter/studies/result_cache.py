@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from chatter.description.errors import RunError
-from chatter.engine.parallel import Progress
-from chatter.studies.executor import Computing, computing_on
+from chatter.description.progress import Progress
+from chatter.engine.parallel import Executor
+from chatter.studies.executor import open_executor
 from chatter.studies.finished_points import FinishedPoints, key_of
 
 Item = TypeVar("Item")
@@ -20,7 +21,7 @@ def kept_results(
     items: Sequence[Item],
     keys: Sequence[str],
     noun: str,
-    cluster: str | Computing | None,
+    cluster: str | Executor | None,
     folder: str | Path | None,
     progress: Progress,
 ) -> list[Any]:
@@ -35,8 +36,8 @@ def kept_results(
         Hash of all that the record of an item depends on.
     noun : str
         What the items are, for messages.
-    cluster : str or Computing, optional
-        As for `chatter.studies.executor.computing_on`.
+    cluster : str or Executor, optional
+        As for `chatter.studies.executor.open_executor`.
     folder : path, optional
         Keeps finished records in points.jsonl there, and reuses those of the same keys.
     progress : callable
@@ -53,8 +54,8 @@ def kept_results(
     missing = [place for place, key in enumerate(keys) if key not in store]
     done = len(keys) - len(missing)
     try:
-        with computing_on(cluster if missing else None) as computing:
-            for place, found in computing.results(function, [items[place] for place in missing]):
+        with open_executor(cluster if missing else None) as executor:
+            for place, found in executor.results(function, [items[place] for place in missing]):
                 store.add(keys[missing[place]], found)
                 done += 1
                 progress(done, len(keys))

@@ -11,8 +11,9 @@ from chatter.description.machine.fields import Place
 from chatter.description.quantities import quantity
 from chatter.description.section import Section
 from chatter.description.sections.structure import FileName
-from dynamics.structure.imported import InterpolatedPoint, RigidSurface, imported_structure
+from chatter.io.matrices import imported_structure
 from dynamics.structure.imported_part import ImportedPart, reduced_part
+from dynamics.structure.surface_constraint import InterpolatedPoint, RigidSurface
 
 
 def _nodes(given: Any) -> tuple[int, ...]:

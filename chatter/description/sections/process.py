@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import itertools
-import math
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
 
 from chatter.description.formatting import shown
 from chatter.description.quantities import PositiveLength, QuantityField, quantity, whole_number
 from chatter.description.section import Section, raise_if_any
+from chatter.description.stability_methods import known_method, with_methods
+from chatter.description.units import rpm
 
 #: most points a side of a diagram, and in all
 MOST_POINTS_A_SIDE = 20_000
@@ -250,7 +251,7 @@ class SpeedRange(Section):
 
     @model_validator(mode="after")
     def _check_order(self) -> SpeedRange:
-        first, last = (value * 30.0 / math.pi for value in (self.from_, self.to))
+        first, last = (rpm(value) for value in (self.from_, self.to))
         text = f"the range is empty: from ({first:g} rpm) is not less than to ({last:g} rpm)"
         raise_if_any([("", text)] if self.from_ >= self.to else [])
         return self
@@ -268,27 +269,15 @@ class Lobes(Section):
 
     speeds: SpeedRange | None = None
     depths: DepthRange | None = None
-    method: (
-        Literal[
-            "auto",
-            "collocation",
-            "semi-discretization",
-            "semi-discretization-0",
-            "semi-discretization-2",
-            "full-discretization",
-            "matrix-free",
-            "multi-frequency",
-            "zero-order",
-            "time",
-        ]
-        | None
-    ) = None
+    method: Annotated[str, AfterValidator(known_method)] | None = Field(
+        None, description="that finds the limits", json_schema_extra=with_methods
+    )
     steps: whole_number(4, 20_000, "steps a tooth period") | None = Field(
         None, description="fixes the steps a tooth period; by default they are chosen"
     )
     tolerance: quantity("number", at_least=1e-6, at_most=0.05) = Field(
         1e-3,
-        description="largest estimated error of the limit depths, relative; the resolution follows",
+        description="largest estimated error of critical depths, relative; the resolution follows",
     )
 
     @model_validator(mode="after")

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.description.units import rpm
 from chatter.explain.residuals.finding import Curve, Curves, Finding
 from chatter.explain.residuals.normalised_residual import Left, Residual
 from chatter.explain.residuals.ranks import RankCorrelation, rank_correlation
@@ -71,7 +72,7 @@ def _percent(_: str) -> tuple[str, float]:
 
 CONDITIONS: Mapping[str, tuple[Condition, ...]] = {
     "milling": (
-        Condition("spindle speed", "rpm", 30.0 / math.pi, lambda left: left.case.cut.spindle_speed),
+        Condition("spindle speed", "rpm", rpm(1.0), lambda left: left.case.cut.spindle_speed),
         Condition("feed per tooth", "mm", 1e3, lambda left: left.case.cut.feed_per_tooth),
         Condition("axial depth", "mm", 1e3, lambda left: left.case.cut.axial_depth),
         Condition("radial depth", "mm", 1e3, lambda left: left.case.cut.radial_depth or 0.0),

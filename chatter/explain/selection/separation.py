@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
+from chatter.description.units import rpm
 from chatter.explain.kinds.kind import Kind
 from chatter.explain.measurement import Measurement, Run
 
 #: conditions of a cut that a trial may change, each by these factors
 _VARIED = {
-    "cut.spindle_speed": ("rpm", 30.0 / math.pi),
+    "cut.spindle_speed": ("rpm", rpm(1.0)),
     "cut.axial_depth": ("mm", 1e3),
     "cut.feed_per_tooth": ("mm", 1e3),
     "cut.radial_depth": ("mm", 1e3),
@@ -150,7 +151,7 @@ def _verdicts(
     trials = []
     for speed in np.geomspace(speeds.min(), speeds.max(), _POINTS):
         for depth in np.geomspace(depths.min(), depths.max(), _POINTS):
-            says = f"a cut at {speed * 30.0 / math.pi:.0f} rpm and {depth * 1e3:.3g} mm"
+            says = f"a cut at {rpm(speed):.0f} rpm and {depth * 1e3:.3g} mm"
             point = {"spindle_speed": np.array([speed]), "axial_depth": np.array([depth])}
             # a verdict tells where the probabilities of its outcomes lie apart by most of one
             trials.append(Trial(says, Run("trial", {}, point), {"stable": 0.25}))

@@ -18,7 +18,7 @@ from chatter.description.machine.frequency_response import (
 )
 from chatter.description.machine.machine_file import MachineFile
 from chatter.description.machine.move import MoveSection
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
 from chatter.simulation.virtual_tests.frf import FrfCurve, FrfResult, linearised_frf
 from chatter.simulation.virtual_tests.loop_stability import refuse_unstable_control
 from chatter.simulation.virtual_tests.move import MovePlan, MoveResult, move_axes

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from chatter.description.case import Case
-from chatter.engine.parallel import Progress
+from chatter.description.progress import Progress
 from chatter.stability.model import milling_model
 from chatter.studies.finished_points import key_of
 from chatter.studies.optimisation.candidate import Candidate, candidate_at

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
 from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import MillingModel
 from chatter.studies.optimisation.limits import Limits

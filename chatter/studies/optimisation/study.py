@@ -9,7 +9,7 @@ import numpy as np
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
 from chatter.studies.optimisation.candidate import Candidate
 from chatter.studies.optimisation.candidates import A_ROBUST, WIDTH_STEPS, candidates_of
 from chatter.studies.optimisation.exclusion import exclusions

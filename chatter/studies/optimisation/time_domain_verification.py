@@ -8,7 +8,8 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import replace
 
-from chatter.engine.parallel import Progress, one_thread, worker_count
+from chatter.description.progress import Progress
+from chatter.engine.parallel import one_thread, worker_count
 from chatter.studies.optimisation.candidate import Candidate, max_usage
 from chatter.studies.optimisation.confirmation import time_check
 from chatter.studies.optimisation.robustness import with_probability

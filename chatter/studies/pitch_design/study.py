@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from chatter.compile.cutter import pitch_angles
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from chatter.description.progress import Progress, no_progress
 from chatter.description.sections.optimisation import PitchDesign
-from chatter.engine.parallel import Progress, no_progress
 from chatter.stability.methods.collocation import multipliers as collocation
 from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.methods.zeroth_order.limits import zero_order_of

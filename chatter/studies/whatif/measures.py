@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from chatter.description.units import rpm
 
 if TYPE_CHECKING:
     from chatter.simulation.result import SimulationResult
     from chatter.studies.whatif.model import Subject
 
-_RPM = 30.0 / math.pi
 _SHOWN_TURNS = 2.0
 _POINTS_A_TURN = 720
 _PROFILE_TURNS = 12.0
@@ -126,7 +126,7 @@ def _lobes(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
     curve = Curve(
         "critical depth [mm]",
         "",
-        _numbers(told.limits.spindle_speed * _RPM),
+        _numbers(rpm(told.limits.spindle_speed)),
         _numbers(told.limits.critical_depth * 1e3),
         "spindle speed [rpm]",
     )

@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from chatter.description.errors import InputError, RunError
-from chatter.engine.parallel import Progress, no_progress
-from chatter.studies.executor import Computing, computing_on
+from chatter.description.progress import Progress, no_progress
+from chatter.engine.parallel import Executor
+from chatter.studies.executor import open_executor
 from chatter.studies.finished_points import FinishedPoints, key_of
 from chatter.studies.whatif.design import DesignPoint
 from chatter.studies.whatif.measures import Curve, Measure, Outcome, measure_of
@@ -36,7 +37,7 @@ def outcomes_of(
     folder: str | Path | None = None,
     progress: Progress = no_progress,
     resumed: Resumed = no_report,
-    cluster: str | Computing | None = None,
+    cluster: str | Executor | None = None,
 ) -> list[Outcome]:
     """Outcome of every point; those that the folder holds already are not computed again.
 
@@ -52,8 +53,8 @@ def outcomes_of(
     folder : path, optional
         Where finished points are kept.
     progress, resumed : callable, optional
-    cluster : str or Computing, optional
-        Where points are computed, as for `chatter.studies.executor.computing_on`.
+    cluster : str or Executor, optional
+        Where points are computed, as for `chatter.studies.executor.open_executor`.
 
     Raises
     ------
@@ -77,10 +78,10 @@ def outcomes_of(
     done = len(points) - len(missing)
     progress(done, len(points))
     try:
-        with computing_on(cluster if missing else None) as computing:
+        with open_executor(cluster if missing else None) as executor:
             evaluate = partial(_outcome, measure.name, method, only)
             wanted = [each for _, each in missing]
-            for place, (outcome, wrong) in computing.results(evaluate, wanted):
+            for place, (outcome, wrong) in executor.results(evaluate, wanted):
                 key = missing[place][0]
                 # what failed is not kept on disk: it is tried again
                 keep = store.remember if outcome["failure"] else store.add

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from chatter.description.errors import InputError
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
+from chatter.engine.parallel import Executor
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, write_results
-from chatter.studies.executor import Computing
 from chatter.studies.whatif import summary as telling
 from chatter.studies.whatif.design import AS_GIVEN, DesignPoint, Layout, chosen_layout, points_of
 from chatter.studies.whatif.measures import Measure, Outcome, measure_of
@@ -140,7 +140,7 @@ def whatif(
     folder: str | Path | None = None,
     progress: Progress = no_progress,
     resumed: Resumed = no_report,
-    cluster: str | Computing | None = None,
+    cluster: str | Executor | None = None,
 ) -> WhatIf:
     """Ask what would change if values of a case or machine were others.
 
@@ -170,8 +170,8 @@ def whatif(
         Called with (done, total) points.
     resumed : callable, optional
         Called once with (finished before, total) points.
-    cluster : str or Computing, optional
-        Where points are computed, as for `chatter.studies.executor.computing_on`; here by default.
+    cluster : str or Executor, optional
+        Where points are computed, as for `chatter.studies.executor.open_executor`; here by default.
 
     Returns
     -------

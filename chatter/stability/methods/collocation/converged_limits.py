@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
 from chatter.stability.limit_curve import LimitCurve, limits_at
 from chatter.stability.methods.collocation.element_cut import RESOLUTION, CutAt, ElementCut
 from chatter.stability.methods.collocation.error_estimate import checked_limits

@@ -12,7 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.errors import RunError
-from chatter.engine.parallel import Progress, kept_threads, no_progress, sweep, worker_count
+from chatter.description.progress import Progress, no_progress
+from chatter.description.units import rpm
+from chatter.engine.parallel import kept_threads, sweep, worker_count
 from chatter.stability.boundary_continuation import continued_crossings
 from chatter.stability.brackets import GrowthRate
 from chatter.stability.limit_curve import LimitCurve, limits_at
@@ -95,10 +97,10 @@ def _refuse_endless(cut: ElementCut, speeds: NDArray[np.float64]) -> None:
     """Raise RunError where a period at one of the speeds (rad/s) holds too many vibrations."""
     hertz = cut.arrays.fastest / (2.0 * math.pi)
     of_tool = hertz * cut.arrays.period_angle / float(np.min(speeds))
-    rpm = float(np.min(speeds)) * 30.0 / math.pi
+    slowest = rpm(float(np.min(speeds)))
     if of_tool > _MOST_VIBRATIONS:
         raise RunError(
-            f"at {rpm:.4g} rpm the tool takes {of_tool:.3g} vibrations of {hertz:.4g} Hz to look "
+            f"at {slowest:.4g} rpm the tool takes {of_tool:.3g} vibrations of {hertz:.4g} Hz to look "
             f"the same again; at most {_MOST_VIBRATIONS} can be computed: raise the lowest spindle "
             "speed, or leave out modes that are far too stiff to chatter"
         )

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.engine.parallel import Progress
+from chatter.description.progress import Progress
 from chatter.stability.boundary_continuation import continued_crossings
 from chatter.stability.limit_curve import LimitCurve, first_crossings, limits_at
 from chatter.stability.methods.collocation.element_cut import RESOLUTION, CutAt

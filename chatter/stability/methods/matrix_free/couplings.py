@@ -241,7 +241,7 @@ def couple(cut, edge, now, speed_factor, sources, count, present):
                 engaged += _height(segments, final, high) - _height(segments, segment, low)
                 interval = segment, final, low, high, change
                 count = _couple_interval(
-                    cut, edge, now, speed_factor, sources, count, present, interval, spindle
+                    cut, now, speed_factor, sources, count, present, interval, spindle
                 )
                 segment = final + 1
     for number in range(present.used.shape[0]):
@@ -260,7 +260,7 @@ def _height(segments, segment, position):
 
 
 @njit(**LEAF_KERNEL)
-def _couple_interval(cut, edge, now, speed_factor, sources, count, present, interval, spindle):
+def _couple_interval(cut, now, speed_factor, sources, count, present, interval, spindle):
     """Enter the couplings along an engaged interval; returns the number of sources."""
     segments = cut.segments
     segment, final, low, high, change = interval

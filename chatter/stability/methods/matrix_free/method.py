@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from chatter.stability.method import Multiplier, StabilityMethod
 
 if TYPE_CHECKING:
-    from chatter.engine.parallel import Progress
+    from chatter.description.progress import Progress
     from chatter.stability.limit_curve import LimitCurve
     from chatter.stability.model import MillingModel
 

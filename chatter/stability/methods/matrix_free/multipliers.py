@@ -10,13 +10,13 @@ collocation but the couplings of the edge.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.errors import RunError
-from chatter.engine.parallel import Progress, no_progress, sweep
+from chatter.description.progress import Progress, no_progress
+from chatter.description.units import rpm
+from chatter.engine.parallel import sweep
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.limit_search import (
     PointMethod,
@@ -98,7 +98,7 @@ def _refuse_many_steps(cut: SteppedCut, speed: float, refinement: int) -> None:
     if _steps_per_revolution(cut, speed, refinement) > _MOST_STEPS:
         wavelengths = cut.fastest / speed
         raise RunError(
-            f"at {speed * 30.0 / math.pi:.4g} rpm a revolution holds {wavelengths:.3g} vibrations, "
+            f"at {rpm(speed):.4g} rpm a revolution holds {wavelengths:.3g} vibrations, "
             "more than the matrix-free method can step through; raise the lowest spindle speed"
         )
 

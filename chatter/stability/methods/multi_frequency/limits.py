@@ -6,7 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.errors import RunError
-from chatter.engine.parallel import Progress, no_progress, sweep
+from chatter.description.progress import Progress, no_progress
+from chatter.description.units import rpm
+from chatter.engine.parallel import sweep
 from chatter.stability.crossings import find_crossings
 from chatter.stability.cut_arrays import CutArrays
 from chatter.stability.limit_curve import LimitCurve, limits_at
@@ -46,7 +48,7 @@ def harmonic_counts(
     slowest = float(base.min())
     if _LEAST_REACH * highest > _MOST * slowest:
         raise RunError(
-            f"at {float(np.min(speeds)) * 30.0 / np.pi:.4g} rpm the cut repeats itself "
+            f"at {rpm(float(np.min(speeds))):.4g} rpm the cut repeats itself "
             f"{slowest / (2.0 * np.pi):.3g} times a second and modes reach up to "
             f"{highest / (2.0 * np.pi):.4g} Hz; the {_MOST} harmonics of the multi-frequency "
             'solution do not: raise the lowest spindle speed, or take "collocation"'

@@ -7,13 +7,13 @@ order from two to four.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.errors import RunError
-from chatter.engine.parallel import Progress, no_progress, sweep
+from chatter.description.progress import Progress, no_progress
+from chatter.description.units import rpm
+from chatter.engine.parallel import sweep
 from chatter.stability.cut_arrays import CHATTER_ABOVE_NATURAL, relevant_frequency
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.limit_search import (
@@ -48,7 +48,7 @@ def automatic_steps(arrays: MillingArrays, speeds: NDArray[np.float64]) -> NDArr
     wavelengths = fastest / (2.0 * np.pi) * period
     steps = np.maximum(_FEWEST_STEPS, np.ceil(_STEPS_PER_PERIOD * wavelengths)).astype(np.int64)
     if steps.max() > _MOST_STEPS:
-        slowest = float(np.min(speeds)) * 30.0 / math.pi
+        slowest = rpm(float(np.min(speeds)))
         raise RunError(
             f"at {slowest:.4g} rpm a tooth period holds {wavelengths.max():.3g} vibrations; that "
             f"needs {steps.max()} steps, more than {_MOST_STEPS}; raise the lowest spindle speed"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
 from chatter.stability.averaged_coefficients import AveragedCoefficients
 from chatter.stability.methods.zeroth_order.distinct_delays import limits_of_delays
 from chatter.stability.methods.zeroth_order.uniform_pitch import ZeroOrderLimit, zero_order_limit

@@ -11,7 +11,7 @@ from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.method import StabilityMethod
 
 if TYPE_CHECKING:
-    from chatter.engine.parallel import Progress
+    from chatter.description.progress import Progress
     from chatter.stability.model import MillingModel
 
 Array = NDArray[np.float64]
