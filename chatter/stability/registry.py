@@ -72,3 +72,20 @@ def with_chatter_frequency(method: StabilityMethod) -> StabilityMethod:
 def fixed_steps(case: Case) -> int | None:
     """Steps per tooth period that the case fixes; None leaves them to the method."""
     return case.lobes.steps if case.lobes else None
+
+
+def documentation() -> str:
+    """Return the table of the methods as it stands in the docs."""
+    takes = (
+        ("takes_any_tool", "any tool"),
+        ("takes_varying_speed", "varying speed"),
+        ("takes_process_damping", "process damping"),
+        ("takes_contact", "contact"),
+        ("takes_frfs", "FRFs without a fit"),
+    )
+    rows = ["| method | takes | spectral radius | what it is and what it is for |", "|---|---|---|---|"]
+    for method in METHODS:
+        taken = ", ".join(word for key, word in takes if getattr(method, key))
+        radius = "yes" if method.gives_radius else "by collocation"
+        rows.append(f"| `{method.name}` | {taken} | {radius} | {method.help} |")
+    return "\n".join(rows) + "\n"
