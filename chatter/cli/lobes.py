@@ -155,7 +155,7 @@ def _print_pockets(summary: dict) -> None:
         [
             f"{pocket['spindle_speed_rpm']:.0f}",
             f"{pocket['axial_depth_mm']:.3f}",
-            _millimetres(pocket["limit_depth_mm"], summary["searched_to_mm"]),
+            _millimetres(pocket["critical_depth_mm"], summary["max_axial_depth_mm"]),
             f"{pocket['removal_rate_cm3_per_min']:.3g}",
         ]
         for pocket in summary["pockets"]
@@ -176,15 +176,15 @@ def _print_pockets(summary: dict) -> None:
         f"operating point {operating['spindle_speed_rpm']:.0f} rpm, "
         f"{operating['axial_depth_mm']:.4g} mm: "
         f"{'stable' if operating['stable'] else 'chatter'}; "
-        f"limit there {_millimetres(limit, summary['searched_to_mm'])} mm"
+        f"limit there {_millimetres(limit, summary['max_depth_mm'])} mm"
     )
 
 
 def _print_method(summary: dict) -> None:
     error = summary["resolution"]["estimated_error"]
-    good_to = "" if error is None else f"; limits good to {max(error, 1e-6):.1g} of their depth"
-    typer.echo(f"method: {summary['method']}{good_to}")
+    accuracy = "" if error is None else f"; limits accurate to {max(error, 1e-6):.1g}"
+    typer.echo(f"method: {summary['method']}{accuracy}")
 
 
-def _millimetres(depth: float | None, searched_to: float) -> str:
-    return f"> {searched_to:.4g}" if depth is None else f"{depth:.4g}"
+def _millimetres(depth: float | None, max_depth: float) -> str:
+    return f"> {max_depth:.4g}" if depth is None else f"{depth:.4g}"

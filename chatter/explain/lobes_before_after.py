@@ -147,7 +147,9 @@ def _acts(explanation: Explanation, ranged: dict[str, dict[str, str | int]]) -> 
     return _largest_change(without, with_effects) >= _SAME
 
 
-def _sentences(explanation: Explanation, diagrams: dict[str, StabilityDiagram], acts: bool) -> list[str]:
+def _sentences(
+    explanation: Explanation, diagrams: dict[str, StabilityDiagram], acts: bool
+) -> list[str]:
     says = []
     steps = list(diagrams)
     for before, after in pairwise(steps):

@@ -1,11 +1,11 @@
 """Following the boundary of stability over speed and depth, at a stated tolerance.
 
 Multi-dimensional bisection (Bachrathy and Stepan 2012, Period. Polytech. Mech. Eng. 56) of the sign
-of growth_rate: a coarse grid over all speeds and depths, then speeds halfway between, where only the
-depths are looked at around which the columns on either side change sign or differ. What is left is
-one bracket a crossing at every speed, refined to the tolerance. An island is loss_of_contact if it fits
-between the columns of the coarse grid, or between two depths where nothing beside it comes near zero
-(see `crossings`).
+of growth_rate: a coarse grid over all speeds and depths, then speeds halfway between, where only
+the depths are evaluated around which the columns on either side change sign or differ. What is left
+is one bracket a crossing at every speed, refined to the tolerance. An island is missed if it fits
+between the columns of the coarse grid, or between two depths where nothing beside it comes near
+zero (see `crossings`).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from chatter.description.progress import Progress, no_progress
 from chatter.stability.brackets import GrowthRate
 from chatter.stability.crossings import find_crossings
 
-#: of the columns of the coarse grid every so many depths are looked at first, a power of two
+#: of the columns of the coarse grid every so many depths are evaluated first, a power of two
 _DEPTH_STRIDE = 4
 #: growth rate of a peak or valley that the columns beside may have above or below zero
 _NEARLY_ZERO = 0.2
@@ -49,12 +49,12 @@ def continued_crossings(
     progress : callable, optional
         Called with (done, total) speeds.
     refined : callable, optional
-        GrowthRate for the refinement of limits; `growth_rate` by default.
+        Growth rate for the refinement of limits; `growth_rate` by default.
 
     Returns
     -------
     list of arrays
-        m, ascending; stability is lost at even positions and regained at odd ones.
+        m, ascending; stability is lost at even indices and regained at odd ones.
     """
     values = np.full((speed_count, depths.size), np.nan)
     columns = np.unique(np.append(np.arange(0, speed_count, stride), speed_count - 1))
@@ -85,8 +85,9 @@ def _screen(
 ) -> NDArray[np.bool_]:
     """Fill in columns: all depths, but for some of those that lie deep in what is unstable.
 
-    Between two of every few depths that are unstable, with a growth rate well above what it changes by
-    from the one to the other, growth rate is taken to follow the line. Returns what has been seen.
+    Between two of every few depths that are unstable, with a growth rate well above what it changes
+    by from the one to the other, growth rate is taken to follow the line. Returns what has been
+    seen.
     """
     last = depths.size - 1
     step = _DEPTH_STRIDE
@@ -133,7 +134,7 @@ def _beside_changes(values: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 
 def _near_boundary(values: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Depths beside a change of sign, or at peaks and valleys of growth rate that nearly reach zero."""
+    """Depths beside a change of sign, or at peaks and valleys that nearly reach zero."""
     padded = np.pad(values, ((0, 0), (1, 1)), mode="edge")
     before, after = padded[:, :-2], padded[:, 2:]
     side = np.where(values > 0.0, -1.0, 1.0)

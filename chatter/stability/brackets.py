@@ -21,7 +21,7 @@ _MOST_CURVED = 8
 #: every so many steps keep off the ends, where one is far steeper than the other, by a share of the
 #: bracket while curves are trusted, later by another
 _KEEP_OFF, _SMALL_SHARE, _LARGE_SHARE = 3, 0.02, 0.5
-#: a root is taken without another look when it has moved by this share of the tolerance
+#: a root is taken without another evaluation when it has moved by this share of the tolerance
 _UNSEEN = 0.5
 
 
@@ -58,7 +58,7 @@ def bracket(
 
 
 class _Narrowing:
-    """Brackets that get smaller with every depth that is looked at."""
+    """Brackets that get smaller with every depth that is evaluated."""
 
     def __init__(self, brackets: Brackets) -> None:
         self.low, self.high = brackets.low.copy(), brackets.high.copy()
@@ -72,7 +72,7 @@ class _Narrowing:
         self.interpolated = _inverse_interpolation(self.x, self.y, self.low)
 
     def next_depth(self, k: NDArray[np.int64], iteration: int) -> NDArray[np.float64]:
-        """Depth to look at in brackets k."""
+        """Next depth to evaluate in brackets k."""
         low, high, at_high = self.low[k], self.high[k], self.scaled_high[k]
         width = high - low
         straight = high - at_high * width / (at_high - self.scaled_low[k])
@@ -87,7 +87,7 @@ class _Narrowing:
     def slope(
         self, k: NDArray[np.int64], depth: NDArray[np.float64], value: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Slope of growth rate at a depth within brackets k, on the flatter side: a jump is none."""
+        """Slope of the growth rate at a depth in brackets k, on the flatter side: a jump is none."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.fmin(
                 np.abs(value - self.at_low[k]) / (depth - self.low[k]),
@@ -119,8 +119,8 @@ def roots_in(brackets: Brackets, growth_rate: GrowthRate, tolerance: float) -> N
     """Root in each bracket by inverse interpolation through up to four points, all at once.
 
     Where that leaves the bracket, the Illinois method. Interpolation through a point that has just
-    been looked at is far closer to the root than that point: it is taken unseen when it has moved
-    by half a tolerance.
+    been evaluated is far closer to the root than that point: it is taken without it when it has
+    moved by half a tolerance.
 
     Parameters
     ----------

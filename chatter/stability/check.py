@@ -93,7 +93,7 @@ class StabilityCheck:
                 "bifurcation": self.limit.bifurcation[0],
                 "crossings_mm": [float(depth * 1e3) for depth in self.limit.crossings[0]],
                 "estimated_error": finite_or_none(self.limit.error),
-                "searched_to_mm": self.max_depth * 1e3,
+                "max_axial_depth_mm": self.max_depth * 1e3,
                 "zero_order_depth_mm": finite_or_none(self.zero_order_depth * 1e3),
             },
             "method": self.method,

@@ -1,10 +1,10 @@
 """Where stability is lost or regained along depth: grid, then the root in every bracket.
 
-A interval that fits between two depths of the grid is not passed over where the growth rate beside it
-nearly reaches zero: the top of such a peak, or the floor of such a valley, is looked for.
+A interval that fits between two depths of the grid is not passed over where the growth rate beside
+it nearly reaches zero: the top of such a peak, or the floor of such a valley, is searched.
 
-The search knows nothing of the method: it asks for the growth_rate (logarithm of the spectral radius)
-at batches of points, which the sweep spreads over the threads.
+The search knows nothing of the method: it asks for the growth_rate (logarithm of the spectral
+radius) at batches of points, which the sweep spreads over the threads.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def find_crossings(
     Parameters
     ----------
     grid : (n, m) array of float
-        GrowthRate at n speeds and m depths.
+        Growth rate at n speeds and m depths.
     depths : (m,) array of float
         m, ascending, > 0. At zero depth the damped structure is stable.
     growth_rate : callable
@@ -78,9 +78,10 @@ def find_crossings(
     tolerance : float
         Of a limit, relative to its depth.
     evaluated : (n, m) array of bool, optional
-        Where the growth rate of the grid has the right sign alone, it is False; beside changes it is not.
+        Where the growth rate of the grid has the right sign alone, it is False; beside changes it
+        is not.
     refined : callable, optional
-        GrowthRate for the refinement of brackets; `growth_rate` by default.
+        Growth rate for the refinement of brackets; `growth_rate` by default.
 
     Returns
     -------

@@ -28,7 +28,7 @@ class CutArrays(NamedTuple):
     force_gain: NDArray[np.float64]  # modal acceleration per force, 1/kg (n, r)
     basis: NDArray[np.float64]  # directions of motion (3, r)
     segments: EdgeSegments
-    period_angle: float  # after which the tool looks the same again, rad
+    period_angle: float  # after which the tool repeats itself, rad
     variation: SpeedVariation
     fit: PeriodFit
     fastest: float  # vibration to be resolved, with no cut, rad/s

@@ -28,7 +28,7 @@ from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN, Pocket
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: values left out that are reported on the terminal
+#: values excluded that are reported on the terminal
 _MOST_REPORTED = 3
 
 
@@ -84,7 +84,7 @@ class StabilityMap:
         Over one period of the cut: the tooth period of a uniform pitch, else a revolution or what
         part of it repeats, or that of the speed variation; above 1 is chatter.
     notes : tuple of str
-    left_out : mapping
+    excluded : mapping
         Values that describe no cut, and why; their points of the map are nan.
     """
 
@@ -94,7 +94,7 @@ class StabilityMap:
     y_axis: DiagramAxis
     spectral_radius: NDArray[np.float64]
     notes: tuple[str, ...] = ()
-    left_out: Mapping[str, str] = field(default_factory=dict)
+    excluded: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def boundary(self) -> tuple[NDArray[np.float64], ...]:
@@ -116,7 +116,7 @@ class StabilityMap:
             "lowest_spectral_radius": float(np.nanmin(self.spectral_radius)),
             "highest_spectral_radius": float(np.nanmax(self.spectral_radius)),
             "boundary": [found.tolist() for found in self.boundary],
-            "left_out": dict(self.left_out),
+            "excluded": dict(self.excluded),
             "notes": list(self.notes),
         }
 
@@ -124,7 +124,7 @@ class StabilityMap:
         """Return sentences for the terminal."""
         radius = self.spectral_radius
         return [
-            *_report_of(self.left_out),
+            *_report_of(self.excluded),
             f"{self._stable_share:.0%} of the map is stable; spectral radius from "
             f"{np.nanmin(radius):.4g} to {np.nanmax(radius):.4g}",
         ]
@@ -213,7 +213,7 @@ class StabilityDiagram:
         return self.zero_order is not None
 
     @property
-    def left_out(self) -> dict[str, str]:
+    def excluded(self) -> dict[str, str]:
         """Values that have no limit at all, and why."""
         pairs = zip(self.axis.labels, self.reasons, strict=True) if self.reasons else ()
         return {f"{self.axis.name} = {label}": why for label, why in pairs if why}
@@ -239,7 +239,7 @@ class StabilityDiagram:
             "x": self.axis.summary(),
             **ends,
             "values_with_several_stable_intervals": sum(len(c) > 1 for c in self.limits.crossings),
-            "left_out": self.left_out,
+            "excluded": self.excluded,
             "notes": list(self.notes),
         }
 
@@ -252,7 +252,7 @@ class StabilityDiagram:
         speeds = self.axis.values
         return {
             "spindle_speeds_rpm": [float(speeds[0]), float(speeds[-1])],
-            "searched_to_mm": float(self.max_depth[0]) * 1e3,
+            "max_axial_depth_mm": float(self.max_depth[0]) * 1e3,
             "lowest_limit": {
                 "critical_depth_mm": depth[lowest] * 1e3 if found else None,
                 "spindle_speed_rpm": speeds[lowest] if found else None,
@@ -282,17 +282,17 @@ class StabilityDiagram:
         return {
             "value": float(self.axis.values[index]),
             "critical_depth_mm": finite_or_none(float(self.limits.critical_depth[index]) * 1e3),
-            "searched_to_mm": float(self.max_depth[index]) * 1e3,
+            "max_axial_depth_mm": float(self.max_depth[index]) * 1e3,
             "chatter_frequency_Hz": finite_or_none(float(self.limits.chatter_frequency[index])),
         }
 
     def report(self) -> list[str]:
         """Return sentences for the terminal."""
-        lines, summary = _report_of(self.left_out), self.summary()
+        lines, summary = _report_of(self.excluded), self.summary()
         for name in ("lowest_limit", "highest_limit"):
             end = summary[name]
             depth = end["critical_depth_mm"]
-            limit = f"> {end['searched_to_mm']:.4g}" if depth is None else f"{depth:.4g}"
+            limit = f"> {end['max_axial_depth_mm']:.4g}" if depth is None else f"{depth:.4g}"
             value = f"{end['value']:.4g} {self.axis.unit}".strip()
             lines.append(f"{name.replace('_', ' ')} {limit} mm, at {self.axis.name} = {value}")
         return lines
@@ -313,7 +313,7 @@ class StabilityDiagram:
             self.axis.heading, "critical_depth [mm]", "chatter_frequency [Hz]", "bifurcation",
         ]  # fmt: skip
         if not self.is_over_speed:
-            heading += ["all_crossings [mm]", "searched_to [mm]", "left_out"]
+            heading += ["all_crossings [mm]", "max_axial_depth [mm]", "excluded"]
         rows = [self._row(index) for index in range(self.axis.values.size)]
         written = _save(self, folder, heading, rows)
         if self.grid is not None:
@@ -343,7 +343,7 @@ def _pocket_summary(pocket: Pocket) -> dict:
     return {
         "spindle_speed_rpm": rpm(pocket.spindle_speed),
         "axial_depth_mm": pocket.axial_depth * 1e3,
-        "limit_depth_mm": finite_or_none(pocket.critical_depth * 1e3),
+        "critical_depth_mm": finite_or_none(pocket.critical_depth * 1e3),
         "removal_rate_cm3_per_min": pocket.removal_rate * 1e6 * 60.0,
     }
 
@@ -367,11 +367,11 @@ def _zeros(y: NDArray[np.float64], growth_rate: NDArray[np.float64]) -> NDArray[
     return y[k] - low[k] * (y[k + 1] - y[k]) / (high[k] - low[k])
 
 
-def _report_of(left_out: Mapping[str, str]) -> list[str]:
-    """Sentences about values that were left out; not all where they are many."""
-    lines = [f"left out, {label}: {why}" for label, why in list(left_out.items())[:_MOST_REPORTED]]
-    more = len(left_out) - len(lines)
-    return [*lines, f"and {more} more values left out"] if more else lines
+def _report_of(excluded: Mapping[str, str]) -> list[str]:
+    """Sentences about values that were excluded; not all where they are many."""
+    lines = [f"excluded, {label}: {why}" for label, why in list(excluded.items())[:_MOST_REPORTED]]
+    more = len(excluded) - len(lines)
+    return [*lines, f"and {more} more values excluded"] if more else lines
 
 
 def _save(

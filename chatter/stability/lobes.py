@@ -87,7 +87,7 @@ def _speed_axis(case: Case, speeds: Array) -> DiagramAxis:
 def map_over_speed(
     case: Case, method: StabilityMethod, speeds: Array, depths: Array, radius: Array
 ) -> StabilityMap:
-    """Map of the spectral radius (depths, speeds) over spindle speed (rad/s) and axial depth (m)."""
+    """Map of the spectral radius (depths, speeds) over spindle speed (rad/s) and depth (m)."""
     depth = DiagramAxis("axial_depth", "mm", depths * 1e3, (), case.cut.axial_depth * 1e3)
     return StabilityMap(case, with_radius(method).name, _speed_axis(case, speeds), depth, radius)
 

@@ -30,6 +30,21 @@ class Multiplier(NamedTuple):
     error: float  # estimated error of |value|
 
 
+class Sweep(NamedTuple):
+    """Speeds and depths for one model: a grid of them, or points."""
+
+    model: MillingModel
+    speeds: Array  # rad/s (n,)
+    depths: Array  # m, of the grid (m,) or of the points (n,)
+    steps: int | None  # per tooth period, where the case fixes them
+    progress: Progress
+
+    @property
+    def max_depth(self) -> float:
+        """Deepest of all, m."""
+        return float(np.max(self.depths))
+
+
 class StabilityMethod:
     """A method for the critical depth; subclasses state what it takes and gives.
 
@@ -103,7 +118,7 @@ class StabilityMethod:
         self.check(model)
 
         def limits(own: MillingModel, index: NDArray[np.int64], report: Progress) -> LimitCurve:
-            return self.limits_of_structure(own, speeds[index], depths, steps, report)
+            return self.limits_of(Sweep(own, speeds[index], depths, steps, report))
 
         return joined_limits(speeds, over_reference_speeds(model, speeds, limits, progress))
 
@@ -121,7 +136,7 @@ class StabilityMethod:
         self.check(model)
 
         def radius(own: MillingModel, index: NDArray[np.int64], report: Progress) -> Array:
-            return self.radius_of_structure(own, speeds[index], depths[index], steps, report)
+            return self.radius_of(Sweep(own, speeds[index], depths[index], steps, report))
 
         found = np.empty(len(speeds))
         for index, values in over_reference_speeds(model, speeds, radius, progress):
@@ -141,26 +156,12 @@ class StabilityMethod:
                 'end mills; "collocation" takes any tool'
             )
 
-    def limits_of_structure(
-        self,
-        model: MillingModel,
-        speeds: Array,
-        depths: Array,
-        steps: int | None,
-        progress: Progress,
-    ) -> LimitCurve:
+    def limits_of(self, sweep: Sweep) -> LimitCurve:
         """Limits with the same dynamics at all speeds; see `limits`."""
         raise NotImplementedError
 
-    def radius_of_structure(
-        self,
-        model: MillingModel,
-        speeds: Array,
-        depths: Array,
-        steps: int | None,
-        progress: Progress,
-    ) -> Array:
-        """Spectral radius with the same dynamics at all speeds; see `radius`."""
+    def radius_of(self, sweep: Sweep) -> Array:
+        """Spectral radius with the same dynamics at all points; see `radius`."""
         raise NotImplementedError
 
     def multiplier(self, model: MillingModel, steps: int | None) -> Multiplier:

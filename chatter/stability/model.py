@@ -111,7 +111,7 @@ class MillingModel:
 
     @cached_property
     def table(self) -> DirectionalTable:
-        """Directional matrix of an straight cylindrical edge over the engaged arc."""
+        """Directional matrix of a straight cylindrical edge over the engaged arc."""
         case = self.case
         arc = engagement(case.cut.mode, case.width_of_cut, case.tool.diameter)
         return directional_table(
@@ -133,7 +133,7 @@ class MillingModel:
 
     @property
     def averaged_directional(self) -> NDArray[np.float64]:
-        """Mean directional matrix over a turn (r, r), N/m^2, of all delays together."""
+        """Mean directional matrix over a revolution (r, r), N/m^2, of all delays together."""
         return self.averaged_coefficients.mean.sum(axis=0)
 
     @property
@@ -245,7 +245,8 @@ def milling_model(case: Case, structure: Structure | None = None) -> MillingMode
         notes.append("the zeroth-order solution leaves out process damping")
     if isinstance(flank, Ploughing):
         notes.append(
-            "ploughing is linearised as a dashpot for small vibration; chatter simulate has it in full"
+            "ploughing is linearised as a dashpot for small vibration; chatter simulate includes "
+            "it in full"
         )
     if case.contact is not None:
         notes.append(

@@ -83,7 +83,10 @@ def documentation() -> str:
         ("takes_contact", "contact"),
         ("takes_frfs", "FRFs without a fit"),
     )
-    rows = ["| method | takes | spectral radius | what it is and what it is for |", "|---|---|---|---|"]
+    rows = [
+        "| method | takes | spectral radius | what it is and what it is for |",
+        "|---|---|---|---|",
+    ]
     for method in METHODS:
         taken = ", ".join(word for key, word in takes if getattr(method, key))
         radius = "yes" if method.gives_radius else "by collocation"

@@ -11,15 +11,15 @@ from chatter.description.case import Case
 from chatter.stability.methods.zeroth_order.uniform_pitch import ZeroOrderLimit
 
 _SPEED_COUNT = 400
-#: depths looked at for the limit at one speed, and the share of the lowest zeroth-order limit
+#: depths evaluated for the limit at one speed, and the share of the lowest zeroth-order limit
 #: between them
 _DEPTHS_AT_ONE_SPEED = 200
 _SHARE_OF_LOWEST_LIMIT = 0.25
 _MOST_DEPTHS = 1000
 _DEPTH_COUNT = 100
-#: depths looked at, in units of the lowest zeroth-order limit
+#: depths evaluated, in units of the lowest zeroth-order limit
 _MAX_DEPTH_IN_LOWEST_LIMITS = 6.0
-#: without a limit to scale by, depths are looked at up to this multiple of the operating depth
+#: without a limit to scale by, depths are evaluated up to this multiple of the operating depth
 _MAX_DEPTH_IN_OPERATING_DEPTHS = 4.0
 
 
@@ -33,7 +33,7 @@ def spindle_speeds(case: Case) -> NDArray[np.float64]:
 
 
 def maximum_depth(case: Case, zero_order: ZeroOrderLimit) -> float:
-    """Depth to which limits are looked for, m."""
+    """Depth to which limits are searched, m."""
     wanted = case.lobes.depths if case.lobes else None
     if wanted is not None:
         return wanted.to

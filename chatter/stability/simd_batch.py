@@ -1,7 +1,7 @@
-"""Eight points at once: numbers of eight batch for compiled code.
+"""Eight points at once: SIMD batches for compiled code.
 
 Kernels over many small systems of one shape keep the systems in the last axis of their arrays and
-calculate with batch as with plain numbers; an operation is one vector instruction where the
+calculate with batches as with plain numbers; an operation is one vector instruction where the
 processor has such. What happens in a member never depends on the other batch.
 """
 
@@ -48,7 +48,7 @@ def _spread(builder, value):
 
 
 class _Arithmetic(AbstractTemplate):
-    """Batches with batch, or batch with a plain number."""
+    """Batches with batches, or with a plain number."""
 
     def generic(self, args, kws):  # noqa: ARG002
         known = all(kind == _BATCH or isinstance(kind, types.Float) for kind in args)
@@ -123,7 +123,7 @@ def store(typingctx, array, index, value):  # noqa: ARG001
 
 @intrinsic
 def spread(typingctx, value):  # noqa: ARG001
-    """Return batch that all hold the same plain number."""
+    """Return a batch that holds everywhere the same plain number."""
 
     def code(context, builder, sig, args):  # noqa: ARG001
         return _spread(builder, args[0])

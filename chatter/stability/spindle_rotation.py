@@ -105,7 +105,7 @@ def spindle_rotation_at(variation, fit, speed, pattern):
     speed : float
         rad/s.
     pattern : float
-        Angle after which the tool looks the same again, rad.
+        Angle after which the tool repeats itself, rad.
 
     Returns
     -------
@@ -135,7 +135,7 @@ def spindle_rotation_at(variation, fit, speed, pattern):
 
 @njit(**KERNEL)
 def in_mean_angle(rotation):
-    """The same rotation with the mean angle in position of time: the mean speed is 1."""
+    """The same rotation with the mean angle in place of time: the mean speed is 1."""
     return SpindleRotation(
         1.0,
         rotation.amplitude,

@@ -76,7 +76,8 @@ def lobes(
     case, method, grid, progress
         As of `chatter.stability.lobes.lobes`.
     cluster : str or Executor, optional
-        Where the grid is computed, as for `chatter.studies.executor.open_executor`; here by default.
+        Where the grid is computed, as for `chatter.studies.executor.open_executor`; here by
+        default.
     folder : path, optional
         On a cluster, keeps finished blocks of the grid in points.jsonl there.
 
@@ -229,8 +230,8 @@ def _map_over(case: Case, x: Variation, y: Variation, method: str, each: Each) -
     own = [patched(case, value.patch).cut for value in along.values] if along else []
     others = {"x": y, "y": x}.get(inner)
     lines, labels = [], []
-    for _, places in groups:
-        row, column = places[0]
+    for _, indices in groups:
+        row, column = indices[0]
         chosen = [(x, x.values[column]), (y, y.values[row])]
         if others is not None:
             chosen = [(axis, value) for axis, value in chosen if axis is others]
@@ -239,15 +240,15 @@ def _map_over(case: Case, x: Variation, y: Variation, method: str, each: Each) -
     found = each(_radius_along, lines, "columns")
     reasons = _reasons(found, case.name, labels)
     radius = np.full((len(rows), len(columns)), np.nan)
-    for (_, places), line, why in zip(groups, found, reasons, strict=True):
-        for (j, i), value in zip(places, line["radius"], strict=not why):
+    for (_, indices), line, why in zip(groups, found, reasons, strict=True):
+        for (j, i), value in zip(indices, line["radius"], strict=not why):
             radius[j, i] = value
-    left_out = {label: why for label, why in zip(labels, reasons, strict=True) if why}
+    excluded = {label: why for label, why in zip(labels, reasons, strict=True) if why}
     notes = _notes(_notes_of(found, reasons))
     if not METHODS[method].gives_radius:
         notes = (*notes, f"the map is by collocation; {method} gives no spectral radius")
     axes = _diagram_axis(case, x), _diagram_axis(case, y)
-    return StabilityMap(case, method, *axes, radius, notes, left_out)
+    return StabilityMap(case, method, *axes, radius, notes, excluded)
 
 
 def _line_along(case: Case, method: str, along: Variation | None, own: list) -> _Point:
@@ -302,9 +303,9 @@ def _each(
 ) -> list[dict[str, Any]]:
     """Records of all points, in threads; each is computed in one."""
 
-    def at(places: NDArray[np.int64]) -> list[dict[str, Any]]:
+    def at(indices: NDArray[np.int64]) -> list[dict[str, Any]]:
         with one_thread():
-            return [function(points[place]) for place in places]
+            return [function(points[index]) for index in indices]
 
     return [record for chunk in sweep(at, len(points), progress, 1) for record in chunk]
 

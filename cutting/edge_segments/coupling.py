@@ -92,7 +92,7 @@ def _position_on_corner(segments, segment, position, value, lag, rate):
 
 
 @register_jitable(**INLINED)
-def engaged_span(segments, segment, top, spindle, turn):
+def engaged_span(segments, segment, top, spindle, revolution):
     """Part of a segment that is in the cut at a spindle angle.
 
     Parameters
@@ -103,15 +103,15 @@ def engaged_span(segments, segment, top, spindle, turn):
         Part of the segment, from its low end, that lies below the depth of cut.
     spindle : float
         Spindle angle, rad.
-    turn : int
-        Turns that are taken off the position of the edge.
+    revolution : int
+        Revolutions that are taken off the place of the edge.
 
     Returns
     -------
     (float, float)
         As parts of the segment; the first above the second where nothing is in the cut.
     """
-    start = spindle + segments.angle[segment, 0] - _REVOLUTION * turn
+    start = spindle + segments.angle[segment, 0] - _REVOLUTION * revolution
     turned = segments.angle[segment, 1] - segments.angle[segment, 0]
     low, high = 0.0, top
     entry, leave = segments.entry[segment, 0], segments.exit[segment, 0]
@@ -138,7 +138,7 @@ def engaged_span(segments, segment, top, spindle, turn):
 
 @register_jitable(**INLINED)
 def first_and_last_revolution(segments, segment, top, spindle):
-    """Turns by which a segment may have to be turned back to lie in its arc."""
+    """Revolutions by which a segment may have to be turned back to lie in its arc."""
     a = spindle + segments.angle[segment, 0]
     b = a + top * (segments.angle[segment, 1] - segments.angle[segment, 0])
     entry = min(segments.entry[segment, 0], segments.entry[segment, 1])
@@ -181,7 +181,7 @@ def chip_at(segments, segment, position, height, sine, sine_of_edge, cosine_of_e
 
 @register_jitable(**INLINED)
 def chip_vanishes(segments, segment, position, immersion, share=_VANISHED):
-    """Tell whether a position along a segment has hardly a chip left at an immersion angle.
+    """Whether a position along a segment has hardly a chip left at an immersion angle.
 
     Hardly a chip is less than this share of the feed.
     """

@@ -1,10 +1,10 @@
 """Which earlier pass has left the surface, all along the edges of a tool.
 
-At a position of an edge the chip against the pass k is rise[k] sin(phi) - radial_offset[k]: the thinnest
-counts, and below zero there is no cut. So every position has a list of arcs, each of them cut out of
-the surface of one pass. Along the edge the arcs move smoothly as long as their list stays the same
-one; where a interval of arc comes or goes it opens or closes like a root, so that an edge is cut
-into segments there, and into ever smaller ones towards that position.
+At a position of an edge the chip against the pass k is rise[k] sin(phi) - radial_offset[k]: the
+thinnest counts, and below zero there is no cut. So every position has a list of arcs, each of them
+cut out of the surface of one pass. Along the edge the arcs move smoothly as long as their list
+stays the same one; where a interval of arc comes or goes it opens or closes like a root, so that an
+edge is cut into segments there, and into ever smaller ones towards that position.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ _REVOLUTION = 2.0 * math.pi
 _SHORTEST_ARC = 1e-9
 #: positions closer than this share of the edge are one
 _SAME_POSITION = 1e-9
-#: a change is looked for to this power of two of the distance of the positions looked at
+#: a change is searched to this power of two of the distance of the positions looked at
 _HALVINGS = 36
-#: changes between two positions that are looked at
+#: changes between two positions that are evaluated
 _MOST_CHANGES = 12
 #: positions looked at within a wave of a serrated edge, and between two borders
 _SAMPLES_PER_WAVELENGTH = 64
@@ -71,15 +71,15 @@ class Edges:
     ----------
     cutter : Cutter
     mode : {"up", "down", "slot"}
-    radial_depth, feed_per_turn : float
+    radial_depth, feed_per_revolution : float
         m.
     """
 
     def __init__(
-        self, cutter: Cutter, mode: MillingMode, radial_depth: float, feed_per_turn: float
+        self, cutter: Cutter, mode: MillingMode, radial_depth: float, feed_per_revolution: float
     ) -> None:
         self.cutter, self.mode = cutter, mode
-        self.radial_depth, self.feed_per_turn = radial_depth, feed_per_turn
+        self.radial_depth, self.feed_per_revolution = radial_depth, feed_per_revolution
         self.on_corner = cutter.corner_radius * cutter.edge_angle
         self.lag = np.tan(np.asarray(cutter.helix)) / cutter.radius
         self.start = cutter.tooth_angles
@@ -132,7 +132,7 @@ class Edges:
         sine, cosine = np.sin(profile.immersion)[:, None], np.cos(profile.immersion)[:, None]
         out = sine * self.radial(profile.height) + cosine * self._axial
         radial_offset = out - np.take_along_axis(out, tooth[:, None], axis=1)
-        rise = sine * self.feed_per_turn / _REVOLUTION * self.ahead(tooth, profile.height)
+        rise = sine * self.feed_per_revolution / _REVOLUTION * self.ahead(tooth, profile.height)
         entry, leave = slice_engagement(
             self.mode, self.radial_depth, self.cutter.radius, np.maximum(profile.radius, 1e-12)
         )
@@ -159,7 +159,7 @@ def _marks(rise: Array, radial_offset: Array, entry: Array, leave: Array) -> Arr
 
 
 def _arcs(rise: Array, radial_offset: Array, entry: Array, leave: Array) -> Arcs:
-    """Arcs at P positions from the chips (P, K) against the passes and the arc of the stock (P,)."""
+    """Arcs at P positions from the chips (P, K) against the passes and the arc of stock (P,)."""
     marks = _marks(rise, radial_offset, entry, leave)
     middle = 0.5 * (marks[:, 1:] + marks[:, :-1])
     chip = rise[:, None, :] * np.sin(middle)[:, :, None] - radial_offset[:, None, :]
@@ -186,7 +186,7 @@ def _arcs(rise: Array, radial_offset: Array, entry: Array, leave: Array) -> Arcs
 
 
 def _samples(borders: Array, cutter: Cutter) -> Array:
-    """Places along an edge at which its arcs are looked at, none of them on a border, m."""
+    """Places along an edge at which its arcs are evaluated, none of them on a border, m."""
     spacing = math.inf
     if cutter.serration is not None:
         spacing = cutter.serration.wavelength / _SAMPLES_PER_WAVELENGTH

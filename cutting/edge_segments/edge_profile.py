@@ -27,9 +27,9 @@ class EdgeLine(NamedTuple):
 
 
 def _radii_of_even_arcs(
-    cutter: Cutter, mode: MillingMode, radial_depth: float, turn: float
+    cutter: Cutter, mode: MillingMode, radial_depth: float, arc_step: float
 ) -> NDArray[np.float64]:
-    """Radii at which the arc has grown by even steps, from none to half a turn.
+    """Radii at which the arc has grown by even steps, from none to half a revolution.
 
     Where the edge first meets the stock its arc grows steeply, and again where it is no more cut
     all around.
@@ -37,14 +37,14 @@ def _radii_of_even_arcs(
     reach = cutter.radius - radial_depth
     if mode == "slot" or abs(reach) >= cutter.radius:
         return np.empty(0)
-    arcs = np.linspace(0.0, math.pi, math.ceil(math.pi / turn) + 1)
+    arcs = np.linspace(0.0, math.pi, math.ceil(math.pi / arc_step) + 1)
     with np.errstate(divide="ignore"):
         radius = reach / np.cos(arcs)
     return radius[radius > 0.0]
 
 
 def _cone_heights(
-    cutter: Cutter, mode: MillingMode, radial_depth: float, turn: float
+    cutter: Cutter, mode: MillingMode, radial_depth: float, arc_step: float
 ) -> list[float]:
     """Heights of even arcs on a cone whose edge first meets the stock on it, or nearly so.
 
@@ -54,17 +54,17 @@ def _cone_heights(
     start = cutter.radius - cutter.corner_radius * (1.0 - math.sin(cutter.edge_angle))
     if abs(cutter.radius - radial_depth) * (1.0 + _SEGMENT_LAG) <= start:
         return []
-    radius = _radii_of_even_arcs(cutter, mode, radial_depth, turn)
+    radius = _radii_of_even_arcs(cutter, mode, radial_depth, arc_step)
     return list(top + (radius[radius > start] - start) * slope)
 
 
 def _corner_angles(
-    cutter: Cutter, mode: MillingMode, radial_depth: float, turn: float
+    cutter: Cutter, mode: MillingMode, radial_depth: float, arc_step: float
 ) -> NDArray[np.float64]:
     """Immersion angles of the segment borders within the corner, rad."""
-    count = max(1, math.ceil(cutter.edge_angle / turn))
+    count = max(1, math.ceil(cutter.edge_angle / arc_step))
     angles = np.linspace(0.0, cutter.edge_angle, count + 1)
-    radius = _radii_of_even_arcs(cutter, mode, radial_depth, turn)
+    radius = _radii_of_even_arcs(cutter, mode, radial_depth, arc_step)
     sine = (radius - cutter.radius + cutter.corner_radius) / cutter.corner_radius
     inside = (sine > 0.0) & (sine < math.sin(cutter.edge_angle))
     angles = np.append(angles, np.arcsin(sine[inside]))
@@ -78,7 +78,7 @@ def edge_line(
     mode: MillingMode,
     radial_depth: float,
     heights: list[float],
-    turn: float,
+    arc_step: float,
 ) -> EdgeLine:
     """Profile of the nominal edge from the tip to a height.
 
@@ -90,7 +90,7 @@ def edge_line(
     mode : {"up", "down", "slot"}
     heights : list of float
         Borders of segments above the corner, m.
-    turn : float
+    arc_step : float
         By which a corner turns within a segment, and its arc changes, rad.
 
     Returns
@@ -102,7 +102,7 @@ def edge_line(
     immersion: list[tuple[float, float]] = []
     length: list[float] = []
     if corner > 0.0:
-        angles = _corner_angles(cutter, mode, radial_depth, turn)
+        angles = _corner_angles(cutter, mode, radial_depth, arc_step)
         height = list(corner * (1.0 - np.cos(angles)))
         radius = list(cutter.radius - corner + corner * np.sin(angles))
         immersion = list(itertools.pairwise(angles))
@@ -148,8 +148,8 @@ def crossing_heights(cutter: Cutter, max_depth: float) -> list[float]:
             if abs(rate) * max_depth < 1e-9:
                 continue
             gap = angle[i] - angle[j]
-            for turn in range(-4, 5):
-                height = (gap + _REVOLUTION * turn) / rate
+            for revolution in range(-4, 5):
+                height = (gap + _REVOLUTION * revolution) / rate
                 if 0.0 < height < max_depth:
                     heights.append(height)
     return heights
@@ -161,7 +161,7 @@ def straight_borders(
     mode: MillingMode,
     radial_depth: float,
     own_passes: bool,
-    turn: float,
+    arc_step: float,
     relative_length: float,
 ) -> list[float]:
     """Heights of the segment borders above the corner, m; arguments as of `edge_line`.
@@ -177,5 +177,5 @@ def straight_borders(
     if cutter.edge_angle < 0.5 * math.pi - 1e-9:
         # the radius, and with it the arc, changes along a cone
         heights += _cone_borders(cutter, max_depth, relative_length * _SEGMENT_LAG, slope)
-        heights += _cone_heights(cutter, mode, radial_depth, turn)
+        heights += _cone_heights(cutter, mode, radial_depth, arc_step)
     return heights

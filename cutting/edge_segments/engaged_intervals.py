@@ -19,13 +19,13 @@ MOST_POINTS = 16
 _LONGEST_INTERVAL = 3.5
 #: below this two points do
 _SHORT_INTERVAL = 0.15
-#: a engaged interval is in the cut up to the end of a segment within this share of it
+#: an engaged interval is in the cut up to the end of a segment within this share of it
 _WHOLE = 1.0 - 1e-12
 #: digits (as a power of e) to which a power of the chip is integrated
 _CHIP_DIGITS = 15.0
 #: more points than this are spent better on crowding them towards an end
 _MOST_POINTS_OF_CHIP = 6
-#: points by which an interval takes more where they graded
+#: points by which an interval takes more where they are graded
 _FOR_CROWDING = 6
 #: ends of an interval at which the chip vanishes
 NO_END, LOW_END, HIGH_END, BOTH_ENDS = 0, 1, 2, 3
@@ -49,7 +49,7 @@ def reach_of_segment(segments, tops, segment, reach):
 
 @register_jitable(**INLINED)
 def revolutions_of_group(segments, reach, group, spindle):
-    """Turns by which a group may have to be turned back to be in the cut, first and last."""
+    """Revolutions by which a group may have to be turned back to be in the cut, first and last."""
     early, late = 1e3, -1e3
     for segment in range(segments.first_of_group[group], segments.first_of_group[group + 1]):
         early, late = min(early, reach[segment, 0]), max(late, reach[segment, 3])
@@ -70,7 +70,7 @@ def _span(segments, tops, reach, segment, spindle, back):
 
 @register_jitable(**INLINED)
 def change_along(segments, segment, elements):
-    """Turn and bend of the edge, and turn of the vibration that it has left, along a segment, rad."""
+    """Rotation and bend of the edge, and phase of the wave that it has left, along a segment."""
     shift = segments.delay[segment, 1] - segments.delay[segment, 0]
     return (
         abs(segments.angle[segment, 1] - segments.angle[segment, 0])
@@ -95,7 +95,7 @@ def engaged_interval_from(segments, tops, reach, segment, end, spindle, back, el
     spindle : float
         Spindle angle, rad.
     back : int
-        Turns taken off.
+        Revolutions taken off.
     elements : float
         Elements of the motion that pass as the tool turns by a radian.
 
@@ -135,13 +135,13 @@ def _chip_at_position(segments, segment, position, spindle):
 
 @register_jitable(**INLINED)
 def points_along(segments, segment, last, low, high, change, spindle):
-    """Order of a quadrature along a engaged interval; see `engaged_interval_from` for the parameters.
+    """Order of a quadrature along an engaged interval; parameters of `engaged_interval_from`.
 
     Returns
     -------
     points : int
     ends : int
-        Ends towards which the points are to graded, because the chip vanishes there.
+        Ends towards which the points are graded, because the chip vanishes there.
     """
     if change < 1e-9 and segments.delay_index[segment] >= 0:
         return 1, NO_END

@@ -8,11 +8,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cutting.chip.regeneration import earlier_passes
 from cutting.edge_segments.earlier_passes import GAUSS, Edges, segment_borders
 from cutting.edge_segments.edge_profile import EdgeLine
 from cutting.engagement.immersion import MillingMode, slice_engagement
 from cutting.tool.cutter import Cutter
+from cutting.tool.tooth_passes import earlier_passes
 
 Pair = NDArray[np.float64] | tuple[float, float]
 
@@ -186,7 +186,7 @@ def _segments_of_tooth(
 
 
 def _where_chip_vanishes(kind: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Tell for each arc (P, W) whether its chip is none at its entry (1), at its exit (2), or not.
+    """Where the chip of each arc (P, W) vanishes: at its entry (1), at its exit (2), or not.
 
     For a chip against the surface of one pass it is so where the arc borders on air.
     """
@@ -206,11 +206,11 @@ def _through(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np
 def _arcs_at_borders(
     cutter: Cutter, line: EdgeLine, mode: MillingMode, radial_depth: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Entry and exit (L + 1,) at the borders of the segments, rad, of which each segment has the mean.
+    """Entry and exit (L + 1,) at the borders of segments, rad, whose mean each segment has.
 
-    Within a segment the arc follows a chord, which all along lies on one side of it. At a border the
-    arc is taken off by the mean distance (Simpson) on both sides of it: what a force is short of
-    falls with the fourth power of the length of the segments, not the second.
+    Within a segment the arc follows a chord, which all along lies on one side of it. At a border
+    the arc is taken off by the mean distance (Simpson) on both sides of it: what a force is short
+    of falls with the fourth power of the length of the segments, not the second.
     """
 
     def arcs(radius: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

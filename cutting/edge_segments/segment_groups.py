@@ -17,10 +17,10 @@ _GROUP_GROWTH = 3.0
 def segment_groups(
     segments: list[Segment], owners: list[Owner], sized: bool, apart: bool
 ) -> tuple[list[int], NDArray[np.int64]]:
-    """Order of the segments along groups, and the first position of each group and the end (C + 1,).
+    """Order of the segments along groups, and the first of each group, then their number (C + 1,).
 
-    The chip on a serrated edge is not smooth from segment to segment: with a size effect every segment is
-    a group apart.
+    The chip on a serrated edge is not smooth from segment to segment: with a size effect every
+    segment is a group apart.
     """
     met: dict[tuple[int, int, int], int] = {}
     keys = []

@@ -1,13 +1,12 @@
 """Edges of a tool as segments along their length, for the linear analysis of stability.
 
 A segment belongs to one tooth and cuts, between an entry and an exit angle, the surface that one
-certain earlier pass has left. Along it position on the tool and delay vary linearly with the height,
-and the arc with the length.
-Segments of a tooth that follow one another and cut what the same earlier tooth has left make a group:
-along it all is smooth, so that a force is summed up over an interval of its segments at once.
-An straight cylindrical edge in a tool of one helix is one segment from the tip to any height; corners are cut
-into segments by their curvature; where runout, setting errors or serration decide which pass left the
-surface, every pass has its own arc.
+certain earlier pass has left. Along it position on the tool and delay vary linearly with the
+height, and the arc with the length. Segments of a tooth that follow one another and cut what the
+same earlier tooth has left make a group: along it all is smooth, so that a force is summed up over
+an interval of its segments at once. An straight cylindrical edge in a tool of one helix is one
+segment from the tip to any height; corners are cut into segments by their curvature; where runout,
+setting errors or serration decide which pass left the surface, every pass has its own arc.
 """
 
 from __future__ import annotations
@@ -31,14 +30,14 @@ from cutting.tool.cutter import Cutter
 _REVOLUTION = 2.0 * math.pi
 #: a corner turns by this much within a segment, and its arc changes by it, rad
 _SEGMENT_TURN = math.radians(1.2)
-#: the same where the earlier passes are looked for: the arcs are taken at two positions within
+#: the same where the earlier passes are searched: the arcs are taken at two positions within
 _SEGMENT_TURN_OF_PASSES = math.radians(2.5)
 #: shapes of the columns of a table of no segments
 _NO_SEGMENTS = (0, 0, 0, (0, 2), (0, 2), (0, 2), (0, 2), (0, 2), (0, 2), (0, 3), (0, 2), 0, 0, 0)
 
 
 class EdgeSegments(NamedTuple):
-    """Segments of all edges; the last axis of a pair holds the value at the low and the high end."""
+    """Segments of all edges; the last axis of a pair holds the values at the low and high end."""
 
     bottom: NDArray[np.float64]  # height of the low end above the tip, m (P,)
     thickness: NDArray[np.float64]  # along the axis, m (P,)
@@ -72,7 +71,7 @@ def edge_segments(
     laws: list[ForceLaw],
     mode: MillingMode,
     radial_depth: float,
-    feed_per_turn: float,
+    feed_per_revolution: float,
     max_depth: float,
     flank: ViscousProcessDamping | Ploughing | None = None,
     relative_length: float = 1.0,
@@ -85,7 +84,7 @@ def edge_segments(
     laws : list of ForceLaw
         One for each tooth.
     mode : {"up", "down", "slot"}
-    radial_depth, feed_per_turn, max_depth : float
+    radial_depth, feed_per_revolution, max_depth : float
         m.
     flank : ViscousProcessDamping or Ploughing, optional
         Ploughing is taken for small vibration; see `small_vibration_coefficient`.
@@ -98,14 +97,14 @@ def edge_segments(
     """
     wave = cutter.serration is not None
     own_passes = wave or np.ptp(cutter.radial_offsets) > 0.0 or np.ptp(cutter.axial_offsets) > 0.0
-    turn = relative_length * (_SEGMENT_TURN_OF_PASSES if own_passes else _SEGMENT_TURN)
+    arc_step = relative_length * (_SEGMENT_TURN_OF_PASSES if own_passes else _SEGMENT_TURN)
     heights = straight_borders(
-        cutter, max_depth, mode, radial_depth, own_passes, turn, relative_length
+        cutter, max_depth, mode, radial_depth, own_passes, arc_step, relative_length
     )
-    line = edge_line(cutter, max_depth, mode, radial_depth, heights, turn)
+    line = edge_line(cutter, max_depth, mode, radial_depth, heights, arc_step)
     slopes = [_reference_slope(law) for law in laws]
     if own_passes:
-        edges = Edges(cutter, mode, radial_depth, feed_per_turn)
+        edges = Edges(cutter, mode, radial_depth, feed_per_revolution)
         segments, owners = segments_of_passes(edges, line, max_depth, slopes, relative_length)
     else:
         segments, owners = segments_of_one_pass(cutter, line, mode, radial_depth, slopes)
@@ -113,7 +112,7 @@ def edge_segments(
     sized = isinstance(laws[0], ExponentialLaw) and laws[0].exponent < 1.0
     order, first_of_group = segment_groups(segments, owners, sized=sized, apart=wave and sized)
     segments = [segments[i] for i in order]
-    feed = feed_per_turn / _REVOLUTION
+    feed = feed_per_revolution / _REVOLUTION
     return _as_arrays(segments, turning[order], first_of_group, cutter, laws[0], flank, feed)
 
 
@@ -159,8 +158,9 @@ def _as_arrays(
     return EdgeSegments(
         bottom=table.bottom, thickness=table.thickness, length=table.length, angle=table.angle,
         entry=table.entry, exit=table.exit, delay=delay, immersion=table.immersion,
-        radius=table.radius, delay_index=delay_index, distinct_delay=np.array(distinct), cutting=table.cutting,
-        feed=feed, radial_offset=table.radial_offset, axial_offset=table.axial_offset, corner=table.corner,
+        radius=table.radius, delay_index=delay_index, distinct_delay=np.array(distinct),
+        cutting=table.cutting, feed=feed, radial_offset=table.radial_offset,
+        axial_offset=table.axial_offset, corner=table.corner,
         vanishing=table.vanishing.astype(np.int64), exponent=exponent, reference=reference,
         damping=damping, turning=turning, first_of_group=first_of_group,
         outline=np.array([cutter.radius, cutter.corner_radius, cutter.edge_angle]),
@@ -177,7 +177,7 @@ def small_vibration_coefficient(law: Ploughing) -> float:
 
 
 def period_angle(cutter: Cutter) -> float:
-    """Angle after which the tool looks the same again, rad: a turn over a whole number."""
+    """Angle after which the tool repeats itself, rad: a revolution over a whole number."""
     angle, offset, axial = cutter.tooth_angles, cutter.radial_offsets, cutter.axial_offsets
     for parts in range(cutter.teeth, 1, -1):
         if cutter.teeth % parts:

@@ -254,7 +254,8 @@ def test_multi_frequency_refuses_what_its_harmonics_do_not_reach(pitch):
     model, depths = tool_922(1, 0.25, "down", **tool), np.linspace(0.0, 4e-3, 41)[1:]
     repeats = 2 if pitch is None else 1
     with pytest.raises(RunError, match="harmonics"):
-        METHODS["multi-frequency"].limits(model, np.array([922.0 / repeats / 80.0]) * RPM * 60, depths, None,
+        METHODS["multi-frequency"].limits(
+            model, np.array([922.0 / repeats / 80.0]) * RPM * 60, depths, None,
                            no_progress)  # fmt: skip
     # sixty of them reach the highest mode just so
     speed = np.array([922.0 / repeats / 48.0]) * RPM * 60

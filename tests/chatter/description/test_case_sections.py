@@ -3,7 +3,6 @@
 import copy
 import math
 import pickle
-from typing import get_args
 
 import pytest
 

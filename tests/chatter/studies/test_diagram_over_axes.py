@@ -171,24 +171,24 @@ def test_a_value_that_the_tool_does_not_reach_leaves_a_gap(tmp_path):
     assert reached.tolist() == [False, False, True, True, True]
     assert all(("not reach" in why) != ok for why, ok in zip(found.reasons, reached, strict=True))
     assert np.isnan(found.limits.critical_depth[:2]).all()
-    assert list(found.left_out) == ["cut.radial_depth = 2 mm", "cut.radial_depth = 3 mm"]
-    assert found.report()[0].startswith("left out, cut.radial_depth = 2 mm: cut.radial_depth: down")
+    assert list(found.excluded) == ["cut.radial_depth = 2 mm", "cut.radial_depth = 3 mm"]
+    assert found.report()[0].startswith("excluded, cut.radial_depth = 2 mm: cut.radial_depth: down")
     alone = chatter.lobes_over(ball(), "cut.radial_depth=4 mm..6 mm:3")
     assert found.limits.critical_depth[2:] == pytest.approx(alone.limits.critical_depth)
     found.save(tmp_path)
     with (tmp_path / "lobes.csv").open() as file:
         rows = list(csv.DictReader(file))
-    assert [bool(row["left_out"]) for row in rows] == [True, True, False, False, False]
+    assert [bool(row["excluded"]) for row in rows] == [True, True, False, False, False]
     assert rows[0]["critical_depth [mm]"] == ""
     summary = json.loads((tmp_path / "summary.json").read_text())
-    assert set(summary["left_out"]) == set(found.left_out)
+    assert set(summary["excluded"]) == set(found.excluded)
 
 
 def test_values_that_the_tool_does_not_reach_leave_a_gap_in_a_map(tmp_path):
     width, speed = "cut.radial_depth=2 mm..6 mm:3", "cut.spindle_speed=9000 rpm..12000 rpm:2"
     found = chatter.lobes_over(ball(), speed, width)
     assert np.isnan(found.spectral_radius).tolist() == [[True] * 2, [False] * 2, [False] * 2]
-    assert list(found.left_out) == ["cut.radial_depth = 2 mm"]
+    assert list(found.excluded) == ["cut.radial_depth = 2 mm"]
     assert np.isfinite(found.summary()["stable_share"])
     assert (found.save(tmp_path)[-1]).stat().st_size > 10_000
 

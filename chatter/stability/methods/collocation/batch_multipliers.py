@@ -1,7 +1,7 @@
 """Dominant Floquet multipliers of eight points at once, by Arnoldi iteration on their map.
 
-The map is never formed as a matrix. Each member is looked at by itself and keeps the first value that
-has converged, so that it does not depend on its neighbours.
+The map is never formed as a matrix. Each member is evaluated by itself and keeps the first value
+that has converged, so that it does not depend on its neighbours.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from chatter.stability.hessenberg import dominant_pair
 from chatter.stability.methods.collocation.monodromy import apply_batch_monodromy, batch_scratch
 from chatter.stability.simd_batch import BATCH_SIZE, load, spread, store
 
-#: dimension of the Krylov space beyond the state at the first check_at, and how it grows
+#: dimension of the Krylov space beyond the state at the first check, and how it grows
 _FIRST_CHECK = 3
 _GROWTH = 1.3
-#: over a period of so many elements a look costs far less than another vector
+#: over a period of so many elements a check costs far less than another vector
 _MANY_ELEMENTS = 60
 _LARGEST_SPACE = 240
 #: norms above this are not the root of a sum of squares
@@ -41,7 +41,7 @@ class DominantPairs(NamedTuple):
 
 @njit(**SINGLE_KERNEL)
 def _start_vectors(period, out, scratch):
-    """A fixed pseudo-random vector in all batch, smoothed by one pass through the map."""
+    """A fixed pseudo-random vector in all members, smoothed by one pass through the map."""
     start = np.empty(out.shape)
     seed = 12345
     size = period.output.shape[1]
@@ -156,7 +156,7 @@ def dominant_pairs(period, tolerance):
 
 @njit(**SINGLE_KERNEL)
 def _check_members(hessenberg, used, largest, regular, norm, before, tolerance, found):
-    """Take down the batch that have converged; tell whether all have."""
+    """Keep the members that have converged; return whether all have."""
     done = True
     for member in range(BATCH_SIZE):
         if found.used[member] > 0:

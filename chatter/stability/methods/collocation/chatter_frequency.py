@@ -1,4 +1,4 @@
-"""Frequency that is with_frequency of the dominant motion of a cut, eight points at once."""
+"""Frequency evaluated of the dominant motion of a cut, eight points at once."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 from chatter.stability.methods.collocation.monodromy import apply_batch_monodromy, batch_scratch
 from chatter.stability.simd_batch import BATCH_SIZE, load, spread, store
 
-#: harmonics looked at, up to this factor beyond the highest mode
+#: harmonics searched, up to this factor beyond the highest mode
 _HIGHEST = 2.0
 
 
@@ -156,7 +156,7 @@ def _loudest(structure, base, line, time, force, out):
             omega[0, member] = base[member].imag + harmonic * line[member]
         _amplitudes(structure, sigma, omega, at_harmonic, motion, amplitude)
         for member in range(BATCH_SIZE):
-            # what a member hears does not depend on its neighbours
+            # the frequency of a member does not depend on its neighbours
             if abs(harmonic) <= orders[member] and amplitude[0, member] > best[member]:
                 best[member] = amplitude[0, member]
                 out[member] = abs(omega[0, member]) / (2.0 * math.pi)

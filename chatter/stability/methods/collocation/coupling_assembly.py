@@ -1,9 +1,9 @@
 """What the cut couples over one period: elements, stiffness, dashpots, and the earlier motion.
 
-All positions are mean angles (time times the mean speed): at a constant speed the assembly depends on the
-speed only through the number of elements, so that neighbouring speeds share it. A assembly is packed
-into whole numbers that tell its structure and real ones that fill it: assemblies of the same structure
-go side by side into the batch of one map.
+All positions are mean angles (time times the mean speed): at a constant speed the assembly depends
+on the speed only through the number of elements, so that neighbouring speeds share it. A assembly
+is packed into whole numbers that give its structure and real ones that fill it: assemblies of the
+same structure go side by side into one SIMD batch.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""CouplingAssemblies packed into whole numbers that tell their structure and real ones that fill them."""
+"""Coupling assemblies packed into integers that give their structure and reals that fill it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _HEADER = 5
 
 
 class CouplingAssemblies(NamedTuple):
-    """CouplingAssemblies of N points, P distinct ones, one behind the other."""
+    """Coupling assemblies of N points, P distinct ones, one behind the other."""
 
     structure: NDArray[np.int64]  # see `packed_structure`
     first_structure: NDArray[np.int64]  # where that of each assembly begins (P + 1,)
@@ -25,7 +25,7 @@ class CouplingAssemblies(NamedTuple):
 
 
 class AssemblyStructure(NamedTuple):
-    """Structure of a assembly: M elements, E of them in the cut, S distinct lengths, p points each."""
+    """Structure of an assembly: M elements, E in the cut, S distinct lengths, p points each."""
 
     cut: NDArray[np.int64]  # number of each element among those in the cut, or -1 (M,)
     shape: NDArray[np.int64]  # number of the length of each element (M,)
@@ -46,7 +46,7 @@ def _append(part, out, at):
 
 @njit(**SINGLE_KERNEL)
 def packed_structure(layout, first_source, element, point):
-    """Pack what of a assembly is whole numbers."""
+    """Pack what of an assembly is whole numbers."""
     count = first_source[first_source.shape[0] - 1]
     elements, lengths = layout.cut.shape[0], layout.length_cuts.shape[0]
     out = np.empty(
@@ -68,7 +68,7 @@ def packed_structure(layout, first_source, element, point):
 
 @njit(**SINGLE_KERNEL)
 def packed_numbers(layout, stiffness, dashpot, block, sources):
-    """Pack what of a assembly is real: period, lengths, starts, couplings, blocks of the sources."""
+    """Pack the reals of an assembly: period, lengths, starts, couplings, blocks of sources."""
     kept = sources * block.shape[1] * block.shape[2]
     out = np.empty(
         1 + layout.length.shape[0] + 2 * layout.cut_start.shape[0] + 2 * stiffness.size + kept
@@ -122,7 +122,7 @@ def structure_at(assemblies, point):
 
 @njit(**INNER_KERNEL)
 def unpacked_structure(packed):
-    """Unpack the structure of a assembly.
+    """Unpack the structure of an assembly.
 
     Returns
     -------
@@ -142,7 +142,7 @@ def unpacked_structure(packed):
 
 @njit(**LEAF_KERNEL)
 def same_structure(one, other):
-    """Tell whether two packed structures are the same: batch of one map may hold both assemblies."""
+    """Whether two packed structures are the same: batch of one map may hold both assemblies."""
     if one.shape[0] != other.shape[0]:
         return False
     same = 0

@@ -38,8 +38,8 @@ def coupling_assemblies(cut, speeds, depths):
 def element_multipliers(arrays, assemblies, speeds, frequency_wanted):
     """Dominant multipliers of n points by collocation.
 
-    Points whose assemblies are alike are treated together, in batch; what comes out for a point does not
-    depend on which others it is treated with.
+    Points whose assemblies have the same structure are treated together in a SIMD batch; what comes
+    out for a point does not depend on which others it is treated with.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def element_multipliers(arrays, assemblies, speeds, frequency_wanted):
                 count += 1
         wanted = False
         for member in range(BATCH_SIZE):
-            # batch that are left over do what the first does
+            # members that are left over do what the first does
             point = batch[member] if member < count else first
             batch_points[member], batch_speeds[0, member] = point, speeds[point]
             wanted |= frequency_wanted[point]

@@ -216,7 +216,7 @@ def _side_by_side(assemblies, batch_points, first, count, out):
 
 @njit(**LEAF_KERNEL)
 def _multiply_all(a, factor):
-    """Multiply all of a (n, 8) by a plain factor or by batch."""
+    """Multiply all of a (n, 8) by a plain factor or by a batch."""
     for i in range(a.shape[0]):
         store(a, i, load(a, i) * factor)
 
@@ -230,7 +230,7 @@ def build_batch_monodromy(arrays, assemblies, batch_points, speeds):
     arrays : OperatorArrays
     assemblies : CouplingAssemblies
     batch_points : (8,) array of int
-        Point of every member; their assemblies are alike.
+        Point of every member; their assemblies have the same structure.
     speeds : (1, 8) array of float
         Mean spindle speed of every member, rad/s.
 
@@ -261,8 +261,11 @@ def build_batch_monodromy(arrays, assemblies, batch_points, speeds):
     _multiply_all(dashpot, slowness)
     _multiply_all(block, 1.0 / scale)
     period = BatchMonodromy(
-        assembly, np.empty((lengths, modes, 2, 2, BATCH_SIZE)), np.empty((lengths, values, size, BATCH_SIZE)),
-        np.zeros((lengths, values, values, BATCH_SIZE)), np.empty((lengths, size, values, BATCH_SIZE)),
+        assembly,
+        np.empty((lengths, modes, 2, 2, BATCH_SIZE)),
+        np.empty((lengths, values, size, BATCH_SIZE)),
+        np.zeros((lengths, values, values, BATCH_SIZE)),
+        np.empty((lengths, size, values, BATCH_SIZE)),
         np.zeros((cuts, values, values, BATCH_SIZE)), np.zeros((cuts, values, size, BATCH_SIZE)),
         block.reshape((sources, rank, values + rank, BATCH_SIZE)), output,
     )  # fmt: skip

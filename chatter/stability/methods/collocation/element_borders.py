@@ -20,18 +20,24 @@ from cutting.edge_segments.coupling import (
     engaged_span,
     first_and_last_revolution,
     part_below,
-    share_of_height,
+)
+from cutting.edge_segments.segment_ends import (
+    border_at,
+    is_border,
+    lowest_height,
+    sort_with_marks,
 )
 
 #: borders closer than this share of the period are the same
 SAME_BORDER = 1e-10
-#: positions of an interval that are looked at to tell whether an edge is in the cut
+#: positions of an interval that are evaluated to return whether an edge is in the cut
 _SAMPLES = (0.5, 0.02, 0.98)
 #: levels of elements towards a singular position, and their ratio
 _LEVELS = 5
 LEVEL_RATIO = 0.16
-#: the coupling of an straight cylindrical edge itself is infinite there: the last element, raised to the
-#: exponent of the law, is as short as the ratio raised to this; beyond the most, rounding eats it
+#: the coupling of a straight cylindrical edge itself is infinite there: the last element, raised to
+#: the exponent of the law, is as short as the ratio raised to this; beyond the most, rounding eats
+#: it
 _STRAIGHT_LEVELS, _MOST_LEVELS = 5.0, 18
 #: an edge that trails by this much from tip to top smears what is singular over an element, rad
 _SMEARED = 0.9
@@ -47,7 +53,7 @@ class PeriodBorders(NamedTuple):
 
 @njit(**LEAF_KERNEL)
 def is_engaged(segments, depth, spindle):
-    """Tell whether any edge is in the cut at a spindle angle."""
+    """Whether any edge is in the cut at a spindle angle."""
     for segment in range(segments.bottom.shape[0]):
         top = part_below(segments, segment, depth)
         if top <= 0.0:
@@ -58,18 +64,6 @@ def is_engaged(segments, depth, spindle):
             if low < high or (low == high and low <= top):
                 return True
     return False
-
-
-@njit(**LEAF_KERNEL)
-def _sort(positions, marks):
-    """Sort positions in ascending order, and their marks with them; nearly sorted ones are quick."""
-    for i in range(1, positions.shape[0]):
-        position, mark = positions[i], marks[i]
-        j = i
-        while j > 0 and positions[j - 1] > position:
-            positions[j], marks[j] = positions[j - 1], marks[j - 1]
-            j -= 1
-        positions[j], marks[j] = position, mark
 
 
 @njit(**LEAF_KERNEL)
@@ -96,33 +90,18 @@ def _border_angles(segments, period, depth, angles, levels):
 
     Returns their number.
     """
-    count = 0
-    lowest = np.inf
-    for segment in range(segments.bottom.shape[0]):
-        lowest = min(lowest, segments.bottom[segment])
+    count, lowest = 0, lowest_height(segments)
     for segment in range(segments.bottom.shape[0]):
         top = part_below(segments, segment, depth)
         if top <= 0.0:
             continue
         for end in range(2):
-            # the lowest position that cuts, the top of the cut, and where an edge meets the stock
-            if end == 0:
-                wanted = segments.bottom[segment] <= lowest
-            else:
-                above = depth - segments.bottom[segment]
-                wanted = above <= segments.thickness[segment] * (1.0 + 1e-12)
-            if not (wanted or segments.turning[segment, end] == 1):
+            if not is_border(segments, segment, end, depth, lowest):
                 continue
-            s = top if end == 1 else 0.0
-            height = share_of_height(segments, segment, s)
-            turned = segments.angle[segment, 1] - segments.angle[segment, 0]
-            position = segments.angle[segment, 0] + height * turned
+            position = top if end == 1 else 0.0
             for side in range(2):
-                arc = segments.entry if side == 0 else segments.exit
-                at = arc[segment, 0] + s * (arc[segment, 1] - arc[segment, 0])
-                angle = at - position
-                angles[count] = angle - period * math.floor(angle / period)
-                levels[count] = _levels_at(segments, segment, s, at, depth)
+                at, angles[count] = border_at(segments, segment, position, side, period)
+                levels[count] = _levels_at(segments, segment, position, at, depth)
                 count += 1
     return count
 
@@ -130,7 +109,7 @@ def _border_angles(segments, period, depth, angles, levels):
 @njit(**LEAF_KERNEL)
 def _distinct(angles, levels, count, period):
     """Sort borders, take equal ones together and return how many are left, one at the least."""
-    _sort(angles[:count], levels[:count])
+    sort_with_marks(angles[:count], levels[:count])
     kept = 0
     for i in range(count):
         if kept > 0 and angles[i] - angles[kept - 1] <= SAME_BORDER * period:
@@ -154,7 +133,7 @@ def period_borders(segments, period, depth):
     ----------
     segments : EdgeSegments
     period : float
-        Angle after which the tool looks the same again, rad.
+        Angle after which the tool repeats itself, rad.
     depth : float
         Axial depth, m.
 

@@ -1,9 +1,9 @@
 """Where the elements of a period begin and end.
 
-Between the borders that the cut sets in every period of the tool, elements turn the spindle by the
-same angle. So the motion of an earlier tooth, seen from a position in an element, lies in one element
-also where the speed varies. Where a triangular variation of the speed has its corners, elements are
-cut in two. Where no tooth cuts, the free motion is one element.
+Between the borders that the cut sets in every period of the tool, elements rotate the spindle by
+the same angle. So the motion of an earlier tooth, seen from a position in an element, lies in one
+element also where the speed varies. Where a triangular variation of the speed has its corners,
+elements are cut in two. Where no tooth cuts, the free motion is one element.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _EVEN = 1e-6
 
 
 class ElementLayout(NamedTuple):
-    """M elements of a period, of which E lie in the cut; positions and lengths in mean angle turned.
+    """M elements of a period, of which E lie in the cut; starts and lengths in mean angle.
 
     Mean angle is time times the mean spindle speed.
     """
@@ -161,7 +161,7 @@ def element_layout(borders, counts, rotation, tool_period):
     rotation : SpindleRotation
         In mean angle.
     tool_period : float
-        Angle after which the tool looks the same again, rad.
+        Angle after which the tool repeats itself, rad.
 
     Returns
     -------
@@ -221,7 +221,7 @@ def _shapes(length, number, count, even, shape):
 
 @njit(**LEAF_KERNEL)
 def element_before(layout, angle):
-    """Element in the cut that holds a mean angle, counted on over the periods, and the position in it.
+    """Element in the cut that holds a mean angle, counted over the periods, and the position in it.
 
     Between two elements in the cut, by rounding, the end of the nearer one.
     """

@@ -64,7 +64,7 @@ def _through_gauss_points(nodes: NDArray[np.float64], at: NDArray[np.float64]) -
 
 @lru_cache(maxsize=64)
 def _pushes_before(count: int, order: int) -> list[tuple[float, NDArray, NDArray]]:
-    """Gauss points and the end of an element: position, those before it (n,), force there (n, p)."""
+    """Gauss points and end of an element: position, those before it (n,), force there (n, p)."""
     nodes = element_points(count).position[1:]
     inside, weight = np.polynomial.legendre.leggauss(order)
     inside, weight = 0.5 * (inside + 1.0), 0.5 * weight

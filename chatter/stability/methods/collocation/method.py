@@ -7,14 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.stability.method import Multiplier, StabilityMethod
+from chatter.stability.method import Multiplier, StabilityMethod, Sweep
 
 if TYPE_CHECKING:
-    from chatter.description.progress import Progress
     from chatter.stability.limit_curve import LimitCurve
     from chatter.stability.model import MillingModel
-
-Array = NDArray[np.float64]
 
 
 class Collocation(StabilityMethod):
@@ -26,35 +23,22 @@ class Collocation(StabilityMethod):
     takes_varying_speed = True
     gives_radius = gives_multiplier = gives_chatter_frequency = True
 
-    def limits_of_structure(
-        self,
-        model: MillingModel,
-        speeds: Array,
-        depths: Array,
-        steps: int | None,  # noqa: ARG002
-        progress: Progress,
-    ) -> LimitCurve:
+    def limits_of(self, sweep: Sweep) -> LimitCurve:
         """Limits, with finer elements until they are good to the tolerance of the case."""
         from chatter.stability.methods.collocation.converged_limits import converged_limit_curve
         from chatter.stability.methods.collocation.element_cut import element_cuts
 
-        cut_at = element_cuts(model, float(depths[-1]))
+        model, speeds, depths, _, progress = sweep
+        cut_at = element_cuts(model, sweep.max_depth)
         return converged_limit_curve(cut_at, speeds, depths, progress, model.tolerance)
 
-    def radius_of_structure(
-        self,
-        model: MillingModel,
-        speeds: Array,
-        depths: Array,
-        steps: int | None,  # noqa: ARG002
-        progress: Progress,
-    ) -> Array:
-        """Spectral radius at n points."""
+    def radius_of(self, sweep: Sweep) -> NDArray[np.float64]:
+        """Spectral radius at points."""
         from chatter.stability.methods.collocation.element_cut import element_cut
         from chatter.stability.methods.collocation.multipliers import multipliers
 
-        cut = element_cut(model, float(np.max(depths)))
-        return np.abs(multipliers(cut, speeds, depths, progress))
+        cut = element_cut(sweep.model, sweep.max_depth)
+        return np.abs(multipliers(cut, sweep.speeds, sweep.depths, sweep.progress))
 
     def multiplier(self, model: MillingModel, steps: int | None) -> Multiplier:  # noqa: ARG002
         """Dominant multiplier of the cut of a case, refined until two resolutions agree."""

@@ -7,7 +7,8 @@ points (spectral elements; Khasawneh and Mann 2011, Int. J. Numer. Meth. Eng. 87
 Nothing is assumed of the delays: they may be several, change along an edge, with the speed, be
 longer than the period or shorter than an element.
 
-Eight points of the stability diagram make one map, a point a member; their assemblies must be alike.
+Eight points of the stability diagram make one SIMD batch, a point per member; their assemblies must
+have the same structure.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ def _solve(factors, x):
 
 
 class BatchScratch(NamedTuple):
-    """Scratch of `apply_batch_monodromy`; `force` is left with that at the points of all elements."""
+    """Scratch of `apply_batch_monodromy`, which leaves the force at all points in `force`."""
 
     motion: NDArray[np.float64]  # of all elements (memory + E, q + r, 8)
     force: NDArray[np.float64]  # (E, q, 8)
@@ -72,7 +73,9 @@ def batch_scratch(period):
     memory = period.assembly.memory
     return BatchScratch(
         np.zeros((memory + cuts, values + period.output.shape[0], BATCH_SIZE)),
-        np.empty((cuts, values, BATCH_SIZE)), np.empty((size, BATCH_SIZE)), np.empty((size, BATCH_SIZE)),
+        np.empty((cuts, values, BATCH_SIZE)),
+        np.empty((size, BATCH_SIZE)),
+        np.empty((size, BATCH_SIZE)),
     )  # fmt: skip
 
 

@@ -35,8 +35,8 @@ DEPTH_TOLERANCE = 1e-6
 _MOST_VIBRATIONS, _MOST_OF_VARYING = 1_000, 10_000
 #: speeds from one to the next of those at which all depths are evaluated
 STRIDE = 4
-#: points handed to a thread at once, about: many enough to fill the batch of the kernels; so many
-#: that a second thread is worth it
+#: points handed to a thread at once, about: many enough to fill the SIMD batches of the kernels; so
+#: many that a second thread is worth it
 _CHUNK_SIZE, _FEW_POINTS = 128, 64
 #: the same at a varying speed, where a point takes long: the least, and parts of all for a thread
 _FEWEST_POINTS, _PARTS = 16, 4
@@ -100,8 +100,8 @@ def _refuse_endless(cut: ElementCut, speeds: NDArray[np.float64]) -> None:
     slowest = rpm(float(np.min(speeds)))
     if of_tool > _MOST_VIBRATIONS:
         raise RunError(
-            f"at {slowest:.4g} rpm the tool takes {of_tool:.3g} vibrations of {hertz:.4g} Hz to look "
-            f"the same again; at most {_MOST_VIBRATIONS} can be computed: raise the lowest spindle "
+            f"at {slowest:.4g} rpm the tool takes {of_tool:.3g} vibrations of {hertz:.4g} Hz to "
+            f"repeat itself; at most {_MOST_VIBRATIONS} can be computed: raise the lowest spindle "
             "speed, or leave out modes that are far too stiff to chatter"
         )
     if not varies(cut):
@@ -109,15 +109,15 @@ def _refuse_endless(cut: ElementCut, speeds: NDArray[np.float64]) -> None:
     longest = float(np.max(hertz * cut.arrays.period_angle / speeds * tool_periods(cut, speeds)))
     if longest > _MOST_OF_VARYING:
         raise RunError(
-            f"cut.speed_variation.frequency: at {cut.arrays.variation.frequency:.4g} Hz the cut takes "
-            f"{longest:.3g} vibrations of {hertz:.4g} Hz to repeat itself; at most "
+            f"cut.speed_variation.frequency: at {cut.arrays.variation.frequency:.4g} Hz the cut "
+            f"takes {longest:.3g} vibrations of {hertz:.4g} Hz to repeat itself; at most "
             f"{_MOST_OF_VARYING} can be computed: for so slow a variation take the limits at the "
             "constant speeds that it goes through"
         )
 
 
 def _chunk_size(cut: ElementCut, count: int) -> int:
-    """As many for every thread, in full batch."""
+    """As many for every thread, in full SIMD batches."""
     threads = worker_count()
     if varies(cut):
         return max(_FEWEST_POINTS, math.ceil(count / (_PARTS * threads)))

@@ -31,9 +31,9 @@ def moved_limits(
     speeds : (n,) array of float
         rad/s.
     depths : (m,) array of float
-        Grid on which those are looked for that come or go, m.
+        Grid on which those are searched that come or go, m.
     growth_rate : callable
-        Of the cut, where a limit is looked for next to the known one.
+        Of the cut, where a limit is searched next to the known one.
     tolerance : float
         Of a limit, relative to its depth.
     reaches : tuple of float

@@ -21,7 +21,7 @@ Pair = tuple[ElementCut, ElementCut]
 
 
 def varies(cut: ElementCut) -> bool:
-    """Tell whether the spindle speed varies."""
+    """Whether the spindle speed varies."""
     return cut.arrays.variation.amplitude > 0.0
 
 

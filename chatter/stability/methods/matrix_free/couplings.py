@@ -27,7 +27,7 @@ from cutting.edge_segments.engaged_intervals import (
     revolutions_of_group,
 )
 
-#: a segment is in the cut in no more than so many turns at once
+#: a segment is in the cut in no more than so many revolutions at once
 _TURNS = 4
 
 
@@ -109,7 +109,8 @@ def nothing_present(rank, distinct):
     """Room for the couplings at a time."""
     return Present(
         np.empty((rank, rank)), np.empty((rank, rank)), np.zeros((rank, rank)),
-        np.zeros((rank, rank)), np.empty((distinct, rank, rank)), np.empty(distinct, dtype=np.int64),
+        np.zeros((rank, rank)), np.empty((distinct, rank, rank)),
+        np.empty(distinct, dtype=np.int64),
     )  # fmt: skip
 
 

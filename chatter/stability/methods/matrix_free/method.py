@@ -7,14 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.stability.method import Multiplier, StabilityMethod
+from chatter.stability.method import Multiplier, StabilityMethod, Sweep
 
 if TYPE_CHECKING:
-    from chatter.description.progress import Progress
     from chatter.stability.limit_curve import LimitCurve
     from chatter.stability.model import MillingModel
-
-Array = NDArray[np.float64]
 
 
 class MatrixFree(StabilityMethod):
@@ -27,34 +24,21 @@ class MatrixFree(StabilityMethod):
     takes_contact = True
     gives_radius = gives_multiplier = gives_chatter_frequency = True
 
-    def limits_of_structure(
-        self,
-        model: MillingModel,
-        speeds: Array,
-        depths: Array,
-        steps: int | None,  # noqa: ARG002
-        progress: Progress,
-    ) -> LimitCurve:
+    def limits_of(self, sweep: Sweep) -> LimitCurve:
         """Limits with extrapolated multipliers."""
         from chatter.stability.methods.matrix_free.multipliers import limit_curve
         from chatter.stability.methods.matrix_free.stepped_cut import stepped_cuts
 
-        return limit_curve(stepped_cuts(model, float(depths[-1])), speeds, depths, progress)
+        model, speeds, depths, _, progress = sweep
+        return limit_curve(stepped_cuts(model, sweep.max_depth), speeds, depths, progress)
 
-    def radius_of_structure(
-        self,
-        model: MillingModel,
-        speeds: Array,
-        depths: Array,
-        steps: int | None,  # noqa: ARG002
-        progress: Progress,
-    ) -> Array:
-        """Spectral radius at n points."""
+    def radius_of(self, sweep: Sweep) -> NDArray[np.float64]:
+        """Spectral radius at points."""
         from chatter.stability.methods.matrix_free.multipliers import multipliers
         from chatter.stability.methods.matrix_free.stepped_cut import stepped_cut
 
-        cut = stepped_cut(model, float(np.max(depths)))
-        return np.abs(multipliers(cut, speeds, depths, progress))
+        cut = stepped_cut(sweep.model, sweep.max_depth)
+        return np.abs(multipliers(cut, sweep.speeds, sweep.depths, sweep.progress))
 
     def multiplier(self, model: MillingModel, steps: int | None) -> Multiplier:  # noqa: ARG002
         """Dominant multiplier of the cut of a case, its steps halved until it has converged."""

@@ -5,9 +5,9 @@ speed has its corners, so that all is smooth inside them. Where a size effect ma
 force law infinite, at a vanishing chip, the force f is like t^(p-1) in the time t from the border,
 and the integral of f dt is taken over s, with t = h s^k: f dt/ds is like s^(k p - 1), smooth for
 the right k (a graded mesh: Brunner 2004, Collocation Methods for Volterra Integral and Related
-Functional Differential Equations, chapter 6; here the force is graded along with the mesh). So it is
-where an edge, on a cone or a corner, enters or leaves nearly all at once: what is engaged then is
-like the root of the time.
+Functional Differential Equations, chapter 6; here the force is graded along with the mesh). So it
+is where an edge, on a cone or a corner, enters or leaves nearly all at once: what is engaged then
+is like the root of the time.
 """
 
 from __future__ import annotations
@@ -22,11 +22,17 @@ from numpy.typing import NDArray
 from chatter.engine.presets import KERNEL
 from chatter.stability.methods.matrix_free.modal_response import POSITIONS
 from chatter.stability.spindle_rotation import angle_at, time_at
-from cutting.edge_segments.coupling import chip_vanishes, part_below, share_of_height
+from cutting.edge_segments.coupling import chip_vanishes, part_below
+from cutting.edge_segments.segment_ends import (
+    border_at,
+    is_border,
+    lowest_height,
+    sort_with_marks,
+)
 
 #: borders closer than this share of the period are the same
 _SAME = 1e-10
-#: steps that one is graded out into towards a vanishing chip, and towards a root of the time
+#: steps that one is graded into towards a vanishing chip, and towards a root of the time
 _GRADED, _GRADED_ROOT = 6, 3
 #: an edge enters nearly all at once where it does so in a share of the time that it takes elsewhere
 _FLAT = 0.5
@@ -38,7 +44,7 @@ _THIN = 0.1
 _BEFORE, _AFTER, _ROOT_BEFORE, _ROOT_AFTER = 1, 2, 4, 8
 #: borders closer than this share of a step are as good as one
 _NEAR = 0.3
-#: a step turns the spindle by no more than this over the steps a wave, rad
+#: a step turns the spindle by no more than this over the steps per wavelength, rad
 _ANGLE_PER_WAVELENGTH = 3.0
 
 
@@ -65,7 +71,7 @@ def _rise(segments, segment, side):
 
 @njit(**KERNEL)
 def _follows(segments, segment):
-    """Tell whether a segment goes on where that before it in the table ends."""
+    """Whether a segment goes on where that before it in the table ends."""
     apart = abs(segments.angle[segment - 1, 1] - segments.angle[segment, 0])
     apart += abs(segments.entry[segment - 1, 1] - segments.entry[segment, 0])
     apart += abs(segments.exit[segment - 1, 1] - segments.exit[segment, 0])
@@ -100,31 +106,21 @@ def _border_angles(cut, depth):
     angles = np.empty(4 * segments.bottom.shape[0] + 1)
     sides = np.zeros(angles.shape[0], dtype=np.int64)
     count = 0
-    lowest = segments.bottom[0]
-    for segment in range(segments.bottom.shape[0]):
-        lowest = min(lowest, segments.bottom[segment])
+    lowest, sized = lowest_height(segments), segments.exponent != 0.0
     for segment in range(segments.bottom.shape[0]):
         top = part_below(segments, segment, depth)
-        ends = segments.bottom[segment] + segments.thickness[segment] * (1.0 + 1e-12)
+        if top <= 0.0:
+            continue
         for end in range(2):
-            # between the tip, the top of the cut and where an edge first meets the stock the
-            # segments of an edge follow one another
-            inner = depth > ends if end == 1 else segments.bottom[segment] > lowest
-            if top <= 0.0 or (inner and segments.turning[segment, end] == 0):
+            if not is_border(segments, segment, end, depth, lowest):
                 continue
             position = top if end == 1 else 0.0
-            turned = segments.angle[segment, 1] - segments.angle[segment, 0]
-            lag = segments.angle[segment, 0] + share_of_height(segments, segment, position) * turned
             for side in range(2):
-                arc = segments.entry[segment] if side == 0 else segments.exit[segment]
-                immersed = arc[0] + position * (arc[1] - arc[0])
-                angle = immersed - lag
-                angles[count] = angle - period * math.floor(angle / period)
+                immersed, angles[count] = border_at(segments, segment, position, side, period)
                 sides[count] = _sides_of_root(segments, segment, side, end)
-                sized = segments.exponent != 0.0
                 if sized and chip_vanishes(segments, segment, position, immersed, _THIN):
-                    # a position that enters is in the cut after it, one that leaves before; where the
-                    # edge is flat, what is left of it next to it counts too
+                    # a position that enters is in the cut after it, one that leaves before; where
+                    # the edge is flat, what is left of it next to it counts too
                     turned_round = segments.turning[segment, end] == 1
                     after = side == 0 or turned_round or sides[count] == _ROOT_AFTER
                     before = side == 1 or turned_round or sides[count] == _ROOT_BEFORE
@@ -133,17 +129,6 @@ def _border_angles(cut, depth):
     if count == 0:
         count, angles[0] = 1, 0.0
     return angles[:count], sides[:count]
-
-
-@njit(**KERNEL)
-def _sort(times, flags):
-    """Sort times, and their flags with them, by insertion: there are few."""
-    for i in range(1, times.shape[0]):
-        time, flag, position = times[i], flags[i], i
-        while position > 0 and times[position - 1] > time:
-            times[position], flags[position] = times[position - 1], flags[position - 1]
-            position -= 1
-        times[position], flags[position] = time, flag
 
 
 @njit(**KERNEL)
@@ -163,7 +148,7 @@ def _border_times(cut, rotation, depth):
         else:
             times[i] = (0.25 + 0.5 * (i - rotation.patterns * per_tool)) / rotation.frequency
         times[i] -= period * math.floor(times[i] / period)
-    _sort(times, flags)
+    sort_with_marks(times, flags)
     out, marks = np.empty(times.shape[0] + 1), np.zeros(times.shape[0] + 1, dtype=np.int64)
     kept = 0
     for i in range(times.shape[0]):
@@ -243,8 +228,8 @@ def _plain_steps(cut, rotation, depth, borders, steps_per_wavelength):
 def _pass_on(sides, need):
     """Let a border next to a singular one be singular, too, on the side away from it.
 
-    On the scale of a step both are at the same position: as where an edge begins to leave within its
-    length, and a moment later its top leaves.
+    On the scale of a step both are at the same position: as where an edge begins to leave within
+    its length, and a moment later its top leaves.
     """
     last = need.shape[0]
     for _ in range(2):

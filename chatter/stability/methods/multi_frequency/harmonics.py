@@ -129,8 +129,8 @@ def _add_exactly(cut, segment, position, length, speed_factor, orders, stiffness
     for sample in range(5):
         phi = 0.4 * math.pi * sample
         coupling_at(
-            segments, segment, position, phi - at, length / (2.0 * math.pi), speed_factor, cut.basis,
-            part, part_dashpot,
+            segments, segment, position, phi - at, length / (2.0 * math.pi), speed_factor,
+            cut.basis, part, part_dashpot,
         )  # fmt: skip
         for n in range(5):
             wave = np.exp(-1j * (n - 2) * phi) / 5.0

@@ -5,16 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from chatter.stability.method import StabilityMethod
+from chatter.stability.method import StabilityMethod, Sweep
 
 if TYPE_CHECKING:
-    from chatter.description.progress import Progress
     from chatter.stability.limit_curve import LimitCurve
-    from chatter.stability.model import MillingModel
-
-Array = NDArray[np.float64]
 
 
 class MultiFrequency(StabilityMethod):
@@ -25,21 +20,15 @@ class MultiFrequency(StabilityMethod):
     help = "Any tool straight from FRFs (Budak and Altintas 1998), low radial immersion too."
     takes_frfs = True
 
-    def limits_of_structure(
-        self,
-        model: MillingModel,
-        speeds: Array,
-        depths: Array,
-        steps: int | None,  # noqa: ARG002
-        progress: Progress,
-    ) -> LimitCurve:
+    def limits_of(self, sweep: Sweep) -> LimitCurve:
         """Limits from the FRFs themselves."""
         from chatter.stability.methods.multi_frequency.determinant import FrequencyResponse
         from chatter.stability.methods.multi_frequency.limits import limit_curve
 
+        model, speeds, depths, _, progress = sweep
         lines, receptance = model.receptance
         response = FrequencyResponse(2.0 * np.pi * lines, np.ascontiguousarray(receptance))
-        return limit_curve(model.cut(float(depths[-1])), response, speeds, depths, progress)
+        return limit_curve(model.cut(sweep.max_depth), response, speeds, depths, progress)
 
 
 MULTI_FREQUENCY = MultiFrequency()

@@ -7,15 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.stability.method import Multiplier, StabilityMethod
+from chatter.stability.method import Multiplier, StabilityMethod, Sweep
 
 if TYPE_CHECKING:
-    from chatter.description.progress import Progress
     from chatter.stability.limit_curve import LimitCurve
-    from chatter.stability.methods.semi_discretization.multipliers import Scheme
+    from chatter.stability.methods.semi_discretization.step_schemes import Scheme
     from chatter.stability.model import MillingModel
-
-Array = NDArray[np.float64]
 
 
 class DiscretizedDelay(StabilityMethod):
@@ -42,15 +39,12 @@ class DiscretizedDelay(StabilityMethod):
 
         return getattr(step_schemes, self._scheme_name)
 
-    def limits_of_structure(
-        self, model: MillingModel, speeds: Array, depths: Array, steps: int | None,
-        progress: Progress,
-    ) -> LimitCurve:  # fmt: skip
+    def limits_of(self, sweep: Sweep) -> LimitCurve:
         """Limits, extrapolated from two resolutions where the case fixes no steps."""
         from chatter.stability.methods.semi_discretization.arrays import milling_arrays
         from chatter.stability.methods.semi_discretization.multipliers import limit_curve
 
-        return limit_curve(milling_arrays(model), speeds, depths, steps, progress, self.scheme)
+        return limit_curve(milling_arrays(sweep.model), *sweep[1:], self.scheme)
 
 
 class SemiDiscretization(DiscretizedDelay):
@@ -58,15 +52,12 @@ class SemiDiscretization(DiscretizedDelay):
 
     gives_radius = gives_multiplier = True
 
-    def radius_of_structure(
-        self, model: MillingModel, speeds: Array, depths: Array, steps: int | None,
-        progress: Progress,
-    ) -> Array:  # fmt: skip
-        """Spectral radius at n points."""
+    def radius_of(self, sweep: Sweep) -> NDArray[np.float64]:
+        """Spectral radius at points."""
         from chatter.stability.methods.semi_discretization.arrays import milling_arrays
         from chatter.stability.methods.semi_discretization.multipliers import multipliers
 
-        return np.abs(multipliers(milling_arrays(model), speeds, depths, steps, progress))
+        return np.abs(multipliers(milling_arrays(sweep.model), *sweep[1:]))
 
     def multiplier(self, model: MillingModel, steps: int | None) -> Multiplier:
         """Dominant multiplier of the cut of a case, by the steps that it fixes or converged."""

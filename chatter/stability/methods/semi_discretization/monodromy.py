@@ -203,7 +203,7 @@ def build_monodromy(scheme, arrays, speed, depth, steps, refinement, free_steps)
     depth : float
         Axial depth, m.
     steps : int
-        Steps a tooth period; an interval of engagement gets its share, rounded up.
+        Steps per tooth period; an interval of engagement gets its share, rounded up.
     refinement : int
         Every step in the cut is divided by this, for extrapolation on nested steps.
     free_steps : int
@@ -360,7 +360,7 @@ def apply_monodromy(period, vector, out, scratch):
 
 @njit(**KERNEL)
 def first_check(period):
-    """Dimension of the space at which its dominant eigenpair is first looked for."""
+    """Dimension of the space at which its dominant eigenpair is first searched."""
     # weakly damped modes keep as many multipliers near the unit circle as there are states
     return _FIRST_CHECK + period.output.shape[1]
 

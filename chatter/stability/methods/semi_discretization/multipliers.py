@@ -35,14 +35,14 @@ _MOST_STEPS = 200_000
 #: refinements of the steps: plain, or nested ones from which the value is extrapolated
 _PLAIN = (1,)
 _EXTRAPOLATED = (1, 2)
-#: a correction beyond this share means that two multipliers have changed positions
+#: a correction beyond this share means that two multipliers have changed places
 _LARGEST_CORRECTION = 0.2
 #: of the error that is removed by extrapolation
 _ORDER = 2
 
 
 def automatic_steps(arrays: MillingArrays, speeds: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Steps a tooth period (n,) that resolve the chatter wave at each speed (rad/s)."""
+    """Steps per tooth period (n,) that resolve the chatter wavelength at each speed (rad/s)."""
     period = arrays.tooth_pitch / np.asarray(speeds)
     fastest = CHATTER_ABOVE_NATURAL * relevant_frequency(*arrays[:4])
     wavelengths = fastest / (2.0 * np.pi) * period
@@ -81,7 +81,7 @@ def multipliers(
     speeds, depths : (n,) array of float
         rad/s and m, point by point.
     steps : int, optional
-        Steps a tooth period of plain first-order semi-discretization; by default chosen from
+        Steps per tooth period of plain first-order semi-discretization; by default chosen from
         the natural frequencies, with extrapolation.
     progress : callable, optional
         Called with (done, total).
@@ -156,7 +156,7 @@ def limit_curve(
     speeds : (n,) array of float
         rad/s.
     depths : (m,) array of float
-        m, ascending, > 0: grid on which changes of stability are looked for; an unstable or
+        m, ascending, > 0: grid on which changes of stability are searched; an unstable or
         stable interval that fits between two of its depths is not seen.
     steps : int, optional
         As in `multipliers`.

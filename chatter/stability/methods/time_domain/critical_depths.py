@@ -15,7 +15,7 @@ from chatter.stability.crossings import find_crossings
 from chatter.stability.limit_curve import LimitCurve, limits_at
 from dynamics.modal.modes import Mode
 
-#: depths looked at, at the most; limits are refined to this share of their depth
+#: depths evaluated, at the most; limits are refined to this share of their depth
 _MOST_DEPTHS = 32
 _DEPTH_TOLERANCE = 5e-4
 #: growth that is out of the chip at once, as a logarithm a period

@@ -7,14 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.stability.method import StabilityMethod
+from chatter.stability.method import StabilityMethod, Sweep
 
 if TYPE_CHECKING:
-    from chatter.description.progress import Progress
     from chatter.stability.limit_curve import LimitCurve
-    from chatter.stability.model import MillingModel
-
-Array = NDArray[np.float64]
 
 
 class TimeDomain(StabilityMethod):
@@ -28,30 +24,18 @@ class TimeDomain(StabilityMethod):
     is_fast = False
     gives_radius = True
 
-    def limits_of_structure(
-        self,
-        model: MillingModel,
-        speeds: Array,
-        depths: Array,
-        steps: int | None,  # noqa: ARG002
-        progress: Progress,
-    ) -> LimitCurve:
+    def limits_of(self, sweep: Sweep) -> LimitCurve:
         """Limits on a grid of at most 32 depths, refined."""
         from chatter.stability.methods.time_domain.critical_depths import time_limit_curve
 
+        model, speeds, depths, _, progress = sweep
         return time_limit_curve(model.case, model.structure.modes, speeds, depths, progress)
 
-    def radius_of_structure(
-        self,
-        model: MillingModel,
-        speeds: Array,
-        depths: Array,
-        steps: int | None,  # noqa: ARG002
-        progress: Progress,
-    ) -> Array:
-        """Spectral radius at n points."""
+    def radius_of(self, sweep: Sweep) -> NDArray[np.float64]:
+        """Spectral radius at points."""
         from chatter.stability.methods.time_domain.critical_depths import growths
 
+        model, speeds, depths, _, progress = sweep
         found = growths(model.case, model.structure.modes, speeds, depths, progress)
         return np.array([growth.radius for growth in found])
 

@@ -116,7 +116,7 @@ def _lowest_between(omega, receptance, delays, means, speed, first, last, before
 def _limits(omega, receptance, coarse, delays, means, speeds):
     """Lowest limit and its frequency (rad/s) at each speed; inf and nan where there is none.
 
-    All lines are looked at only between two of the coarse ones where an eigenvalue turns real.
+    All lines are evaluated only between two of the coarse ones where an eigenvalue turns real.
     """
     rank = receptance.shape[1]
     depth, frequency = np.full(speeds.shape[0], np.inf), np.full(speeds.shape[0], np.nan)

@@ -2,19 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.method import StabilityMethod
-
-if TYPE_CHECKING:
-    from chatter.description.progress import Progress
-    from chatter.stability.model import MillingModel
-
-Array = NDArray[np.float64]
+from chatter.stability.limit_curve import LimitCurve, limits_at
+from chatter.stability.method import StabilityMethod, Sweep
 
 
 class ZerothOrder(StabilityMethod):
@@ -27,31 +19,22 @@ class ZerothOrder(StabilityMethod):
     takes_process_damping = False
     takes_frfs = True
 
-    def limits(
-        self,
-        model: MillingModel,
-        speeds: Array,
-        depths: Array,
-        steps: int | None,  # noqa: ARG002
-        progress: Progress,
-    ) -> LimitCurve:
+    def limits_of(self, sweep: Sweep) -> LimitCurve:
         """Limits within the depths; see `zero_order_of`."""
         from chatter.stability.methods.zeroth_order.limits import zero_order_of
 
-        limit = zero_order_of(model, speeds)
-        within = limit.critical_depth <= depths[-1]
-        progress(len(speeds), len(speeds))
-        return LimitCurve(
-            spindle_speed=speeds,
-            critical_depth=np.where(within, limit.critical_depth, np.inf),
-            chatter_frequency=np.where(within, limit.chatter_frequency, np.nan),
-            bifurcation=tuple("hopf" if found else "none" for found in within),
-            crossings=tuple(
-                np.array([depth]) if found else np.empty(0)
-                for depth, found in zip(limit.critical_depth, within, strict=True)
-            ),
-            steps=np.zeros(len(speeds), dtype=np.int64),
-        )
+        limit = zero_order_of(sweep.model, sweep.speeds)
+        crossings = [depth[depth <= sweep.depths[-1]] for depth in limit.critical_depth[:, None]]
+
+        def at_limits(
+            index: NDArray[np.int64],
+            depth: NDArray[np.float64],  # noqa: ARG001
+        ) -> tuple[list[str], NDArray[np.float64]]:
+            return ["hopf"] * index.size, limit.chatter_frequency[index]
+
+        count = len(sweep.speeds)
+        sweep.progress(count, count)
+        return limits_at(at_limits, sweep.speeds, crossings, np.zeros(count, dtype=np.int64))
 
 
 ZEROTH_ORDER = ZerothOrder()
