@@ -67,13 +67,13 @@ def whatif(
         if chosen is None:
             raise InputError("a case or machine file is wanted, or --study NAME; --studies lists")
         file = chosen.file()
-    from chatter.studies.whatif.model import load_subject, patched
+    from chatter.studies.model import load_model, patched
 
-    subject = patched(load_subject(file), parse_assignments(assignments or []))
+    model = patched(load_model(file), parse_assignments(assignments or []))
     name = file.parent.name if chosen is not None else file.stem
     folder = output_folder(out, f"{name}-{study}" if study else name)
     if chosen is not None:
-        subject = _fitted(chosen, lambda: patched(subject, chosen.settings))
+        model = _fitted(chosen, lambda: patched(model, chosen.settings))
     from chatter.studies.whatif.study import whatif as run_whatif
 
     announce_compilation()
@@ -81,7 +81,7 @@ def whatif(
         found = _fitted(
             chosen,
             lambda: run_whatif(
-                subject,
+                model,
                 vary or (chosen.vary if chosen else []),
                 result or (chosen.result if chosen else None),
                 tornado=tornado or (chosen is not None and chosen.tornado),
