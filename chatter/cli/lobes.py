@@ -79,7 +79,7 @@ def lobes(
         raise InputError(
             "--cluster computes the grid of a diagram, or one over --x and --y; give one of them"
         )
-    from chatter.studies.lobe_diagram import lobes as run_lobes
+    from chatter.stability.diagram import lobes as run_lobes
 
     announce_compilation()
     folder = output_folder(out, case.stem)

@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 from chatter.description.case import Case
 from chatter.description.progress import Progress, no_progress
 from chatter.description.units import rpm
+from chatter.engine.parallel import Executor
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, write_results
 from chatter.stability.forced_vibration import notes_on_steady_cut
+from chatter.stability.grid_blocks import radius_in_blocks
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.methods.collocation.converged_limits import LIMIT_ERROR
 from chatter.stability.methods.zeroth_order.method import ZeroOrderLimit
@@ -215,6 +217,8 @@ def lobes(
     method: str | None = None,
     grid: bool = False,
     progress: Progress = no_progress,
+    cluster: str | Executor | None = None,
+    folder: str | Path | None = None,
 ) -> LobeDiagram:
     """Compute the stability lobe diagram of a case.
 
@@ -228,6 +232,10 @@ def lobes(
         Also the spectral radius on the whole grid of speeds and depths.
     progress : callable, optional
         Called with (done, total) speeds.
+    cluster : str or Executor, optional
+        Where the grid is computed, as for `chatter.studies.executor.open_executor`; None: here.
+    folder : path, optional
+        On a cluster, keeps finished blocks of the grid in the result cache there.
 
     Returns
     -------
@@ -245,7 +253,12 @@ def lobes(
     deepest = deepest_depth(case, zero_order)
     depths = axial_depths(case, deepest)
     limits = limits_of(model, speeds, depths, resolution(case), progress)
-    computed = stability_grid(case, model, speeds, depths, name, progress) if grid else None
+    computed = None
+    if grid and cluster is not None:
+        radius = radius_in_blocks(case, speeds, depths, name, cluster, folder, progress)
+        computed = StabilityGrid(speeds, depths, radius)
+    elif grid:
+        computed = stability_grid(case, model, speeds, depths, name, progress)
     return LobeDiagram(
         case=case,
         method=name,
