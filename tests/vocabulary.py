@@ -151,7 +151,7 @@ def _words(identifier: str) -> list[str]:
 
 
 def _named(identifier: str, pattern: str) -> bool:
-    """Whether an identifier is ``=exactly``, holds ``a_b`` side by side, or ``a`` not before ``!b``."""
+    """Whether an identifier is `=exactly`, or holds `a_b` side by side, or `a` without `!b`."""
     if pattern.startswith("="):
         return identifier == pattern[1:]
     wanted, _, unless = pattern.partition("!")

@@ -32,7 +32,7 @@ def plot_whatif(study: WhatIf) -> Figure:
 
 
 def _title(study: WhatIf) -> str:
-    return study.subject.title or study.subject.name
+    return study.model.title or study.model.name
 
 
 def _quantity_label(study: WhatIf) -> str:
@@ -92,7 +92,7 @@ def _draw_curves(axes: Axes, study: WhatIf, panel: str, name: str, colours: list
 
 
 def _mark_operating_point(axes: Axes, study: WhatIf) -> None:
-    cut = study.subject.cut
+    cut = study.model.cut
     axes.plot(
         rpm(cut.spindle_speed),
         cut.axial_depth * 1e3,

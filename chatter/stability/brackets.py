@@ -87,7 +87,7 @@ class _Narrowing:
     def slope(
         self, k: NDArray[np.int64], depth: NDArray[np.float64], value: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Slope of the growth rate at a depth in brackets k, on the flatter side: a jump is none."""
+        """Slope of the growth rate in brackets k, on the flatter side: a jump has none."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.fmin(
                 np.abs(value - self.at_low[k]) / (depth - self.low[k]),

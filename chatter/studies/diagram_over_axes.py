@@ -29,8 +29,8 @@ from chatter.stability.search_range import (
     maximum_depth,
     spindle_speeds,
 )
-from chatter.studies.finished_points import key_of
 from chatter.studies.grid_blocks import radius_in_blocks
+from chatter.studies.model import fingerprint, patched
 from chatter.studies.parameter_axis import (
     DEPTH_PATH,
     SPEED_PATH,
@@ -39,8 +39,7 @@ from chatter.studies.parameter_axis import (
     case_value,
     speed_axis,
 )
-from chatter.studies.result_cache import kept_results
-from chatter.studies.whatif.model import fingerprint, patched
+from chatter.studies.result_cache import ResultCache
 from chatter.studies.whatif.variation import Value, Variation
 
 #: values of a range that gives no count: of a curve, and of each side of a map
@@ -122,7 +121,7 @@ def lobes_over(
     cluster : str or Executor, optional
         Where they are computed, as for `chatter.studies.executor.open_executor`; here by default.
     folder : path, optional
-        On a cluster, keeps finished points or columns in points.jsonl there.
+        On a cluster, keeps finished points or columns in the result cache there.
 
     Returns
     -------
@@ -319,11 +318,12 @@ def _kept(
     noun: str,
 ) -> list[dict[str, Any]]:
     """Records of all points on a cluster, kept as they come."""
-    keys = [
-        key_of(function.__name__, fingerprint(one.case), repr((one.method, one.speeds, one.depths)))
-        for one in points
-    ]
-    return kept_results(function, points, keys, noun, cluster, folder, progress)
+    with ResultCache(folder, function.__name__) as cache:
+        keys = [
+            cache.key(fingerprint(one.case), repr((one.method, one.speeds, one.depths)))
+            for one in points
+        ]
+        return cache.evaluate(function, points, keys, noun, cluster, progress)
 
 
 def _reasons(found: Sequence[dict[str, Any]], name: str, labels: Sequence[str]) -> tuple[str, ...]:

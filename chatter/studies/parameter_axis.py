@@ -14,7 +14,7 @@ from chatter.description.errors import InputError
 from chatter.description.formatting import shown
 from chatter.description.units import rpm, unit_factor
 from chatter.stability.search_range import spindle_speeds
-from chatter.studies.whatif.model import field_of, value_of
+from chatter.studies.model import field_of, value_of
 from chatter.studies.whatif.variation import Value, Variation, read_variation, variation
 
 SPEED_PATH, DEPTH_PATH = "cut.spindle_speed", "cut.axial_depth"

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import chatter
+from chatter.compile.machine_parts import assembled_machine
 from chatter.simulation.virtual_tests.frf import linearised_frictions, peaks
 from chatter.simulation.virtual_tests.from_file import one_frf
 from dynamics.frf.container import Frf
@@ -37,8 +38,8 @@ def peak_near_50(frf):
 
 
 def in_motion(machine, in_cut=False, friction=True):
-    frictions = linearised_frictions(machine.machine({}), Y_MOVES) if friction else {}
-    state = machine.machine({}, in_cut=in_cut)
+    frictions = linearised_frictions(assembled_machine(machine, {}), Y_MOVES) if friction else {}
+    state = assembled_machine(machine, {}, in_cut=in_cut)
     row = state.structure.port("table", [0.0, 1.0, 0.0])
     lines = np.arange(40.0, 65.0, 0.1)
     values = receptance(state, lines, [row], machine.step, frictions)[:, 0, 0]
@@ -46,7 +47,7 @@ def in_motion(machine, in_cut=False, friction=True):
 
 
 def test_thirty_three_freedoms_and_three_axes_that_move_freely(machine):
-    structure = machine.machine({}).structure
+    structure = assembled_machine(machine, {}).structure
     assert structure.size == 33
     frequency = structure.natural_frequencies()
     assert np.all(frequency[:3] < 1e-3)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import chatter
+from chatter.compile.machine_parts import assembled_machine
 from chatter.simulation.virtual_tests.frf import linearised_frf, peaks
 from dynamics.frf.container import Frf
 from dynamics.receptance.coupling import PointPort
@@ -41,7 +42,7 @@ def nearest(found, frequency):
     ],
 )
 def test_frequencies_with_brakes_on(machine, position, way, against, published):
-    state = machine.machine(BRAKES, position).without_friction()
+    state = assembled_machine(machine, BRAKES, position).without_friction()
     found = response(machine, state, way, against)
     for frequency in published:
         # the publication's own model deviates by up to 4 Hz
@@ -55,7 +56,7 @@ def test_frequencies_with_brakes_on(machine, position, way, against, published):
 )  # fmt: skip
 @pytest.mark.parametrize("way", ["x", "z"])
 def test_the_control_of_z_takes_the_axial_mode_of_z_away(machine, conditions, there, way):
-    found = response(machine, machine.machine(conditions, S2), way, lowest=105.0)
+    found = response(machine, assembled_machine(machine, conditions, S2), way, lowest=105.0)
     assert any(118.0 < one["frequency_Hz"] < 126.0 for one in found) == there
 
 
@@ -63,7 +64,7 @@ def test_higher_velocity_gain_raises_the_first_mode_and_lowers_its_frequency(mac
     key = "axis.X.control.velocity.proportional_gain"
     modes = []
     for gain in (30.0, 15.0, 7.5):
-        state = machine.patch({key: gain}).machine({}, S2)
+        state = assembled_machine(machine.patch({key: gain}), {}, S2)
         modes.append(nearest(response(machine, state, velocity={"X": 0.1 / 60.0}), 38.0))
     heights = [one["magnitude"] for one in modes]
     frequencies = [one["frequency_Hz"] for one in modes]
@@ -72,7 +73,7 @@ def test_higher_velocity_gain_raises_the_first_mode_and_lowers_its_frequency(mac
 
 
 def test_modal_state_space_below_200_hz_is_the_full_model(machine):
-    full = machine.patch({"highest_frequency": None}).machine(BRAKES, S2).structure
+    full = assembled_machine(machine.patch({"highest_frequency": None}), BRAKES, S2).structure
     modal = truncated(full, undamped_modes(full, 200.0), 0.015, residual_at=("tool", "work"))
     port = PointPort("tool", [1.0, 0.0, 0.0], "work")
     system = state_space(modal, [port], [port])

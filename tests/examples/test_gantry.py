@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import chatter
+from chatter.compile.machine_parts import assembled_machine
 from chatter.simulation.virtual_tests.loop_stability import least_stable_motion
 from dynamics.trajectory import square
 from tests.places import EXAMPLES, example_module
@@ -22,7 +23,7 @@ def run():
 
 
 def test_masses(machine):
-    whole = machine.machine({"X": "free", "Y": "free"})
+    whole = assembled_machine(machine, {"X": "free", "Y": "free"})
     # receptance far below the first mode is that of the published masses and the motors' inertia
     lines = np.array([0.05])
     frequency = 2.0 * np.pi * lines[0]
@@ -74,7 +75,7 @@ def test_square_with_stops_keeps_the_limits_of_each_axis(run):
 
 
 def test_square_is_run_within_the_published_order(machine, run):
-    assert least_stable_motion(machine.machine(), machine.step).stable
+    assert least_stable_motion(assembled_machine(machine), machine.step).stable
     move = run.square_with_stops(machine)
     largest = np.max(np.abs(move.contour))
     assert 15e-6 < largest < 48e-6  # simulated 30 um, measured 48 um

@@ -5,6 +5,7 @@ import pytest
 from scipy.optimize import least_squares
 
 import chatter
+from chatter.compile.machine_parts import assembled_machine
 from chatter.compile.rigid_motion import rigid_motion
 from chatter.description.errors import InputError
 from chatter.simulation.virtual_tests.frf import linearised_frf, linearised_frictions, peaks
@@ -36,7 +37,7 @@ def file():
 
 @pytest.fixture(scope="module")
 def machine(file):
-    return file.machine()
+    return assembled_machine(file)
 
 
 @pytest.mark.parametrize("axis", ["Y", "Z"])
@@ -65,7 +66,7 @@ def test_lateral_stiffness_comes_back_from_a_frf_in_x(file):
     def in_x(logarithms):
         stiffness = dict(zip("YZ", np.exp(logarithms), strict=True))
         changed = file.patch({path: stiffness[axis] for axis in "YZ" for path in LATERAL[axis]})
-        whole = changed.machine().without_friction()
+        whole = assembled_machine(changed).without_friction()
         row = whole.structure.port("tool", (1.0, 0.0, 0.0))
         return np.log(np.abs(linearised_frf(whole, file.step, frequency, row, row)))
 
@@ -102,7 +103,7 @@ def test_slow_set_points_are_followed(file, machine):
 
 def test_without_feedforward_the_position_loop_is_a_lag_of_its_gain(file):
     plain = {"axis.Y.control.feedforward.velocity": 0.0, "axis.Y.control.position.gain": 2.0}
-    machine = file.patch(plain).machine()
+    machine = assembled_machine(file.patch(plain))
     lines = np.array([0.2, 0.5, 1.0])
     found = loop_response(machine, file.step, "Y", lines).position
     lag = 1.0 / (1.0 + 2j * np.pi * lines / 2.0)
@@ -116,7 +117,7 @@ def test_the_velocity_loop_has_the_anti_resonance_of_the_load_on_a_held_screw(fi
     found = loop_response(machine, file.step, "Y", lines, sliding)
     valleys = [one["frequency_Hz"] for one in peaks(Frf(lines, 1.0 / found.velocity, "receptance"))]
     # a motor that stands still is a motor whose brake is on, belt and screw behind it elastic
-    held = file.machine({"Y": "brake"})
+    held = assembled_machine(file, {"Y": "brake"})
     row = held.structure.port("saddle", (0.0, 1.0, 0.0))
     clamped = receptance(held, lines, row[None], file.step, sliding)[:, 0, 0]
     resonances = [one["frequency_Hz"] for one in peaks(Frf(lines, clamped, "receptance"))]
@@ -126,15 +127,17 @@ def test_the_velocity_loop_has_the_anti_resonance_of_the_load_on_a_held_screw(fi
 
 
 def test_an_axis_without_control_has_no_loops(file):
-    braked = file.machine({"Y": "brake"})
+    braked = assembled_machine(file, {"Y": "brake"})
     with pytest.raises(InputError, match='"Y" is not under control'):
         loop_response(braked, file.step, "Y", [10.0])
     with pytest.raises(InputError, match="above 0 Hz"):
-        loop_response(file.machine(), file.step, "Y", [0.0, 10.0])
+        loop_response(assembled_machine(file), file.step, "Y", [0.0, 10.0])
     with pytest.raises(InputError, match="is not under control"):
         velocity_controlled(braked, "W")
     with pytest.raises(InputError, match="chirp"):
-        loop_by_sweep(file.machine(), file.step, "Y", LoopSweep("position", (5.0, 900.0), 1e-6))
+        loop_by_sweep(
+            assembled_machine(file), file.step, "Y", LoopSweep("position", (5.0, 900.0), 1e-6)
+        )
 
 
 def test_dry_friction_at_rest_holds_the_axis(file, machine):

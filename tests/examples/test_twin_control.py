@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import chatter
+from chatter.compile.machine_parts import assembled_machine
 from chatter.simulation.virtual_tests.frf import peaks
 from chatter.simulation.virtual_tests.loop_stability import least_stable_motion
 from tests.places import EXAMPLES, example_module
@@ -62,7 +63,7 @@ def test_fastest_move_has_the_published_error_and_its_own_force(comau):
 
 def test_loops_are_stable(comau, gepro):
     for machine in (comau, gepro):
-        assert least_stable_motion(machine.machine(), machine.step).stable
+        assert least_stable_motion(assembled_machine(machine), machine.step).stable
 
 
 def test_four_drives_in_parallel_carry_the_gantry(gepro, run):

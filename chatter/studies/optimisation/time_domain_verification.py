@@ -50,8 +50,11 @@ def _side_by_side(search: KeptSearch, candidates: Sequence[Candidate]) -> list[C
     alone = one_thread if len(candidates) > 1 else nullcontext
 
     def held(place: int) -> Candidate:
-        with alone():
-            return _Check(search, told[place], stopped).held(candidates[place])
+        try:
+            with alone():
+                return _Check(search, told[place], stopped).held(candidates[place])
+        finally:
+            search.cache.close()
 
     with ThreadPoolExecutor(max_workers=min(worker_count(), max(len(candidates), 1))) as pool:
         try:

@@ -18,8 +18,8 @@ from chatter.description.units import rpm
 from chatter.engine.parallel import Executor
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, write_results
-from chatter.studies.executor import open_executor
-from chatter.studies.finished_points import FinishedPoints, key_of
+from chatter.studies.model import fingerprint, patched
+from chatter.studies.result_cache import ResultCache
 from chatter.studies.uncertainty.confidence import wilson_interval
 from chatter.studies.uncertainty.parameters import UncertainParameter, correlation_of, parameters_of
 from chatter.studies.uncertainty.propagation import (
@@ -30,7 +30,6 @@ from chatter.studies.uncertainty.propagation import (
     shared_net,
 )
 from chatter.studies.uncertainty.sampling import samples
-from chatter.studies.whatif.model import fingerprint, patched
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -246,7 +245,7 @@ def uncertainty(
     method : str, optional
         Of stability, as for `chatter.lobes`.
     folder : path, optional
-        Keeps finished samples in points.jsonl there, and reuses those of the same input.
+        Keeps finished samples in the result cache there, and reuses those of the same input.
     progress : callable, optional
         Called with (done, total) samples.
     resumed : callable, optional
@@ -296,26 +295,17 @@ def _all_limits(
     cluster: str | Executor | None,
 ) -> list[SampleLimits]:
     """Limits of every sample, those finished before read from the folder."""
-    store = FinishedPoints(folder)
-    base = key_of(fingerprint(case), method or "", repr(net.speeds.tolist()), repr(net.depths[-1]))
-    keys = [key_of(base, repr(row.tolist())) for row in values]
-    before = sum(key in store for key in keys)
-    if before and resumed is not None:
-        resumed(before, len(keys))
-    missing = [place for place, key in enumerate(keys) if key not in store]
+    inputs = (fingerprint(case), method or "", repr(net.speeds.tolist()), repr(net.depths[-1]))
     paths = tuple(one.path for one in parameters)
     limits_of_sample = partial(_one_sample, case, paths, net, method)
-    progress(before, len(keys))
-    try:
-        with open_executor(cluster if missing else None) as executor:
-            wanted = [(place + 1, values[place].tolist()) for place in missing]
-            found = executor.results(limits_of_sample, wanted)
-            for done, (place, record) in enumerate(found, start=before + 1):
-                store.add(keys[missing[place]], record)
-                progress(done, len(keys))
-    except KeyboardInterrupt:
-        raise store.interrupted(keys, "samples") from None
-    return [SampleLimits.from_record(store[key]) for key in keys]
+    numbered = [(number, row.tolist()) for number, row in enumerate(values, start=1)]
+    with ResultCache(folder, *inputs) as cache:
+        keys = [cache.key(repr(row)) for _, row in numbered]
+        before = cache.finished(keys)
+        if before and resumed is not None:
+            resumed(before, len(keys))
+        records = cache.evaluate(limits_of_sample, numbered, keys, "samples", cluster, progress)
+    return [SampleLimits.from_record(record) for record in records]
 
 
 def _one_sample(

@@ -22,7 +22,7 @@ _MANY_TIMES = 2.0
 
 def title_of(study: WhatIf, quantity: Quantity) -> str:
     """Title of a quantity, with the speed where that is the same at all points."""
-    case = study.subject
+    case = study.model
     speed = "the speed of the cut"
     varied = any(one.path == "cut.spindle_speed" for one in study.variations)
     if isinstance(case, Case) and case.cut is not None and not varied:

@@ -7,6 +7,7 @@ import pickle
 import pytest
 
 from chatter.description.case import Case, load, loads
+from chatter.description.case_schema import schema
 from chatter.description.errors import InputError
 from chatter.description.sections.process import FRICTION_LAWS, Friction, Lobes
 from chatter.stability.registry import AUTO, METHODS

@@ -21,7 +21,7 @@ import chatter
 from chatter.description.errors import InputError, RunError
 from chatter.engine.parallel import SerialExecutor, one_thread, worker_count
 from chatter.studies.executor import DaskExecutor, _TaskSize, open_executor
-from chatter.studies.finished_points import FILE
+from chatter.studies.result_cache import ResultCache
 from tests.chatter.simulation.on_machine.coupled_machines import (
     body,
     cut_case,
@@ -189,10 +189,16 @@ def test_same_bytes_as_without_a_cluster(name, client, here, tmp_path):
 @pytest.mark.parametrize("name", STUDIES)
 def test_finished_points_are_not_computed_again(name, client, here, tmp_path):
     STUDIES[name](tmp_path, DaskExecutor(client))
-    lines = (tmp_path / FILE).read_text(encoding="utf-8")
+    before = records_in(tmp_path)
     again = STUDIES[name](tmp_path, DaskExecutor(None))
     assert without_grid_archive(again) == without_grid_archive(here[name])
-    assert (tmp_path / FILE).read_text(encoding="utf-8") == lines
+    assert records_in(tmp_path) == before
+
+
+def records_in(folder):
+    """Finished records of a folder by key, in the order in which they were added."""
+    with ResultCache(folder) as cache:
+        return {key: cache[key] for key in cache}
 
 
 def slow_square(folder, seconds, number):
@@ -242,8 +248,7 @@ def test_a_study_of_the_workspace_bears_the_loss_of_a_worker(name, client, here,
     executor = LosingAWorker(client, 1e-9)
     assert STUDIES[name](tmp_path, executor) == here[name]
     assert executor.killed is not None
-    keys = [json.loads(line)["key"] for line in (tmp_path / FILE).read_text().splitlines()]
-    assert len(keys) == len(set(keys)) == 6
+    assert len(records_in(tmp_path)) == 6
     client.wait_for_workers(2, timeout=60)
     assert executor.killed not in pids_of(client)
 
@@ -258,9 +263,9 @@ def test_a_study_of_the_workspace_goes_on_where_it_was(client, here, tmp_path):
 
     with pytest.raises(RunError, match="interrupted: 3 of 6 values"):
         run_path(tmp_path, Interrupted(client, 1e-9))
-    assert len((tmp_path / FILE).read_text(encoding="utf-8").splitlines()) == 3
+    assert len(records_in(tmp_path)) == 3
     assert run_path(tmp_path, DaskExecutor(client)) == here["path"]
-    assert len((tmp_path / FILE).read_text(encoding="utf-8").splitlines()) == 6
+    assert len(records_in(tmp_path)) == 6
 
 
 def test_the_workspace_makes_a_difference(here):
@@ -280,9 +285,9 @@ def test_interruption_keeps_what_is_finished(client, here, tmp_path):
 
     with pytest.raises(RunError, match="interrupted: 5 of 12 samples"):
         run_uncertainty(tmp_path, Interrupted(client, 1e-9))
-    assert len((tmp_path / FILE).read_text(encoding="utf-8").splitlines()) == 5
+    assert len(records_in(tmp_path)) == 5
     assert run_uncertainty(tmp_path, DaskExecutor(client)) == here["uncertainty"]
-    assert len((tmp_path / FILE).read_text(encoding="utf-8").splitlines()) == 12
+    assert len(records_in(tmp_path)) == 12
 
 
 def fails(number):
@@ -397,7 +402,7 @@ def test_ctrl_c_on_the_command_line_and_resumption(tmp_path):
     )
     try:
         until = time.monotonic() + 90.0
-        while not (out / FILE).is_file() and time.monotonic() < until:
+        while not records_in(out) and time.monotonic() < until:
             assert process.poll() is None, process.communicate()
             time.sleep(0.05)
         # as a terminal does: to the whole group, workers included
@@ -411,7 +416,7 @@ def test_ctrl_c_on_the_command_line_and_resumption(tmp_path):
     assert "interrupted: " in errors
     assert "the same command goes on from there" in errors
     assert "Traceback" not in errors
-    kept = len((out / FILE).read_text(encoding="utf-8").splitlines())
+    kept = len(records_in(out))
     assert kept > 0
     resumed = []
     chatter.uncertainty(

@@ -6,7 +6,7 @@ import pytest
 import chatter
 from chatter.compile.real_modes import lines_around, real_modes
 from chatter.description.case import Case
-from chatter.studies.whatif.model import field_of
+from chatter.studies.model import field_of
 from dynamics.modal.modes import Mode, receptance_matrix
 from tests.places import EXAMPLES
 

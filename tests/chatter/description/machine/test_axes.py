@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from chatter import InputError
+from chatter.compile.machine_parts import assembled_machine
 from chatter.description.machine.machine_file import MachineFile, loads_machine
 from dynamics.reduction.modal_truncation import undamped_modes
 
@@ -24,7 +25,7 @@ RACK = {
 
 
 def test_controller_says_what_the_file_says(line_text):
-    machine = loads_machine(line_text).machine()
+    machine = assembled_machine(loads_machine(line_text))
     controller = machine.drives[0].controller
     assert controller.position.gain == 50.0
     assert controller.position.velocity_limit == pytest.approx(0.5)
@@ -55,7 +56,7 @@ def test_reference_model_dead_times_and_regulated_motor(line_text):
              "denominator_frequency": "700 Hz", "denominator_damping": 1},
         ],
     })  # fmt: skip
-    controller = file.machine().drives[0].controller
+    controller = assembled_machine(file).drives[0].controller
     assert controller.velocity.reference_model.natural_frequency == 90.0
     assert controller.position.timing.measuring == 1
     assert controller.current.inductance == 5e-3
@@ -79,7 +80,7 @@ def test_friction_rows(line_text):
             "on": {"mode": 4},
         },
     })  # fmt: skip
-    machine = file.machine({"Y": "brake"})
+    machine = assembled_machine(file, {"Y": "brake"})
     rows = {one.name: one.row for one in machine.frictions}
     structure = machine.structure
     table = structure.port("table", (0, 1, 0), "tool")
@@ -112,7 +113,7 @@ def test_each_place_of_a_connector_has_its_friction(head_on_beam):
             "on": {"connector": "crossbeam.left", "direction": "rx"},
         },
     }  # fmt: skip
-    machine = MachineFile.from_dict(head_on_beam).machine()
+    machine = assembled_machine(MachineFile.from_dict(head_on_beam))
     assert [one.name for one in machine.frictions] == ["rail[0]", "rail[1]", "seal"]
 
 
@@ -126,7 +127,7 @@ def test_two_motors_on_a_rack(line, changed, motors, count):
             MachineFile.from_dict(data)
         for motor in data["axis"]["Y"]["drive"]["motors"]:
             del motor["preload"]
-    machine = MachineFile.from_dict(data).machine()
+    machine = assembled_machine(MachineFile.from_dict(data))
     assert len(machine.drives) == count
     assert len(machine.preloads) == (2 if motors == "together" else 0)
     assert [one.name for one in machine.frictions] == ["guide", "screw[0]", "screw[1]"]
@@ -141,7 +142,7 @@ def test_linear_motor_takes_newtons(line, changed):
     control["velocity"].update(proportional_gain="12 kN*s/m", torque_limit="3 kN")
     control["feedforward"]["inertia"] = "300 kg"
     control["measuring"] = {"position": "scale", "encoder_resolution": "0.1 um"}
-    machine = MachineFile.from_dict(data).machine()
+    machine = assembled_machine(MachineFile.from_dict(data))
     assert machine.drives[0].controller.velocity.proportional_gain == 12e3
     control["velocity"]["proportional_gain"] = "12 N*m*s/rad"
     data["axis"]["Y"]["brake"]["stiffness"] = "1e5 N*m/rad"
@@ -163,7 +164,7 @@ def test_spindle_as_a_rotor(line):
             "current": {"sample_time": "62.5 us"},
         },
     }  # fmt: skip
-    machine = MachineFile.from_dict(line).machine()
+    machine = assembled_machine(MachineFile.from_dict(line))
     assert machine.axes == ("Y", "S")
     limit = machine.drives[1].controller.position.velocity_limit
     assert limit == pytest.approx(200.0 * math.pi)
@@ -189,7 +190,8 @@ def test_screw_on_a_beam(line, changed):
     })  # fmt: skip
     file = MachineFile.from_dict(data)
     near, far = (
-        file.machine({"Y": "brake"}, {"Y": position}).structure for position in ("-0.3 m", "0.3 m")
+        assembled_machine(file, {"Y": "brake"}, {"Y": position}).structure
+        for position in ("-0.3 m", "0.3 m")
     )
     port = near.port("table", (0, 1, 0), "tool")
     soft, stiff = (one.receptance(0.0, port)[0, 0, 0].real for one in (far, near))
@@ -198,4 +200,4 @@ def test_screw_on_a_beam(line, changed):
     turning = 0.6 / (206e9 / 2.6 * math.pi / 32 * 0.04**4) * TRAVEL**2
     assert soft - stiff == pytest.approx(0.6 / (206e9 * area) + turning, rel=1e-3)
     with pytest.raises(InputError, match="station"):
-        file.machine(positions={"Y": "600 mm"})
+        assembled_machine(file, positions={"Y": "600 mm"})

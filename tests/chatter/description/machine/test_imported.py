@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from chatter import InputError
+from chatter.compile.machine_parts import assembled_machine
 from chatter.description.machine.machine_file import MachineFile
 from dynamics.beam.shaft import BeamLine, Material, Segment
 
@@ -53,29 +54,35 @@ def with_imported(head_on_beam, rail=()):
 def test_imported_beam_is_the_beam(head_on_beam, folder):
     head_on_beam["connector"]["carriage"]["places"] = [[0.5, 0, 0]]
     head_on_beam["connector"]["carriage"]["stiffness"].update(ry="1e6 N*m/rad", rz="1e6 N*m/rad")
-    expected = MachineFile.from_dict(head_on_beam).machine(positions={"X": 0.125}).structure
+    expected = assembled_machine(
+        MachineFile.from_dict(head_on_beam), positions={"X": 0.125}
+    ).structure
     file = MachineFile.from_dict(with_imported(head_on_beam), folder=folder)
-    found = file.machine(positions={"X": 0.125}).structure
+    found = assembled_machine(file, positions={"X": 0.125}).structure
     assert found.natural_frequencies(8) == pytest.approx(expected.natural_frequencies(8), rel=1e-6)
 
 
 def test_rail_between_points(head_on_beam, folder):
-    expected = MachineFile.from_dict(head_on_beam).machine(positions={"X": 0.03}).structure
+    expected = assembled_machine(
+        MachineFile.from_dict(head_on_beam), positions={"X": 0.03}
+    ).structure
     rail = [f"p{k}" for k in range(NODES)]
     file = MachineFile.from_dict(with_imported(head_on_beam, rail), folder=folder)
-    found = file.machine(positions={"X": 0.03}).structure
+    found = assembled_machine(file, positions={"X": 0.03}).structure
     # a line that is straight between its points lacks their bending, so it is a little stiffer
     ratio = found.natural_frequencies(3) / expected.natural_frequencies(3)
     assert np.all((ratio > 1.0) & (ratio < 1.015)), ratio
     with pytest.raises(InputError, match=r"m\.toml: .*off the end of the rail"):
-        MachineFile.from_dict(head_on_beam, "m.toml", folder).machine(positions={"X": 0.6})
+        assembled_machine(
+            MachineFile.from_dict(head_on_beam, "m.toml", folder), positions={"X": 0.6}
+        )
 
 
 def test_read_once_for_all_positions(head_on_beam, folder):
     file = MachineFile.from_dict(with_imported(head_on_beam, ["p0", "p8"]), folder=folder)
-    first = file.machine().structure
+    first = assembled_machine(file).structure
     (folder / "M.npz").unlink()
-    assert file.machine().structure.mass == pytest.approx(first.mass)
+    assert assembled_machine(file).structure.mass == pytest.approx(first.mass)
 
 
 @pytest.mark.parametrize(
@@ -97,6 +104,6 @@ def test_told(head_on_beam, folder, key, value, words):
     data = with_imported(head_on_beam, ["p0", "p8"])
     data["imported"]["crossbeam"][key] = value
     with pytest.raises(InputError) as caught:
-        MachineFile.from_dict(data, "m.toml", folder).machine()
+        assembled_machine(MachineFile.from_dict(data, "m.toml", folder))
     for word in words:
         assert word in str(caught.value)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 
+from chatter.compile.machine_parts import assembled_machine, machine_parts
 from chatter.description.machine.machine_file import MachineFile, loads_machine
 from dynamics.beam.shaft import BeamLine, Bearing, Material, Segment
 from dynamics.structure.assembly import assemble
@@ -37,7 +38,7 @@ def along_y(machine):
 
 @pytest.mark.parametrize("condition", ["free", "control", "brake"])
 def test_two_bodies_and_a_screw(line_text, condition):
-    machine = loads_machine(line_text).machine({"Y": condition})
+    machine = assembled_machine(loads_machine(line_text), {"Y": condition})
     expected = by_hand(1e5 if condition == "brake" else 0.0)
     found = along_y(machine)
     assert len(found) == 3
@@ -48,13 +49,15 @@ def test_two_bodies_and_a_screw(line_text, condition):
 
 def test_brake_is_the_default_of_nothing(line_text):
     file = loads_machine(line_text)
-    assert [drive.name for drive in file.machine().drives] == ["Y"]
-    assert file.patch({"axis.Y.control": None}).machine().drives == ()
+    assert [drive.name for drive in assembled_machine(file).drives] == ["Y"]
+    assert assembled_machine(file.patch({"axis.Y.control": None})).drives == ()
 
 
 def test_contact_in_cut_stiffens_tool_against_table(line_text):
     file = loads_machine(line_text)
-    away, in_cut = (file.machine({"Y": "brake"}, in_cut=cut).structure for cut in (False, True))
+    away, in_cut = (
+        assembled_machine(file, {"Y": "brake"}, in_cut=cut).structure for cut in (False, True)
+    )
     port = away.port("tool", (0, 1, 0), "table")
     frequency = 30.0
     stiffness = [1.0 / one.receptance(frequency, port)[0, 0, 0] for one in (away, in_cut)]
@@ -68,7 +71,7 @@ def test_contact_in_cut_stiffens_tool_against_table(line_text):
 
 def test_damping_ratio_of_every_elastic_mode(line_text):
     file = loads_machine(line_text).patch({"damping_ratio": 0.03, "axis.Y.brake.damping": "0"})
-    structure = file.machine({"Y": "brake"}).structure
+    structure = assembled_machine(file, {"Y": "brake"}).structure
     squared, shapes = scipy.linalg.eigh(structure.stiffness, structure.mass)
     ratio = np.diag(shapes.T @ structure.damping @ shapes) / (2.0 * np.sqrt(squared))
     assert ratio == pytest.approx(0.03, rel=1e-6)
@@ -103,8 +106,8 @@ def test_a_head_that_moves_along_a_beam(head_on_beam, position):
     expected = head_by_hand(position)
     frequencies = expected.natural_frequencies(12)
     for machine in (
-        file.machine(positions={"X": f"{position * 1e3} mm"}),
-        file.patch({"axis.X.position": position}).machine(),
+        assembled_machine(file, positions={"X": f"{position * 1e3} mm"}),
+        assembled_machine(file.patch({"axis.X.position": position})),
     ):
         assert machine.structure.natural_frequencies(12) == pytest.approx(frequencies, rel=1e-9)
         ports = [one.port("tool", (0, 1, 0)) for one in (expected, machine.structure)]
@@ -115,7 +118,7 @@ def test_a_head_that_moves_along_a_beam(head_on_beam, position):
 
 def test_the_head_is_softest_in_the_middle(head_on_beam):
     file = MachineFile.from_dict(head_on_beam)
-    middle, left = (file.machine(positions={"X": x}).structure for x in (0.0, "-300 mm"))
+    middle, left = (assembled_machine(file, positions={"X": x}).structure for x in (0.0, "-300 mm"))
     assert middle.natural_frequencies(1)[0] < 0.95 * left.natural_frequencies(1)[0]
 
 
@@ -129,7 +132,7 @@ def test_axes_on_axes_shift_together(head_on_beam):
         "direction": [0, 1, 0], "moving": "crossbeam", "carrying": "ground",
         "carries": ["crossbeam", "head", "leg"], "position": "10 mm",
     }  # fmt: skip
-    parts = MachineFile.from_dict(head_on_beam).at({"X": 0.2})
+    parts = machine_parts(MachineFile.from_dict(head_on_beam), {"X": 0.2})
     at = {one.name: one.centre for one in parts.bodies}
     assert at["head"] == pytest.approx([0.7, 0.01, -0.1])
     assert at["leg"] == pytest.approx([0.0, 1.01, 0.0])
@@ -142,7 +145,7 @@ def test_axes_on_axes_shift_together(head_on_beam):
 
 
 def test_drives_push_where_the_part_is(line_text):
-    parts = loads_machine(line_text).at({"Y": "200 mm"})
+    parts = machine_parts(loads_machine(line_text), {"Y": "200 mm"})
     geometry = parts.axes[0].geometry
     assert geometry.at == pytest.approx([0.0, 0.3, 0.0])
     assert geometry.position == pytest.approx(0.2)
@@ -150,7 +153,7 @@ def test_drives_push_where_the_part_is(line_text):
 
 def test_six_entries_of_an_inertia_tensor(line, changed):
     data = changed(line, ["body", "bed", "inertia"], [400, 500, 600, -20, 30, "-10 kg*m^2"])
-    bed = MachineFile.from_dict(data).at().bodies[0]
+    bed = machine_parts(MachineFile.from_dict(data)).bodies[0]
     assert bed.inertia.tolist() == [[400, -20, 30], [-20, 500, -10], [30, -10, 600]]
 
 
@@ -161,7 +164,7 @@ def test_disc_by_size_and_material_of_a_segment(head_on_beam):
         {"length": "0.2 m", "outer": "50 mm", "inner": "20 mm",
          "material": {"young": "70 GPa", "density": "2.7 g/cm^3", "poisson": 0.33}}
     )  # fmt: skip
-    made = MachineFile.from_dict(head_on_beam).at().beams[0]
+    made = machine_parts(MachineFile.from_dict(head_on_beam)).beams[0]
     assert made.discs[0].mass == pytest.approx(7850.0 * 0.02 * math.pi * 0.01)
     assert made.segments[1].material.young == 70e9
     rigid = made.rigid_motions

@@ -3,6 +3,7 @@
 import pytest
 
 from chatter import InputError
+from chatter.compile.machine_parts import assembled_machine
 from chatter.description.machine.machine_file import MachineFile, load_machine, loads_machine
 
 FRICTION = {
@@ -125,7 +126,7 @@ def test_told_on_reading(line, changed, path, value, words):
 def test_told_on_assembling(line_text, patch, arguments, words):
     file = loads_machine(line_text, name="m.toml").patch(patch)
     with pytest.raises(InputError) as caught:
-        file.machine(**arguments)
+        assembled_machine(file, **arguments)
     text = str(caught.value)
     assert text.startswith("m.toml: ")
     for word in words:

@@ -8,6 +8,7 @@ import pytest
 import tomlkit
 
 from chatter import InputError
+from chatter.compile.machine_parts import machine_parts
 from chatter.description.machine.machine_file import MachineFile, load_machine, loads_machine
 from chatter.description.machine.machine_schema import machine_schema
 from chatter.description.path import keys_of
@@ -125,4 +126,4 @@ def test_nothing_but_input_errors(line_text, value):
     assert len(paths) > 80
     for path in paths:
         with contextlib.suppress(InputError):
-            file.patch({path: value}).at()
+            machine_parts(file.patch({path: value}))

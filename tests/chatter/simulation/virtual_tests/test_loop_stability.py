@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from chatter.compile.machine_parts import assembled_machine
 from chatter.description.errors import InputError
 from chatter.description.machine.machine_file import load_machine
 from chatter.simulation.virtual_tests.loop_stability import (
@@ -111,7 +112,7 @@ def test_sine_of_the_set_point_in_the_z_domain(controller, rigid_motor, frequenc
 def test_the_axis_that_is_unstable_is_named(axis, change):
     """Of two axes on one structure, the one whose gain is too high."""
     file = load_machine(MANDELLI)
-    machine = file.patch({f"axis.{axis}.control.{change[0]}": change[1]}).machine()
+    machine = assembled_machine(file.patch({f"axis.{axis}.control.{change[0]}": change[1]}))
     motion = least_stable_motion(machine, file.step)
     assert not motion.stable
     assert motion.drive == axis

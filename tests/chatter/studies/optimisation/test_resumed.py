@@ -11,7 +11,7 @@ import pytest
 
 import chatter
 from chatter import RunError
-from chatter.studies.finished_points import FILE
+from chatter.studies.result_cache import ResultCache
 from tests.chatter.studies.optimisation.cuts import end_mill
 
 NET = {"speeds": {"from": "8800 rpm", "to": "9600 rpm"}, "depths": {"to": "3 mm", "count": 10}}
@@ -39,17 +39,18 @@ def started(command, case, out):
     )
 
 
-def lines_of(folder):
-    path = folder / FILE
-    return path.read_text().splitlines() if path.is_file() else []
+def records_in(folder):
+    """Pairs of key and finished record, in the order in which they were added."""
+    with ResultCache(folder) as cache:
+        return [(key, cache[key]) for key in cache]
 
 
 def interrupted_after(count, command, case, out):
-    """Exit code and messages of a command that gets Ctrl-C once so many pieces are on disk."""
+    """Exit code and messages of a command that gets Ctrl-C once so many parts are on disk."""
     process = started(command, case, out)
     try:
         until = time.monotonic() + 240.0
-        while len(lines_of(out)) < count and process.poll() is None and time.monotonic() < until:
+        while len(records_in(out)) < count and process.poll() is None and time.monotonic() < until:
             time.sleep(0.002)
         process.send_signal(signal.SIGINT)
         _, told = process.communicate(timeout=60.0)
@@ -58,9 +59,9 @@ def interrupted_after(count, command, case, out):
     return process.returncode, told
 
 
-def pieces_before_the_time_domain(lines):
-    points = [json.loads(line)["point"] for line in lines]
-    return next(i for i, one in enumerate(points) if isinstance(one, dict) and one.get("time"))
+def parts_before_the_time_domain(records):
+    found = [record for _, record in records]
+    return next(i for i, one in enumerate(found) if isinstance(one, dict) and one.get("time"))
 
 
 @pytest.mark.parametrize("command", ["optimum", "pitch"])
@@ -73,7 +74,7 @@ def test_an_interrupted_search_goes_on_where_it_stopped(command, tmp_path):
     stops = [2]
     if command == "optimum":
         # while candidates are simulated side by side
-        stops.append(pieces_before_the_time_domain(lines_of(whole)))
+        stops.append(parts_before_the_time_domain(records_in(whole)))
     before = []
     for stop in stops:
         code, told = interrupted_after(stop, command, path, out)
@@ -82,16 +83,16 @@ def test_an_interrupted_search_goes_on_where_it_stopped(command, tmp_path):
         assert "Traceback" not in told
         assert not (out / "summary.json").exists()
         # what was known is there once, and was not computed again
-        known, before = before, lines_of(out)
+        known, before = before, records_in(out)
         assert before[: len(known)] == known
-        assert stop <= len(before) < len(lines_of(whole))
-        assert "pieces of the search are finished" in told
+        assert stop <= len(before) < len(records_in(whole))
+        assert "parts of the search are finished" in told
     process = started(command, path, out)
     _, told = process.communicate(timeout=240.0)
     assert process.returncode == 0, told
-    after = lines_of(out)
+    after = records_in(out)
     assert after[: len(before)] == before
-    assert sorted(after) == sorted(lines_of(whole))
+    assert sorted(after) == sorted(records_in(whole))
     for name in WRITTEN[command]:
         assert (out / name).read_bytes() == (whole / name).read_bytes()
 
@@ -99,18 +100,16 @@ def test_an_interrupted_search_goes_on_where_it_stopped(command, tmp_path):
 def test_a_changed_case_starts_anew_and_the_same_one_computes_nothing(tmp_path, monkeypatch):
     case = end_mill(CASES["pitch"])
     first = chatter.pitch(case, folder=tmp_path)
-    known = lines_of(tmp_path)
+    known = records_in(tmp_path)
     monkeypatch.setattr("chatter.studies.pitch_design.search.first_limits", None)
     again = chatter.pitch(case, folder=tmp_path)
-    assert lines_of(tmp_path) == known
+    assert records_in(tmp_path) == known
     assert again.best.pitch == first.best.pitch
     assert json.dumps(again.summary()) == json.dumps(first.summary())
     monkeypatch.undo()
     softer = case.patch({"structure.mode[0].stiffness": "12 N/um"})
     chatter.pitch(softer, folder=tmp_path)
-    keys = [json.loads(line)["key"] for line in lines_of(tmp_path)]
-    assert len(set(keys)) == len(keys)
-    assert len(keys) >= len(known) + 10
+    assert len(records_in(tmp_path)) >= len(known) + 10
 
 
 def test_an_interrupted_run_in_time_is_no_verdict(tmp_path, monkeypatch):
@@ -120,7 +119,7 @@ def test_an_interrupted_run_in_time_is_no_verdict(tmp_path, monkeypatch):
 
     monkeypatch.setattr("chatter.simulation.simulate.run", cut_short)
     section = {**NET, "depths": {"to": "1 mm", "count": 5}}
-    with pytest.raises(RunError, match="pieces of the search are finished"):
+    with pytest.raises(RunError, match="parts of the search are finished"):
         chatter.optimum(end_mill({"optimum": section}), folder=tmp_path)
-    kept = [json.loads(line)["point"] for line in lines_of(tmp_path)]
+    kept = [record for _, record in records_in(tmp_path)]
     assert not any(isinstance(one, dict) and one.get("time") for one in kept)

@@ -18,7 +18,7 @@ def test_a_study_on_the_command_line(case_file, tmp_path):
     result = run(*words, "--method", "zero-order", "--out", out)
     assert result.exit_code == 0, result.output
     assert "as material.Ktc goes from 400 MPa to 800 MPa" in result.stdout
-    names = {"whatif.csv", "whatif.png", "summary.json", "points.jsonl"}
+    names = {"whatif.csv", "whatif.png", "summary.json", "result-cache"}
     assert {path.name for path in out.iterdir()} == names
     again = run(*words, "--method", "zero-order", "--out", out, "--json")
     assert "2 of 2 points were finished before" in again.stderr

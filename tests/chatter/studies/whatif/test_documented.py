@@ -6,9 +6,9 @@ import shlex
 import pytest
 
 from chatter.description.assignments import parse_assignments
+from chatter.studies.model import load_model, patched
 from chatter.studies.uncertainty.parameters import parameters_of
 from chatter.studies.whatif.design import chosen_layout, points_of
-from chatter.studies.whatif.model import load_subject, patched
 from chatter.studies.whatif.presets import STUDIES
 from chatter.studies.whatif.variation import read_variation
 from tests.places import ROOT
@@ -35,10 +35,10 @@ def test_documented_commands_fit_their_files(words):
     file = ROOT / words[2]
     if not file.is_file():
         pytest.skip(f"{words[2]} is not there")
-    subject = patched(load_subject(file), parse_assignments(given(words, "--set")))
+    model = patched(load_model(file), parse_assignments(given(words, "--set")))
     if words[1] == "uncertainty":
-        assert len(parameters_of(subject)) == 2
+        assert len(parameters_of(model)) == 2
         return
-    variations = [read_variation(text, subject) for text in given(words, "--vary")]
+    variations = [read_variation(text, model) for text in given(words, "--vary")]
     for point in points_of(variations, chosen_layout(variations, "--tornado" in words)):
-        patched(subject, point.patch)
+        patched(model, point.patch)

@@ -3,7 +3,7 @@
 import pytest
 
 from chatter.description.errors import InputError
-from chatter.studies.whatif.model import load_subject, patched, value_of
+from chatter.studies.model import load_model, patched, value_of
 from chatter.studies.whatif.study import whatif
 from chatter.studies.whatif.variation import read_variation
 
@@ -38,7 +38,7 @@ def test_shares_are_of_what_stands_in_every_place(case):
 
 
 def test_paths_lead_into_the_machine_of_a_case(case_on_machine):
-    case = load_subject(case_on_machine)
+    case = load_model(case_on_machine)
     changed = patched(case, {"machine.body.head.mass": "50 kg", "cut.axial_depth": "2 mm"})
     assert value_of(changed, "machine.body.head.mass") == 50.0
     assert value_of(case, "machine.body.head.mass") == 100.0
@@ -83,7 +83,7 @@ def test_other_wrong_wishes(case, machine_file):
     with pytest.raises(InputError, match='"lobs" is not known; there are lobes'):
         whatif(case, ["cut.axial_depth=1 mm"], "lobs")
     with pytest.raises(InputError, match="a machine alone makes no cut"):
-        whatif(load_subject(machine_file), ["body.head.mass=1 kg"], "lobes")
+        whatif(load_model(machine_file), ["body.head.mass=1 kg"], "lobes")
     with pytest.raises(InputError, match='"depth" is not known; lobes has critical_depth_mm'):
         whatif(case, ["cut.axial_depth=1 mm"], "lobes", quantity="depth")
     with pytest.raises(InputError, match="--count 1"):

@@ -19,7 +19,7 @@ from chatter.description.toml_document import parse_document, read_text
 if TYPE_CHECKING:
     from chatter.description.machine.machine_file import MachineFile
 
-    Subject: TypeAlias = Case | MachineFile
+    Model: TypeAlias = Case | MachineFile
 
 #: beginning of paths into the machine of a case
 PREFIX = "machine."
@@ -27,7 +27,7 @@ PREFIX = "machine."
 _OF_MACHINES = ("body", "beam", "imported", "connector")
 
 
-def load_subject(path: str | Path) -> Subject:
+def load_model(path: str | Path) -> Model:
     """Read a case or a machine file, whichever it is.
 
     Raises
@@ -44,20 +44,20 @@ def load_subject(path: str | Path) -> Subject:
     return Case.from_file(path)
 
 
-def machine_of(subject: Subject) -> MachineFile | None:
-    """Machine of a case, or the machine that the subject is; None where there is none."""
-    if not isinstance(subject, Case):
-        return subject
-    on_machine = subject.structure is not None and subject.structure.machine is not None
-    return subject.machine_file() if on_machine else None
+def machine_of(model: Model) -> MachineFile | None:
+    """Machine of a case, or the machine that the model is; None where there is none."""
+    if not isinstance(model, Case):
+        return model
+    on_machine = model.structure is not None and model.structure.machine is not None
+    return model.machine_file() if on_machine else None
 
 
-def patched(subject: Subject, values: Mapping[str, Any]) -> Subject:
-    """Return a subject with some values changed.
+def patched(model: Model, values: Mapping[str, Any]) -> Model:
+    """Return a model with some values changed.
 
     Parameters
     ----------
-    subject : Case or MachineFile
+    model : Case or MachineFile
     values : mapping
         Path -> value as for `Case.patch`.
 
@@ -72,50 +72,50 @@ def patched(subject: Subject, values: Mapping[str, Any]) -> Subject:
         if path.startswith(PREFIX)
     }
     own = {path: value for path, value in values.items() if not path.startswith(PREFIX)}
-    if not isinstance(subject, Case):
-        return subject.patch({**own, **of_machine}) if values else subject
-    changed = subject.patch(own) if own else subject
+    if not isinstance(model, Case):
+        return model.patch({**own, **of_machine}) if values else model
+    changed = model.patch(own) if own else model
     if not of_machine:
         return changed
     return changed.with_machine(_machine(changed, next(iter(of_machine))).patch(of_machine))
 
 
-def value_of(subject: Subject, path: str) -> Any:
-    """Value at a path, in SI; None where the subject has none.
+def value_of(model: Model, path: str) -> Any:
+    """Value at a path, in SI; None where the model has none.
 
     Raises
     ------
     InputError
         If the path leads into a machine and there is none.
     """
-    where, inside = _into(subject, path)
+    where, inside = _into(model, path)
     try:
         return where.get(inside)
     except InputError:
         return None
 
 
-def field_of(subject: Subject, path: str) -> QuantityField | None:
+def field_of(model: Model, path: str) -> QuantityField | None:
     """Kind of quantity at a path; None where it takes none, or there is no such path."""
-    where, inside = _into(subject, path)
+    where, inside = _into(model, path)
     return field_at(type(where), parse_path(inside, f"a {where.NOUN}"))
 
 
-def deviations_of(subject: Subject) -> dict[str, float]:
+def standard_deviations(model: Model) -> dict[str, float]:
     """Standard deviations (SI) of all values given with one, by path, the machine's too."""
-    found = dict(subject.deviations())
-    machine = machine_of(subject)
-    if machine is not None and machine is not subject:
+    found = dict(model.deviations())
+    machine = machine_of(model)
+    if machine is not None and machine is not model:
         found.update({PREFIX + path: one for path, one in machine.deviations().items()})
     return found
 
 
-def fingerprint(subject: Subject) -> str:
-    """Text that changes where the subject, a file that it names or the program changes."""
+def fingerprint(model: Model) -> str:
+    """Text that changes where the model, a file that it names or the program changes."""
     from chatter.engine.presets import CACHE_FOLDER
 
     digest = hashlib.sha256()
-    parts = [subject] if machine_of(subject) in (None, subject) else [subject, machine_of(subject)]
+    parts = [model] if machine_of(model) in (None, model) else [model, machine_of(model)]
     for part in parts:
         # the folder of compiled code is named by a hash of all sources
         digest.update(f"{CACHE_FOLDER.name} {type(part).__name__} {part._content()}".encode())
@@ -136,19 +136,19 @@ def _files(content: Any) -> Iterator[Path]:
             yield from _files(entry)
 
 
-def _into(subject: Subject, path: str) -> tuple[Subject, str]:
+def _into(model: Model, path: str) -> tuple[Model, str]:
     """Description that a path leads into, and the path there."""
     if not path.startswith(PREFIX):
-        return subject, path
+        return model, path
     inside = path.removeprefix(PREFIX)
-    return _machine(subject, inside), inside
+    return _machine(model, inside), inside
 
 
-def _machine(subject: Subject, path: str) -> MachineFile:
-    machine = machine_of(subject)
+def _machine(model: Model, path: str) -> MachineFile:
+    machine = machine_of(model)
     if machine is None:
         raise InputError(
-            f"{subject.name}: {PREFIX}{path}: the case is on no machine; [structure] machine = "
+            f"{model.name}: {PREFIX}{path}: the case is on no machine; [structure] machine = "
             '"machine.toml" puts it on one'
         )
     return machine
