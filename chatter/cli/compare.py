@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from chatter.cli.errors import reports_errors
-from chatter.cli.explain import DeclaredCase, MeasurementPath, print_checks, print_views
+from chatter.cli.explain import DeclaredCase, MeasurementPath, print_checks, print_diagnostics
 from chatter.cli.options import Json, OutputFolder, output_folder
 from chatter.cli.report import announce_compilation, print_json, print_table, print_written
 
@@ -17,7 +17,7 @@ def compare(
 ) -> None:
     """Error of a case's prediction, by run and channel."""
     from chatter.explain.comparison import compare as run_compare
-    from chatter.explain.measurement import read_measurement
+    from chatter.explain.measurement_file import read_measurement
 
     declared = read_measurement(measurement, case)
     announce_compilation()
@@ -40,5 +40,5 @@ def compare(
         headers = ["run", "channel", "rms error [SI]", "of the signal [%]", "times the noise"]
         print_table(declared.title, headers, rows)
         if result.signature is not None:
-            print_views(result.signature.summary())
+            print_diagnostics(result.signature.summary())
     print_written(written)

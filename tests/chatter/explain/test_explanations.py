@@ -12,7 +12,7 @@ from chatter.description.case import load
 from chatter.description.errors import InputError
 from chatter.explain.comparison import compare
 from chatter.explain.explanation import Explanation, explain
-from chatter.explain.measurement import read_measurement
+from chatter.explain.measurement_file import read_measurement
 
 SETS = Path(__file__).resolve().parents[3] / "../shared/measurements"
 needs_sets = pytest.mark.skipif(not SETS.is_dir(), reason="no measurement sets here")
