@@ -1,6 +1,6 @@
 """How many faulty hammer records are found and how many good ones lost, over hundreds of sets.
 
-Run:  python benchmarks/hammer_examination.py [sets] [seed]
+Run:  python -m benchmarks.hammer_examination [sets] [seed]
 
 Sets of six to nine records of a three-mode structure (two modes 2 to 8 % apart), none to three
 records with a fault of random kind and severity, in three conditions: white noise of half to four
@@ -13,16 +13,11 @@ from __future__ import annotations
 import sys
 import time
 from collections import Counter, defaultdict
-from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests/dynamics")]
-
-from hammer_records import random_set  # noqa: E402
-
-from dynamics.frf.hammer import examine_records  # noqa: E402
+from dynamics.frf.hammer import examine_records
+from tests.dynamics.frf.hammer.hammer_records import random_set
 
 CONDITIONS = {
     "white noise": {},

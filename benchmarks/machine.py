@@ -17,6 +17,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
+from chatter.compile.machine_parts import assembled_machine
+
 # figures of one core: threads of the linear algebra would wait for a busy second one
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
@@ -256,7 +258,7 @@ def show(heads: str, rows: list[tuple]) -> list[dict]:
 def main() -> dict[str, list[dict]]:
     """Print the table and return it."""
     file = machining_centre()
-    machine = file.machine({})
+    machine = assembled_machine(file, {})
     tool = {
         way: machine.structure.port("tool", row, "table")
         for way, row in zip("xyz", np.eye(3), strict=True)

@@ -1,6 +1,6 @@
 """Stress study of the modal identification: made-up structures by the hundred.
 
-    python benchmarks/modal_identification.py [cases per kind] [first seed] [kind ...]
+    python -m benchmarks.modal_identification [cases per kind] [first seed] [kind ...]
 
 For each kind of structure it prints how many of the modes that the data bear (Cramer-Rao bound
 of the damping below 10 %) were found, how many of those accurately (0.2 % in frequency and 5 % in
@@ -10,27 +10,15 @@ With VERBOSE set in the environment every failure is listed.
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import sys
 import time
-from pathlib import Path
 
 from dynamics.identification import identify_modes
-
-_GENERATOR = Path(__file__).resolve().parents[1] / "tests/dynamics/made_up_frfs.py"
-
-
-def generator():
-    spec = importlib.util.spec_from_file_location("made_up_frfs", _GENERATOR)
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["made_up_frfs"] = module
-    spec.loader.exec_module(module)
-    return module
+from tests.dynamics.identification import made_up_frfs as made_up
 
 
 def main(arguments: list[str]) -> None:
-    made_up = generator()
     count = int(arguments[0]) if arguments else 40
     first = int(arguments[1]) if len(arguments) > 1 else 0
     kinds = arguments[2:] or list(made_up.KINDS)

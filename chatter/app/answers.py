@@ -14,12 +14,12 @@ from chatter.app.followed import followed_limits
 from chatter.app.parameters import Parameter, case_parameters, checked_values, view_parameters
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.engine.parallel import Progress
+from chatter.description.progress import Progress
+from chatter.description.units import from_rpm, rpm
 from chatter.stability.model import milling_model
 from chatter.stability.registry import chosen_method, resolution, zero_order_of
 from chatter.stability.search_range import deepest_depth, spindle_speeds
 
-_RPM = 30.0 / math.pi
 #: stage -> speeds, depths of the net
 STAGES = {"coarse": (120, 24), "fine": (200, 50)}
 _POINTS_SHOWN = 700
@@ -97,7 +97,7 @@ class LiveCase:
         started = time.perf_counter()
         case, view = self.patched(given)
         speed_count, depth_count = STAGES[stage]
-        span = (view["lobes.speeds.from"] / _RPM, view["lobes.speeds.to"] / _RPM)
+        span = (from_rpm(view["lobes.speeds.from"]), from_rpm(view["lobes.speeds.to"]))
         deepest = view["lobes.depths.to"] * 1e-3
         model = milling_model(case)
         steps = resolution(case)
@@ -114,7 +114,7 @@ class LiveCase:
         lowest = int(np.argmin(curve.critical_depth))
         return {
             "stage": stage,
-            "spindle_speed_rpm": _numbers(curve.spindle_speed * _RPM),
+            "spindle_speed_rpm": _numbers(rpm(curve.spindle_speed)),
             "crossings_mm": [_numbers(found * 1e3) for found in curve.crossings],
             "chatter_frequency_Hz": _numbers(curve.chatter_frequency),
             "bifurcation": list(curve.bifurcation),
@@ -122,10 +122,10 @@ class LiveCase:
             "deepest_mm": deepest * 1e3,
             "lowest": {
                 "depth_mm": _number(float(curve.critical_depth[lowest]) * 1e3),
-                "spindle_speed_rpm": float(curve.spindle_speed[lowest]) * _RPM,
+                "spindle_speed_rpm": rpm(float(curve.spindle_speed[lowest])),
             },
             "operating": {
-                "spindle_speed_rpm": cut.spindle_speed * _RPM,
+                "spindle_speed_rpm": rpm(cut.spindle_speed),
                 "axial_depth_mm": cut.axial_depth * 1e3,
                 "critical_depth_mm": _number(float(operating.critical_depth[0]) * 1e3),
                 "stable": below % 2 == 0,

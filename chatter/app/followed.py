@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.engine.parallel import Progress
+from chatter.description.progress import Progress
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.methods.collocation import multipliers as collocation
 from chatter.stability.methods.collocation.varying_speed import LOOSE_TUNING, tuned

@@ -10,7 +10,7 @@ from typing import Any
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.formatting import shown
-from chatter.description.units import unit_factor
+from chatter.description.units import rpm, unit_factor
 
 #: modes with sliders of their own
 _MOST_MODES = 6
@@ -62,7 +62,7 @@ class Parameter:
 
 def view_parameters(speeds: tuple[float, float], depth: float) -> tuple[Parameter, ...]:
     """Ranges of the diagram: speeds in rad/s, depth in m."""
-    low, high = (_rounded(speed * 30.0 / math.pi) for speed in speeds)
+    low, high = (_rounded(rpm(speed)) for speed in speeds)
     deep, unit = _rounded(depth * 1e3), "rpm"
     group = "Diagram"
     return (
@@ -97,8 +97,10 @@ def case_parameters(case: Case) -> tuple[Parameter, ...]:
 
 def _of_cut(case: Case) -> Iterator[Parameter]:
     cut, group = case.cut, "Cut"
-    rpm, depth = _rounded(cut.spindle_speed * 30.0 / math.pi), _rounded(cut.axial_depth * 1e3)
-    yield Parameter("cut.spindle_speed", group, "spindle speed", "rpm", rpm, 0.1 * rpm, 4.0 * rpm)
+    speed, depth = _rounded(rpm(cut.spindle_speed)), _rounded(cut.axial_depth * 1e3)
+    yield Parameter(
+        "cut.spindle_speed", group, "spindle speed", "rpm", speed, 0.1 * speed, 4.0 * speed
+    )
     yield Parameter("cut.axial_depth", group, "axial depth", "mm", depth, 0.02 * depth, 8.0 * depth)
     if cut.mode != "slot":
         width, widest = _rounded(cut.radial_depth * 1e3), _rounded(case.tool.diameter * 1e3)

@@ -1,4 +1,14 @@
-"""The command line: one module a command, errors and progress in one place each."""
+"""The command line: a command is a function of its name in a module of its name, and a line here.
+
+========== ===================================================================================
+module     responsibility
+========== ===================================================================================
+options    options that commands share; case and machine files with their patches
+progress   progress bars; what the first use takes
+results    what every command does with its result
+errors     one clear message and an exit code for every error
+========== ===================================================================================
+"""
 
 from __future__ import annotations
 
@@ -7,24 +17,28 @@ import os
 # matrices here are small: threads of BLAS cost more than they bring, and take cores from the sweeps
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+from importlib import import_module
+
 import typer
 
-from chatter.cli import (
-    bifurcation,
-    check,
-    compare,
-    examples,
-    explain,
-    frf,
-    lobes,
-    modes,
-    move,
-    optimum,
-    pitch,
-    schema,
-    simulate,
-    uncertainty,
-    whatif,
+from chatter.cli.errors import reports_errors
+
+COMMANDS = (
+    "check",
+    "lobes",
+    "simulate",
+    "bifurcation",
+    "whatif",
+    "uncertainty",
+    "optimum",
+    "pitch",
+    "modes",
+    "compare",
+    "explain",
+    "frf",
+    "move",
+    "examples",
+    "schema",
 )
 
 app = typer.Typer(
@@ -35,25 +49,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-COMMANDS = (
-    check.check,
-    lobes.lobes,
-    simulate.simulate,
-    bifurcation.bifurcation,
-    whatif.whatif,
-    uncertainty.uncertainty,
-    optimum.optimum,
-    pitch.pitch,
-    modes.modes,
-    compare.compare,
-    explain.explain,
-    frf.frf,
-    move.move,
-    examples.examples,
-    schema.schema,
-)
-for command in COMMANDS:
-    app.command()(command)
+for _name in COMMANDS:
+    app.command(_name)(reports_errors(getattr(import_module(f"chatter.cli.{_name}"), _name)))
 
 
 def main() -> None:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import itertools
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 import typer
 
-from chatter.cli.errors import reports_errors
 from chatter.cli.options import (
     Assignments,
     CaseFile,
@@ -17,13 +16,16 @@ from chatter.cli.options import (
     output_folder,
     patched_case,
 )
-from chatter.cli.report import announce_compilation, print_json, print_written, progress_bar
+from chatter.cli.progress import announce_compilation, progress_bar
+from chatter.cli.results import present
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.path import field_at, parse_path
 
+if TYPE_CHECKING:
+    from chatter.studies.bifurcation import BifurcationDiagram
 
-@reports_errors
+
 def bifurcation(
     case: CaseFile,
     vary: Annotated[
@@ -46,13 +48,7 @@ def bifurcation(
     announce_compilation(run)
     with progress_bar("cuts") as progress:
         diagram = run_bifurcation(description, path, values, progress)
-    written = diagram.save(output_folder(out, case.stem))
-    if json:
-        print_json(diagram.summary())
-    else:
-        for point in _onsets(diagram.summary()["points"]):
-            typer.echo(point)
-    print_written(written)
+    present(diagram, output_folder(out, case.stem), json=json, words=_print_onsets)
 
 
 def _range(vary: str, count: int) -> tuple[str, list[float]]:
@@ -75,12 +71,12 @@ def _range(vary: str, count: int) -> tuple[str, list[float]]:
     return path, list(np.linspace(*ends, count))
 
 
-def _onsets(points: list[dict]) -> list[str]:
-    """Sentences for every change of verdict along the range."""
-    told = [f"{points[0]['value']:.6g}: {points[0]['verdict']}"]
+def _print_onsets(diagram: BifurcationDiagram) -> None:
+    """Print every change of verdict along the range."""
+    points = diagram.summary()["points"]
+    typer.echo(f"{points[0]['value']:.6g}: {points[0]['verdict']}")
     for before, point in itertools.pairwise(points):
         if point["verdict"] != before["verdict"]:
-            heard = point["chatter_frequency_Hz"]
-            at = f" at {heard:.1f} Hz ({point['bifurcation']})" if heard else ""
-            told.append(f"from {point['value']:.6g}: {point['verdict']}{at}")
-    return told
+            frequency = point["chatter_frequency_Hz"]
+            at = f" at {frequency:.1f} Hz ({point['bifurcation']})" if frequency else ""
+            typer.echo(f"from {point['value']:.6g}: {point['verdict']}{at}")

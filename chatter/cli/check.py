@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from chatter.cli.errors import reports_errors
 from chatter.cli.options import Assignments, CaseFile, Json, Method, OutputFolder, patched_case
-from chatter.cli.report import announce_compilation, print_json, print_notes, print_written
+from chatter.cli.progress import announce_compilation
+from chatter.report.console import print_json, print_notes, print_written
 
 
-@reports_errors
 def check(
     case: CaseFile,
     assignments: Assignments = None,
@@ -15,7 +14,7 @@ def check(
     out: OutputFolder = None,
     json: Json = True,  # noqa: ARG001  (the output is JSON either way; scripts pass the option)
 ) -> None:
-    """Judge the operating point of a case: stable or chatter, and the limit depth."""
+    """Judge the operating point of a case: stable or chatter, and the critical depth."""
     description = patched_case(case, assignments)
     from chatter.stability.check import check as run_check
 

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from chatter.cli.errors import reports_errors
+from functools import partial
+from typing import TYPE_CHECKING
+
 from chatter.cli.explain import DeclaredCase, MeasurementPath, print_checks, print_diagnostics
 from chatter.cli.options import Json, OutputFolder, output_folder
-from chatter.cli.report import announce_compilation, print_json, print_table, print_written
+from chatter.cli.progress import announce_compilation
+from chatter.cli.results import present
+from chatter.report.console import print_table
+
+if TYPE_CHECKING:
+    from chatter.explain.comparison import Comparison
 
 
-@reports_errors
 def compare(
     measurement: MeasurementPath,
     case: DeclaredCase = None,
@@ -22,23 +28,23 @@ def compare(
     declared = read_measurement(measurement, case)
     announce_compilation()
     result = run_compare(declared)
-    written = result.save(output_folder(out, measurement.resolve().stem))
-    if json:
-        print_json(result.summary())
-    else:
-        print_checks([one.as_dict() for one in result.checks])
-        rows = [
-            [
-                one.run,
-                one.channel,
-                f"{one.error:.4g}",
-                f"{100.0 * one.relative:.2f}",
-                f"{one.over_noise:.2f}",
-            ]
-            for one in result.errors
+    folder = output_folder(out, measurement.resolve().stem)
+    present(result, folder, json=json, words=partial(_print_errors, declared.title))
+
+
+def _print_errors(title: str, result: Comparison) -> None:
+    print_checks([one.as_dict() for one in result.checks])
+    rows = [
+        [
+            one.run,
+            one.channel,
+            f"{one.error:.4g}",
+            f"{100.0 * one.relative:.2f}",
+            f"{one.over_noise:.2f}",
         ]
-        headers = ["run", "channel", "rms error [SI]", "of the signal [%]", "times the noise"]
-        print_table(declared.title, headers, rows)
-        if result.signature is not None:
-            print_diagnostics(result.signature.summary())
-    print_written(written)
+        for one in result.errors
+    ]
+    headers = ["run", "channel", "rms error [SI]", "of the signal [%]", "times the noise"]
+    print_table(title, headers, rows)
+    if result.signature is not None:
+        print_diagnostics(result.signature.summary())

@@ -7,12 +7,11 @@ from typing import Annotated
 
 import typer
 
-from chatter.cli.errors import reports_errors
 from chatter.cli.options import OutputFolder
-from chatter.cli.report import announce_compilation, print_table, print_written
+from chatter.cli.progress import announce_compilation
+from chatter.report.console import print_table, print_written
 
 
-@reports_errors
 def examples(
     name: Annotated[str | None, typer.Argument(metavar="NAME", help="Which one.")] = None,
     run: Annotated[bool, typer.Option("--run", help="Run it instead of copying it.")] = False,

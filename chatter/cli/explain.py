@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from chatter.cli.errors import reports_errors
 from chatter.cli.options import Json, OutputFolder, output_folder
-from chatter.cli.report import (
-    announce_compilation,
-    print_json,
-    print_table,
-    print_written,
-    progress_bar,
-)
+from chatter.cli.progress import announce_compilation, progress_bar
+from chatter.cli.results import present
+from chatter.report.console import print_table
+
+if TYPE_CHECKING:
+    from chatter.explain.explanation import Explanation
 
 MeasurementPath = Annotated[
     Path, typer.Argument(metavar="MEASUREMENT", help="Folder with measurement.toml.")
@@ -25,7 +23,6 @@ DeclaredCase = Annotated[
 ]
 
 
-@reports_errors
 def explain(
     measurement: MeasurementPath,
     case: DeclaredCase = None,
@@ -44,13 +41,8 @@ def explain(
             bar(round(100 * share), 100)
 
         result = run_explain(declared, progress=progress)
-    written = result.save(output_folder(out, measurement.resolve().stem))
-    summary = result.summary()
-    if json:
-        print_json(summary)
-    else:
-        _print(summary)
-    print_written(written)
+    folder = output_folder(out, measurement.resolve().stem)
+    present(result, folder, json=json, words=_print_explanation)
 
 
 def print_checks(checks: list[dict[str, str]]) -> None:
@@ -62,9 +54,10 @@ def print_checks(checks: list[dict[str, str]]) -> None:
         typer.echo(f"{one['description']} ({FOLLOWS[one['severity']]})")
 
 
-def _print(summary: dict) -> None:
+def _print_explanation(result: Explanation) -> None:
     from chatter.explain.selection.discriminating_test import in_words
 
+    summary = result.summary()
     typer.echo(f"verdict: {summary['verdict']}")
     print_checks(summary["checks"])
     for effect in summary["effects"]:

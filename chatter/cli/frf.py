@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from chatter.cli.errors import reports_errors
 from chatter.cli.options import (
     Assignments,
     Json,
@@ -15,19 +14,16 @@ from chatter.cli.options import (
     output_folder,
     patched_machine,
 )
-from chatter.cli.report import (
-    announce_compilation,
-    print_json,
-    print_line,
-    print_table,
-    print_written,
-    progress_bar,
-)
+from chatter.cli.progress import announce_compilation, progress_bar
+from chatter.cli.results import present
+from chatter.report.console import print_line, print_table
+
+if TYPE_CHECKING:
+    from chatter.simulation.virtual_tests.frf import FrfResult
 
 Pairs = list[str] | None
 
 
-@reports_errors
 def frf(
     machine: MachinePath,
     assignments: Assignments = None,
@@ -95,17 +91,11 @@ def frf(
     announce_compilation(run)
     with progress_bar("time steps") as progress:
         result = frfs(file, sections, progress)
-    written = result.save(output_folder(out, machine.stem))
-    summary = result.summary()
-    if json:
-        print_json(summary)
-    else:
-        _print_peaks(summary)
-    print_written(written)
+    present(result, output_folder(out, machine.stem), json=json, words=_print_peaks)
 
 
-def _print_peaks(summary: dict) -> None:
-    for curve in summary["curves"]:
+def _print_peaks(result: FrfResult) -> None:
+    for curve in result.summary()["curves"]:
         rows = []
         for how, key in (("linearised", "peaks"), ("test", "tested_peaks")):
             for peak in curve[key] or []:

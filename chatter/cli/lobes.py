@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from chatter.cli.errors import reports_errors
 from chatter.cli.options import (
     Assignments,
     CaseFile,
@@ -18,20 +17,16 @@ from chatter.cli.options import (
     output_folder,
     patched_case,
 )
-from chatter.cli.report import (
-    announce_compilation,
-    print_json,
-    print_line,
-    print_notes,
-    print_table,
-    print_written,
-    progress_bar,
-)
+from chatter.cli.progress import announce_compilation, progress_bar
+from chatter.cli.results import present, print_sentences
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from chatter.report.console import print_table
+
+if TYPE_CHECKING:
+    from chatter.stability.diagram import LobeDiagram
 
 
-@reports_errors
 def lobes(
     case: CaseFile,
     assignments: Assignments = None,
@@ -41,7 +36,7 @@ def lobes(
         typer.Option(
             "--x",
             metavar="PATH=FROM..TO[:COUNT]",
-            help='Limit depth over any value, such as cut.radial_depth="0.5 mm..10 mm:40".',
+            help='Critical depth over any value, such as cut.radial_depth="0.5 mm..10 mm:40".',
         ),
     ] = None,
     y: Annotated[
@@ -90,14 +85,7 @@ def lobes(
     folder = output_folder(out, case.stem)
     with progress_bar("stability limits") as progress:
         diagram = run_lobes(description, method, grid, progress, cluster, folder)
-    written = diagram.save(folder)
-    if json:
-        print_json(diagram.summary())
-    else:
-        _print_pockets(diagram.summary())
-        _print_method(diagram.summary())
-    print_notes(diagram.notes)
-    print_written(written)
+    present(diagram, folder, json=json, words=_print_diagram, notes=diagram.notes)
 
 
 def _over_paths(
@@ -109,27 +97,20 @@ def _over_paths(
     folder: Path,
     json: bool,
 ) -> None:
-    """Compute, write and tell a diagram over other paths than the spindle speed."""
+    """Compute and write a diagram over other paths than the spindle speed."""
     from chatter.studies.diagram_over_axes import lobes_over
 
     announce_compilation()
     with progress_bar("stability") as progress:
         diagram = lobes_over(case, x, y, method, progress, cluster, folder)
-    written = diagram.save(folder)
-    if json:
-        print_json(diagram.summary())
-    else:
-        for line in diagram.told():
-            print_line(line)
-    print_notes(diagram.notes)
-    print_written(written)
+    present(diagram, folder, json=json, words=print_sentences, notes=diagram.notes)
 
 
 def _serve(description: Case, method: str | None, port: int, no_browser: bool) -> None:
     """Serve the page until Ctrl-C."""
     from chatter.app.answers import LiveCase
     from chatter.app.server import LiveServer
-    from chatter.engine.parallel import no_progress
+    from chatter.description.progress import no_progress
 
     announce_compilation()
     page = LiveCase(description, method)
@@ -146,6 +127,11 @@ def _serve(description: Case, method: str | None, port: int, no_browser: bool) -
         typer.echo("ended")
     finally:
         server.end()
+
+
+def _print_diagram(diagram: LobeDiagram) -> None:
+    _print_pockets(diagram.summary())
+    _print_method(diagram.summary())
 
 
 def _print_pockets(summary: dict) -> None:

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from chatter.cli.errors import reports_errors
 from chatter.cli.options import Json, OutputFolder, output_folder
-from chatter.cli.report import print_json, print_notes, print_table, print_written
+from chatter.cli.results import present
+from chatter.report.console import print_table
+
+if TYPE_CHECKING:
+    from chatter.studies.modal_test import ModalTest
 
 
-@reports_errors
 def modes(
     files: Annotated[
         list[Path],
@@ -42,17 +44,17 @@ def modes(
     result = run_modes(
         files, keep=keep or (), direction=direction, side=side, band=band, mode_count=mode_count
     )
-    written = result.save(output_folder(out, files[0].stem or "modes"))
+    present(
+        result,
+        output_folder(out, files[0].stem or "modes"),
+        json=json,
+        words=_print_modes,
+        notes=[*result.notes, *result.fit.warnings],
+    )
+
+
+def _print_modes(result: ModalTest) -> None:
     summary = result.summary()
-    if json:
-        print_json(summary)
-    else:
-        _print_modes(summary)
-    print_notes([*result.notes, *result.fit.warnings])
-    print_written(written)
-
-
-def _print_modes(summary: dict) -> None:
     rows = [
         [
             f"{mode['frequency_Hz']:.2f}",

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from chatter.cli.errors import EXIT_RUN_FAILED, reports_errors
+from chatter.cli.errors import EXIT_RUN_FAILED
 from chatter.cli.options import (
     Assignments,
     Json,
@@ -15,16 +15,10 @@ from chatter.cli.options import (
     output_folder,
     patched_machine,
 )
-from chatter.cli.report import (
-    announce_compilation,
-    print_json,
-    print_table,
-    print_written,
-    progress_bar,
-)
+from chatter.cli.progress import announce_compilation, progress_bar
+from chatter.report.console import print_json, print_table, print_written
 
 
-@reports_errors
 def move(
     machine: MachinePath,
     assignments: Assignments = None,

@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from chatter.cli.errors import reports_errors
-from chatter.cli.options import Assignments, CaseFile, Json, OutputFolder
-from chatter.cli.search import searched
-from chatter.description.case import Case
+from chatter.cli.options import (
+    Assignments,
+    CaseFile,
+    Json,
+    OutputFolder,
+    output_folder,
+    patched_case,
+)
+from chatter.cli.progress import announce_compilation, progress_bar
+from chatter.cli.results import present, print_sentences
 from chatter.description.errors import RunError
-from chatter.engine.parallel import Progress
-
-if TYPE_CHECKING:
-    from chatter.studies.optimisation.result import Optimum
 
 
-@reports_errors
 def optimum(
     case: CaseFile,
     samples: Annotated[
@@ -30,12 +30,13 @@ def optimum(
     json: Json = False,
 ) -> None:
     """Find the cut with the highest removal rate within the limits of [optimum]."""
+    description = patched_case(case, assignments)
+    from chatter.studies.optimisation.study import optimum as run_optimum
 
-    def search(description: Case, progress: Progress, folder: Path) -> Optimum:
-        from chatter.studies.optimisation.study import optimum as run_optimum
-
-        return run_optimum(description, samples, seed, progress, folder)
-
-    found = searched(search, "search", case, assignments, out, json)
+    announce_compilation()
+    folder = output_folder(out, case.stem)
+    with progress_bar("search") as progress:
+        found = run_optimum(description, samples, seed, progress, folder)
+    present(found, folder, json=json, words=print_sentences, notes=found.notes)
     if found.why_nothing:
         raise RunError(f"{found.case.name}: {found.why_nothing}")

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING
+from chatter.cli.options import (
+    Assignments,
+    CaseFile,
+    Json,
+    OutputFolder,
+    output_folder,
+    patched_case,
+)
+from chatter.cli.progress import announce_compilation, progress_bar
+from chatter.cli.results import present, print_sentences
 
-from chatter.cli.errors import reports_errors
-from chatter.cli.options import Assignments, CaseFile, Json, OutputFolder
-from chatter.cli.search import searched
-from chatter.description.case import Case
-from chatter.engine.parallel import Progress
 
-if TYPE_CHECKING:
-    from chatter.studies.pitch_design.result import PitchResult
-
-
-@reports_errors
 def pitch(
     case: CaseFile,
     assignments: Assignments = None,
@@ -23,10 +21,11 @@ def pitch(
     json: Json = False,
 ) -> None:
     """Find pitch angles that raise the limits over the speeds of [pitch_design]."""
-    searched(_search, "designs", case, assignments, out, json)
-
-
-def _search(description: Case, progress: Progress, folder: Path) -> PitchResult:
+    description = patched_case(case, assignments)
     from chatter.studies.pitch_design.study import pitch as run_pitch
 
-    return run_pitch(description, progress, folder)
+    announce_compilation()
+    folder = output_folder(out, case.stem)
+    with progress_bar("designs") as progress:
+        found = run_pitch(description, progress, folder)
+    present(found, folder, json=json, words=print_sentences, notes=found.notes)

@@ -6,12 +6,10 @@ from typing import Annotated
 
 import typer
 
-from chatter.cli.errors import reports_errors
 from chatter.cli.options import OutputFolder
-from chatter.cli.report import print_json, print_written
+from chatter.report.console import print_json, print_written
 
 
-@reports_errors
 def schema(
     machine: Annotated[
         bool, typer.Option("--machine", help="Of the machine file instead of the case file.")

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from chatter.cli.errors import EXIT_RUN_FAILED, reports_errors
+from chatter.cli.errors import EXIT_RUN_FAILED
 from chatter.cli.options import (
     Assignments,
     CaseFile,
@@ -15,17 +15,14 @@ from chatter.cli.options import (
     output_folder,
     patched_case,
 )
-from chatter.cli.report import (
-    announce_compilation,
-    print_json,
-    print_notes,
-    print_table,
-    print_written,
-    progress_bar,
-)
+from chatter.cli.progress import announce_compilation, progress_bar
+from chatter.cli.results import present
+from chatter.report.console import print_table
+
+if TYPE_CHECKING:
+    from chatter.simulation.result import SimulationResult
 
 
-@reports_errors
 def simulate(
     case: CaseFile,
     assignments: Assignments = None,
@@ -45,19 +42,19 @@ def simulate(
     announce_compilation(run)
     with progress_bar("time steps") as progress:
         result = run_simulation(description, progress)
-    written = result.save(output_folder(out, case.stem))
-    summary = result.summary()
-    if json:
-        print_json(summary)
-    else:
-        _print_summary(summary)
-    print_notes(summary["notes"])
-    print_written(written)
+    present(
+        result,
+        output_folder(out, case.stem),
+        json=json,
+        words=_print_summary,
+        notes=result.summary()["notes"],
+    )
     if result.interrupted:
         raise typer.Exit(EXIT_RUN_FAILED)
 
 
-def _print_summary(summary: dict) -> None:
+def _print_summary(result: SimulationResult) -> None:
+    summary = result.summary()
     peak, mean = summary["peak_force_N"], summary["mean_force_N"]
     rows = [[name, f"{peak[name]:.4g}", f"{mean[name]:.4g}"] for name in peak]
     print_table("force on the tool", ["", "peak [N]", "mean [N]"], rows)
@@ -70,5 +67,5 @@ def _print_summary(summary: dict) -> None:
     if error is not None:
         typer.echo(f"surface location error {error:.3g} um")
     frequency = summary["chatter_frequency_Hz"]
-    heard = "" if frequency is None else f" at {frequency:.1f} Hz"
-    typer.echo(f"{summary['verdict']}{heard}: {summary['reason']}")
+    at = "" if frequency is None else f" at {frequency:.1f} Hz"
+    typer.echo(f"{summary['verdict']}{at}: {summary['reason']}")

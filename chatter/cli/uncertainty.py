@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from functools import partial
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from chatter.cli.errors import reports_errors
 from chatter.cli.options import (
     Assignments,
     CaseFile,
@@ -17,16 +17,13 @@ from chatter.cli.options import (
     output_folder,
     patched_case,
 )
-from chatter.cli.report import (
-    MESSAGES,
-    announce_compilation,
-    print_json,
-    print_written,
-    progress_bar,
-)
+from chatter.cli.progress import announce_compilation, announce_resumed, progress_bar
+from chatter.cli.results import present
+
+if TYPE_CHECKING:
+    from chatter.studies.uncertainty.study import Uncertainty
 
 
-@reports_errors
 def uncertainty(
     case: CaseFile,
     samples: Annotated[int, typer.Option("--samples", help="Number of samples.")] = 200,
@@ -53,22 +50,14 @@ def uncertainty(
             method=method,
             folder=folder,
             progress=progress,
-            resumed=_say_resumed,
+            resumed=partial(announce_resumed, "samples"),
             cluster=cluster,
         )
-    written = found.save(folder)
-    if json:
-        print_json(found.summary())
-    else:
-        _tell(found.summary())
-    print_written(written)
+    present(found, folder, json=json, words=_print_probability)
 
 
-def _say_resumed(before: int, total: int) -> None:
-    MESSAGES.print(f"{before} of {total} samples were finished before", markup=False)
-
-
-def _tell(summary: dict) -> None:
+def _print_probability(found: Uncertainty) -> None:
+    summary = found.summary()
     point, limit = summary["operating_point"], summary["limit_at_operating_speed_mm"]
     low, high = point["confidence_interval_95"]
     typer.echo(
@@ -80,7 +69,7 @@ def _tell(summary: dict) -> None:
         "none found" if limit[key] is None else f"{limit[key]:.4g} mm"
         for key in ("5_percent", "50_percent", "95_percent")
     ]
-    typer.echo(f"limit depth there: median {ends[1]}, 5 % below {ends[0]}, 5 % above {ends[2]}")
+    typer.echo(f"critical depth there: median {ends[1]}, 5 % below {ends[0]}, 5 % above {ends[2]}")
     for one in sorted(summary["parameters"], key=lambda p: -(p["share_of_variance"] or 0.0)):
         if one["share_of_variance"] is not None:
             typer.echo(f"{one['path']}: {one['share_of_variance']:.0%} of its variance")

@@ -2,29 +2,24 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from chatter.cli.errors import reports_errors
 from chatter.cli.options import Assignments, Cluster, Json, Method, OutputFolder, output_folder
-from chatter.cli.report import (
-    MESSAGES,
-    announce_compilation,
-    print_json,
-    print_written,
-    progress_bar,
-)
+from chatter.cli.progress import announce_compilation, announce_resumed, progress_bar
+from chatter.cli.results import present
 from chatter.description.assignments import parse_assignments
 from chatter.description.errors import InputError
+from chatter.report.console import print_line
 
 if TYPE_CHECKING:
     from chatter.studies.whatif.presets import ReadyStudy
     from chatter.studies.whatif.study import WhatIf
 
 
-@reports_errors
 def whatif(
     file: Annotated[
         Path | None,
@@ -72,13 +67,13 @@ def whatif(
         if chosen is None:
             raise InputError("a case or machine file is wanted, or --study NAME; --studies lists")
         file = chosen.file()
-    from chatter.studies.whatif.model import load_subject, patched
+    from chatter.studies.model import load_model, patched
 
-    subject = patched(load_subject(file), parse_assignments(assignments or []))
+    model = patched(load_model(file), parse_assignments(assignments or []))
     name = file.parent.name if chosen is not None else file.stem
     folder = output_folder(out, f"{name}-{study}" if study else name)
     if chosen is not None:
-        subject = _fitted(chosen, lambda: patched(subject, chosen.settings))
+        model = _fitted(chosen, lambda: patched(model, chosen.settings))
     from chatter.studies.whatif.study import whatif as run_whatif
 
     announce_compilation()
@@ -86,7 +81,7 @@ def whatif(
         found = _fitted(
             chosen,
             lambda: run_whatif(
-                subject,
+                model,
                 vary or (chosen.vary if chosen else []),
                 result or (chosen.result if chosen else None),
                 tornado=tornado or (chosen is not None and chosen.tornado),
@@ -96,21 +91,16 @@ def whatif(
                 only=only or (chosen.only if chosen else ()),
                 folder=folder,
                 progress=progress,
-                resumed=_say_resumed,
+                resumed=partial(announce_resumed, "points"),
                 cluster=cluster,
             ),
         )
-    _tell(found, folder, json)
+    present(found, folder, json=json, words=_print_answer)
 
 
-def _tell(found: WhatIf, folder: Path, json: bool) -> None:
-    written = found.save(folder)
-    if json:
-        print_json(found.summary())
-    else:
-        for sentence in found.sentences:
-            typer.echo(sentence)
-    print_written(written)
+def _print_answer(found: WhatIf) -> None:
+    for sentence in found.sentences:
+        print_line(sentence)
 
 
 def _chosen(study: str | None, vary: list[str] | None) -> ReadyStudy | None:
@@ -132,10 +122,6 @@ def _fitted(chosen: ReadyStudy | None, make):
             raise
         hint = f"--study {chosen.name} is made for the example {chosen.example}"
         raise InputError([*error.messages, hint]) from None
-
-
-def _say_resumed(before: int, total: int) -> None:
-    MESSAGES.print(f"{before} of {total} points were finished before", markup=False)
 
 
 def _list_studies() -> None:

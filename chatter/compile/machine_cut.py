@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.compile.machine_parts import assembled_machine, machine_parts
 from chatter.compile.rigid_motion import rigid_motion
 from chatter.description.case import Case
 from chatter.description.errors import InputError
@@ -105,7 +106,7 @@ def machine_cut(case: Case, friction: bool | None = None) -> MachineCut:
     if file.tool_point is None:
         raise InputError(f"{file.name}: tool_point is missing; {case.name} cuts there")
     _refuse_unknown_axes(case, file)
-    machine = file.machine(section.condition, section.position)
+    machine = assembled_machine(file, section.condition, section.position)
     wanted = section.friction if friction is None else friction
     if wanted is False:
         machine = machine.without_friction()
@@ -155,7 +156,7 @@ def cut_directions(case: Case) -> NDArray[np.float64]:
 
 
 def _ends(file: MachineFile, positions: Mapping[str, float]):
-    points = {point.name: point for point in file.at(positions).points}
+    points = {point.name: point for point in machine_parts(file, positions).points}
     workpiece = "ground" if file.workpiece is None else points[file.workpiece].body
     return points[file.tool_point], workpiece
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from chatter.compile.measured_frf import MeasuredSide, measured_sides
 from chatter.description.errors import InputError
+from chatter.description.units import rpm
 from chatter.stability.methods.zeroth_order.method import frequency_lines
 from dynamics.frf.container import MeasurementError
 from dynamics.identification import ModalFit
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
 #: chatter is looked for up to this multiple of the highest mode
 _HIGHEST_CHATTER = 4.0
-_RPM = 30.0 / np.pi
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,7 @@ def _given_modes(case: Case, speed: float) -> GivenModes:
         if not frequency > 0.0:
             raise InputError(
                 f"{case.name}: structure.mode[{place}].frequency_slope: {mode.frequency_slope:g} "
-                f"s/rad leaves no frequency at {speed * _RPM:.0f} rpm"
+                f"s/rad leaves no frequency at {rpm(speed):.0f} rpm"
             )
         damping, mass = mode.damping_at(speed), mode.mass_at(speed)
         modes.append(Mode(frequency, damping, mass, mode.direction, mode.side))
@@ -163,12 +163,12 @@ def _notes_on_speed(case: Case) -> tuple[str, ...]:
         if mode.speed_dependence is not None:
             first, *_, last = mode.speed_dependence.speeds
             notes.append(
-                f"structure.mode[{place}].speed_dependence goes from {first * _RPM:.0f} to "
-                f"{last * _RPM:.0f} rpm; beyond, the mode is held as at the end"
+                f"structure.mode[{place}].speed_dependence goes from {rpm(first):.0f} to "
+                f"{rpm(last):.0f} rpm; beyond, the mode is held as at the end"
             )
     measured = _measured_speeds(case)
     if measured:
-        listed = ", ".join(f"{speed * _RPM:.0f}" for speed in measured)
+        listed = ", ".join(f"{rpm(speed):.0f}" for speed in measured)
         notes.append(
             f"FRFs were measured at {listed} rpm; those of the nearest of these speeds stand for "
             "all around it"

@@ -9,14 +9,20 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from chatter.description.formatting import shown
 
 if TYPE_CHECKING:
+    import numpy as np
     import pint
+    from numpy.typing import NDArray
+
+
+Speed = TypeVar("Speed", float, "NDArray[np.float64]")
 
 
 class QuantityError(ValueError):
@@ -107,12 +113,24 @@ _QUANTITY = re.compile(
 _DECIMAL_COMMA = re.compile(r"^\s*[+-]?[0-9]+,[0-9]")
 #: pint evaluates what it reads, powers of powers too: only names and powers of a digit reach it
 _UNIT = re.compile(
-    r"(?:1\s*/|[A-Za-z_][A-Za-z_0-9]*|%|\*\*-?[0-9](?![0-9]|\s*\*\*)|[*/()\s])+", re.ASCII
+    r"(?:1\s*/|[A-Za-z_]+|%|\*\*\s*(?:-?[0-9]|\(\s*-?[0-9]\s*\))(?![0-9]|\s*\*\*)|[*/()\s])+",
+    re.ASCII,
 )
-_SPELLINGS = str.maketrans(
+#: characters of a unit -> as the units library has them
+_CHARACTERS = str.maketrans(
     {"µ": "u", "μ": "u", "·": "*", "⋅": "*", "×": "*", ".": "*", "°": "deg", "^": "**"}
 )
-_SUPERSCRIPT = re.compile("(⁻?)([¹²³])")
+_SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁻", "01234-")
+#: words of a unit -> as the units library has them
+_WORDS = {"Ns": "(N*s)", "mil": "thou", "ips": "(inch/s)"}
+#: the same in measured files, where g is the acceleration of gravity and a pound is a force
+_MEASURED_WORDS = {
+    **_WORDS,
+    "g": "standard_gravity",
+    "G": "standard_gravity",
+    "mg": "millistandard_gravity",
+    "lb": "lbf",
+}
 _LONGEST_TEXT = 100
 
 
@@ -123,6 +141,24 @@ class Quantity:
     value: float
     deviation: float
     unit: str
+
+
+def rpm(speed: Speed) -> Speed:
+    """Spindle speed in revolutions per minute, of one in rad/s."""
+    return speed * (30.0 / math.pi)
+
+
+def from_rpm(speed: Speed) -> Speed:
+    """Spindle speed in rad/s, of one in revolutions per minute."""
+    return speed / (30.0 / math.pi)
+
+
+class MeasuredUnit(NamedTuple):
+    """A unit as it stands in a measured file."""
+
+    dimension: dict[str, int]  # exponents of pint's base dimensions: {"[length]": 1, "[time]": -2}
+    factor: float  # SI value = factor times the value in the unit; angles in rad
+    has_angle: bool  # it is an angle, or one per something
 
 
 @lru_cache(maxsize=1)
@@ -179,20 +215,52 @@ def unit_factor(unit: str, dimension: str) -> float:
 
 def _parsed_unit(unit: str, dimension: str) -> tuple[Any, Any]:
     """Return pint's unit and one of it in base units."""
-    raised = _SUPERSCRIPT.sub(lambda m: f"**{'-' * len(m[1])}{'¹²³'.index(m[2]) + 1}", unit)
-    text = raised.translate(_SPELLINGS)
-    if not _UNIT.fullmatch(text):
+    known = _unit_of_library(unit, _WORDS)
+    if known is None:
         raise QuantityError(f"has the unknown unit {shown(unit)}; {_wanted(dimension)}")
-    try:
-        parsed = registry().Unit(text)
-        one, two = (registry().Quantity(value, parsed).to_base_units() for value in (1.0, 2.0))
-        proportional = math.isclose(two.magnitude, 2.0 * one.magnitude)
-    except Exception as error:
-        raise QuantityError(f"has the unknown unit {shown(unit)}; {_wanted(dimension)}") from error
+    parsed, one, proportional = known
     if not proportional:
         # decibels, degrees Celsius
         raise QuantityError(f"has the unit {shown(unit)}; {_wanted(dimension)}")
     return parsed, one
+
+
+def _unit_of_library(unit: str, words: Mapping[str, str]) -> tuple[Any, Any, bool] | None:
+    """Unit, one of it in base units, and whether zero of it is zero; None where it is unknown."""
+    text = re.sub("[⁰¹²³⁴⁻]+", lambda m: "^" + m[0].translate(_SUPERSCRIPTS), unit)
+    text = re.sub(r"\bNs\^?2\b", "(N*s^2)", text)
+    text = re.sub(r"([A-Za-zµμ])(\d)", r"\1^\2", text)
+    text = re.sub(r"[A-Za-zµμ_]+", lambda m: words.get(m[0], m[0]), text).translate(_CHARACTERS)
+    if not _UNIT.fullmatch(text):
+        return None
+    try:
+        parsed = registry().Unit(text)
+        one, two = (registry().Quantity(value, parsed).to_base_units() for value in (1.0, 2.0))
+        return parsed, one, math.isclose(two.magnitude, 2.0 * one.magnitude)
+    except Exception:  # whatever the library's parser raises on odd text
+        return None
+
+
+@lru_cache(maxsize=256)
+def measured_unit(unit: str) -> MeasuredUnit | None:
+    """Read a unit of a measured file; None where it is unknown.
+
+    Parameters
+    ----------
+    unit : str
+        ``"um/N"``, ``"g"`` (the acceleration of gravity here), ``"lb"`` (a force), ``"m/s2"``.
+    """
+    known = _unit_of_library(unit.strip(), _MEASURED_WORDS) if len(unit) <= _LONGEST_TEXT else None
+    if known is None or not known[2]:
+        return None
+    parsed, one, _ = known
+    return MeasuredUnit(dict(one.dimensionality), float(one.magnitude), _is_angle(parsed))
+
+
+@lru_cache(maxsize=64)
+def dimension_of(unit: str) -> dict[str, int]:
+    """Exponent of each base dimension of pint, of an SI unit such as ``"m/N"``."""
+    return dict(registry().Unit(unit).dimensionality)
 
 
 def _is_angle(unit: Any) -> bool:

@@ -1,14 +1,14 @@
-"""Judge a record of a cut: stable or chatter, its kind and its frequency.
+"""Chatter detection: whether the signals of a cut are stable, and what its motion is.
 
-============== =======================================================================
-module         responsibility
-============== =======================================================================
-record         `CutRecord`: what is judged, checked
-sections       signals over the spindle angle, whole periods, once-a-turn samples
-deviations     differences from period to period, noise taken off, their growth
-lines          rotation a period and frequency of the chatter motion
-orbits         kind of a sustained motion
-doubling       period doubled within a turn while the runout is not known
-verdict        `judge`
-============== =======================================================================
+================== ===================================================================
+module             responsibility
+================== ===================================================================
+cut_record         `CutRecord`: signals with the angle of the spindle, checked
+poincare_sections  signals over the spindle angle, whole periods, once-per-revolution samples
+deviations         differences between periods, noise removed, their growth rate
+chatter_frequency  argument of the multiplier and chatter frequency
+bifurcation_type   Hopf, flip or period-n
+period_doubling    period doubled within a revolution while the runout is not known
+chatter_detection  `detect_chatter`
+================== ===================================================================
 """

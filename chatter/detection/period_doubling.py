@@ -1,8 +1,8 @@
-"""A period doubled within a turn of a tool with an even number of teeth, runout not known.
+"""Period doubling within a revolution: even number of teeth, runout not known.
 
-Both runout and a flip make neighbouring teeth differ. A forced motion is there from the first turn
-on and only settles: its changes shrink. A flip starts from the little that the transient leaves of
-it, and its changes grow before it saturates.
+Both runout and a flip make neighbouring teeth differ. A forced motion is there from the first
+revolution on and only settles: its changes shrink. A flip starts from the little that the transient
+leaves of it, and its changes grow before it saturates.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.detection.cut_record import CutRecord
 from chatter.detection.deviations import deviations_of
 from chatter.detection.poincare_sections import cut_into_periods
-from chatter.detection.record import CutRecord
 
 #: difference of neighbouring teeth, share of the rms of the motion, from which they differ
 _DIFFER = 0.1
@@ -35,7 +35,7 @@ class Doubling(NamedTuple):
     grew: bool  # and the difference grew from little
 
 
-def doubling_within_turn(record: CutRecord) -> Doubling:
+def doubling_within_revolution(record: CutRecord) -> Doubling:
     """Whether neighbouring teeth differ with every second one alike, and came to it by growth.
 
     Parameters
@@ -46,11 +46,11 @@ def doubling_within_turn(record: CutRecord) -> Doubling:
     Returns
     -------
     Doubling
-        Not grown either where a flip grew within the first turn or so: that looks like runout.
+        Not grown either where a flip grew within the first revolution: that looks like runout.
     """
     teeth = cut_into_periods(record, record.teeth).values
     last = teeth[-4 * record.teeth :]
-    # averages over turns, to keep noise out
+    # averages over revolutions, to keep noise out
     mean = last.reshape(4, record.teeth, *last.shape[1:]).mean(axis=0)
     neighbours = _rms(mean - np.roll(mean, 1, axis=0))
     seconds = _rms(mean - np.roll(mean, 2, axis=0))

@@ -1,4 +1,4 @@
-"""Signals over the spindle angle: whole periods, and samples once a turn and once a tooth."""
+"""Signals over the spindle angle: whole periods, Poincaré sections per revolution and tooth."""
 
 from __future__ import annotations
 
@@ -9,12 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from chatter.detection.record import CutRecord
-from chatter.detection.varying_speed import without_speed_variation
+from chatter.detection.cut_record import CutRecord
 
-_TURN = 2.0 * math.pi
-#: points a turn at most
+_REVOLUTION = 2.0 * math.pi
+#: points per revolution at most
 _MOST_POINTS = 480
+#: relative change of the speed from period to period below which it counts as constant
+_CONSTANT = 1e-6
+#: change of the motion over its rms, per relative change of the speed, that may be laid to it:
+#: about the order of a harmonic times the quality factor of a lightly damped mode
+_STEEPEST = 100.0
+#: periods after which a change of the speed is still felt
+_LAGS = 3
 
 
 class Periods(NamedTuple):
@@ -27,45 +33,87 @@ class Periods(NamedTuple):
     values: NDArray[np.float64]  # (periods, points, k), in units of `scale`
     scale: float  # m or N: largest rms of a channel about its mean
     period: float  # s, mean over the later half
-    per_turn: int  # periods in a turn
+    per_revolution: int  # periods per revolution
     roughness: float  # rms of what sampling does not resolve, noise included, units of `scale`
     speed_variation: float  # rms of the relative speed from period to period
 
 
-def cut_into_periods(record: CutRecord, per_turn: int) -> Periods:
+def cut_into_periods(record: CutRecord, per_revolution: int) -> Periods:
     """Resample the signals over the spindle angle and cut them into periods.
 
-    What follows from a speed that varies is taken off.
+    What follows from a speed that varies is subtracted.
 
     Parameters
     ----------
     record : CutRecord
-    per_turn : int
-        Periods in a turn of the spindle: 1, or the number of teeth of a symmetric tool.
+    per_revolution : int
+        Periods per revolution of the spindle: 1, or the number of teeth of a symmetric tool.
 
     Returns
     -------
     Periods
     """
     angle, signals = _averaged(record)
-    samples = len(angle) / ((angle[-1] - angle[0]) / _TURN)
-    points = max(4, math.floor(min(samples, _MOST_POINTS) / per_turn))
-    length = _TURN / per_turn
+    samples = len(angle) / ((angle[-1] - angle[0]) / _REVOLUTION)
+    points = max(4, math.floor(min(samples, _MOST_POINTS) / per_revolution))
+    length = _REVOLUTION / per_revolution
     count = math.floor((angle[-1] - angle[0]) / length * (1.0 + 1e-12))
     first = angle[-1] - count * length
     grid = first + length / points * np.arange(count * points)
     values = CubicSpline(angle, signals, axis=0)(grid).reshape(count, points, -1)
     edges = first + length * np.arange(count + 1)
     durations = np.diff(np.interp(edges, record.spindle_angle, record.time))
-    values = without_speed_variation(values, durations)
+    values = _without_speed_variation(values, durations)
     later = values[count // 2 :]
     spread = np.sqrt(np.mean((later - later.mean(axis=(0, 1))) ** 2, axis=(0, 1)))
     scale = float(spread.max()) or 1.0
     period = float(durations[count // 2 :].mean())
-    rough = roughness_of(signals) / scale
+    rough = _roughness(signals) / scale
     return Periods(
-        values / scale, scale, period, per_turn, rough, float(np.std(durations) / period)
+        values / scale, scale, period, per_revolution, rough, float(np.std(durations) / period)
     )
+
+
+def _without_speed_variation(
+    values: NDArray[np.float64], durations: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Subtract what is linear in the speed of this period and of the ones before.
+
+    The motion of a stable cut depends on the spindle speed, steeply near a resonance. Where the
+    speed differs between revolutions so does the motion, and that is no chatter.
+
+    Parameters
+    ----------
+    values : (periods, points, k) array of float
+    durations : (periods,) array of float
+        s, of each period.
+
+    Returns
+    -------
+    (periods, points, k) array of float
+        The same values if the speed is constant.
+    """
+    relative = 1.0 / durations
+    relative = relative / relative.mean() - 1.0
+    spread = float(np.std(relative))
+    if spread < _CONSTANT or len(values) < 6 * _LAGS:
+        return values
+    padded = np.concatenate([np.full(_LAGS - 1, relative[0]), relative])
+    count = len(values)
+    base = np.stack([padded[_LAGS - 1 - lag :][:count] for lag in range(_LAGS)], axis=1)
+    # what is fitted are differences: a transient that decays is no trend of the speed
+    steps = np.diff(base, axis=0)
+    left, singular, right = np.linalg.svd(steps, full_matrices=False)
+    kept = singular > 0.05 * singular[0]
+    inverse = (right[kept].T / singular[kept]) @ left[:, kept].T
+    matrix = values.reshape(count, -1)
+    later = matrix[count // 2 :]
+    rms = float(np.sqrt(np.mean((later - later.mean(axis=0)) ** 2)))
+    rms = max(rms, float(np.std(later)))
+    slaved = (base - base.mean(axis=0)) @ (inverse @ np.diff(matrix, axis=0))
+    size = float(np.sqrt(np.mean(slaved**2)))
+    allowed = min(1.0, _STEEPEST * spread * rms / max(size, 1e-300))
+    return (matrix - allowed * slaved).reshape(values.shape)
 
 
 def _averaged(record: CutRecord) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -73,7 +121,7 @@ def _averaged(record: CutRecord) -> tuple[NDArray[np.float64], NDArray[np.float6
 
     The average keeps noise above the new Nyquist frequency from folding down.
     """
-    block = int(len(record.time) / (record.turns * _MOST_POINTS))
+    block = int(len(record.time) / (record.revolutions * _MOST_POINTS))
     if block < 2:
         return record.spindle_angle, record.signals
     n = len(record.time) // block * block
@@ -83,11 +131,11 @@ def _averaged(record: CutRecord) -> tuple[NDArray[np.float64], NDArray[np.float6
     return angle, signals
 
 
-def roughness_of(signals: NDArray[np.float64]) -> float:
+def _roughness(signals: NDArray[np.float64]) -> float:
     """Rms of the error with which a cubic through its neighbours predicts a sample, as noise.
 
     White noise gives its own rms; a force that jumps where a tooth enters gives more, and so much
-    differs from turn to turn where the samples do not fall on the same angles.
+    differs between revolutions where the samples do not fall on the same angles.
     """
     near = signals[1:-3] + signals[3:-1]
     far = signals[:-4] + signals[4:]
@@ -97,20 +145,20 @@ def roughness_of(signals: NDArray[np.float64]) -> float:
     )
 
 
-def once_a_turn(record: CutRecord) -> NDArray[np.float64]:
-    """Signals where the first tooth is at zero angle, (turns, k), m or N."""
-    return _at(record, 0.0)
+def once_per_revolution(record: CutRecord) -> NDArray[np.float64]:
+    """Signals where the first tooth is at zero angle, (revolutions, k), m or N."""
+    return _sections_at(record, 0.0)
 
 
-def once_a_tooth(record: CutRecord) -> NDArray[np.float64]:
+def once_per_tooth(record: CutRecord) -> NDArray[np.float64]:
     """Signals where any tooth is at zero angle, (tooth passes, k), m or N, in time order."""
     offsets = record.tooth_angles - record.tooth_angles[0]
-    return _at(record, *np.mod(offsets, _TURN))
+    return _sections_at(record, *np.mod(offsets, _REVOLUTION))
 
 
-def _at(record: CutRecord, *offsets: float) -> NDArray[np.float64]:
+def _sections_at(record: CutRecord, *offsets: float) -> NDArray[np.float64]:
     first, last = record.spindle_angle[0], record.spindle_angle[-1]
-    turns = np.arange(math.floor(first / _TURN) - 1, math.ceil(last / _TURN) + 2)
-    angles = np.sort((turns[:, None] * _TURN + np.array(offsets)).ravel())
+    revolutions = np.arange(math.floor(first / _REVOLUTION) - 1, math.ceil(last / _REVOLUTION) + 2)
+    angles = np.sort((revolutions[:, None] * _REVOLUTION + np.array(offsets)).ravel())
     angles = angles[(angles >= first - 1e-9) & (angles <= last + 1e-9)]
     return CubicSpline(record.spindle_angle, record.signals, axis=0)(angles)

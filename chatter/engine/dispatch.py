@@ -12,7 +12,7 @@ from numba.extending import overload
 
 from cutting.chip.delayed_chip import DelayedCut, delayed_commit, delayed_forces
 from cutting.chip.discrete_chip import DiscreteCut, discrete_commit, discrete_forces
-from cutting.force.edge_force import INLINED
+from cutting.compiled import INLINED
 from cutting.process_damping.contact import ToolContact, contact_commit, contact_forces
 
 #: table -> kernel that adds its force

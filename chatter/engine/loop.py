@@ -11,9 +11,9 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from chatter.engine.dispatch import all_act, all_settle
-from chatter.engine.presets import DRIVER
+from chatter.engine.presets import TIME_LOOP
 from cutting.chip.tool_point import Turn
-from cutting.force.edge_force import INLINED
+from cutting.compiled import INLINED
 from dynamics.modal.modal_friction import hold, resist
 from dynamics.modal.modal_steps import correct, predict, take_force
 
@@ -87,7 +87,7 @@ def _keep(record, row, point):
     record.rows[row, 6] = point.torque[0]
 
 
-@njit(**DRIVER, _nrt=False)
+@njit(**TIME_LOOP)
 def run(groups, modes, frictions, point, prescribed, record, scratch, first, furthest, bins):
     """Integrate a chunk of steps.
 

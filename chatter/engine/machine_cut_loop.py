@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from chatter.engine.dispatch import all_act
 from chatter.engine.dispatch import all_settle as all_settle_cut
-from chatter.engine.presets import DRIVER
+from chatter.engine.presets import TIME_LOOP
 from cutting.chip.tool_point import Turn
-from cutting.force.edge_force import INLINED
+from cutting.compiled import INLINED
 from dynamics.machine.groups import all_drive, all_resist, all_settle
 from dynamics.machine.steps import add_change, begin_step, end_step, move
 
@@ -185,7 +185,7 @@ def _keep(record, row, s, tool, point, turn, step_number):
         record.force[row, c] = s.force[record.port[c]]
 
 
-@njit(**DRIVER, _nrt=False)
+@njit(**TIME_LOOP)
 def run_coupled(cut, machine, s, tool, point, record, first, done, count, furthest):
     """Run machine and cut over a chunk of steps.
 

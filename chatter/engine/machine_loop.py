@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from chatter.engine.presets import DRIVER
+from chatter.engine.presets import TIME_LOOP
 from dynamics.machine.loop import machine_step
 
 
@@ -22,7 +22,7 @@ class Record(NamedTuple):
     force: NDArray[np.float64]  # at the end of a step, N, (rows, c)
 
 
-@njit(**DRIVER, _nrt=False)
+@njit(**TIME_LOOP)
 def run(groups, steps, loads, record, first, furthest):
     """Run a machine over a chunk of steps.
 
@@ -62,7 +62,7 @@ def run(groups, steps, loads, record, first, furthest):
     return count
 
 
-@njit(**DRIVER, _nrt=False)
+@njit(**TIME_LOOP)
 def advance(groups, steps, loads, first, count):
     """Run a machine over steps from a number on, without record; row 0 of loads and injection."""
     for i in range(count):

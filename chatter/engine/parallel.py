@@ -1,28 +1,63 @@
-"""One sweep for every method: points in chunks, chunks in threads, progress and interruption."""
+"""Parallel evaluation: chunks of points in threads, and the interface of an executor.
+
+`sweep` serves compiled code that releases the interpreter lock. Whole items of a study, which may
+be sent to other processes, go through an `Executor`; that of a Dask cluster is in
+`chatter.studies.executor`.
+"""
 
 from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import contextmanager
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-Result = TypeVar("Result")
+from chatter.description.progress import Progress, no_progress
 
-#: called with (done, total) points
-Progress = Callable[[int, int], None]
+Item = TypeVar("Item")
+Result = TypeVar("Result")
 
 #: points a chunk: small enough for a smooth progress bar, large enough to cost nothing
 _POINTS_A_CHUNK = 32
 
 
-def no_progress(done: int, total: int) -> None:
-    """Report nothing."""
+class Executor(Protocol):
+    """Evaluates the items of a study."""
+
+    def results(
+        self, function: Callable[[Item], Result], items: Sequence[Item]
+    ) -> Iterator[tuple[int, Result]]:
+        """Yield the index of an item and its result as they are finished.
+
+        Parameters
+        ----------
+        function : callable
+            Of one item. Its result depends on the item alone, so that it is the same anywhere;
+            it can be pickled, as items and results can.
+        items : sequence
+
+        Raises
+        ------
+        InputError, RunError
+            As the function does, or if the workers are lost.
+        """
+        ...
+
+
+class SerialExecutor:
+    """One item after the other in this process; each may use all its threads."""
+
+    def results(
+        self, function: Callable[[Item], Result], items: Sequence[Item]
+    ) -> Iterator[tuple[int, Result]]:
+        """Yield results in the order of the items."""
+        for index, item in enumerate(items):
+            yield index, function(item)
 
 
 #: of a thread: whether other tasks run beside it, and the pool that its sweeps share

@@ -1,8 +1,9 @@
 """Decorator presets of the compiled code, and the folder that keeps it between sessions.
 
 Physics leaves in `cutting` and `dynamics` are `register_jitable`: plain functions to Python,
-inlined by the drivers here. numba's disk cache looks only at the file of the cached function, so
-an edit of a leaf would go unseen; the cache folder is therefore named by a hash of all sources.
+inlined by the drivers here (see `cutting.compiled`). numba's disk cache looks only at the file of
+the cached function, so that an edit of a leaf would go unseen; the cache folder is therefore named
+by a hash of all sources.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from pathlib import Path
 import numba
 
 from chatter.description.registry import extension_sources
+from cutting.compiled import UNCOUNTED
 
 #: compiled code of other versions is kept this long, s
 _KEEP_OLD_CACHES = 30 * 86400.0
@@ -68,20 +70,26 @@ def _set_cache_folder() -> Path:
 CACHE_FOLDER = _set_cache_folder()
 
 #: functions called from drivers
-KERNEL = {"cache": True, "error_model": "numpy"}
+KERNEL = {"cache": True, "error_model": UNCOUNTED["error_model"]}
 #: the same where the call itself would cost: a table that is passed on has all its arrays counted
 INLINED_KERNEL = {**KERNEL, "forceinline": True}
 #: sums may be taken in lanes: always in the same order on one machine, whatever the threads
 SUMMING_KERNEL = {**KERNEL, "fastmath": {"reassoc", "contract", "nsz"}}
 #: functions that compiled code alone calls: no entry for Python, kept on disk within their drivers
-INNER_KERNEL = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+INNER_KERNEL = {
+    "error_model": KERNEL["error_model"],
+    "no_cpython_wrapper": True,
+    "no_cfunc_wrapper": True,
+}
 #: the same that allocate nothing: arrays taken out of the tables they are passed need no counting,
 #: which would cost more than what most of them do
-LEAF_KERNEL = {**INNER_KERNEL, "_nrt": False}
+LEAF_KERNEL = {**INNER_KERNEL, **UNCOUNTED}
 #: functions with one caller, which becomes part of it
 SINGLE_KERNEL = {**INNER_KERNEL, "inline": "always"}
 #: loops over points, called from Python, in several threads at once
-DRIVER = {"cache": True, "error_model": "numpy", "nogil": True}
+DRIVER = {**KERNEL, "nogil": True}
+#: loops over steps of time, which allocate nothing
+TIME_LOOP = {**DRIVER, **UNCOUNTED}
 
 
 def is_compiled(*dispatchers: object) -> bool:

@@ -96,6 +96,10 @@ class Explanation:
 
     def summary(self) -> dict[str, Any]:
         """Content of explanation.json."""
+        return self._summary
+
+    @cached_property
+    def _summary(self) -> dict[str, Any]:
         effects = self._effects()
         explained = self.verdict == EXPLAINED
         dependence = self.residual_dependence

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
+from chatter.description.units import rpm
 from chatter.explain.kinds.kind import Cuts
 from chatter.explain.kinds.registry import KINDS
 from chatter.explain.measurement import Measurement
@@ -22,7 +23,6 @@ Array = NDArray[np.float64]
 
 #: what lobes need of a case
 _NEEDED = ("tool", "material", "cut", "structure")
-_RPM = 30.0 / math.pi
 _SPEEDS, _DEPTHS = 100, 60
 #: speeds at which it is asked whether an effect acts in lobes at all
 _ASKED = 16
@@ -112,8 +112,8 @@ def _ranged(cuts: Cuts, lowest: float, count: int) -> dict[str, dict[str, str | 
     lowest = lowest if math.isfinite(lowest) else 0.0
     beyond = _BEYOND if speed.size > 1 else _AROUND_ONE
     speeds = {
-        "from": f"{speed.min() / beyond * _RPM:.6g} rpm",
-        "to": f"{speed.max() * beyond * _RPM:.6g} rpm",
+        "from": f"{rpm(speed.min() / beyond):.6g} rpm",
+        "to": f"{rpm(speed.max() * beyond):.6g} rpm",
         "count": count,
     }
     deepest = max(_DEEPER * float(depth.max()), _LOWEST_LIMITS * lowest)
@@ -126,7 +126,7 @@ def _ranged(cuts: Cuts, lowest: float, count: int) -> dict[str, dict[str, str | 
 def _finite(before: LobeDiagram, after: LobeDiagram) -> tuple[Array, Array, Array]:
     old, new = before.limits.critical_depth, after.limits.critical_depth
     both = np.isfinite(old) & np.isfinite(new)
-    return before.limits.spindle_speed[both] * _RPM, old[both], new[both]
+    return rpm(before.limits.spindle_speed[both]), old[both], new[both]
 
 
 def _largest_change(before: LobeDiagram, after: LobeDiagram) -> float:

@@ -14,7 +14,7 @@ from chatter.description.formatting import shown
 from chatter.description.units import QuantityError, parse
 from chatter.explain.kinds.registry import KINDS
 from chatter.explain.measurement import Measurement, Run
-from chatter.io.signal_tables import read_signals
+from chatter.io.signals import read_signals
 
 #: keys of [[run]] that are no override of the case
 _OWN_KEYS = ("file", "condition", "direction", "title")

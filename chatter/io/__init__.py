@@ -1,1 +1,17 @@
-"""Io."""
+"""Files in and out.
+
+================ ==================================================================================
+module           responsibility
+================ ==================================================================================
+formats          one module a format, their registry: FRFs, signals, matrices
+files            opening within limits, text told from binary content
+table            columns of numbers or words, whatever the format
+headings         names and units of columns
+signals          signals of a measurement in SI, by name
+hammer_records   hammer records, one or a folder of them
+matrices         matrices and nodes of a finite element program
+result_files     texts, summaries and pictures that results write
+presentation     pictures and pages of results, loaded when asked for
+shipped_examples examples that are installed with the package
+================ ==================================================================================
+"""

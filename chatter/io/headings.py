@@ -7,7 +7,7 @@ from pathlib import Path
 
 from chatter.description.errors import InputError
 from chatter.description.formatting import shown
-from chatter.description.units import QuantityError, parse, registry
+from chatter.description.units import QuantityError, dimension_of, measured_unit, parse
 
 #: name of a column -> dimension of its unit; "" for one without
 DIMENSIONS = {
@@ -110,22 +110,13 @@ def _factor(path: Path, heading: str, name: str, unit: str) -> float:
 
 
 def _receptance(unit: str) -> float:
-    quantity = _quantity(unit)
-    if quantity is None or not quantity.check("[length]/[force]"):
+    found = measured_unit(unit)
+    if found is None or found.dimension != dimension_of("m/N"):
         raise ValueError(f'"{unit}" is no unit of a displacement per force, such as m/N or um/N')
-    return float(quantity.to_base_units().magnitude)
+    return found.factor
 
 
 def _factor_of_any(unit: str) -> float:
     """Factor of a column that nothing asks for: 1 where its unit is not known either."""
-    quantity = None if unit in _UNITLESS else _quantity(unit)
-    return 1.0 if quantity is None else float(quantity.to_base_units().magnitude)
-
-
-def _quantity(unit: str):
-    if len(unit) > 40 or not re.fullmatch(r"[\w\s*/^.\u00b5\u03bc\u00b0-]+", unit):
-        return None
-    try:
-        return registry().Quantity(1.0, unit.replace("^", "**"))
-    except Exception:
-        return None
+    found = None if unit in _UNITLESS else measured_unit(unit)
+    return 1.0 if found is None else found.factor

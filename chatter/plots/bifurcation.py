@@ -9,6 +9,7 @@ import numpy as np
 
 from chatter.description.case import Case
 from chatter.description.path import field_at, parse_path
+from chatter.description.units import rpm
 from chatter.plots.style import BLUE, GREY, RED, finish, new_figure
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 #: dimension -> unit of the axis and factor from SI
 _SHOWN = {
     "length": ("mm", 1e3),
-    "angular_speed": ("rpm", 30.0 / math.pi),
+    "angular_speed": ("rpm", rpm(1.0)),
     "angle": ("deg", 180.0 / math.pi),
     "frequency": ("Hz", 1.0),
     "line_force": ("N/mm", 1e-3),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -12,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
+from chatter.description.units import rpm
 from chatter.explain.residuals.variables import reported_unit
 from chatter.plots import style
 from chatter.plots.residual_diagnostics import plot_findings
@@ -31,11 +31,10 @@ _SHOWN_RUNS = 3
 _ABSCISSAE = {
     "time": ("time [s]", 1.0),
     "frequency": ("frequency [Hz]", 1.0),
-    "spindle_speed": ("spindle speed [rpm]", 30.0 / math.pi),
+    "spindle_speed": ("spindle speed [rpm]", rpm(1.0)),
 }
 #: deepest over shallowest cut beyond which depths are drawn on a logarithmic scale
 _WIDE = 15.0
-_RPM = 30.0 / math.pi
 _MODEL_COLOURS = (style.GREY, style.ORANGE, style.BLUE)
 _MODEL_LINES = ("--", "-.", "-")
 
@@ -232,7 +231,7 @@ def plot_lobes_before_after(found: LobesBeforeAfter) -> Figure:
     for number, (model, diagram) in enumerate(found.diagrams.items()):
         limit = diagram.limits.critical_depth
         axes.plot(
-            diagram.limits.spindle_speed * _RPM,
+            rpm(diagram.limits.spindle_speed),
             1e3 * np.where(np.isfinite(limit), limit, np.nan),
             color=_MODEL_COLOURS[number],
             ls=_MODEL_LINES[number],
@@ -256,7 +255,7 @@ def plot_lobes_before_after(found: LobesBeforeAfter) -> Figure:
 
 
 def _draw_cuts(axes: Axes, cuts: Cuts) -> None:
-    speed, depth = cuts.speed * _RPM, 1e3 * cuts.depth
+    speed, depth = rpm(cuts.speed), 1e3 * cuts.depth
     if cuts.stable is None:
         axes.plot(speed, depth, "D", color="black", mfc="white", ms=5, label="cuts")
         return

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,13 +10,13 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from chatter.description.units import rpm
 from chatter.plots import style
 from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
 
 if TYPE_CHECKING:
     from chatter.stability.diagram import LobeDiagram
 
-_RPM = 30.0 / math.pi
 _FILL_ROWS = 1000
 
 
@@ -59,7 +58,7 @@ def plot_lobes(diagram: LobeDiagram) -> Figure:
 
 def draw_limit(axes: Axes, diagram: LobeDiagram) -> None:
     """Draw stable and unstable depths, pockets and operating point into axes."""
-    speed = diagram.limits.spindle_speed * _RPM
+    speed = rpm(diagram.limits.spindle_speed)
     top = _top(diagram)
     _fill_unstable(axes, speed, diagram, top)
     label = _METHOD_LABEL[diagram.method]
@@ -139,7 +138,7 @@ def _mark_flips(axes: Axes, speed: NDArray[np.float64], diagram: LobeDiagram) ->
 
 def _mark_pockets(axes: Axes, diagram: LobeDiagram) -> None:
     for number, pocket in enumerate(diagram.pockets, start=1):
-        x, y = pocket.spindle_speed * _RPM, pocket.axial_depth * 1e3
+        x, y = rpm(pocket.spindle_speed), pocket.axial_depth * 1e3
         label = "pocket, with margin" if number == 1 else None
         axes.plot(x, y, "o", color=style.GREEN, markersize=11, linestyle="none", label=label)
         axes.annotate(
@@ -150,7 +149,7 @@ def _mark_pockets(axes: Axes, diagram: LobeDiagram) -> None:
 def _pocket_list(diagram: LobeDiagram) -> str:
     """Say below the picture what the numbers in it stand for."""
     lines = [
-        f"{number}: {pocket.spindle_speed * _RPM:.0f} rpm, {pocket.axial_depth * 1e3:.3g} mm, "
+        f"{number}: {rpm(pocket.spindle_speed):.0f} rpm, {pocket.axial_depth * 1e3:.3g} mm, "
         f"{pocket.removal_rate * 6e7:.3g} cm³/min"
         for number, pocket in enumerate(diagram.pockets, start=1)
     ]
@@ -163,7 +162,7 @@ def _mark_operating_point(axes: Axes, diagram: LobeDiagram) -> None:
     cut = diagram.case.cut
     stable = diagram.operating_is_stable
     axes.plot(
-        cut.spindle_speed * _RPM,
+        rpm(cut.spindle_speed),
         cut.axial_depth * 1e3,
         marker="o" if stable else "X",
         markersize=9,
@@ -177,7 +176,7 @@ def _mark_operating_point(axes: Axes, diagram: LobeDiagram) -> None:
 
 def draw_chatter_frequency(axes: Axes, diagram: LobeDiagram) -> None:
     """Draw the chatter frequency at the limit, with the modes and tooth-passing harmonics."""
-    speed = diagram.limits.spindle_speed * _RPM
+    speed = rpm(diagram.limits.spindle_speed)
     flip = np.array(diagram.limits.bifurcation) == "flip"
     heard = diagram.limits.chatter_frequency
     axes.plot(speed[~flip], heard[~flip], ".", markersize=3, color=style.BLUE, label="Hopf")

@@ -12,12 +12,12 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from chatter.description.units import rpm
 from chatter.plots import style
 
 if TYPE_CHECKING:
     from chatter.studies.optimisation.result import Optimum
 
-_RPM = 30.0 / math.pi
 _PER_MINUTE = 6e7
 _FILL_ROWS = 800
 _KEPT_FILL = "#BFE3D2"
@@ -64,7 +64,7 @@ def _title(found: Optimum) -> str:
 def draw_sheet(axes: Axes, found: Optimum) -> None:
     """Draw stable depths, what the margins leave, boundaries of the limits, and the best cut."""
     sheet = found.sheet
-    speed, depth = sheet.speeds * _RPM, sheet.depths * 1e3
+    speed, depth = rpm(sheet.speeds), sheet.depths * 1e3
     top = _top(found)
     _fill(axes, found, top)
     rate = sheet.removal_rate * _PER_MINUTE
@@ -126,7 +126,7 @@ def _fill(axes: Axes, found: Optimum, top: float) -> None:
     depth = (np.arange(_FILL_ROWS) + 0.5) * top / _FILL_ROWS
     passed = np.array([np.searchsorted(c, depth * 1e-3) % 2 for c in stable.crossings]).T
     axes.pcolormesh(
-        stable.speeds * _RPM, depth, passed,
+        rpm(stable.speeds), depth, passed,
         cmap=ListedColormap([style.STABLE_FILL, style.UNSTABLE_FILL]), vmin=0, vmax=1,
         shading="nearest", rasterized=True, zorder=0.4,
     )  # fmt: skip
@@ -136,11 +136,11 @@ def _fill(axes: Axes, found: Optimum, top: float) -> None:
     kept = sheet.feasible[np.ix_(row, column)] & (passed == 0)
     if kept.any():
         axes.pcolormesh(
-            stable.speeds * _RPM, depth, np.ma.masked_where(~kept, np.ones(kept.shape)),
+            rpm(stable.speeds), depth, np.ma.masked_where(~kept, np.ones(kept.shape)),
             cmap=ListedColormap([_KEPT_FILL]), shading="nearest", rasterized=True, zorder=0.5,
         )  # fmt: skip
     first = [found[0] * 1e3 if len(found) else np.nan for found in stable.crossings]
-    axes.plot(stable.speeds * _RPM, first, color=style.BLUE, linewidth=1.2, zorder=1.5)
+    axes.plot(rpm(stable.speeds), first, color=style.BLUE, linewidth=1.2, zorder=1.5)
 
 
 def _nearest(places: np.ndarray, wanted: np.ndarray) -> np.ndarray:
@@ -170,7 +170,7 @@ def _mark_candidates(axes: Axes, found: Optimum) -> list[Line2D]:
     ]
     if others:
         handles += axes.plot(
-            [place.spindle_speed * _RPM for place in others],
+            [rpm(place.spindle_speed) for place in others],
             [place.axial_depth * 1e3 for place in others],
             "o", color="white", markeredgecolor=style.BLUE, markersize=7, zorder=5,
             label="runner-up",
@@ -178,7 +178,7 @@ def _mark_candidates(axes: Axes, found: Optimum) -> list[Line2D]:
     if found.best is not None:
         place = found.best.place
         handles += axes.plot(
-            place.spindle_speed * _RPM, place.axial_depth * 1e3, "*", color=style.GREEN,
+            rpm(place.spindle_speed), place.axial_depth * 1e3, "*", color=style.GREEN,
             markeredgecolor="black", markersize=16, zorder=6, linestyle="none", clip_on=False,
             label=f"best: {place.removal_rate * _PER_MINUTE:.4g} cm³/min",
         )  # fmt: skip

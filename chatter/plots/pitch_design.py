@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from chatter.description.units import rpm
 from chatter.plots import style
 
 if TYPE_CHECKING:
     from chatter.studies.pitch_design.result import PitchResult
 
-_RPM = 30.0 / math.pi
 _COLOURS = {"alternating": style.ORANGE, "linear": "#CC79A7"}
 
 
@@ -39,7 +38,7 @@ def plot_pitch(found: PitchResult) -> Figure:
 
 def draw_limits(axes: Axes, found: PitchResult) -> None:
     """Draw the first limit over speed before and after; where none was found the line ends."""
-    speed = found.speeds * _RPM
+    speed = rpm(found.speeds)
     curves = (
         ("before", found.standing, style.GREY),
         ("after", found.best, style.BLUE),

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from chatter.description.units import rpm
 from chatter.plots import style
 from chatter.plots.workpiece import draw_workpiece
 from cutting.chip.discrete_chip import DiscreteCut
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _TURN = 2.0 * math.pi
-_RPM = 30.0 / math.pi
 _COLOURS = (style.BLUE, style.ORANGE, style.GREEN)
 #: revolutions, or groups of them, that show a whole run as a band
 _LEAST_BANDS, _MOST_BANDS = 16, 400
@@ -87,10 +87,10 @@ def _title(result: SimulationResult) -> str:
     cut = result.case.cut
     case = (
         f"{result.case.title + ': ' if result.case.title else ''}"
-        f"{cut.spindle_speed * _RPM:.0f} rpm, axial depth {cut.axial_depth * 1e3:.4g} mm, "
+        f"{rpm(cut.spindle_speed):.0f} rpm, axial depth {cut.axial_depth * 1e3:.4g} mm, "
         f"feed {cut.feed_per_tooth * 1e3:.4g} mm a tooth"
     )
-    found = result.judgement
+    found = result.detection
     if found is None:
         why = "the tool is rigid" if not result.setup.modes else "the run is too short"
         return f"{case}\nnot judged: {why}"
@@ -236,7 +236,7 @@ def _mark_harmonics(axes: Axes, tooth: float, teeth: int, top: float) -> None:
 
 
 def _mark_chatter(axes: Axes, result: SimulationResult) -> None:
-    found = result.judgement
+    found = result.detection
     if found is None or not math.isfinite(found.chatter_frequency):
         return
     heard = found.chatter_frequency

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from chatter.description.units import rpm
 from chatter.plots import style
 
 if TYPE_CHECKING:
     from chatter.studies.uncertainty.study import Uncertainty
 
-_RPM = 30.0 / math.pi
 _BINS = 24
 #: samples drawn as thin lines
 _SHOWN_SAMPLES = 25
@@ -38,7 +37,7 @@ def plot_uncertainty(found: Uncertainty) -> Figure:
 
 def draw_band(axes: Axes, found: Uncertainty) -> None:
     """Draw quantiles of the limit over speed, and the cut with its probability."""
-    speed, cut = found.speeds * _RPM, found.case.cut
+    speed, cut = rpm(found.speeds), found.case.cut
     top = max(found.searched_to, 1.05 * cut.axial_depth) * 1e3
     low, middle, high = found.quantiles() * 1e3
     axes.fill_between(
@@ -50,7 +49,7 @@ def draw_band(axes: Axes, found: Uncertainty) -> None:
     axes.plot(speed, _finite(middle), color=style.BLUE, linewidth=1.8, label="median limit")
     ends = found.interval
     axes.plot(
-        cut.spindle_speed * _RPM,
+        rpm(cut.spindle_speed),
         cut.axial_depth * 1e3,
         "o",
         color=style.RED if found.probability < 0.5 else style.GREEN,
@@ -94,7 +93,7 @@ def draw_distribution(axes: Axes, found: Uncertainty) -> None:
     )  # fmt: skip
     missing = len(found.operating) - limit.size
     beyond = f" ({missing} samples above {found.searched_to * 1e3:.3g} mm)" if missing else ""
-    axes.set_xlabel(f"limit at {found.case.cut.spindle_speed * _RPM:.0f} rpm [mm]{beyond}")
+    axes.set_xlabel(f"limit at {rpm(found.case.cut.spindle_speed):.0f} rpm [mm]{beyond}")
     axes.set_ylabel("samples")
     style.finish(axes)
 

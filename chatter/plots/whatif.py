@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from chatter.description.units import rpm
 from chatter.plots import style
 from chatter.studies.whatif import summary as telling
 
@@ -31,7 +32,7 @@ def plot_whatif(study: WhatIf) -> Figure:
 
 
 def _title(study: WhatIf) -> str:
-    return study.subject.title or study.subject.name
+    return study.model.title or study.model.name
 
 
 def _quantity_label(study: WhatIf) -> str:
@@ -91,9 +92,9 @@ def _draw_curves(axes: Axes, study: WhatIf, panel: str, name: str, colours: list
 
 
 def _mark_operating_point(axes: Axes, study: WhatIf) -> None:
-    cut = study.subject.cut
+    cut = study.model.cut
     axes.plot(
-        cut.spindle_speed * 30.0 / np.pi,
+        rpm(cut.spindle_speed),
         cut.axial_depth * 1e3,
         "o",
         color="black",

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from chatter.report.console import print_table
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -47,8 +49,6 @@ def write_findings(findings: Sequence[Finding], folder: str | Path) -> Path:
     folder : path
         Made where it is missing.
     """
-    from chatter.cli.report import print_table
-
     headers = ["finding", "published", "obtained", "deviation", "source"]
     rows = [
         [

@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.errors import InputError
-from chatter.detection.record import CutRecord
-from chatter.detection.verdict import Judgement, judge
+from chatter.description.units import rpm
+from chatter.detection.chatter_detection import Detection, detect_chatter
+from chatter.detection.cut_record import CutRecord
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, write_results
 from chatter.simulation.carved_workpiece import carving_notes
@@ -27,7 +28,6 @@ from cutting.dexel.stock import DexelStock
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_RPM = 30.0 / math.pi
 #: a record of fewer turns, or of fewer cycles of the lowest mode, is not judged
 _LEAST_TURNS_TO_JUDGE = 8.0
 _LEAST_CYCLES_TO_JUDGE = 12.0
@@ -111,27 +111,27 @@ class SimulationResult:
         return float(self.spindle_angle[-1]) / (2.0 * math.pi)
 
     @cached_property
-    def judgement(self) -> Judgement | None:
-        """Chatter or not; None where that cannot be told, see `why_not_judged`."""
-        if self.why_not_judged:
+    def detection(self) -> Detection | None:
+        """Chatter or not; None where that cannot be told, see `why_no_verdict`."""
+        if self.why_no_verdict:
             return None
         if self._divergence is None:
-            return self._judged_by_record
+            return self._detection_of_record
         if not self._varies and self._divergence.stable:
-            return self._judged_by_record
-        return self._judged_by_divergence(self._judged_by_record)
+            return self._detection_of_record
+        return self._detection_by_perturbation(self._detection_of_record)
 
     @cached_property
-    def _judged_by_record(self) -> Judgement:
+    def _detection_of_record(self) -> Detection:
         """Verdict of the record alone: whether the motion repeats."""
-        return judge(self._cut_record())
+        return detect_chatter(self._cut_record())
 
     @property
     def _varies(self) -> bool:
         return self.setup.spindle.amplitude != 0.0
 
     @cached_property
-    def why_not_judged(self) -> str:
+    def why_no_verdict(self) -> str:
         """Why there is no verdict; empty where there is one."""
         if not self.setup.modes:
             return "the tool is rigid"
@@ -163,7 +163,7 @@ class SimulationResult:
             swing = 0.5 * float(np.ptp(settled, axis=0).max())
             if swing <= LARGE_SWING * self.case.cut.feed_per_tooth or not self._steady:
                 return None
-            if self._judged_by_record.verdict != "stable":
+            if self._detection_of_record.verdict != "stable":
                 return None
         return divergence(self.case, self.setup.modes)
 
@@ -191,7 +191,7 @@ class SimulationResult:
             negligible=_CARVED if isinstance(self.setup.groups[0], DiscreteCut) else _DELAYED,
         )
 
-    def _judged_by_divergence(self, found: Judgement) -> Judgement:
+    def _detection_by_perturbation(self, found: Detection) -> Detection:
         """Verdict by small pushes, where the record does not tell."""
         apart = self._divergence
         assert apart is not None
@@ -232,7 +232,7 @@ class SimulationResult:
         return {
             "title": self.case.title,
             **self._verdict(),
-            "spindle_speed_rpm": cut.spindle_speed * _RPM,
+            "spindle_speed_rpm": rpm(cut.spindle_speed),
             "axial_depth_mm": cut.axial_depth * 1e3,
             "peak_force_N": {
                 name: float(np.abs(self.force[:, axis]).max()) for axis, name in enumerate(names)
@@ -284,12 +284,12 @@ class SimulationResult:
         }
 
     def _verdict(self) -> dict:
-        found = self.judgement
+        found = self.detection
         if found is None:
             return {
                 "verdict": "not judged",
                 "chatter_frequency_Hz": None,
-                "reason": self.why_not_judged,
+                "reason": self.why_no_verdict,
             }
         return {
             "verdict": found.verdict,

@@ -8,8 +8,8 @@ import numpy as np
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
+from chatter.description.progress import Progress, no_progress
 from chatter.engine.loop import COLUMNS, Record, run
-from chatter.engine.parallel import Progress, no_progress
 from chatter.simulation.carved_workpiece import FollowingStock, after_run, set_up_on
 from chatter.simulation.dynamometer import as_measured
 from chatter.simulation.result import SimulationResult

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from chatter.description.case import Case
-from chatter.engine.parallel import no_progress
+from chatter.description.progress import no_progress
+from chatter.description.units import rpm
 from chatter.io.result_files import as_json, finite_or_none, write_results
 from chatter.stability.floquet_multiplier import Multiplier, bifurcation_kind
 from chatter.stability.forced_vibration import notes_on_steady_cut
@@ -23,8 +23,6 @@ from chatter.stability.registry import (
     zero_order_of,
 )
 from chatter.stability.search_range import depths_at_one_speed
-
-_RPM = 30.0 / math.pi
 
 
 @dataclass(frozen=True)
@@ -87,7 +85,7 @@ class StabilityCheck:
             "chatter_frequency_Hz": finite_or_none(self.chatter_frequency),
             "bifurcation": self.bifurcation,
             "critical_depth_mm": finite_or_none(self.critical_depth * 1e3),
-            "spindle_speed_rpm": cut.spindle_speed * _RPM,
+            "spindle_speed_rpm": rpm(cut.spindle_speed),
             "axial_depth_mm": cut.axial_depth * 1e3,
             "limit": {
                 "chatter_frequency_Hz": finite_or_none(float(self.limit.chatter_frequency[0])),

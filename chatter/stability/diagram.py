@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
+from chatter.description.units import rpm
+from chatter.engine.parallel import Executor
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, write_results
 from chatter.stability.forced_vibration import notes_on_steady_cut
@@ -31,12 +33,9 @@ from chatter.stability.registry import (
     zero_order_of,
 )
 from chatter.stability.search_range import axial_depths, deepest_depth, spindle_speeds
-from chatter.studies.executor import Computing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-_RPM = 30.0 / math.pi
 
 
 @dataclass(frozen=True)
@@ -62,7 +61,7 @@ class StabilityGrid:
         """Write grid.npz: spindle_speed [rpm], axial_depth [mm], spectral_radius."""
         np.savez_compressed(
             path,
-            spindle_speed=self.spindle_speed * _RPM,
+            spindle_speed=rpm(self.spindle_speed),
             axial_depth=self.axial_depth * 1e3,
             spectral_radius=self.spectral_radius,
         )
@@ -121,17 +120,17 @@ class LobeDiagram:
             "title": self.case.title,
             "method": self.method,
             "spindle_speeds_rpm": [
-                float(self.limits.spindle_speed[0] * _RPM),
-                float(self.limits.spindle_speed[-1] * _RPM),
+                float(rpm(self.limits.spindle_speed[0])),
+                float(rpm(self.limits.spindle_speed[-1])),
             ],
             "searched_to_mm": self.deepest * 1e3,
             "lowest_limit": {
                 "critical_depth_mm": depth[lowest] * 1e3 if found else None,
-                "spindle_speed_rpm": self.limits.spindle_speed[lowest] * _RPM if found else None,
+                "spindle_speed_rpm": rpm(self.limits.spindle_speed[lowest]) if found else None,
                 "chatter_frequency_Hz": self.limits.chatter_frequency[lowest] if found else None,
             },
             "operating_point": {
-                "spindle_speed_rpm": cut.spindle_speed * _RPM,
+                "spindle_speed_rpm": rpm(cut.spindle_speed),
                 "axial_depth_mm": cut.axial_depth * 1e3,
                 "critical_depth_mm": finite_or_none(float(self.operating.critical_depth[0]) * 1e3),
                 "stable": self.operating_is_stable,
@@ -179,7 +178,7 @@ class LobeDiagram:
     def _table(self) -> str:
         lines = ["spindle_speed [rpm],critical_depth [mm],chatter_frequency [Hz],bifurcation"]
         rows = zip(
-            self.limits.spindle_speed * _RPM,
+            rpm(self.limits.spindle_speed),
             self.limits.critical_depth * 1e3,
             self.limits.chatter_frequency,
             self.limits.bifurcation,
@@ -193,7 +192,7 @@ class LobeDiagram:
 
 def _pocket_summary(pocket: Pocket) -> dict:
     return {
-        "spindle_speed_rpm": pocket.spindle_speed * _RPM,
+        "spindle_speed_rpm": rpm(pocket.spindle_speed),
         "axial_depth_mm": pocket.axial_depth * 1e3,
         "limit_depth_mm": finite_or_none(pocket.limit_depth * 1e3),
         "removal_rate_cm3_per_min": pocket.removal_rate * 1e6 * 60.0,
@@ -218,7 +217,7 @@ def lobes(
     method: str | None = None,
     grid: bool = False,
     progress: Progress = no_progress,
-    cluster: str | Computing | None = None,
+    cluster: str | Executor | None = None,
     folder: str | Path | None = None,
 ) -> LobeDiagram:
     """Compute the stability lobe diagram of a case.
@@ -233,10 +232,10 @@ def lobes(
         Also the spectral radius on the whole grid of speeds and depths.
     progress : callable, optional
         Called with (done, total) speeds.
-    cluster : str or Computing, optional
-        Where the grid is computed, as for `chatter.studies.executor.computing_on`; here by default.
+    cluster : str or Executor, optional
+        Where the grid is computed, as for `chatter.studies.executor.open_executor`; None: here.
     folder : path, optional
-        On a cluster, keeps finished blocks of the grid in points.jsonl there.
+        On a cluster, keeps finished blocks of the grid in the result cache there.
 
     Returns
     -------

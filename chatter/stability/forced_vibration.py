@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.description.units import rpm
 from chatter.stability.model import MillingModel
 from cutting.edge_segments.coupling import part_below, share_of_height
 from cutting.edge_segments.segments import EdgePieces
@@ -125,7 +126,7 @@ def notes_on_steady_cut(model: MillingModel, method: str) -> tuple[str, ...]:
     if found.missed < _WORTH_TELLING and found.chip_change < _LARGE_CHANGE * found.chip:
         return ()
     return (
-        f"at {speed * 30.0 / math.pi:.0f} rpm and {depth * 1e3:.3g} mm the steady cut itself makes "
+        f"at {rpm(speed):.0f} rpm and {depth * 1e3:.3g} mm the steady cut itself makes "
         f"the tool vibrate by {found.amplitude * 1e6:.3g} um, which changes the chip of "
         f"{found.chip * 1e6:.3g} um by up to {found.chip_change * 1e6:.3g} um: teeth miss "
         f"{found.missed:.0%} of their arc or meet an older surface, which linear methods leave "

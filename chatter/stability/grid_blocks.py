@@ -9,13 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
+from chatter.engine.parallel import Executor
 from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.registry import GRIDS, radius_by_collocation, resolution
-from chatter.studies.executor import Computing
-from chatter.studies.finished_points import key_of
-from chatter.studies.result_cache import kept_results
-from chatter.studies.whatif.model import fingerprint
+from chatter.studies.model import fingerprint
+from chatter.studies.result_cache import ResultCache
 
 _SPEEDS_A_BLOCK = 4
 
@@ -25,7 +24,7 @@ def radius_in_blocks(
     speeds: NDArray[np.float64],
     depths: NDArray[np.float64],
     method: str,
-    cluster: str | Computing | None = None,
+    cluster: str | Executor | None = None,
     folder: str | Path | None = None,
     progress: Progress = no_progress,
 ) -> NDArray[np.float64]:
@@ -38,10 +37,10 @@ def radius_in_blocks(
         rad/s, m.
     method : str
         Key of `chatter.stability.registry.METHODS`.
-    cluster : str or Computing, optional
-        As for `chatter.studies.executor.computing_on`.
+    cluster : str or Executor, optional
+        As for `chatter.studies.executor.open_executor`.
     folder : path, optional
-        Keeps finished blocks in points.jsonl there, and reuses those of the same input.
+        Keeps finished blocks in the result cache there, and reuses those of the same input.
     progress : callable
         Called with (done, total) blocks.
 
@@ -54,11 +53,11 @@ def radius_in_blocks(
         np.arange(first, min(first + _SPEEDS_A_BLOCK, len(speeds)))
         for first in range(0, len(speeds), _SPEEDS_A_BLOCK)
     ]
-    base = key_of("grid", fingerprint(case), method, repr(depths.tolist()))
-    keys = [key_of(base, repr(speeds[block].tolist())) for block in blocks]
     radius_at = partial(_radius_of_speeds, case, depths, method)
     wanted = [speeds[block] for block in blocks]
-    found = kept_results(radius_at, wanted, keys, "blocks of the grid", cluster, folder, progress)
+    with ResultCache(folder, "grid", fingerprint(case), method, repr(depths.tolist())) as cache:
+        keys = [cache.key(repr(block.tolist())) for block in wanted]
+        found = cache.evaluate(radius_at, wanted, keys, "blocks of the grid", cluster, progress)
     return np.concatenate([np.array(one, dtype=np.float64) for one in found], axis=1)
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
 from chatter.stability.crossings import find_crossings, growth_on_net
 from chatter.stability.floquet_multiplier import bifurcation_kind
 from chatter.stability.limit_curve import LimitCurve

@@ -14,6 +14,7 @@ from chatter.compile.structure import Structure, depends_on_speed, structure_at,
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.plausibility import check_plausible
+from chatter.description.units import rpm
 from chatter.simulation.setup import refuse_teeth_off_the_tool
 from chatter.stability.methods.collocation.cut_arrays import RESOLUTION, CutArrays, cut_arrays
 from chatter.stability.methods.matrix_free.method import stepped_cut
@@ -96,7 +97,7 @@ class MillingModel:
         basis = _motion_basis(structure.directions)
         if basis.shape != self.basis.shape or not np.allclose(basis, self.basis, atol=1e-9):
             raise InputError(
-                f"{self.case.name}: structure: at {spindle_speed * 30.0 / math.pi:.0f} rpm the "
+                f"{self.case.name}: structure: at {rpm(spindle_speed):.0f} rpm the "
                 "tool point moves in other directions than at the speed of the cut; the same are "
                 "wanted at all speeds"
             )

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.compile.structure import standing_speeds
-from chatter.engine.parallel import Progress, no_progress, one_thread, sweep, worker_count
+from chatter.description.progress import Progress, no_progress
+from chatter.engine.parallel import one_thread, sweep, worker_count
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.methods.zeroth_order.method import ZeroOrderLimit
 from chatter.stability.model import MillingModel

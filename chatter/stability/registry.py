@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.engine.parallel import Progress
+from chatter.description.progress import Progress
 from chatter.stability.floquet_multiplier import Multiplier
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.methods.collocation import multipliers as collocation

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.engine.parallel import Progress, no_progress, sweep
+from chatter.description.progress import Progress, no_progress
+from chatter.engine.parallel import sweep
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, write_results
 from chatter.simulation.perturbation.growth_rate import periods_a_turn
@@ -159,17 +160,17 @@ def _point(case: Case, path: str, modes: tuple[Mode, ...] | None) -> Bifurcation
     value = float(case.get(path))
     if not result.complete:
         return BifurcationPoint(value, np.zeros((0, 3)), "chatter", "unknown", math.nan)
-    judgement = result.judgement
+    detection = result.detection
     a_turn = periods_a_turn(result.setup)
     periods = np.arange(math.floor(result.turns * a_turn) + 1) / a_turn
     kept = 2.0 * math.pi * periods[-_KEPT_TURNS * a_turn :]
     points = np.stack(
         [np.interp(kept, result.spindle_angle, column) for column in result.displacement.T], axis=1
     )
-    if judgement is None:
+    if detection is None:
         return BifurcationPoint(value, points, "not judged", "unknown", math.nan)
     return BifurcationPoint(
-        value, points, judgement.verdict, judgement.bifurcation, judgement.chatter_frequency
+        value, points, detection.verdict, detection.bifurcation, detection.chatter_frequency
     )
 
 

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.engine.parallel import Progress, no_progress, one_thread, sweep
+from chatter.description.progress import Progress, no_progress
+from chatter.engine.parallel import Executor, one_thread, sweep
 from chatter.io.result_files import finite_or_none
 from chatter.stability.model import milling_model
 from chatter.stability.registry import (
@@ -23,8 +24,7 @@ from chatter.stability.registry import (
     zero_order_of,
 )
 from chatter.stability.search_range import depths_at_one_speed
-from chatter.studies.executor import Computing
-from chatter.studies.finished_points import key_of
+from chatter.studies.model import fingerprint, patched
 from chatter.studies.parameter_axis import (
     DEPTH_PATH,
     SPEED_PATH,
@@ -33,9 +33,8 @@ from chatter.studies.parameter_axis import (
     speed_axis,
     standing_number,
 )
-from chatter.studies.result_cache import kept_results
+from chatter.studies.result_cache import ResultCache
 from chatter.studies.results_over_axes import PathLimits, StabilityMap
-from chatter.studies.whatif.model import fingerprint, patched
 from chatter.studies.whatif.variation import Value, Variation
 
 #: values of a range that gives no count: of a curve, and of each side of a map
@@ -62,7 +61,7 @@ def lobes_over(
     y: AxisGiven | None = None,
     method: str | None = None,
     progress: Progress = no_progress,
-    cluster: str | Computing | None = None,
+    cluster: str | Executor | None = None,
     folder: str | Path | None = None,
 ) -> PathLimits | StabilityMap:
     """Limit depth over a path of a case; with `y`, the spectral radius over two.
@@ -79,10 +78,10 @@ def lobes_over(
         As for `chatter.lobes`.
     progress : callable, optional
         Called with (done, total) points or columns.
-    cluster : str or Computing, optional
-        Where they are computed, as for `chatter.studies.executor.computing_on`; here by default.
+    cluster : str or Executor, optional
+        Where they are computed, as for `chatter.studies.executor.open_executor`; here by default.
     folder : path, optional
-        On a cluster, keeps finished points or columns in points.jsonl there.
+        On a cluster, keeps finished points or columns in the result cache there.
 
     Returns
     -------
@@ -256,7 +255,7 @@ def _each(
 
 
 def _kept(
-    cluster: str | Computing,
+    cluster: str | Executor,
     folder: str | Path | None,
     progress: Progress,
     function: Callable[[_Point], dict[str, Any]],
@@ -264,11 +263,12 @@ def _kept(
     noun: str,
 ) -> list[dict[str, Any]]:
     """Records of all points on a cluster, kept as they come."""
-    keys = [
-        key_of(function.__name__, fingerprint(one.case), repr((one.method, one.speeds, one.depths)))
-        for one in points
-    ]
-    return kept_results(function, points, keys, noun, cluster, folder, progress)
+    with ResultCache(folder, function.__name__) as cache:
+        keys = [
+            cache.key(fingerprint(one.case), repr((one.method, one.speeds, one.depths)))
+            for one in points
+        ]
+        return cache.evaluate(function, points, keys, noun, cluster, progress)
 
 
 def _reasons(found: Sequence[dict[str, Any]], name: str, labels: Sequence[str]) -> tuple[str, ...]:

@@ -1,7 +1,7 @@
-"""Where the points of a study are computed: here, or on a Dask cluster.
+"""Executor of a study: this process, or the workers of a Dask cluster.
 
-Both give the same call, `Computing.results`, with which the sweeps are written. A cluster is
-trusted: its scheduler and workers exchange pickled functions and data, and run what they get.
+Both offer the interface `chatter.engine.parallel.Executor`. A cluster is trusted: its scheduler and
+workers exchange pickled functions and data, and run what they get.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from chatter.description.errors import InputError, RunError
-from chatter.engine.parallel import one_thread, worker_count
+from chatter.engine.parallel import Executor, SerialExecutor, one_thread, worker_count
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -27,50 +27,16 @@ LOCAL = "local"
 #: s: a task is to take about this, so that scheduling costs nothing and little is lost with it
 _TASK_SECONDS = 3.0
 #: s
-_PATIENCE_FOR_SCHEDULER, _PATIENCE_FOR_WORKERS = 10.0, 60.0
-_TASKS_A_WORKER = 2
+_SCHEDULER_TIMEOUT, _WORKERS_TIMEOUT = 10.0, 60.0
+_TASKS_PER_WORKER = 2
 #: run by workers at their start: Ctrl-C goes to every process of a terminal, and the one that
 #: started them ends them
-_DEAF_TO_CTRL_C = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
+_IGNORE_CTRL_C = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 _ADDRESS = re.compile(r"(tcp|tls|ws|wss)://[^\s/:]+(:\d+)")
-_ADDRESS_V6 = re.compile(r"(tcp|tls|ws|wss)://\[[0-9a-fA-F:.]+\](:\d+)")
+_ADDRESS_IPV6 = re.compile(r"(tcp|tls|ws|wss)://\[[0-9a-fA-F:.]+\](:\d+)")
 
 
-class Computing(Protocol):
-    """A place where the items of a study are computed."""
-
-    def results(
-        self, function: Callable[[Item], Result], items: Sequence[Item]
-    ) -> Iterator[tuple[int, Result]]:
-        """Yield the place of an item and what a function makes of it, as they are finished.
-
-        Parameters
-        ----------
-        function : callable
-            Of one item. Its result depends on the item alone, so that it is the same anywhere;
-            it can be pickled, as items and results can.
-        items : sequence
-
-        Raises
-        ------
-        InputError, RunError
-            As the function does, or if the place of computing is lost.
-        """
-        ...
-
-
-class Here:
-    """One item after the other in this process; each may use all its threads."""
-
-    def results(
-        self, function: Callable[[Item], Result], items: Sequence[Item]
-    ) -> Iterator[tuple[int, Result]]:
-        """Yield results in the order of the items."""
-        for place, item in enumerate(items):
-            yield place, function(item)
-
-
-class OnDask:
+class DaskExecutor:
     """Tasks of several items on the workers of a Dask cluster, one thread each.
 
     Parameters
@@ -93,14 +59,14 @@ class OnDask:
         from distributed import as_completed
 
         waiting = list(range(len(items)))[::-1]
-        cost = _Cost(self._task_seconds)
+        task_size = _TaskSize(self._task_seconds)
         places: dict[Any, list[int]] = {}
         ended = as_completed()
         try:
             while waiting or places:
-                wanted = _TASKS_A_WORKER * max(1, self._workers())
+                wanted = _TASKS_PER_WORKER * max(1, self._workers())
                 while waiting and len(places) < wanted:
-                    size = cost.items_a_task(len(waiting), wanted)
+                    size = task_size.items_per_task(len(waiting), wanted)
                     mine = [waiting.pop() for _ in range(size)]
                     future = self._submit(function, [items[place] for place in mine])
                     places[future] = mine
@@ -108,10 +74,10 @@ class OnDask:
                 future = next(ended)
                 mine = places.pop(future)
                 found, seconds = _result_of(future)
-                cost.add(len(mine), seconds)
+                task_size.add(len(mine), seconds)
                 yield from zip(mine, found, strict=True)
         except (CancelledError, OSError) as error:
-            raise _lost(error) from None
+            raise _cluster_lost(error) from None
         finally:
             # a client that is closed has taken its tasks along
             if places and self._client.status == "running":
@@ -126,7 +92,7 @@ class OnDask:
         return self._client.submit(_task, function, items, _version(), pure=False)
 
 
-class _Cost:
+class _TaskSize:
     """Time that items took, and how many make a task."""
 
     def __init__(self, task_seconds: float) -> None:
@@ -137,7 +103,7 @@ class _Cost:
         self._items += items
         self._seconds += seconds
 
-    def items_a_task(self, waiting: int, tasks: int) -> int:
+    def items_per_task(self, waiting: int, tasks: int) -> int:
         """Items of the next task: one until a cost is known, fewer towards the end."""
         if self._items == 0:
             return 1
@@ -183,19 +149,19 @@ def _result_of(future: Any) -> tuple[list, float]:
     return found, seconds
 
 
-def _lost(error: BaseException) -> RunError:
+def _cluster_lost(error: BaseException) -> RunError:
     return RunError(f"the cluster is lost ({type(error).__name__}); what was finished is kept")
 
 
 @contextmanager
-def computing_on(cluster: str | Computing | None) -> Iterator[Computing]:
-    """Open a place of computing, and close what was opened.
+def open_executor(cluster: str | Executor | None) -> Iterator[Executor]:
+    """Open an executor, and close what was opened.
 
     Parameters
     ----------
-    cluster : str or Computing, optional
+    cluster : str or Executor, optional
         "local" starts worker processes on this machine; "tcp://host:port" is the scheduler of a
-        Dask cluster; None computes here.
+        Dask cluster; None is this process.
 
     Raises
     ------
@@ -203,12 +169,12 @@ def computing_on(cluster: str | Computing | None) -> Iterator[Computing]:
         If distributed is not installed, or no scheduler or worker answers.
     """
     if cluster is None:
-        yield Here()
+        yield SerialExecutor()
         return
     if not isinstance(cluster, str):
         yield cluster
         return
-    known = cluster == LOCAL or _ADDRESS.fullmatch(cluster) or _ADDRESS_V6.fullmatch(cluster)
+    known = cluster == LOCAL or _ADDRESS.fullmatch(cluster) or _ADDRESS_IPV6.fullmatch(cluster)
     if not known:
         raise InputError(
             f'--cluster "{cluster}" is no cluster; "{LOCAL}" is one, or the address of a '
@@ -222,7 +188,7 @@ def computing_on(cluster: str | Computing | None) -> Iterator[Computing]:
         ) from None
     opened = _local_client() if cluster == LOCAL else _client_of(cluster)
     with opened as client:
-        yield OnDask(client)
+        yield DaskExecutor(client)
 
 
 @contextmanager
@@ -240,7 +206,7 @@ def _local_client() -> Iterator[Client]:
             host="127.0.0.1",
             dashboard_address=None,
             silence_logs=logging.CRITICAL,
-            preload=_DEAF_TO_CTRL_C,
+            preload=_IGNORE_CTRL_C,
         ) as cluster,
         Client(cluster) as client,
     ):
@@ -257,18 +223,18 @@ def _client_of(address: str) -> Iterator[Client]:
     for name in [name for name in logging.root.manager.loggerDict if name.startswith("distrib")]:
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
-        client = Client(address, timeout=_PATIENCE_FOR_SCHEDULER)
+        client = Client(address, timeout=_SCHEDULER_TIMEOUT)
     except (OSError, TimeoutError, ValueError):
         raise InputError(
             f"--cluster {address}: no scheduler answers there within "
-            f"{_PATIENCE_FOR_SCHEDULER:g} s; dask scheduler starts one"
+            f"{_SCHEDULER_TIMEOUT:g} s; dask scheduler starts one"
         ) from None
     with client:
         try:
-            client.wait_for_workers(1, timeout=_PATIENCE_FOR_WORKERS)
+            client.wait_for_workers(1, timeout=_WORKERS_TIMEOUT)
         except TimeoutError:
             raise InputError(
                 f"--cluster {address}: its scheduler has had no worker for "
-                f"{_PATIENCE_FOR_WORKERS:g} s; dask worker {address} starts one"
+                f"{_WORKERS_TIMEOUT:g} s; dask worker {address} starts one"
             ) from None
         yield client

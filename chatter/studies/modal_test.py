@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 from chatter.compile.drive_point_check import with_magnitudes
 from chatter.compile.measured_frf import with_direction
 from chatter.description.errors import InputError
-from chatter.io.frf_formats import read_frfs
+from chatter.io.formats.registry import read_frfs
+from chatter.io.hammer_records import read_hammer_folder
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, write_results
 from dynamics.frf.container import Frf, MeasurementError
@@ -200,7 +201,8 @@ def _read(
     if folders and len(paths) > 1:
         raise InputError(f"{folders[0]}: is a folder; a folder of hammer records is given alone")
     if folders:
-        test = hammer_test(folders[0], keep=keep)
+        folder = read_hammer_folder(folders[0])
+        test = hammer_test(folder.records, keep=keep, unreadable=folder.unreadable)
         notes = [f"{finding.record}: {finding.reason}" for finding in test.remarks]
         return list(test.frfs), test, notes
     if keep:

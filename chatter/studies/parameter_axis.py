@@ -12,13 +12,12 @@ import numpy as np
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.formatting import shown
-from chatter.description.units import unit_factor
+from chatter.description.units import rpm, unit_factor
 from chatter.stability.search_range import spindle_speeds
-from chatter.studies.whatif.model import field_of, value_of
+from chatter.studies.model import field_of, value_of
 from chatter.studies.whatif.variation import Value, Variation, read_variation, variation
 
 SPEED_PATH, DEPTH_PATH = "cut.spindle_speed", "cut.axial_depth"
-_RPM = 30.0 / math.pi
 _MOST_VALUES = 2000
 _COUNT = re.compile(r":\s*([+-]?\d+)\s*$")
 _EXAMPLE = 'such as cut.radial_depth="0.5 mm..10 mm:40"'
@@ -89,7 +88,7 @@ def _require_quantity(case: Case, path: str, option: str) -> None:
 def speed_axis(case: Case) -> Variation:
     """Spindle speeds of the case's diagram, rpm."""
     values = tuple(
-        Value(f"{speed * _RPM:.6g} rpm", {SPEED_PATH: float(speed)}, float(speed * _RPM))
+        Value(f"{rpm(speed):.6g} rpm", {SPEED_PATH: float(speed)}, float(rpm(speed)))
         for speed in spindle_speeds(case)
     )
     return Variation(SPEED_PATH, values, "rpm")

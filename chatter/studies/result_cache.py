@@ -1,112 +1,195 @@
-"""Results of many items, here or on a cluster, kept on disk as they come and taken up again."""
+"""Result cache: records of the finished parts of a study, so that an interrupted one goes on.
+
+A record is what JSON knows, and its key is a hash of all that it depends on. diskcache keeps the
+records in SQLite, as text: nothing that lies on disk is ever unpickled.
+"""
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable, Sequence
+import hashlib
+import json
+import sqlite3
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
 
+import diskcache
+
 from chatter.description.errors import RunError
-from chatter.engine.parallel import Progress
-from chatter.studies.executor import Computing, computing_on
-from chatter.studies.finished_points import FinishedPoints, key_of
+from chatter.description.progress import Progress, no_progress
+from chatter.engine.parallel import Executor
+from chatter.studies.executor import open_executor
 
 Item = TypeVar("Item")
 
-
-def kept_results(
-    function: Callable[[Item], Any],
-    items: Sequence[Item],
-    keys: Sequence[str],
-    noun: str,
-    cluster: str | Computing | None,
-    folder: str | Path | None,
-    progress: Progress,
-) -> list[Any]:
-    """Records that a function makes of items, in their order.
-
-    Parameters
-    ----------
-    function : callable
-        Of an item; can be pickled, as items can. What it returns is what JSON knows.
-    items : sequence
-    keys : sequence of str
-        Hash of all that the record of an item depends on.
-    noun : str
-        What the items are, for messages.
-    cluster : str or Computing, optional
-        As for `chatter.studies.executor.computing_on`.
-    folder : path, optional
-        Keeps finished records in points.jsonl there, and reuses those of the same keys.
-    progress : callable
-        Called with (done, total) items.
-
-    Raises
-    ------
-    InputError
-        As the function does.
-    RunError
-        If it is interrupted; finished records are in the folder.
-    """
-    store = FinishedPoints(folder)
-    missing = [place for place, key in enumerate(keys) if key not in store]
-    done = len(keys) - len(missing)
-    try:
-        with computing_on(cluster if missing else None) as computing:
-            for place, found in computing.results(function, [items[place] for place in missing]):
-                store.add(keys[missing[place]], found)
-                done += 1
-                progress(done, len(keys))
-    except KeyboardInterrupt:
-        raise store.interrupted(keys, noun) from None
-    return [store[key] for key in keys]
+#: beside the results of a study
+FOLDER = "result-cache"
 
 
-class KeptPieces:
-    """Pieces of a search that depend on one another, kept on disk as they end; for threads too.
+class _TextDisk(diskcache.Disk):
+    """Text as it is; what asks to be unpickled is refused."""
+
+    def fetch(self, mode: int, filename: str | None, value: Any, read: bool) -> Any:
+        """Return a value that was stored."""
+        if mode == diskcache.core.MODE_PICKLE:
+            raise RunError(f"{self._directory}: holds data that is no text; delete it")
+        return super().fetch(mode, filename, value, read)
+
+    def get(self, key: Any, raw: bool) -> Any:
+        """Return a key that was stored."""
+        if not raw:
+            raise RunError(f"{self._directory}: holds keys that are no text; delete it")
+        return super().get(key, raw)
+
+
+class ResultCache:
+    """Records by key, on disk where a folder is given, else in memory.
 
     Parameters
     ----------
     folder : path, optional
-        Keeps finished pieces in points.jsonl there, and reuses those of the same input.
-    base : str
-        Hash of what all pieces depend on.
+        Of the results; the cache is the folder "result-cache" in it.
+    *inputs : str
+        What all records depend on.
+
     """
 
-    def __init__(self, folder: str | Path | None, base: str) -> None:
-        self._store = FinishedPoints(folder)
-        self._base = base
-        self._asked: set[str] = set()
-        self._lock = threading.Lock()
+    def __init__(self, folder: str | Path | None, *inputs: str) -> None:
+        self.path = None if folder is None else Path(folder) / FOLDER
+        self._base = _hash(*inputs)
+        self._requested: set[str] = set()
 
-    def piece(self, name: str, inputs: Any, compute: Callable[[], Any]) -> Any:
-        """Record of a piece, computed if it is not known yet.
+    def __enter__(self) -> ResultCache:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the files that this thread has open."""
+        if self.path is not None and "_records" in vars(self):
+            self._records.close()
+
+    @cached_property
+    def _records(self) -> Any:
+        """Text by key; the folder is made with the first record."""
+        if self.path is None:
+            return {}
+        try:
+            return diskcache.Cache(str(self.path), disk=_TextDisk, eviction_policy="none")
+        except sqlite3.Error as error:
+            raise RunError(f"{self.path}: the cache cannot be opened: {error}") from None
+
+    def key(self, *inputs: str) -> str:
+        """Key of a record that depends on some inputs besides those of all records."""
+        return _hash(self._base, *inputs)
+
+    def __iter__(self) -> Iterator[str]:
+        """Keys in the order in which their records were added."""
+        return iter(()) if self._is_new else iter(self._records)
+
+    def __contains__(self, key: str) -> bool:
+        """Whether there is a record of a key."""
+        return not self._is_new and key in self._records
+
+    def __getitem__(self, key: str) -> Any:
+        """Record of a key."""
+        return json.loads(self._records[key])
+
+    def __setitem__(self, key: str, record: Any) -> None:
+        """Keep a record; it is on disk when this returns."""
+        self._records[key] = json.dumps(record, allow_nan=False)
+
+    @property
+    def _is_new(self) -> bool:
+        return self.path is not None and not self.path.is_dir()
+
+    def finished(self, keys: Sequence[str]) -> int:
+        """Count those of some keys that have a record."""
+        return sum(key in self for key in keys)
+
+    def record(self, name: str, inputs: object, compute: Callable[[], Any]) -> Any:
+        """Record of a part of a search, computed where it is not known yet; for threads too.
 
         Parameters
         ----------
         name : str
-            Kind of the piece.
+            Kind of the part.
         inputs : object
-            What it depends on besides; `repr` tells it from others.
+            What it depends on besides; `repr` distinguishes it from others.
         compute : callable
-            What it returns is what JSON knows.
+            Returns the record.
         """
-        key = key_of(self._base, name, repr(inputs))
-        self._asked.add(key)
-        if key not in self._store:
-            record = compute()
-            with self._lock:
-                # another thread may have come to the same piece
-                if key not in self._store:
-                    self._store.add(key, record)
-        return self._store[key]
+        key = self.key(name, repr(inputs))
+        self._requested.add(key)
+        if key not in self:
+            self[key] = compute()
+        return self[key]
 
-    def interrupted(self) -> RunError:
-        """What to raise where the search is interrupted."""
-        finished = sum(key in self._store for key in self._asked)
-        kept = f"; they are in {self._store.path}, and the same command goes on from there"
-        return RunError(
-            f"interrupted: {finished} pieces of the search are finished"
-            f"{kept if self._store.path and finished else ''}"
-        )
+    def evaluate(
+        self,
+        function: Callable[[Item], Any],
+        items: Sequence[Item],
+        keys: Sequence[str],
+        noun: str,
+        cluster: str | Executor | None = None,
+        progress: Progress = no_progress,
+    ) -> list[Any]:
+        """Records that a function makes of items, in their order; known ones are not computed.
+
+        Parameters
+        ----------
+        function : callable
+            Of an item; can be pickled, as items can. A record with a "failure" is not kept, so
+            that it is tried again.
+        items : sequence
+        keys : sequence of str
+            Of the record of each item.
+        noun : str
+            What the items are, for messages.
+        cluster : str or Executor, optional
+            As for `chatter.studies.executor.open_executor`.
+        progress : callable
+            Called with (done, total) items.
+
+        Raises
+        ------
+        InputError
+            As the function does.
+        RunError
+            If it is interrupted; finished records are in the cache.
+        """
+        # two items of the same key are computed once
+        pairs = zip(keys, items, strict=True)
+        missing = list({key: item for key, item in pairs if key not in self}.items())
+        failed: dict[str, Any] = {}
+        done = len(keys) - len(missing)
+        progress(done, len(keys))
+        try:
+            with open_executor(cluster if missing else None) as executor:
+                results = executor.results(function, [item for _, item in missing])
+                for index, record in results:
+                    key = missing[index][0]
+                    if isinstance(record, dict) and record.get("failure"):
+                        failed[key] = record
+                    else:
+                        self[key] = record
+                    done += 1
+                    progress(done, len(keys))
+        except KeyboardInterrupt:
+            raise self._interrupted(f"{done} of {len(keys)} {noun}", done) from None
+        return [failed[key] if key in failed else self[key] for key in keys]
+
+    def search_interrupted(self) -> RunError:
+        """What to raise where a search is interrupted."""
+        finished = self.finished(tuple(self._requested))
+        return self._interrupted(f"{finished} parts of the search", finished)
+
+    def _interrupted(self, what: str, finished: int) -> RunError:
+        kept = f"; they are in {self.path}, and the same command goes on from there"
+        return RunError(f"interrupted: {what} are finished{kept if self.path and finished else ''}")
+
+
+def _hash(*parts: str) -> str:
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]

@@ -15,12 +15,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import types
-from numba.extending import overload, register_jitable
+from numba.extending import register_jitable
 from numpy.typing import NDArray
 
-from cutting.force.edge_force import INLINED, ExponentialEdge, LinearEdge, edge_force
-from cutting.process_damping.flank import BareFlank, end_contact, flank_force, note_surface
+from cutting.compiled import INLINED, by_table
+from cutting.force.edge_force import ExponentialEdge, LinearEdge, edge_force
+from cutting.process_damping.flank import BareFlank, end_contact, flank_force, store_surface
 from cutting.process_damping.ploughing import PloughingFlank
 from cutting.process_damping.viscous import ViscousFlank
 from cutting.tool.edge_table import (
@@ -67,7 +67,7 @@ def _place_now(turn, point):
 
 
 @register_jitable(**INLINED)
-def _note_motion_since(cut, tooth, piece, turn, now):
+def _motion_since(cut, tooth, piece, turn, now):
     """Fill the scratch with the motion of the tool since each earlier pass, m."""
     bins = cut.edges.bins
     for k in range(cut.since.shape[0]):
@@ -267,17 +267,10 @@ def _off_flank(flank, cut, tooth, piece, turn, point, total):  # noqa: ARG001
     return total
 
 
-_ADDING = {BareFlank: _off_flank, ViscousFlank: _on_flank, PloughingFlank: _on_flank}
-
-
-def add_flank_force(flank, cut, tooth, piece, turn, point, total):
-    """Add the force on the flank, where there is one."""
-    return _ADDING[type(flank)](flank, cut, tooth, piece, turn, point, total)
-
-
-@overload(add_flank_force, jit_options=INLINED)
-def _add_flank_force(flank, cut, tooth, piece, turn, point, total):  # noqa: ARG001
-    return _ADDING.get(flank.instance_class) if isinstance(flank, types.BaseNamedTuple) else None
+#: adds the force on the flank, where there is one
+_add_flank_force = by_table(
+    {BareFlank: _off_flank, ViscousFlank: _on_flank, PloughingFlank: _on_flank}
+)
 
 
 @register_jitable(**INLINED)
@@ -314,7 +307,7 @@ def delayed_forces(group, turn, point):
             if place + blur < entry or place - blur > leave:
                 continue
             if cut.helices > 1 or not looked_back:
-                _note_motion_since(cut, tooth, piece if cut.helices > 1 else 0, turn, now)
+                _motion_since(cut, tooth, piece if cut.helices > 1 else 0, turn, now)
                 looked_back = True
             settled = False
             force = (0.0, 0.0, 0.0, 0.0, 0.0)
@@ -325,11 +318,11 @@ def delayed_forces(group, turn, point):
                 seen = place + _NUDGE if straight else place
                 low, high = max(seen - half, entry), min(seen + half, leave)
                 force = _part_of_slice(cut, tooth, piece, low, high, 2.0 * half)
-            force = add_flank_force(cut.flank, cut, tooth, piece, turn, point, force)
+            force = _add_flank_force(cut.flank, cut, tooth, piece, turn, point, force)
             mean = force
             if straight and not settled:
                 mean = _straight_mean(cut, tooth, piece, place, turn)
-                mean = add_flank_force(cut.flank, cut, tooth, piece, turn, point, mean)
+                mean = _add_flank_force(cut.flank, cut, tooth, piece, turn, point, mean)
             sx += force[0]
             sy += force[1]
             sz += force[2]
@@ -361,7 +354,7 @@ def _vibration(point, axis, share, step):
 
 
 @register_jitable(**INLINED)
-def _note_motion(cut, turn, point):
+def _store_motion(cut, turn, point):
     """Keep the place of the tool at the bins that the spindle has passed in the step."""
     bins = cut.edges.bins
     crossed = int(turn.part_before + turn.advance)
@@ -383,20 +376,20 @@ def _note_motion(cut, turn, point):
 
 
 @register_jitable(**INLINED)
-def _note_wave(cut, tooth, piece, place, turn, point):
-    """Tell the flank what surface lies behind the edge now."""
+def _store_surface(cut, tooth, piece, place, turn, point):
+    """Let the flank store what surface lies behind the edge now."""
     if place < cut.entry[piece] or place > cut.exit[piece]:
         end_contact(cut.flank, tooth, piece)
         return
     sine, cosine = direction(cut.edges, tooth, piece, 0, turn)
     own = _outward(cut, tooth, piece, sine, cosine, point)
     # where the edge is in the air the old surface stays, further out than the edge
-    note_surface(cut.flank, tooth, piece, own - min(_chip(cut, tooth, piece, sine, cosine), 0.0))
+    store_surface(cut.flank, tooth, piece, own - min(_chip(cut, tooth, piece, sine, cosine), 0.0))
 
 
 @register_jitable(**INLINED)
-def _note_waves(flank, cut, turn, point):  # noqa: ARG001
-    """Tell the flank of every edge what surface lies behind it now."""
+def _surfaces_behind(flank, cut, turn, point):  # noqa: ARG001
+    """Let the flank of every edge store what surface lies behind it now."""
     edges = cut.edges
     now = _place_now(turn, point)
     teeth, pieces = edges.whole.shape
@@ -408,31 +401,24 @@ def _note_waves(flank, cut, turn, point):  # noqa: ARG001
             if place < cut.entry[piece] - _MARGIN or place > cut.exit[piece] + _MARGIN:
                 continue
             if cut.helices > 1 or not looked_back:
-                _note_motion_since(cut, tooth, piece if cut.helices > 1 else 0, turn, now)
+                _motion_since(cut, tooth, piece if cut.helices > 1 else 0, turn, now)
                 looked_back = True
-            _note_wave(cut, tooth, piece, place, turn, point)
+            _store_surface(cut, tooth, piece, place, turn, point)
 
 
 @register_jitable(**INLINED)
-def _no_waves(flank, cut, turn, point):
-    """Note nothing: the flank has no memory."""
+def _no_surfaces(flank, cut, turn, point):
+    """Store nothing: the flank has no memory."""
 
 
-_NOTING = {BareFlank: _no_waves, ViscousFlank: _no_waves, PloughingFlank: _note_waves}
-
-
-def note_waves(flank, cut, turn, point):
-    """Let the flank take in the surface behind every edge, where it has a memory."""
-    _NOTING[type(flank)](flank, cut, turn, point)
-
-
-@overload(note_waves, jit_options=INLINED)
-def _note_waves_of(flank, cut, turn, point):  # noqa: ARG001
-    return _NOTING.get(flank.instance_class) if isinstance(flank, types.BaseNamedTuple) else None
+#: lets the flank take in the surface behind every edge, where it has a memory
+_store_surfaces = by_table(
+    {BareFlank: _no_surfaces, ViscousFlank: _no_surfaces, PloughingFlank: _surfaces_behind}
+)
 
 
 @register_jitable(**INLINED)
 def delayed_commit(group, turn, point):
     """Remember the motion of the step: what the edges have left behind."""
-    note_waves(group.flank, group, turn, point)
-    _note_motion(group, turn, point)
+    _store_surfaces(group.flank, group, turn, point)
+    _store_motion(group, turn, point)

@@ -10,14 +10,14 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import types
-from numba.extending import overload, register_jitable
+from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from cutting.compiled import INLINED, by_table
 from cutting.dexel.carving import dexel_carve, dexel_chip_thickness
 from cutting.dexel.stock import DexelStock
-from cutting.force.edge_force import INLINED, ExponentialEdge, LinearEdge, edge_force
-from cutting.process_damping.flank import BareFlank, end_contact, flank_force, note_surface
+from cutting.force.edge_force import ExponentialEdge, LinearEdge, edge_force
+from cutting.process_damping.flank import BareFlank, end_contact, flank_force, store_surface
 from cutting.process_damping.ploughing import PloughingFlank
 from cutting.process_damping.viscous import ViscousFlank
 from cutting.tool.edge_table import EdgeTable, direction, force_on_tool
@@ -36,30 +36,10 @@ class DiscreteCut(NamedTuple):
     removed: NDArray[np.float64]  # volume removed since the start, m^3, (1,)
 
 
-THICKNESS = {DexelStock: dexel_chip_thickness, VoxelStock: voxel_chip_thickness}
-CARVING = {DexelStock: dexel_carve, VoxelStock: voxel_carve}
-
-
-def chip_thickness(stock, layer, tooth, cx0, cy0, ex0, ey0, cx1, cy1, ex1, ey1):
-    """Chip thickness that an edge meets at the end of a step, m."""
-    leaf = THICKNESS[type(stock)]
-    return leaf(stock, layer, tooth, cx0, cy0, ex0, ey0, cx1, cy1, ex1, ey1)
-
-
-@overload(chip_thickness, jit_options=INLINED)
-def _chip_thickness(stock, layer, tooth, cx0, cy0, ex0, ey0, cx1, cy1, ex1, ey1):  # noqa: ARG001
-    return THICKNESS.get(stock.instance_class) if isinstance(stock, types.BaseNamedTuple) else None
-
-
-def carve(stock, layer, tooth, cx0, cy0, ex0, ey0, cx1, cy1, ex1, ey1):
-    """Remove what an edge sweeps in a step; the area, m^2."""
-    leaf = CARVING[type(stock)]
-    return leaf(stock, layer, tooth, cx0, cy0, ex0, ey0, cx1, cy1, ex1, ey1)
-
-
-@overload(carve, jit_options=INLINED)
-def _carve(stock, layer, tooth, cx0, cy0, ex0, ey0, cx1, cy1, ex1, ey1):  # noqa: ARG001
-    return CARVING.get(stock.instance_class) if isinstance(stock, types.BaseNamedTuple) else None
+#: chip thickness that an edge meets at the end of a step, m
+chip_thickness = by_table({DexelStock: dexel_chip_thickness, VoxelStock: voxel_chip_thickness})
+#: removes what an edge sweeps in a step; the area, m^2
+carve = by_table({DexelStock: dexel_carve, VoxelStock: voxel_carve})
 
 
 @register_jitable(**INLINED)
@@ -137,31 +117,24 @@ def _outward(edges, tooth, piece, sine, cosine, point):
 
 
 @register_jitable(**INLINED)
-def _note_waves(flank, cut, tooth, piece, turn, point):
-    """Tell the flank what surface lies behind the edge now."""
+def _surface_behind(flank, cut, tooth, piece, turn, point):
+    """Let the flank store what surface lies behind the edge now."""
     if _thickness(cut, tooth, piece, turn, point) <= 0.0:
         end_contact(flank, tooth, piece)
         return
     sine, cosine = direction(cut.edges, tooth, piece, 0, turn)
-    note_surface(flank, tooth, piece, _outward(cut.edges, tooth, piece, sine, cosine, point))
+    store_surface(flank, tooth, piece, _outward(cut.edges, tooth, piece, sine, cosine, point))
 
 
 @register_jitable(**INLINED)
-def _no_waves(flank, cut, tooth, piece, turn, point):
-    """Note nothing: the flank has no memory."""
+def _no_surface(flank, cut, tooth, piece, turn, point):
+    """Store nothing: the flank has no memory."""
 
 
-_NOTING = {BareFlank: _no_waves, ViscousFlank: _no_waves, PloughingFlank: _note_waves}
-
-
-def note_wave_of_layer(flank, cut, tooth, piece, turn, point):
-    """Let the flank take in the surface behind an edge, where it has a memory."""
-    _NOTING[type(flank)](flank, cut, tooth, piece, turn, point)
-
-
-@overload(note_wave_of_layer, jit_options=INLINED)
-def _note_wave_of_layer(flank, cut, tooth, piece, turn, point):  # noqa: ARG001
-    return _NOTING.get(flank.instance_class) if isinstance(flank, types.BaseNamedTuple) else None
+#: lets the flank take in the surface behind an edge, where it has a memory
+_store_surface_of_layer = by_table(
+    {BareFlank: _no_surface, ViscousFlank: _no_surface, PloughingFlank: _surface_behind}
+)
 
 
 @register_jitable(**INLINED)
@@ -171,7 +144,7 @@ def discrete_commit(group, turn, point):
     teeth, pieces = edges.whole.shape
     for tooth in range(teeth):
         for piece in range(pieces):
-            note_wave_of_layer(cut.flank, cut, tooth, piece, turn, point)
+            _store_surface_of_layer(cut.flank, cut, tooth, piece, turn, point)
             (cx0, cy0, ex0, ey0), (cx1, cy1, ex1, ey1) = _step_of_edge(
                 edges, tooth, piece, turn, point
             )

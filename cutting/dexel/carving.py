@@ -15,8 +15,8 @@ import math
 
 from numba.extending import register_jitable
 
+from cutting.compiled import UNCOUNTED
 from cutting.dexel.stock import CAPACITY
-from cutting.force.edge_force import UNCOUNTED
 
 #: pieces shorter than this fraction of the spacing are rounding, not material
 _SPECK = 1e-6

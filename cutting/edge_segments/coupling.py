@@ -9,9 +9,9 @@ import math
 
 from numba.extending import register_jitable
 
+from cutting.compiled import INLINED
+
 _TURN = 2.0 * math.pi
-#: a call would count the references to every array of the table
-INLINED = {"error_model": "numpy", "forceinline": True, "_nrt": False}
 #: Newton steps to the place at which an edge on a corner crosses the border of its arc
 _PLACE_STEPS = 6
 #: of the reference chip: as far as rounding lets a chip vanish. The slope of a size effect is

@@ -9,7 +9,8 @@ import math
 
 from numba.extending import register_jitable
 
-from cutting.edge_segments.coupling import INLINED, chip_at, engaged_span, share_of_height
+from cutting.compiled import INLINED
+from cutting.edge_segments.coupling import chip_at, engaged_span, share_of_height
 
 _TURN = 2.0 * math.pi
 #: Gauss points that a table of quadratures goes up to

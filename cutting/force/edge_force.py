@@ -10,16 +10,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import types
-from numba.extending import overload, register_jitable
+from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from cutting.compiled import INLINED, by_table
 from cutting.force.force_law import ExponentialLaw, ForceLaw, LinearLaw
-
-#: nothing is allocated in the time loop, so that references need no counting: it costs more there
-#: than the physics
-UNCOUNTED = {"error_model": "numpy", "_nrt": False}
-INLINED = {**UNCOUNTED, "forceinline": True}
 
 
 class LinearEdge(NamedTuple):
@@ -62,16 +57,8 @@ def exponential_edge_force(law, tooth, chip):
 
 #: table -> leaf
 EDGE_LAWS = {LinearEdge: linear_edge_force, ExponentialEdge: exponential_edge_force}
-
-
-def edge_force(law, tooth, chip):
-    """Force per length of edge by the law of the table; see the leaves."""
-    return EDGE_LAWS[type(law)](law, tooth, chip)
-
-
-@overload(edge_force, jit_options=INLINED)
-def _edge_force(law, tooth, chip):  # noqa: ARG001
-    return EDGE_LAWS.get(law.instance_class) if isinstance(law, types.BaseNamedTuple) else None
+#: force per length of edge by the law of the table; see the leaves
+edge_force = by_table(EDGE_LAWS)
 
 
 def edge_law_table(laws: list[ForceLaw]) -> LinearEdge | ExponentialEdge:

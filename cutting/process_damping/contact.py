@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from numba.extending import register_jitable
 
-from cutting.force.edge_force import INLINED
+from cutting.compiled import INLINED
 
 
 class ToolContact(NamedTuple):

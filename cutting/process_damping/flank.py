@@ -8,17 +8,16 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from numba import types
-from numba.extending import overload, register_jitable
+from numba.extending import register_jitable
 
-from cutting.force.edge_force import INLINED
+from cutting.compiled import INLINED, by_table
 from cutting.process_damping.ploughing import (
     PloughingFlank,
-    forget_wave,
-    note_wave,
+    clear_surface_history,
     ploughing_force,
+    store_surface_history,
 )
-from cutting.process_damping.viscous import ViscousFlank, no_note, no_wave, viscous_force
+from cutting.process_damping.viscous import ViscousFlank, no_clear, no_store, viscous_force
 
 
 class BareFlank(NamedTuple):
@@ -33,45 +32,15 @@ def bare_force(flank, tooth, piece, place, rate, speed):  # noqa: ARG001
     return 0.0, 0.0
 
 
-#: table -> leaf
-FLANK_FORCES = {
-    BareFlank: bare_force,
-    ViscousFlank: viscous_force,
-    PloughingFlank: ploughing_force,
-}
-FLANK_NOTES = {BareFlank: no_note, ViscousFlank: no_note, PloughingFlank: note_wave}
-FLANK_ENDS = {BareFlank: no_wave, ViscousFlank: no_wave, PloughingFlank: forget_wave}
-
-
-def _leaf(leaves, flank):
-    return leaves.get(flank.instance_class) if isinstance(flank, types.BaseNamedTuple) else None
-
-
-def flank_force(flank, tooth, piece, place, rate, speed):
-    """Tangential and radial force per length of edge, N/m; see the leaves."""
-    return FLANK_FORCES[type(flank)](flank, tooth, piece, place, rate, speed)
-
-
-@overload(flank_force, jit_options=INLINED)
-def _flank_force(flank, tooth, piece, place, rate, speed):  # noqa: ARG001
-    return _leaf(FLANK_FORCES, flank)
-
-
-def note_surface(flank, tooth, piece, surface):
-    """Take in the surface that the edge has left in this step, m along its outward normal."""
-    FLANK_NOTES[type(flank)](flank, tooth, piece, surface)
-
-
-@overload(note_surface, jit_options=INLINED)
-def _note_surface(flank, tooth, piece, surface):  # noqa: ARG001
-    return _leaf(FLANK_NOTES, flank)
-
-
-def end_contact(flank, tooth, piece):
-    """Forget what lies behind an edge that has left the cut."""
-    FLANK_ENDS[type(flank)](flank, tooth, piece)
-
-
-@overload(end_contact, jit_options=INLINED)
-def _end_contact(flank, tooth, piece):  # noqa: ARG001
-    return _leaf(FLANK_ENDS, flank)
+#: tangential and radial force per length of edge, N/m
+flank_force = by_table(
+    {BareFlank: bare_force, ViscousFlank: viscous_force, PloughingFlank: ploughing_force}
+)
+#: takes in the surface that the edge has left in this step, m along its outward normal
+store_surface = by_table(
+    {BareFlank: no_store, ViscousFlank: no_store, PloughingFlank: store_surface_history}
+)
+#: clears what lies behind an edge that has left the cut
+end_contact = by_table(
+    {BareFlank: no_clear, ViscousFlank: no_clear, PloughingFlank: clear_surface_history}
+)

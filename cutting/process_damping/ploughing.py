@@ -16,7 +16,7 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
-from cutting.force.edge_force import INLINED
+from cutting.compiled import INLINED
 
 #: material parts at this angle before the lowest point of a rounded edge (Basuray et al. 1977)
 _SEPARATION_ANGLE = math.radians(37.6)
@@ -198,7 +198,7 @@ def ploughing_force(flank, tooth, piece, place, rate, speed):  # noqa: ARG001
 
 
 @register_jitable(**INLINED)
-def note_wave(flank, tooth, piece, surface):
+def store_surface_history(flank, tooth, piece, surface):
     """Take the surface left by the edge in this step, m, into the samples."""
     age = flank.age[tooth, piece] + 1
     if flank.filled[tooth, piece] == 0 or age >= flank.stride:
@@ -214,7 +214,7 @@ def note_wave(flank, tooth, piece, surface):
 
 
 @register_jitable(**INLINED)
-def forget_wave(flank, tooth, piece):
+def clear_surface_history(flank, tooth, piece):
     """The edge has left the cut: there is nothing behind it any more."""
     flank.filled[tooth, piece] = 0
     flank.age[tooth, piece] = 0

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from numba.extending import register_jitable
 
-from cutting.force.edge_force import INLINED
+from cutting.compiled import INLINED
 
 
 @dataclass(frozen=True)
@@ -62,10 +62,10 @@ def viscous_force(flank, tooth, piece, place, rate, speed):  # noqa: ARG001
 
 
 @register_jitable(**INLINED)
-def no_wave(flank, tooth, piece):
-    """Forget nothing: the viscous form has no memory."""
+def no_clear(flank, tooth, piece):
+    """Clear nothing: the viscous form has no memory."""
 
 
 @register_jitable(**INLINED)
-def no_note(flank, tooth, piece, surface):
-    """Note nothing: the viscous form has no memory."""
+def no_store(flank, tooth, piece, surface):
+    """Store nothing: the viscous form has no memory."""

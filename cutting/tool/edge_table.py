@@ -9,7 +9,7 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
-from cutting.force.edge_force import INLINED
+from cutting.compiled import INLINED
 from cutting.tool.cutter import EdgeSlices
 
 #: Gauss points of order 2 lie at this share of the half width

@@ -15,7 +15,7 @@ import math
 import numpy as np
 from numba.extending import register_jitable
 
-from cutting.force.edge_force import UNCOUNTED
+from cutting.compiled import UNCOUNTED
 
 _ALL = np.uint64(0xFFFFFFFFFFFFFFFF)
 _PAIRS = np.uint64(0x5555555555555555)

@@ -13,7 +13,8 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import ArrayLike, NDArray
 
-from dynamics.control.sampling import INLINED, require_not_negative, require_positive
+from dynamics.compiled import INLINED
+from dynamics.control.sampling import require_not_negative, require_positive
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from numba.extending import register_jitable
 
+from dynamics.compiled import INLINED
 from dynamics.control.drive_table import (
     CURRENT_INPUT,
     CURRENT_OUTPUT,
@@ -33,7 +34,6 @@ from dynamics.control.drive_table import (
 )
 from dynamics.control.filters import second_order_sample
 from dynamics.control.measurement import quantised
-from dynamics.control.sampling import INLINED
 
 
 @register_jitable(**INLINED)

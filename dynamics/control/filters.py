@@ -19,8 +19,8 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import ArrayLike, NDArray
 
+from dynamics.compiled import INLINED
 from dynamics.control.sampling import (
-    INLINED,
     ControlError,
     require_limit,
     require_not_negative,

@@ -13,7 +13,8 @@ from typing import Literal
 
 from numba.extending import register_jitable
 
-from dynamics.control.sampling import INLINED, ControlError, require_not_negative, require_positive
+from dynamics.compiled import INLINED
+from dynamics.control.sampling import ControlError, require_not_negative, require_positive
 
 
 @dataclass(frozen=True)

@@ -17,9 +17,6 @@ from numpy.typing import ArrayLike, NDArray
 #: of a sample time over the step, from a whole number
 _WHOLE = 1e-6
 
-#: nothing is allocated in the time loop, so that references need no counting
-INLINED = {"error_model": "numpy", "forceinline": True, "_nrt": False}
-
 
 class ControlError(ValueError):
     """A drive specification that makes no sense; the message names the drive's part."""

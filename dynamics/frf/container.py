@@ -14,6 +14,13 @@ Quantity = Literal["receptance", "mobility", "accelerance"]
 #: power of (i omega) that turns receptance into each quantity
 DERIVATIVE_ORDER: dict[str, int] = {"receptance": 0, "mobility": 1, "accelerance": 2}
 
+#: quantity of the FRF that a motion per force is
+QUANTITY_OF_MOTION: dict[str, Quantity] = {
+    "displacement": "receptance",
+    "velocity": "mobility",
+    "acceleration": "accelerance",
+}
+
 #: SI unit of each quantity
 QUANTITY_UNIT: dict[str, str] = {
     "receptance": "m/N",

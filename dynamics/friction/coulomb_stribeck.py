@@ -15,8 +15,9 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import ArrayLike, NDArray
 
+from dynamics.compiled import INLINED
 from dynamics.friction.columns import parameter_columns, port_column
-from dynamics.friction.implicit import INLINED, held_force
+from dynamics.friction.implicit import held_force
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ import math
 
 from numba.extending import register_jitable
 
-INLINED = {"error_model": "numpy", "forceinline": True, "_nrt": False}
+from dynamics.compiled import INLINED
 
 #: halvings that end any search; few are needed
 _ITERATIONS = 100

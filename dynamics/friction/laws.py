@@ -9,10 +9,9 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import types
-from numba.extending import overload
 from numpy.typing import NDArray
 
+from dynamics.compiled import by_table
 from dynamics.friction.coulomb_stribeck import (
     CoulombStribeck,
     CoulombStribeckTable,
@@ -21,7 +20,6 @@ from dynamics.friction.coulomb_stribeck import (
     coulomb_stribeck_step,
     coulomb_stribeck_table,
 )
-from dynamics.friction.implicit import INLINED
 from dynamics.friction.lugre import (
     LuGre,
     LuGreTable,
@@ -88,9 +86,10 @@ ENTRIES = {
 LAWS = {name: entry.spec for name, entry in ENTRIES.items()}
 #: specification -> the law
 BY_SPEC = {entry.spec: entry for entry in ENTRIES.values()}
-#: table -> kernel that solves for the force held over a step, and that moves the state on
-SOLVING = {entry.table: entry.step for entry in ENTRIES.values()}
-ADVANCING = {entry.table: entry.advance for entry in ENTRIES.values()}
+#: held force, N, and motion of a law, m; see `implicit.held_force`
+friction_step = by_table({entry.table: entry.step for entry in ENTRIES.values()})
+#: moves the state of a law by a motion, m, in a time, s
+friction_advance = by_table({entry.table: entry.advance for entry in ENTRIES.values()})
 
 
 class Frictions(NamedTuple):
@@ -112,27 +111,3 @@ def friction_groups(laws: Sequence[FrictionLaw], ports: Sequence[int]) -> tuple[
             force, beyond = np.zeros(len(chosen)), np.zeros(len(chosen))
             groups.append(Frictions(columns, force, beyond, np.zeros(1, dtype=np.int64)))
     return tuple(groups)
-
-
-def _kernel(kernels, law):
-    return kernels.get(law.instance_class) if isinstance(law, types.BaseNamedTuple) else None
-
-
-def friction_step(law, i, dx_free, gx, v_free, g, h):
-    """Held force, N, and motion of a law, m; see `implicit.held_force`."""
-    return SOLVING[type(law)](law, i, dx_free, gx, v_free, g, h)
-
-
-@overload(friction_step, jit_options=INLINED)
-def _friction_step(law, i, dx_free, gx, v_free, g, h):  # noqa: ARG001
-    return _kernel(SOLVING, law)
-
-
-def friction_advance(law, i, motion, h):
-    """Move the state of a law by a motion, m, in a time h, s."""
-    ADVANCING[type(law)](law, i, motion, h)
-
-
-@overload(friction_advance, jit_options=INLINED)
-def _friction_advance(law, i, motion, h):  # noqa: ARG001
-    return _kernel(ADVANCING, law)

@@ -21,9 +21,10 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import ArrayLike, NDArray
 
+from dynamics.compiled import INLINED
 from dynamics.friction.columns import parameter_columns, port_column
 from dynamics.friction.harmonic import describing_function
-from dynamics.friction.implicit import INLINED, held_force
+from dynamics.friction.implicit import held_force
 
 #: exponent of the Stribeck curve beyond which it is below rounding
 _FAR_SLIDING = 60.0

@@ -14,7 +14,7 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
-from dynamics.friction.implicit import INLINED
+from dynamics.compiled import INLINED
 
 #: reversals remembered; beyond it, the two between which least happened are forgotten
 _DEPTH = 64

@@ -16,7 +16,8 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import ArrayLike, NDArray
 
-from dynamics.friction.implicit import INLINED, held_force
+from dynamics.compiled import INLINED
+from dynamics.friction.implicit import held_force
 
 
 @dataclass(frozen=True)

@@ -15,10 +15,11 @@ from numba import types
 from numba.extending import overload, register_jitable
 from numpy.typing import NDArray
 
+from dynamics.compiled import INLINED
 from dynamics.control.drive_step import control_step
 from dynamics.control.drive_table import TORQUE_INJECTED, ControlTable
 from dynamics.friction.laws import Frictions, friction_advance, friction_step
-from dynamics.machine.steps import INLINED, add_held
+from dynamics.machine.steps import add_held
 from dynamics.trajectory.set_points import SetPoints, set_point_at
 
 #: change of a friction force that its neighbours need not hear of: its motion over theirs, and m

@@ -8,8 +8,9 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from dynamics.compiled import INLINED
 from dynamics.machine.groups import all_drive, all_resist, all_settle
-from dynamics.machine.steps import INLINED, begin_step, end_step, move
+from dynamics.machine.steps import begin_step, end_step, move
 
 #: sweeps over frictions that push one another; one or two are the rule
 _MOST_SWEEPS = 40

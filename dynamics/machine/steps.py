@@ -13,10 +13,9 @@ import scipy.linalg
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from dynamics.compiled import INLINED
 from dynamics.machine.blocks import blocks
 from dynamics.structure.linear_structure import LinearStructure
-
-INLINED = {"error_model": "numpy", "forceinline": True, "_nrt": False}
 
 
 class StructureSteps(NamedTuple):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from numba.extending import overload, register_jitable
 
-from dynamics.friction.implicit import INLINED
+from dynamics.compiled import INLINED
 from dynamics.friction.laws import friction_advance, friction_step
 
 

@@ -15,12 +15,11 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from dynamics.compiled import INLINED
 from dynamics.modal.modes import Mode
 
 #: of a matrix whose rows sum up to one: the last term is below rounding
 _TAYLOR_TERMS = 20
-
-_INLINED = {"error_model": "numpy", "forceinline": True, "_nrt": False}
 
 
 class ModalSteps(NamedTuple):
@@ -100,7 +99,7 @@ def _transition(turn: NDArray[np.float64], damping: NDArray[np.float64]) -> NDAr
     return total
 
 
-@register_jitable(**_INLINED)
+@register_jitable(**INLINED)
 def take_force(modes, point):
     """Take the force at the tool point as the one with which the next step begins."""
     for i in range(modes.mass.shape[0]):
@@ -109,7 +108,7 @@ def take_force(modes, point):
             modes.force[i] += modes.shape[i, axis] * point.force[axis]
 
 
-@register_jitable(**_INLINED)
+@register_jitable(**INLINED)
 def predict(modes, state_before, point):
     """Step with the force held; publish the predicted motion of the tool point.
 
@@ -137,7 +136,7 @@ def predict(modes, state_before, point):
             point.velocity[axis] += modes.shape[i, axis] * v1
 
 
-@register_jitable(**_INLINED)
+@register_jitable(**INLINED)
 def correct(modes, state_before, point):
     """Let the force vary linearly to its new value; publish the motion and account the energy.
 

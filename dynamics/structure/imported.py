@@ -1,20 +1,16 @@
-"""Structures from matrices that a finite element program wrote.
-
-Mass, stiffness and damping come as Matrix Market or NPZ files, nodes as a table. Sparse matrices
-stay sparse.
-"""
+"""Structures given by their matrices: points tied to the nodes, the mass matrix checked."""
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
+import scipy.linalg
 import scipy.sparse
+import scipy.sparse.linalg
+from numpy.typing import NDArray
 
 from dynamics.structure.linear_structure import LinearStructure, Matrix, StructureError
-from dynamics.structure.matrix_file import read_matrix, refuse_indefinite, symmetrised
 from dynamics.structure.surface_constraint import (
     InterpolatedPoint,
     Nodes,
@@ -23,62 +19,10 @@ from dynamics.structure.surface_constraint import (
     rigid_transformation,
 )
 
-__all__ = [
-    "InterpolatedPoint",
-    "Nodes",
-    "RigidSurface",
-    "imported_structure",
-    "read_matrix",
-    "read_nodes",
-    "tied_structure",
-]
-
-NODE_COLUMNS = ("node", "x", "y", "z")
-ROW_COLUMNS = ("ux", "uy", "uz", "rx", "ry", "rz")
-
-
-def imported_structure(
-    mass: str | Path,
-    stiffness: str | Path,
-    damping: str | Path | None = None,
-    nodes: str | Path | Nodes | None = None,
-    rigid: Sequence[RigidSurface] = (),
-    interpolated: Sequence[InterpolatedPoint] = (),
-) -> LinearStructure:
-    """Read matrices and tie points to them.
-
-    Parameters
-    ----------
-    mass, stiffness, damping : path
-        Files as for `read_matrix`; without damping the structure has none.
-    nodes : path or Nodes, optional
-        Table as for `read_nodes`, or the nodes; needed for points.
-    rigid : sequence of RigidSurface
-    interpolated : sequence of InterpolatedPoint
-
-    Returns
-    -------
-    LinearStructure
-
-    Raises
-    ------
-    StructureError
-        If a file cannot be used, a matrix is not symmetric, sizes differ, the mass matrix is not
-        positive definite, or a point cannot be tied.
-    """
-    mass_matrix, stiffness_matrix = read_matrix(mass), read_matrix(stiffness)
-    size = mass_matrix.shape[0]
-    damping_matrix = _zeros(mass_matrix) if damping is None else read_matrix(damping)
-    for path, matrix in ((stiffness, stiffness_matrix), (damping, damping_matrix)):
-        if matrix.shape[0] != size:
-            raise StructureError(
-                f"{path}: {matrix.shape[0]} rows; {mass} has {size}, and both must be the same"
-            )
-    refuse_indefinite(mass_matrix, str(mass))
-    if nodes is not None and not isinstance(nodes, Nodes):
-        nodes = read_nodes(nodes, size)
-    bare = LinearStructure(mass_matrix, damping_matrix, stiffness_matrix, {})
-    return tied_structure(bare, nodes, rigid, interpolated)
+#: rows up to which a sparse mass matrix is checked as a dense one
+MOST_DENSE_ROWS = 1000
+#: of a mass matrix with a unit diagonal: rounding of a mode without mass
+MASSLESS = 1e-12
 
 
 def tied_structure(
@@ -128,73 +72,64 @@ def tied_structure(
     return LinearStructure(mass, damping, stiffness, points)
 
 
-def read_nodes(path: str | Path, size: int) -> Nodes:
-    """Read a table of nodes.
+def refuse_indefinite(mass: Matrix, where: str) -> None:
+    """Refuse a mass matrix that is not positive definite.
 
     Parameters
     ----------
-    path : path
-        CSV with a header and the columns node, x, y, z (m). If freedoms are not three or six a
-        node one after another, also ux, uy, uz, and rx, ry, rz: the row of the matrices, from 1,
-        of that freedom, or nothing where it is held or there is none.
-    size : int
-        Rows of the matrices.
+    mass : (n, n) array or sparse array of float
+        Symmetric.
+    where : str
+        Begins the message: the file.
 
     Raises
     ------
     StructureError
-        Naming the file, line and column.
+        Naming the row, from 1.
     """
-    path = Path(path)
+    diagonal = mass.diagonal()
+    if np.any(diagonal <= 0.0):
+        row = int(np.argmin(diagonal)) + 1
+        raise StructureError(
+            f"{where}: row {row}, column {row} is {diagonal[row - 1]:g}; every freedom needs mass "
+            "(condense those without it before export)"
+        )
+    search = _sparse_eigenvalue if scipy.sparse.issparse(mass) else _dense_pivots
+    found = search(mass, 1.0 / np.sqrt(diagonal))
+    if found is not None:
+        raise StructureError(
+            f"{where}: the mass matrix is not positive definite, found at row {found + 1}"
+        )
+
+
+def symmetrised(matrix: Matrix) -> Matrix:
+    """Mean of a matrix and its transpose; a sparse one in rows."""
+    half = 0.5 * (matrix + matrix.T)
+    return scipy.sparse.csr_array(half) if scipy.sparse.issparse(half) else half
+
+
+def _dense_pivots(mass: NDArray[np.float64], scale: NDArray[np.float64]) -> int | None:
+    """Row where the elimination of the scaled matrix fails, if it does."""
+    _, failed = scipy.linalg.lapack.dpotrf(scale[:, None] * mass * scale)
+    return failed - 1 if failed else None
+
+
+def _sparse_eigenvalue(mass: scipy.sparse.csr_array, scale: NDArray[np.float64]) -> int | None:
+    """Row that has most of a mode without mass of the scaled matrix, if there is one.
+
+    Scaled to a unit diagonal a consistent mass matrix has eigenvalues bounded by those of its
+    elements, whatever the mesh (Wathen, IMA Journal of Numerical Analysis 7, 1987), so the
+    smallest comes out in few products; a factorisation would cost as much as the stiffness's.
+    """
+    if len(scale) <= MOST_DENSE_ROWS:
+        return _dense_pivots(mass.toarray(), scale)
+    around = scipy.sparse.diags(scale)
+    start = np.random.default_rng(0).standard_normal(len(scale))
     try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            reader = csv.DictReader(file, skipinitialspace=True)
-            lines = [(reader.line_num, line) for line in reader]
-            header = tuple(reader.fieldnames or ())
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise StructureError(f"{path}: cannot be read as a table: {error}") from error
-    for column in NODE_COLUMNS:
-        if column not in header:
-            raise StructureError(f'{path}: no column "{column}" in the header, {header}')
-    if not lines:
-        raise StructureError(f"{path}: has no nodes")
-    names = [_number(path, line, row, "node", int) for line, row in lines]
-    coordinates = [
-        [_number(path, line, row, axis, float) for axis in NODE_COLUMNS[1:]] for line, row in lines
-    ]
-    try:
-        if not any(column in header for column in ROW_COLUMNS):
-            return Nodes.in_order(names, np.reshape(coordinates, (-1, 3)), size)
-        rows = [[_matrix_row(path, line, row, part, size) for part in ROW_COLUMNS]
-                for line, row in lines]  # fmt: skip
-        return Nodes(np.array(names), np.array(coordinates), np.array(rows))
-    except StructureError as error:
-        raise StructureError(str(error).replace("nodes:", f"{path}:", 1)) from error
-
-
-def _number(path: Path, line: int, row: dict, column: str, kind: type) -> float | int:
-    try:
-        value = kind(row[column])
-        if np.isfinite(value) and abs(value) < 2**62:
-            return value
-    except (TypeError, ValueError, OverflowError):
-        pass
-    wanted = "whole number" if kind is int else "finite number"
-    raise StructureError(f'{path}, line {line}: {column} is "{row[column]}", not a {wanted}')
-
-
-def _matrix_row(path: Path, line: int, row: dict, column: str, size: int) -> int:
-    if not (row.get(column) or "").strip():
-        return -1
-    value = _number(path, line, row, column, int)
-    if not 1 <= value <= size:
-        raise StructureError(f"{path}, line {line}: {column} is {value}; rows are 1 to {size}")
-    return int(value) - 1
-
-
-def _zeros(matrix: Matrix) -> Matrix:
-    return (
-        scipy.sparse.csr_array(matrix.shape, dtype=np.float64)
-        if scipy.sparse.issparse(matrix)
-        else np.zeros(matrix.shape)
-    )
+        value, mode = scipy.sparse.linalg.eigsh(
+            around @ mass @ around, k=1, which="SA", tol=1e-6, v0=start
+        )
+    except scipy.sparse.linalg.ArpackNoConvergence:
+        # An eigenvalue this close to others is not one of a faulty export: take the matrix.
+        return None
+    return int(np.argmax(np.abs(mode))) if value[0] <= MASSLESS else None

@@ -9,6 +9,7 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from dynamics.compiled import INLINED
 from dynamics.trajectory.motion import Trajectory, TrajectoryError, require_positive
 
 #: of a cycle over the step, from a whole number
@@ -61,7 +62,7 @@ def set_points(
     return SetPoints(*(np.ascontiguousarray(column) for column in motion), steps)
 
 
-@register_jitable(error_model="numpy", forceinline=True, _nrt=False)
+@register_jitable(**INLINED)
 def set_point_at(points, axis, step_number):
     """Position, m, velocity, m/s, and acceleration, m/s^2, of an axis at a step from 0."""
     row = step_number // points.steps

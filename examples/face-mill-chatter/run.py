@@ -89,11 +89,11 @@ def main(out: Path) -> list[Path]:
     heard = Finding(
         "chatter, neither, with the entry",
         50.0,
-        entering["neither"].judgement.chatter_frequency,
+        entering["neither"].detection.chatter_frequency,
         "Hz",
     )
     findings = [
-        Finding("chatter, neither", 50.0, results["neither"].judgement.chatter_frequency, "Hz"),
+        Finding("chatter, neither", 50.0, results["neither"].detection.chatter_frequency, "Hz"),
         Finding("largest vibration, friction over neither", "less", _ratio(changes, "friction")),
         Finding("contact as well", "none up to 2 s", _ratio(changes, "friction and contact")),
         Finding("ploughing instead", "none in the test", _ratio(changes, "friction and ploughing")),

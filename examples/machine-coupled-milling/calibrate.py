@@ -11,6 +11,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 import chatter
+from chatter.compile.machine_parts import assembled_machine
 from chatter.simulation.virtual_tests.frf import linearised_frictions, peaks
 from chatter.simulation.virtual_tests.from_file import one_frf
 from dynamics.frf.container import Frf
@@ -41,10 +42,10 @@ def peak_near_50(frf):
 
 def mobility(machine_file, velocity, in_cut, lines=LINES):
     """Linearised mobility of the table in y, (m/s)/N, sliding as without contact."""
-    machine = machine_file.machine({})
+    machine = assembled_machine(machine_file, {})
     frictions = linearised_frictions(machine, velocity)
     if in_cut:
-        machine = machine_file.machine({}, in_cut=True)
+        machine = assembled_machine(machine_file, {}, in_cut=True)
     row = machine.structure.port("table", [0.0, 1.0, 0.0])
     answer = receptance(machine, lines, [row], machine_file.step, frictions)[:, 0, 0]
     return Frf(lines, 2j * np.pi * lines * answer, "mobility")

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 import chatter
+from chatter.compile.machine_parts import assembled_machine
 from chatter.description.machine.machine_file import MachineFile
 from chatter.simulation.virtual_tests.frf import linearised_frf, peaks
 from dynamics.frf.container import Frf
@@ -42,7 +43,7 @@ def frequencies(machine: MachineFile) -> list[float]:
     lines = np.arange(15.0, 160.0, 0.25)
     found = []
     for position, way, against, published in PUBLISHED:
-        state = machine.machine(BRAKES, position).without_friction()
+        state = assembled_machine(machine, BRAKES, position).without_friction()
         row = state.structure.port("tool", np.eye(3)["xyz".index(way)], against)
         values = linearised_frf(state, machine.step, lines, row, row)
         at = np.array([one["frequency_Hz"] for one in peaks(Frf(lines, values, "receptance"))])

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import chatter
+from chatter.compile.machine_parts import assembled_machine
 from chatter.description.machine.machine_file import MachineFile
 from chatter.plots.style import BLUE, GREEN, GREY, ORANGE, RED, finish, new_figure
 from chatter.report.published_against_obtained import Finding, write_findings
@@ -193,7 +194,7 @@ def moved_mass(machine: MachineFile) -> float:
 
 def state_space_deviation(machine: MachineFile) -> float:
     """Largest deviation of the modal state space from the full model, over its largest value."""
-    full = machine.patch({"highest_frequency": None}).machine(BRAKES, S2).structure
+    full = assembled_machine(machine.patch({"highest_frequency": None}), BRAKES, S2).structure
     modes = undamped_modes(full, 200.0)
     modal = truncated(full, modes, machine.damping_ratio, residual_at=("tool", "work"))
     port = PointPort("tool", [1.0, 0.0, 0.0], "work")

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 import chatter
+from chatter.compile.machine_parts import assembled_machine, machine_parts
 from chatter.description.machine.machine_file import MachineFile
 from dynamics.reduction.modal_truncation import undamped_modes
 from dynamics.structure.assembly import assemble
@@ -22,7 +23,7 @@ BRACKET, BENDING = 182.0, 98.0  # Hz
 
 def bracket_frequencies(machine: MachineFile) -> np.ndarray:
     """Natural frequencies, Hz, of the bracket clamped where it meets the head."""
-    parts = machine.at()
+    parts = machine_parts(machine)
     bracket = next(body for body in parts.bodies if body.name == "bracket")
     root = next(one for one in parts.connectors if one.name == "bracket_root")
     return assemble([bracket], [replace(root, second="ground")], []).natural_frequencies()
@@ -33,7 +34,7 @@ def bending_frequency(machine: MachineFile, head: float = 0.0) -> float:
 
     With both drives free and the head at a place, m.
     """
-    whole = machine.machine({"X": "free", "Y": "free"}, {"Y": head})
+    whole = assembled_machine(machine, {"X": "free", "Y": "free"}, {"Y": head})
     modes = undamped_modes(whole.structure)
     middle = np.abs(whole.structure.port("crossbeam", (0.0, 0.0, 1.0)) @ modes.shapes)
     low = modes.frequency < 200.0
@@ -43,7 +44,7 @@ def bending_frequency(machine: MachineFile, head: float = 0.0) -> float:
 def of_bore(machine: MachineFile, bore: float) -> MachineFile:
     """Machine with tubes of an inner diameter, m, and carriages that make up 330 kg."""
     bored = machine.patch({f"beam.{one}.segments[0].inner": bore for one in ("front", "rear")})
-    parts = bored.at()
+    parts = machine_parts(bored)
     tubes = 0.0
     for beam in parts.beams:
         shifted = beam.rigid_motions[:, 2]

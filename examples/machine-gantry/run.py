@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 import chatter
+from chatter.compile.machine_parts import assembled_machine, machine_parts
 from chatter.description.machine.machine_file import MachineFile
 from chatter.plots import style
 from chatter.report.published_against_obtained import Finding, write_findings
@@ -46,7 +47,7 @@ def detuned(machine: MachineFile) -> MachineFile:
 
 def clamped_bracket(machine: MachineFile) -> float:
     """First natural frequency of the bracket, Hz, clamped where it meets the head."""
-    parts = machine.at()
+    parts = machine_parts(machine)
     bracket = next(body for body in parts.bodies if body.name == "bracket")
     root = next(one for one in parts.connectors if one.name == "bracket_root")
     clamped = assemble([bracket], [replace(root, second="ground")], [])
@@ -55,7 +56,7 @@ def clamped_bracket(machine: MachineFile) -> float:
 
 def from_motor(machine: MachineFile, axis: str, direction: str, head: float) -> Frf:
     """FRF from the torque (force) of an axis to the tool, loops open, the head at a place, m."""
-    whole = machine.machine(positions={"Y": head})
+    whole = assembled_machine(machine, positions={"Y": head})
     motor = np.mean([drive.row for drive in whole.drives if drive.axis == axis], axis=0)
     tool = whole.structure.port("tcp", np.eye(3)["xyz".index(direction)])
     values = linearised_frf(replace(whole, drives=()), machine.step, BAND, motor, tool)
@@ -150,7 +151,7 @@ def square_with_stops(machine: MachineFile) -> MoveResult:
     section = machine.move["square"]
     path = square(section.side, section.fillet)
     motion = PathWithStops(path, section.velocity, section.acceleration, section.jerk)
-    whole = machine.machine()
+    whole = assembled_machine(machine)
     tool = np.array([whole.structure.port("tcp", way) for way in np.eye(3)])
     plan = MovePlan(motion, section.axes, section.cycle, path=path)
     name = f"{machine.title}: square, at rest between lines and arcs"

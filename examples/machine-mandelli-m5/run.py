@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 import chatter
+from chatter.compile.machine_parts import assembled_machine
 from chatter.description.machine.machine_file import MachineFile
 from chatter.plots import style
 from chatter.report.published_against_obtained import Finding, write_findings
@@ -101,7 +102,7 @@ def sureness(test: Frf) -> NDArray[np.float64]:
 
 def linearised(machine: MachineFile, frequency: NDArray) -> dict[str, NDArray]:
     """Same FRFs of the linearised model, without friction as published."""
-    whole = machine.machine().without_friction()
+    whole = assembled_machine(machine).without_friction()
     names = [f"{point} {way}" for point in POINTS for way in "xyz"]
     rows = np.array([whole.structure.port(point, way) for point in POINTS for way in np.eye(3)])
     matrix = receptance(whole, frequency, rows, machine.step)
@@ -167,7 +168,7 @@ class Loops(NamedTuple):
 
 def loops(machine: MachineFile) -> Loops:
     """Loops of Y while it moves; sweeps as the control's measuring functions make them."""
-    whole = machine.machine()
+    whole = assembled_machine(machine)
     frequency = np.linspace(2.0, HIGHEST - 0.5, 996)
     closed = _loops_at(machine, frequency, "0 mm")
     swept = {name: loop_by_sweep(whole, machine.step, "Y", sweep) for name, sweep in SWEEPS.items()}
@@ -185,7 +186,7 @@ def loops(machine: MachineFile) -> Loops:
 
 
 def _loops_at(machine: MachineFile, frequency: NDArray, head: str) -> LoopResponse:
-    whole = machine.machine(positions={"Y": head})
+    whole = assembled_machine(machine, positions={"Y": head})
     return loop_response(
         whole, machine.step, "Y", frequency, linearised_frictions(whole, {"Y": SPEED})
     )

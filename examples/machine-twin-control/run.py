@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import chatter
+from chatter.compile.machine_parts import assembled_machine, machine_parts
 from chatter.description.machine.machine_file import MachineFile
 from chatter.plots import style
 from chatter.report.published_against_obtained import Finding, write_findings
@@ -58,11 +59,11 @@ class TeethRun(NamedTuple):
 
 def teeth_in(machine: MachineFile, name: str) -> TeethRun:
     """Forces of the pinions in a move of the machine file."""
-    parts = machine.at()
+    parts = machine_parts(machine)
     axis = parts.axes[0]
     drive = axis.drive.parts(axis.geometry)
     meshes = [one for one in drive.couplings if " mesh" in one.name]
-    whole = machine.machine()
+    whole = assembled_machine(machine)
     rows = {one.name: whole.row(one.name, one.terms) for one in meshes}
     section = machine.move[name]
     cycle = whole.drives[0].controller.position.timing.sample_time
@@ -79,7 +80,7 @@ def teeth_in(machine: MachineFile, name: str) -> TeethRun:
 
 def drive_mode(machine: MachineFile) -> float:
     """Frequency, Hz, of the mode that moves the gantry most along X, motors braked."""
-    structure = machine.machine({"X": "brake"}).structure
+    structure = assembled_machine(machine, {"X": "brake"}).structure
     frequencies = structure.natural_frequencies()[:6]
     row = structure.port("leg", (1.0, 0.0, 0.0))
     answer = structure.receptance(frequencies, row[None])[:, 0, 0]

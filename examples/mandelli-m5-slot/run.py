@@ -65,7 +65,7 @@ def limit(case: Case) -> str:
 
 
 def in_words(result: MachineResult) -> str:
-    frequency = result.judgement.chatter_frequency
+    frequency = result.detection.chatter_frequency
     return "no chatter" if np.isnan(frequency) else f"chatter at {frequency:.0f} Hz"
 
 

@@ -22,16 +22,11 @@ import scipy.sparse
 from numpy.typing import ArrayLike, NDArray
 from skfem import Basis, BilinearForm, ElementHexS2, MeshHex
 
+from chatter.io.matrices import imported_structure, read_nodes
 from dynamics.reduction.craig_bampton import super_element
 from dynamics.reduction.modal_truncation import undamped_modes
-from dynamics.structure.imported import (
-    InterpolatedPoint,
-    Nodes,
-    RigidSurface,
-    imported_structure,
-    read_nodes,
-)
 from dynamics.structure.linear_structure import LinearStructure
+from dynamics.structure.surface_constraint import InterpolatedPoint, Nodes, RigidSurface
 
 HERE = Path(__file__).parent
 

@@ -16,12 +16,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.io.matrices import imported_structure
 from chatter.plots.style import BLUE, ORANGE, finish, new_figure
 from dynamics.reduction.craig_bampton import ElasticJoint, joined
 from dynamics.structure.assembly import assemble
 from dynamics.structure.bodies import Body, Connector, Point
-from dynamics.structure.imported import RigidSurface, imported_structure
 from dynamics.structure.linear_structure import LinearStructure
+from dynamics.structure.surface_constraint import RigidSurface
 
 HERE = Path(__file__).parent
 SUPER_ELEMENT = HERE / "super-element"

@@ -7,8 +7,9 @@ import pytest
 import tomlkit
 
 from benchmarks.blind_sets.milling_physics import TURN, Cut, Plant, arc_of, run
+from tests.places import SHARED
 
-SETS = Path(__file__).resolve().parents[2] / "../shared/measurements"
+SETS = SHARED / "measurements"
 #: damping of the missing mode, which its truth does not say
 MISSING_DAMPING = 0.03
 

@@ -1,8 +1,5 @@
 """Solid elements of the crossbeam example against beam theory, and its reduction against itself."""
 
-import importlib.util
-from pathlib import Path
-
 import numpy as np
 import pytest
 import scipy.linalg
@@ -14,28 +11,21 @@ from dynamics.reduction.craig_bampton import super_element
 from dynamics.reduction.modal_truncation import undamped_modes
 from dynamics.structure.bodies import rigid_motion
 from dynamics.structure.linear_structure import LinearStructure
+from tests.places import example_module
 
-FOLDER = Path(__file__).resolve().parents[2] / "examples" / "solid-crossbeam"
 STATIONS = 1
 HIGHEST = 6000.0  # Hz, of the fixed-interface modes here
-
-
-def load(name):
-    specification = importlib.util.spec_from_file_location(f"solid_{name}", FOLDER / f"{name}.py")
-    module = importlib.util.module_from_spec(specification)
-    specification.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture(scope="module")
 def solid():
     pytest.importorskip("skfem")
-    return load("crossbeam")
+    return example_module("solid-crossbeam", "crossbeam")
 
 
 @pytest.fixture(scope="module")
 def machine():
-    return load("run")
+    return example_module("solid-crossbeam", "run")
 
 
 # -- a slender bar -----------------------------------------------------------------------------

@@ -5,16 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from reference import dense_cases, setting_cases
-from reference.general_cases import STORE, load
-from reference.general_cut import GeneralCut, spectral_radius
-from reference.setting_cases import case_dict
 
 from chatter.description.case import Case
 from chatter.engine import parallel as sweep
 from chatter.stability.methods.collocation.multipliers import converged_multiplier, multipliers
 from chatter.stability.model import milling_model
 from cutting.edge_segments.segments import period_angle
+from tests.validation.reference import dense_cases, setting_cases
+from tests.validation.reference.general_cases import STORE, load
+from tests.validation.reference.general_cut import GeneralCut, spectral_radius
+from tests.validation.reference.setting_cases import case_dict
 
 CASES = load()
 #: drawn with another seed when the code stood; four of them showed faults of the edge pieces

@@ -2,7 +2,6 @@
 
 import csv
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,8 +9,9 @@ import pytest
 import chatter
 from chatter.stability.methods.semi_discretization.method import limit_curve, multipliers
 from chatter.stability.model import milling_model
+from tests.places import SHARED
 
-FOLDER = Path(__file__).resolve().parents[2].parent / "shared/data/stability-hajdu-2020"
+FOLDER = SHARED / "data/stability-hajdu-2020"
 pytestmark = pytest.mark.skipif(not FOLDER.exists(), reason="shared data not at hand")
 RPM = math.pi / 30.0
 

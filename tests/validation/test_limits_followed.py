@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from chatter.description.case import Case
-from chatter.engine.parallel import no_progress
+from chatter.description.progress import no_progress
 from chatter.stability.methods.collocation import multipliers as collocation
 from chatter.stability.model import milling_model
 from chatter.stability.registry import by_collocation

@@ -5,15 +5,12 @@ import math
 
 import numpy as np
 import pytest
-from reference import dense_cases
-from reference.general_cases import case_dict, load
-from reference.general_cut import GeneralCut, spectral_radius
 from scipy.integrate import quad
 
 from chatter.description.case import Case
 from chatter.description.errors import RunError
+from chatter.description.progress import no_progress
 from chatter.engine import parallel as sweep
-from chatter.engine.parallel import no_progress
 from chatter.stability.methods.collocation import multipliers as collocation
 from chatter.stability.methods.matrix_free import method as matrix_free
 from chatter.stability.methods.matrix_free.modal_response import PLACES, drawn_answer, mode_answer
@@ -27,6 +24,9 @@ from chatter.stability.registry import (
     operating_multiplier,
 )
 from cutting.edge_segments.segments import period_angle
+from tests.validation.reference import dense_cases
+from tests.validation.reference.general_cases import case_dict, load
+from tests.validation.reference.general_cut import GeneralCut, spectral_radius
 
 RPM = math.pi / 30.0
 CASES = load()

@@ -7,7 +7,7 @@ import pytest
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
-from chatter.engine.parallel import no_progress
+from chatter.description.progress import no_progress
 from chatter.stability.methods.collocation import multipliers as collocation
 from chatter.stability.methods.multi_frequency.method import harmonics_at
 from chatter.stability.methods.semi_discretization.method import multipliers

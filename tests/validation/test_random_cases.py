@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from reference.cases import case_file, load
-from reference.milling import spectral_radius
 
 from chatter.description.case import loads
 from chatter.stability.methods.semi_discretization.method import converged_multiplier, multipliers
 from chatter.stability.model import milling_model
+from tests.validation.reference.cases import case_file, load
+from tests.validation.reference.milling import spectral_radius
 
 CASES = load()
 

@@ -3,7 +3,8 @@
 import math
 
 import pytest
-from reference.milling import MillingCase, multipliers, spectral_radius
+
+from tests.validation.reference.milling import MillingCase, multipliers, spectral_radius
 
 
 def insperger_tool(immersion, mode, rpm, depth_mm, dof=1, diameter=16e-3, helix_deg=0.0):

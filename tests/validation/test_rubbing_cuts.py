@@ -12,7 +12,7 @@ import pytest
 
 import chatter
 from chatter.description.case import Case
-from chatter.engine.parallel import no_progress
+from chatter.description.progress import no_progress
 from chatter.simulation.perturbation.divergence import divergence
 from chatter.simulation.perturbation.growth_rate import delayed, motion_of
 from chatter.simulation.setup import modes_of, set_up
@@ -87,7 +87,7 @@ def test_verdict_is_that_of_the_run(limit, law, force, shares):
 def test_friction_makes_a_cut_stable_that_chatters_without(limit):
     free, rubbing = (rubbing_case("coulomb", force, 1.4 * limit) for force in (0.0, 20.0))
     assert divergence(free, modes_of(free)[0]).verdict == "chatter"
-    found = chatter.simulate(rubbing).judgement
+    found = chatter.simulate(rubbing).detection
     assert found.stable
     assert found.reason == "a small push on the forced motion dies out at once"
 
@@ -96,4 +96,4 @@ def test_deep_cuts_break_loose(limit):
     """Of the same friction, small vibration is held and large is not."""
     case = rubbing_case("coulomb", 2.0, 3.0 * limit)
     assert not is_forced(case)
-    assert chatter.simulate(case).judgement.verdict == "chatter"
+    assert chatter.simulate(case).detection.verdict == "chatter"

@@ -11,7 +11,7 @@ import pytest
 
 import chatter
 from chatter.description.case import Case
-from chatter.engine.parallel import no_progress
+from chatter.description.progress import no_progress
 from chatter.simulation.perturbation.growth_rate import growth_of
 from chatter.simulation.setup import modes_of
 from chatter.stability.methods.time_domain.critical_depths import time_limit_curve
@@ -144,7 +144,7 @@ def test_flutes_of_different_helix_differ_in_a_cut_of_one_slice_too():
     )  # fmt: skip
     assert measured(case).period == pytest.approx(0.5 * 60.0 / 21400)
     assert measured(case).radius == pytest.approx(abs(multiplier_of(case)), abs=2e-3)
-    assert chatter.simulate(case).judgement.period_unit == "turn"
+    assert chatter.simulate(case).detection.period_unit == "revolution"
 
 
 def test_limits_tell_the_kind():

@@ -8,10 +8,9 @@ import math
 
 import numpy as np
 import pytest
-from reference.turning import delay_of_a_spindle, spectral_radius
 
 from chatter.description.case import Case
-from chatter.engine.parallel import no_progress
+from chatter.description.progress import no_progress
 from chatter.simulation.perturbation.divergence import divergence
 from chatter.simulation.perturbation.growth_rate import delayed, motion_of
 from chatter.simulation.setup import modes_of, set_up
@@ -19,6 +18,7 @@ from chatter.stability.methods.collocation.multipliers import converged_multipli
 from chatter.stability.model import milling_model
 from chatter.stability.registry import by_collocation
 from cutting.edge_segments.segments import period_angle
+from tests.validation.reference.turning import delay_of_a_spindle, spectral_radius
 
 # --- BENCHMARKS.md 1.4: turning -------------------------------------------------------------------
 

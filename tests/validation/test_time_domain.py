@@ -1,18 +1,18 @@
 """Simulated cuts against an independent simulator and against measurements with known truth."""
 
 import dataclasses
-from pathlib import Path
 
 import numpy as np
 import pytest
-from reference import time_domain_check as sets
-from reference.time_domain import nrmse, to_case_dict
-from reference.time_domain_store import REVOLUTIONS, SIGNALS, load, sample_times
 
 from chatter import Case
 from chatter.simulation.simulate import simulate
+from tests.places import SHARED
+from tests.validation.reference import time_domain_check as sets
+from tests.validation.reference.time_domain import nrmse, to_case_dict
+from tests.validation.reference.time_domain_store import REVOLUTIONS, SIGNALS, load, sample_times
 
-MEASUREMENTS = Path(__file__).resolve().parents[2] / "../shared/measurements"
+MEASUREMENTS = SHARED / "measurements"
 CUTS = load()
 
 

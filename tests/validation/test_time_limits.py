@@ -134,7 +134,7 @@ def test_full_chatter_beyond_the_limit(directions, mode, immersion, rpm, kind):
     case = case.patch({"cut.axial_depth": 1.05 * limit, "simulation.revolutions": 120})
     wanted = chatter.check(case)
     assert wanted.bifurcation == kind
-    judgement = chatter.simulate(case).judgement
-    assert judgement.verdict == "chatter"
-    assert judgement.bifurcation == kind
-    assert judgement.chatter_frequency == pytest.approx(wanted.chatter_frequency, rel=0.01)
+    detection = chatter.simulate(case).detection
+    assert detection.verdict == "chatter"
+    assert detection.bifurcation == kind
+    assert detection.chatter_frequency == pytest.approx(wanted.chatter_frequency, rel=0.01)

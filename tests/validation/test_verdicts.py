@@ -18,7 +18,7 @@ def sixty():
     records = json.loads(FILE.read_text())
     cases = [chatter.Case.from_dict(record["document"]) for record in records]
     return [
-        (record, chatter.simulate(case).judgement)
+        (record, chatter.simulate(case).detection)
         for record, case in zip(records, cases, strict=True)
     ]
 
@@ -37,17 +37,17 @@ def test_the_sixty_records_are_of_all_kinds(sixty):
 
 def test_at_least_58_of_60_verdicts_are_right(sixty):
     wrong = [
-        (record["document"]["title"], record["radius"], judgement.reason)
-        for record, judgement in sixty
-        if judgement.stable != record["stable"]
+        (record["document"]["title"], record["radius"], detection.reason)
+        for record, detection in sixty
+        if detection.stable != record["stable"]
     ]
     assert len(wrong) <= 2, wrong
 
 
 def test_runout_raises_no_alarm(sixty):
     alarms = [
-        (record["radius"], judgement.reason)
-        for record, judgement in sixty
-        if record["kind"] == "runout" and record["stable"] and not judgement.stable
+        (record["radius"], detection.reason)
+        for record, detection in sixty
+        if record["kind"] == "runout" and record["stable"] and not detection.stable
     ]
     assert not alarms

@@ -11,8 +11,6 @@ from chatter.description.machine.fields import Place
 from chatter.description.quantities import quantity
 from chatter.description.section import Section
 from chatter.description.sections.structure import FileName
-from dynamics.structure.imported import InterpolatedPoint, RigidSurface, imported_structure
-from dynamics.structure.imported_part import ImportedPart, reduced_part
 
 
 def _nodes(given: Any) -> tuple[int, ...]:
@@ -54,27 +52,3 @@ class ImportedSection(Section):
     rail: tuple[str, ...] = Field(
         (), description="points between which other parts may be joined anywhere"
     )
-
-    def part(self, name: str) -> ImportedPart:
-        """Read and reduce the part.
-
-        Raises
-        ------
-        StructureError
-            If a file cannot be used, or a point not be tied.
-        """
-        rigid = [
-            RigidSurface(point, one.at, one.nodes)
-            for point, one in self.point.items()
-            if one.kind == "rigid"
-        ]
-        interpolated = [
-            InterpolatedPoint(point, one.at, one.nodes, one.weights)
-            for point, one in self.point.items()
-            if one.kind == "interpolating"
-        ]
-        whole = imported_structure(
-            self.mass, self.stiffness, self.damping, self.nodes, rigid, interpolated
-        )
-        places = {point: one.at for point, one in self.point.items()}
-        return reduced_part(name, whole, places, self.rail, self.highest_frequency)

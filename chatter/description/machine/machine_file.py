@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -18,7 +18,7 @@ from chatter.description.machine.bodies import (
     PointSection,
 )
 from chatter.description.machine.compose import Composition
-from chatter.description.machine.errors_by_key import sentence, telling
+from chatter.description.machine.errors_by_key import sentence
 from chatter.description.machine.frequency_response import FrfSection
 from chatter.description.machine.friction import FrictionSection
 from chatter.description.machine.imported import ImportedSection
@@ -29,9 +29,7 @@ from chatter.description.quantities import QuantityField, quantity, whole_number
 from chatter.description.toml_document import moved_reference
 from chatter.description.toml_editing import Layout
 from chatter.description.wording import nearest
-from dynamics.machine.description import Condition, Machine, MachineParts, machine
 from dynamics.structure.bodies import GROUND
-from dynamics.structure.imported_part import ImportedPart
 
 _POSITION = QuantityField("length", at_least=-200.0, at_most=200.0)
 _FILES = ("mass", "stiffness", "damping", "nodes")
@@ -89,7 +87,7 @@ class MachineFile(Description):
     frf: dict[str, FrfSection] = Field(default_factory=dict)
     move: dict[str, MoveSection] = Field(default_factory=dict)
 
-    _imported_parts: dict[str, ImportedPart] = PrivateAttr(default_factory=dict)
+    _made: dict[str, Any] = PrivateAttr(default_factory=dict)
 
     def _resolve_files(self, content: dict[str, Any]) -> None:
         for section in content["imported"].values():
@@ -131,74 +129,25 @@ class MachineFile(Description):
         ends = ((self.tool_point, 1.0), (self.workpiece, -1.0))
         return tuple((name, sign) for name, sign in ends if name is not None)
 
-    def imported_part(self, name: str) -> ImportedPart:
-        """Imported part at position 0, read and reduced once.
+    def once(self, key: str, make: Callable[[], Any]) -> Any:
+        """Return what was made of this file under a key: at the first call by `make`."""
+        if key not in self._made:
+            self._made[key] = make()
+        return self._made[key]
 
-        Raises
-        ------
-        InputError
-            If its files cannot be used.
-        """
-        if name not in self._imported_parts:
-            with telling(self.name, f"imported.{name}"):
-                self._imported_parts[name] = self.imported[name].part(name)
-        return self._imported_parts[name]
-
-    def at(
-        self, positions: Mapping[str, float | str] | None = None, in_cut: bool = False
-    ) -> MachineParts:
-        """Everything the machine is made of, at positions of its axes.
-
-        What an axis carries is shifted along it: bodies, beams, imported parts, points, places
-        where drives push, and connectors whose first part it carries.
+    def positions(self, given: Mapping[str, float | str]) -> dict[str, float]:
+        """Positions of axes, m.
 
         Parameters
         ----------
-        positions : mapping of str to float or str, optional
-            m, or a quantity such as "120 mm"; where the file has the axis by default.
-        in_cut : bool
-            Whether tool and workpiece touch: with the couplings of [contact].
+        given : mapping of str to float or str
+            m, or a quantity such as "120 mm".
 
         Raises
         ------
         InputError
-            If there is no such axis, a position is none, or the machine makes no sense there.
+            If there is no such axis, or a position is none.
         """
-        if in_cut and self.contact is None:
-            raise InputError(f"{self.name}: [contact] is missing; the machine is to be in the cut")
-        return Composition(self, self._positions(positions or {})).parts(in_cut)
-
-    def machine(
-        self,
-        conditions: Mapping[str, Condition] | None = None,
-        positions: Mapping[str, float | str] | None = None,
-        in_cut: bool = False,
-    ) -> Machine:
-        """Assemble the machine.
-
-        Parameters
-        ----------
-        conditions : mapping of str to {"control", "brake", "free"}, optional
-            What holds each driven axis; control where it has one by default, else nothing.
-        positions, in_cut
-            As for `at`.
-
-        Raises
-        ------
-        InputError
-            If the machine makes no sense: parts that nothing holds, an axis that is not there, a
-            nut off its screw.
-        """
-        parts = self.at(positions, in_cut)
-        for name, condition in (conditions or {}).items():
-            if condition == "brake" and name in self.axis and self.axis[name].brake is None:
-                raise InputError(
-                    f"{self.name}: axis.{name}.brake: is missing; the axis is to be held by it"
-                )
-        with telling(self.name):
-            return machine(parts, conditions)
-
-    def _positions(self, given: Mapping[str, float | str]) -> dict[str, float]:
         read = {}
         for name, position in given.items():
             if name not in self.axis:

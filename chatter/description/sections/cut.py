@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from typing import Literal
 
 from pydantic import Field, ValidationInfo, field_validator
 
 from chatter.description.quantities import PositiveLength, quantity
 from chatter.description.section import Section
+from chatter.description.units import rpm
 
 #: no tooth takes a thicker chip, so that a number meant in mm is not taken for one in m
 LARGEST_FEED = 0.02
@@ -53,4 +53,4 @@ class Cut(Section):
     @property
     def spindle_speed_rpm(self) -> float:
         """Spindle speed in revolutions a minute, for output."""
-        return self.spindle_speed * 30.0 / math.pi
+        return rpm(self.spindle_speed)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Literal
 
 from pydantic import Field, model_validator
@@ -10,6 +9,7 @@ from pydantic import Field, model_validator
 from chatter.description.quantities import PositiveLength, quantity, whole_number
 from chatter.description.section import Section, raise_if_any
 from chatter.description.sections.cut import LARGEST_FEED
+from chatter.description.units import rpm
 
 _MOST_VALUES = 200
 Values = whole_number(2, _MOST_VALUES, "counts")
@@ -28,7 +28,7 @@ class SpeedBand(Section):
 
     @model_validator(mode="after")
     def _check_order(self) -> SpeedBand:
-        _refuse_empty(self.from_, self.to, "rpm", 30.0 / math.pi)
+        _refuse_empty(self.from_, self.to, "rpm", rpm(1.0))
         return self
 
 

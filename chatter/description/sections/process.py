@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
@@ -11,6 +10,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, mo
 from chatter.description.formatting import shown
 from chatter.description.quantities import PositiveLength, QuantityField, quantity, whole_number
 from chatter.description.section import Section, raise_if_any
+from chatter.description.units import rpm
 
 #: most points a side of a diagram, and in all
 MOST_POINTS_A_SIDE = 20_000
@@ -250,7 +250,7 @@ class SpeedRange(Section):
 
     @model_validator(mode="after")
     def _check_order(self) -> SpeedRange:
-        first, last = (value * 30.0 / math.pi for value in (self.from_, self.to))
+        first, last = (rpm(value) for value in (self.from_, self.to))
         text = f"the range is empty: from ({first:g} rpm) is not less than to ({last:g} rpm)"
         raise_if_any([("", text)] if self.from_ >= self.to else [])
         return self

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.description.units import rpm
 from chatter.explain.data_checks.finding import NOTE, RUN, SignalFinding, of_all_or_some
 from chatter.explain.measurement import Measurement, Run
 
@@ -91,7 +92,7 @@ def wrong_speeds(measurement: Measurement) -> list[SignalFinding]:
 
 
 def _rpm(speed: float) -> str:
-    return f"{speed * 30.0 / math.pi:.5g} rpm"
+    return f"{rpm(speed):.5g} rpm"
 
 
 def _as_unit(by_angle: float, declared: float) -> str:

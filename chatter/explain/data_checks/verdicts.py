@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.errors import InputError, RunError
+from chatter.description.units import from_rpm, rpm
 from chatter.explain.data_checks.finding import FATAL, NOTE, RUN, SAMPLES, SignalFinding
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.stability_margin import stability_margins
@@ -22,8 +21,8 @@ _TURNED = 0.75
 #: share of verdicts that the declared case has right at the most, where they are turned round
 _MOST_RIGHT = 0.45
 _UNITS = {
-    "rad/s taken as rpm": 30.0 / math.pi,
-    "rpm taken as rad/s": math.pi / 30.0,
+    "rad/s taken as rpm": rpm(1.0),
+    "rpm taken as rad/s": from_rpm(1.0),
     "revolutions a second taken as rpm": 60.0,
     "in another unit, off by 1000": 1000.0,
     "in another unit, off by 1/1000": 0.001,
@@ -60,7 +59,7 @@ def _senseless(run: Run) -> list[SignalFinding]:
     first = int(np.argmin(good))
     description = (
         f"{run.name}: {np.sum(~good)} of {good.size} points are out of any sense, the first at "
-        f"point {first + 1}: {speeds[first] * 30.0 / math.pi:.4g} rpm, "
+        f"point {first + 1}: {rpm(speeds[first]):.4g} rpm, "
         f"{depths[first] * 1e3:.4g} mm"
     )
     severity = SAMPLES if good.mean() > 0.7 else RUN
@@ -77,9 +76,9 @@ def _units(measurement: Measurement, run: Run, speeds: Vector) -> list[SignalFin
     for description, factor in _UNITS.items():
         if low * factor / 1.3 <= declared <= high * factor * 1.3:
             text = (
-                f"{run.name}: the speeds are {description}: {low * 30.0 / math.pi:.4g} to "
-                f"{high * 30.0 / math.pi:.4g} rpm; the case declares "
-                f"{declared * 30.0 / math.pi:.4g} rpm"
+                f"{run.name}: the speeds are {description}: {rpm(low):.4g} to "
+                f"{rpm(high):.4g} rpm; the case declares "
+                f"{rpm(declared):.4g} rpm"
             )
             return [SignalFinding(FATAL, run.name, "spindle_speed", text)]
     return []

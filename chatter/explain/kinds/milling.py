@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from chatter.description.case import Case
+from chatter.description.units import rpm
 from chatter.explain.data_checks.channel_assignment import wrong_assignment
 from chatter.explain.data_checks.clock import clock_check
 from chatter.explain.data_checks.displacement import wrong_displacements
@@ -39,7 +40,7 @@ _LONGEST_STEP = 0.02
 _BEYOND = 1e-3
 #: conditions of a cut that a discriminating test may change: unit, reported over SI
 _VARIED = {
-    "cut.spindle_speed": ("rpm", 30.0 / math.pi),
+    "cut.spindle_speed": ("rpm", rpm(1.0)),
     "cut.axial_depth": ("mm", 1e3),
     "cut.feed_per_tooth": ("mm", 1e3),
     "cut.radial_depth": ("mm", 1e3),

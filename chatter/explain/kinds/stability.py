@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
@@ -11,6 +10,7 @@ import scipy.special
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from chatter.description.units import rpm
 from chatter.explain.data_checks.verdicts import wrong_verdicts
 from chatter.explain.kinds.kind import Array, Cuts, Deviation, Kind, Noise, Signals, Trial
 from chatter.explain.kinds.milling import cutting_paths
@@ -139,7 +139,7 @@ class Stability(Kind):
         trials = []
         for speed in np.geomspace(speeds.min(), speeds.max(), _POINTS):
             for depth in np.geomspace(depths.min(), depths.max(), _POINTS):
-                words = f"a cut at {speed * 30.0 / math.pi:.0f} rpm and {depth * 1e3:.3g} mm"
+                words = f"a cut at {rpm(speed):.0f} rpm and {depth * 1e3:.3g} mm"
                 point = {"spindle_speed": np.array([speed]), "axial_depth": np.array([depth])}
                 trials.append(Trial(words, Run("trial", {}, point), {"stable": _NOISE_OF_VERDICT}))
         return trials

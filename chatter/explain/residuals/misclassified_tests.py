@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.description.units import rpm
 from chatter.explain.residuals.finding import Curve, Curves, Finding, Points
 from chatter.explain.residuals.ranks import rank_correlation
 from chatter.explain.residuals.residual import Residual
@@ -14,7 +15,6 @@ from chatter.explain.stability_margin import stability_margins
 
 Array = NDArray[np.float64]
 
-_RPM = 30.0 / math.pi
 #: standard deviations by which wrong verdicts outnumber those of chance
 _BEYOND = 3.0
 #: significance level of a rank correlation
@@ -76,7 +76,7 @@ def _map_of(tests: _Tests) -> Points:
         "chatter, predicted stable": tests.misclassified & ~tests.stable,
     }
     points = {
-        name: (tests.speed[chosen] * _RPM, tests.depth[chosen] * 1e3)
+        name: (rpm(tests.speed[chosen]), tests.depth[chosen] * 1e3)
         for name, chosen in classes.items()
     }
     return Points(points, "spindle speed [rpm]", "axial depth [mm]", logarithmic="y")
@@ -85,7 +85,7 @@ def _map_of(tests: _Tests) -> Points:
 def over_speed(residual: Residual) -> Finding:
     """Whether tests are more or less stable than the case at some speeds."""
     tests = _Tests(residual)
-    return _over(tests, tests.speed * _RPM, "spindle speed", "rpm")
+    return _over(tests, rpm(tests.speed), "spindle speed", "rpm")
 
 
 def over_depth(residual: Residual) -> Finding:

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.description.units import rpm
 from chatter.explain.residuals.channel_residual import ChannelResidual
 
 Array = NDArray[np.float64]
@@ -24,7 +25,6 @@ _REST = 1e-4
 #: shortest travel since a reversal that is resolved, m
 _SHORTEST_TRAVEL = 1e-6
 _DEGREE = 180.0 / math.pi
-_RPM = 30.0 / math.pi
 
 
 @dataclass(frozen=True)
@@ -194,7 +194,7 @@ MILLING_FORMS = (
     Form("in proportion", "as a share of what is predicted", lambda r: r.predicted, relative=True),
 )
 MILLING_CONDITIONS = (
-    Condition("spindle speed", "rpm", _RPM, lambda r: r.case.cut.spindle_speed),
+    Condition("spindle speed", "rpm", rpm(1.0), lambda r: r.case.cut.spindle_speed),
     Condition("feed per tooth", "mm", 1e3, lambda r: r.case.cut.feed_per_tooth),
     Condition("axial depth", "mm", 1e3, lambda r: r.case.cut.axial_depth),
     Condition("radial depth", "mm", 1e3, lambda r: r.case.cut.radial_depth or 0.0),

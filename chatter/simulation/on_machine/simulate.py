@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import RunError
+from chatter.description.progress import Progress, no_progress
+from chatter.description.units import rpm
 from chatter.engine.loop import COLUMNS, Record
 from chatter.engine.machine_cut_loop import CoupledRecord, run_coupled
 from chatter.engine.machine_loop import advance
-from chatter.engine.parallel import Progress, no_progress
 from chatter.simulation.carved_workpiece import after_run
 from chatter.simulation.on_machine.setup import MachineSetup, set_up_machine, tool_side
 from chatter.simulation.result import SimulationResult
@@ -85,8 +86,8 @@ class MachineResult(SimulationResult):
                 for drive in machine.drives
             },
             "spindle_speed_rpm": {
-                "least": float(self.spindle_speed.min() * 30.0 / np.pi),
-                "mean": float(self.spindle_speed[self.settled].mean() * 30.0 / np.pi),
+                "least": float(rpm(self.spindle_speed.min())),
+                "mean": float(rpm(self.spindle_speed[self.settled].mean())),
             },
         }
         return told

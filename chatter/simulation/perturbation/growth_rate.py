@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
-from chatter.detection.chatter_line import strongest_line
-from chatter.detection.orbits import kind_of_orbit
+from chatter.detection.bifurcation_type import bifurcation_of
+from chatter.detection.chatter_frequency import strongest_line
 from chatter.engine.loop import COLUMNS, Record, run
 from chatter.simulation.perturbation.divergence import LARGE_SWING, divergence
 from chatter.simulation.setup import Setup, delayed, set_up
@@ -171,7 +171,7 @@ def _full_chatter(periods: NDArray[np.float64], period: float) -> Growth:
         return Growth(complex(math.inf), period, math.nan, "hopf")
     growth = max(float(np.polyfit(np.arange(len(size)), np.log(size), 1)[0]), 0.0)
     line = strongest_line(shown, growth)
-    kind, _ = kind_of_orbit(shown, line, growth, 0.0)
+    kind, _ = bifurcation_of(shown, line, growth, 0.0)
     flip = "flip" if kind == "flip" else "hopf"
     return Growth(complex(math.inf), period, line.cycles / period, flip)
 

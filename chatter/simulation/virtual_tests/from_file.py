@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.compile.machine_parts import assembled_machine
 from chatter.description.errors import InputError
 from chatter.description.machine.frequency_response import (
     TORQUE_KINDS,
@@ -18,7 +19,7 @@ from chatter.description.machine.frequency_response import (
 )
 from chatter.description.machine.machine_file import MachineFile
 from chatter.description.machine.move import MoveSection
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
 from chatter.simulation.virtual_tests.frf import FrfCurve, FrfResult, linearised_frf
 from chatter.simulation.virtual_tests.loop_stability import refuse_unstable_control
 from chatter.simulation.virtual_tests.move import MovePlan, MoveResult, move_axes
@@ -41,7 +42,7 @@ def in_state(file: MachineFile, state: StateSection) -> Machine:
     InputError
         If it cannot be brought into that state.
     """
-    machine = file.machine(state.condition, state.position, state.in_cut)
+    machine = assembled_machine(file, state.condition, state.position, state.in_cut)
     return machine if state.friction else machine.without_friction()
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from chatter.compile.rigid_motion import rigid_motion
 from chatter.description.errors import InputError
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, write_results
 from chatter.simulation.virtual_tests.loop_stability import refuse_unstable_control

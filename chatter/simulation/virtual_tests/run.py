@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.errors import InputError, RunError
+from chatter.description.progress import Progress, no_progress
 from chatter.engine.machine_loop import Record, run
-from chatter.engine.parallel import Progress, no_progress
 from dynamics.control import ControlError
 from dynamics.machine.description import Machine
 from dynamics.machine.groups import ControlledDrives

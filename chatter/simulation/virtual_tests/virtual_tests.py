@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.errors import InputError
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
 from chatter.simulation.virtual_tests.run import MachineRun, RunInputs, run_machine
 from dynamics.frf.container import Frf, MeasurementError
 from dynamics.frf.excitation import (

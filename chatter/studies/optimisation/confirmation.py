@@ -15,7 +15,7 @@ import numpy as np
 
 from chatter.compile.structure import structure_of
 from chatter.description.case import Case
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
 from chatter.simulation.result import SimulationResult
 from chatter.simulation.setup import set_up
 from chatter.simulation.simulate import run_setup
@@ -69,7 +69,7 @@ def _modes(model: MillingModel, here: Case) -> tuple[Mode, ...]:
 
 
 def _verdict(result: SimulationResult) -> str:
-    return "not judged" if result.judgement is None else result.judgement.verdict
+    return "not judged" if result.detection is None else result.detection.verdict
 
 
 def _measured(result: SimulationResult) -> dict[str, float]:

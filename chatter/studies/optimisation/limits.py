@@ -15,10 +15,10 @@ from chatter.stability.model import MillingModel
 from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
 from chatter.stability.registry import zero_order_of
 from chatter.stability.search_range import deepest_depth, spindle_speeds
+from chatter.studies.model import standard_deviations
 from chatter.studies.optimisation.resolution import most_waves, telling
 from chatter.studies.optimisation.steady_cut import SteadyCuts
 from chatter.studies.optimisation.width_and_feed import model_at
-from chatter.studies.whatif.model import deviations_of
 
 Array = NDArray[np.float64]
 
@@ -101,7 +101,7 @@ def limits_of(case: Case, model: MillingModel, sampled: Sequence[MillingModel] =
         Of the samples of what is uncertain: elements are as short as these need them too.
     """
     section = case.optimum or Optimum()
-    uncertain = bool(deviations_of(case))
+    uncertain = bool(standard_deviations(case))
     given = {key: getattr(section, key) for key in LIMITED}
     margins = [
         value if value is not None else 0.0 if uncertain else usual

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from chatter.description.case import Case
+from chatter.description.units import rpm
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, write_results
 from chatter.studies.optimisation.candidate import Candidate, case_at
@@ -19,7 +20,6 @@ from chatter.studies.optimisation.speed_depth_slice import Sheet
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_RPM = 30.0 / math.pi
 #: m^3/s in cm^3/min
 _PER_MINUTE = 6e7
 #: limit -> name of what it limits in a summary, and factor from SI
@@ -110,7 +110,7 @@ class Optimum:
                 "speed_margin": self.limits.speed_margin,
             },
             "searched": {
-                "spindle_speeds_rpm": _ends(self.limits.speeds * _RPM),
+                "spindle_speeds_rpm": _ends(rpm(self.limits.speeds)),
                 "axial_depths_mm": _ends(self.limits.depths * 1e3),
                 "radial_depths_mm": _ends(self.limits.widths * 1e3),
                 "feeds_per_tooth_mm": _ends(self.limits.feeds * 1e3),
@@ -130,7 +130,7 @@ class Optimum:
         best = self.best
         place, known = best.place, best.probability
         lines = [
-            f"{place.spindle_speed * _RPM:.5g} rpm, {place.axial_depth * 1e3:.4g} mm deep, "
+            f"{rpm(place.spindle_speed):.5g} rpm, {place.axial_depth * 1e3:.4g} mm deep, "
             f"{place.radial_depth * 1e3:.4g} mm wide, {place.feed_per_tooth * 1e3:.4g} mm a tooth: "
             f"{best.removal_rate * _PER_MINUTE:.4g} cm^3/min",
             f"{best.power * 1e-3:.3g} kW, {best.torque:.3g} N m, deflection "
@@ -176,7 +176,7 @@ class Optimum:
             limit = f"{one.limit_depth * 1e3:.7g}" if math.isfinite(one.limit_depth) else ""
             cells = [
                 f"{rank}",
-                f"{place.spindle_speed * _RPM:.8g}",
+                f"{rpm(place.spindle_speed):.8g}",
                 f"{place.axial_depth * 1e3:.7g}",
                 f"{place.radial_depth * 1e3:.7g}",
                 f"{place.feed_per_tooth * 1e3:.7g}",
@@ -202,7 +202,7 @@ def _ends(values) -> list[float]:
 
 def _place(place: Place) -> dict:
     return {
-        "spindle_speed_rpm": place.spindle_speed * _RPM,
+        "spindle_speed_rpm": rpm(place.spindle_speed),
         "axial_depth_mm": place.axial_depth * 1e3,
         "radial_depth_mm": place.radial_depth * 1e3,
         "feed_per_tooth_mm": place.feed_per_tooth * 1e3,

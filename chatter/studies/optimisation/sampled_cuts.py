@@ -21,12 +21,12 @@ from chatter.engine.parallel import one_thread, sweep
 from chatter.stability.methods.collocation import multipliers as collocation
 from chatter.stability.methods.collocation.cut_arrays import CutArrays
 from chatter.stability.model import MillingModel, milling_model
+from chatter.studies.model import patched, standard_deviations
 from chatter.studies.optimisation.limits import LIMITED, Limits
 from chatter.studies.optimisation.steady_cut import SteadyCuts, SteadyModel
 from chatter.studies.optimisation.width_and_feed import model_at
 from chatter.studies.uncertainty.parameters import UncertainParameter, correlation_of, parameters_of
 from chatter.studies.uncertainty.sampling import samples
-from chatter.studies.whatif.model import deviations_of, patched
 
 Array = NDArray[np.float64]
 Result = TypeVar("Result")
@@ -100,7 +100,7 @@ def samples_of(model: MillingModel, count: int, seed: int) -> Samples | None:
         If correlations contradict one another.
     """
     case = model.case
-    if not deviations_of(case):
+    if not standard_deviations(case):
         return None
     parameters = parameters_of(case)
     drawn = samples(parameters, count, seed, correlation_of(case, parameters))

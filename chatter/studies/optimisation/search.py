@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
+from chatter.description.units import from_rpm, rpm
 from chatter.stability.model import MillingModel
 from chatter.studies.optimisation.limits import Limits
 from chatter.studies.optimisation.speed_depth_slice import (
@@ -37,7 +38,6 @@ _SPEEDS, _DEPTHS, _WIDTHS = 7, 25, 3
 #: steps at which stability is looked at there, a share of the deepest depth
 _STABILITY_STEP = 0.03
 
-_RPM = 30.0 / math.pi
 #: speeds are whole revolutions a minute above this, lengths whole micrometres
 _WHOLE_RPM_ABOVE = 1000.0
 
@@ -217,8 +217,8 @@ def _within(values: Array, net: Array) -> Array:
 
 def rounded(place: Place) -> Place:
     """Place in numbers that a programmer would write, no depth, width or feed larger."""
-    digits = 0 if place.spindle_speed * _RPM > _WHOLE_RPM_ABOVE else 2
-    speed = round(place.spindle_speed * _RPM, digits) / _RPM
+    digits = 0 if rpm(place.spindle_speed) > _WHOLE_RPM_ABOVE else 2
+    speed = from_rpm(round(rpm(place.spindle_speed), digits))
     depth, width = (math.floor(value * 1e6 + 1e-6) * 1e-6 for value in place[1:3])
     return Place(
         speed,

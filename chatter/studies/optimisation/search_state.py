@@ -7,16 +7,15 @@ from collections.abc import Callable
 from pathlib import Path
 
 from chatter.description.case import Case
-from chatter.engine.parallel import Progress
+from chatter.description.progress import Progress
 from chatter.stability.model import milling_model
-from chatter.studies.finished_points import key_of
+from chatter.studies.model import fingerprint
 from chatter.studies.optimisation.candidate import Candidate, candidate_at
 from chatter.studies.optimisation.limits import limits_of
 from chatter.studies.optimisation.records import candidate_from, record_of_candidate
 from chatter.studies.optimisation.sampled_cuts import samples_of
 from chatter.studies.optimisation.search import Place
-from chatter.studies.result_cache import KeptPieces
-from chatter.studies.whatif.model import fingerprint
+from chatter.studies.result_cache import ResultCache
 
 
 class KeptSearch:
@@ -45,7 +44,7 @@ class KeptSearch:
         self.drawn = samples_of(self.model, samples, seed)
         sampled = self.drawn.models if self.drawn is not None else ()
         self.limits = limits_of(case, self.model, sampled)
-        self.kept = KeptPieces(folder, key_of("optimum", fingerprint(case)))
+        self.cache = ResultCache(folder, "optimum", fingerprint(case))
         #: what pieces depend on where something is uncertain
         self.draw = (samples, seed) if self.drawn is not None else None
         self._progress, self._lock = progress, threading.Lock()
@@ -90,7 +89,7 @@ class KeptSearch:
     ) -> Candidate | None:
         """Candidate of a place, or that it has none, computed if it is not known yet."""
         inputs = (tuple(place), self.draw)
-        record = self.kept.piece(name, inputs, lambda: record_of_candidate(compute()))
+        record = self.cache.record(name, inputs, lambda: record_of_candidate(compute()))
         return candidate_from(record)
 
     def at(self, place: Place) -> Candidate:

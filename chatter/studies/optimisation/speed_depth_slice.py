@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
 from chatter.stability.model import MillingModel
 from chatter.studies.optimisation.limits import Limits
 from chatter.studies.optimisation.stable_depths import StableDepths, is_inside, stable_depths

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
 from chatter.stability.boundary_continuation import followed_crossings
 from chatter.stability.crossings import find_crossings
 from chatter.stability.methods.collocation import multipliers as collocation

@@ -9,7 +9,7 @@ import numpy as np
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
 from chatter.studies.optimisation.candidate import Candidate
 from chatter.studies.optimisation.candidates import A_ROBUST, WIDTH_STEPS, candidates_of
 from chatter.studies.optimisation.exclusion import exclusions
@@ -58,7 +58,7 @@ def optimum(
     progress : callable, optional
         Called with (done, total) parts of the work.
     folder : path, optional
-        Keeps finished pieces of the search in points.jsonl there, and reuses those of the same
+        Keeps finished parts of the search in the result cache there, and reuses those of the same
         case.
 
     Returns
@@ -78,10 +78,11 @@ def optimum(
     _refuse(case)
     search = KeptSearch(case, samples, seed, progress, folder)
     search.expect(_work(search))
-    try:
-        return _found(case, search, seed)
-    except KeyboardInterrupt:
-        raise search.kept.interrupted() from None
+    with search.cache as cache:
+        try:
+            return _found(case, search, seed)
+        except KeyboardInterrupt:
+            raise cache.search_interrupted() from None
 
 
 def _work(search: KeptSearch) -> int:
@@ -122,7 +123,7 @@ def _sheets(search: KeptSearch, width: float) -> list[Sheet]:
         computed.extend(sheets_of_width(model, limits, width, search.part(size)))
         return record_of_sheets(computed)
 
-    record = search.kept.piece("width", width, compute)
+    record = search.cache.record("width", width, compute)
     search.done(size)
     return computed or sheets_from(record, model, limits, width)
 
@@ -133,7 +134,7 @@ def _refined(search: KeptSearch, start: Place) -> Place:
     def compute() -> list:
         return list(refined(model, limits, start, lambda level: told(level, LEVELS)))
 
-    place = Place(*search.kept.piece("refined", tuple(start), compute))
+    place = Place(*search.cache.record("refined", tuple(start), compute))
     search.done(_A_START)
     return place
 

@@ -8,7 +8,8 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import replace
 
-from chatter.engine.parallel import Progress, one_thread, worker_count
+from chatter.description.progress import Progress
+from chatter.engine.parallel import one_thread, worker_count
 from chatter.studies.optimisation.candidate import Candidate, max_usage
 from chatter.studies.optimisation.confirmation import time_check
 from chatter.studies.optimisation.robustness import with_probability
@@ -49,8 +50,11 @@ def _side_by_side(search: KeptSearch, candidates: Sequence[Candidate]) -> list[C
     alone = one_thread if len(candidates) > 1 else nullcontext
 
     def held(place: int) -> Candidate:
-        with alone():
-            return _Check(search, told[place], stopped).held(candidates[place])
+        try:
+            with alone():
+                return _Check(search, told[place], stopped).held(candidates[place])
+        finally:
+            search.cache.close()
 
     with ThreadPoolExecutor(max_workers=min(worker_count(), max(len(candidates), 1))) as pool:
         try:

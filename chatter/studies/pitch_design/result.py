@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
+from chatter.description.units import rpm
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, write_results
 from chatter.studies.pitch_design.families import regeneration
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
-
-_RPM = 30.0 / math.pi
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +107,7 @@ class PitchResult:
             "title": self.case.title,
             "goal": self.goal,
             "largest_chip_allowed": self.largest_chip,
-            "spindle_speeds_rpm": [float(end * _RPM) for end in self.speeds[[0, -1]]],
+            "spindle_speeds_rpm": [float(rpm(end)) for end in self.speeds[[0, -1]]],
             "searched_to_mm": self.deepest * 1e3,
             "better_than_the_case": self.is_better,
             "best": self._design(self.best),
@@ -119,7 +118,7 @@ class PitchResult:
             },
             "rule": {
                 "chatter_frequency_Hz": self.chatter_frequency,
-                "spindle_speed_rpm": self.design_speed * _RPM,
+                "spindle_speed_rpm": rpm(self.design_speed),
                 "differences_deg": {
                     curve.name: np.degrees(curve.rule).round(3).tolist() for curve in self.curves
                 },
@@ -140,7 +139,7 @@ class PitchResult:
 
     def told(self) -> list[str]:
         """Sentences for the terminal."""
-        low, high = self.speeds[[0, -1]] * _RPM
+        low, high = rpm(self.speeds[[0, -1]])
         angles = ", ".join(f"{angle:g}" for angle in self.best.pitch)
         before, after = self.standing.lowest_limit * 1e3, self.best.lowest_limit * 1e3
         lines = [
@@ -189,5 +188,5 @@ class PitchResult:
         for speed, before, after in zip(
             self.speeds, self.standing.limits, self.best.limits, strict=True
         ):
-            lines.append(f"{speed * _RPM:.4f},{before * 1e3:.6g},{after * 1e3:.6g}")
+            lines.append(f"{rpm(speed):.4f},{before * 1e3:.6g},{after * 1e3:.6g}")
         return "\n".join(lines) + "\n"

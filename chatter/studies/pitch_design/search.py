@@ -15,7 +15,7 @@ from chatter.stability.model import milling_model
 from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
 from chatter.studies.optimisation.stable_depths import first_limits
 from chatter.studies.pitch_design.families import Family
-from chatter.studies.result_cache import KeptPieces
+from chatter.studies.result_cache import ResultCache
 
 Array = NDArray[np.float64]
 
@@ -109,7 +109,7 @@ class PitchSearch:
         Largest pitch, in units of the mean; the smallest is 2 less this.
     evaluated : callable
         Called after every evaluation.
-    kept : KeptPieces
+    cache : ResultCache
         Limits that are known already.
     """
 
@@ -121,11 +121,11 @@ class PitchSearch:
         goal: str,
         largest_chip: float,
         evaluated: Callable[[], None],
-        kept: KeptPieces,
+        cache: ResultCache,
     ) -> None:
         self.case, self.speeds, self.depths = case, speeds, depths
         self.goal, self.largest_chip, self.evaluated = GOALS[goal], largest_chip, evaluated
-        self.teeth, self._kept = case.tool.teeth, kept
+        self.teeth, self._cache = case.tool.teeth, cache
         self._known: dict[tuple[float, ...], Array] = {}
 
     def limits(self, pitch: Sequence[float], speeds: Array) -> Array:
@@ -139,7 +139,7 @@ class PitchSearch:
             return np.minimum(found, deepest).tolist()
 
         inputs = (angles, speeds.tolist())
-        return np.array(self._kept.piece("limits", inputs, compute), dtype=np.float64)
+        return np.array(self._cache.record("limits", inputs, compute), dtype=np.float64)
 
     def design(self, name: str, pitch: Sequence[float]) -> Design:
         """Design of pitch angles (deg), computed once."""

@@ -13,18 +13,17 @@ from numpy.typing import NDArray
 from chatter.compile.cutter import pitch_angles
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from chatter.description.progress import Progress, no_progress
 from chatter.description.sections.optimisation import PitchDesign
-from chatter.engine.parallel import Progress, no_progress
 from chatter.stability.methods.collocation import multipliers as collocation
 from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.registry import zero_order_of
 from chatter.stability.search_range import deepest_depth, spindle_speeds
-from chatter.studies.finished_points import key_of
+from chatter.studies.model import fingerprint
 from chatter.studies.pitch_design.families import families
 from chatter.studies.pitch_design.result import FamilyCurve, PitchResult
 from chatter.studies.pitch_design.search import DIFFERENCES, MOST_MOVES, Design, PitchSearch
-from chatter.studies.result_cache import KeptPieces
-from chatter.studies.whatif.model import fingerprint
+from chatter.studies.result_cache import ResultCache
 
 Array = NDArray[np.float64]
 
@@ -47,7 +46,7 @@ def pitch(
     progress : callable, optional
         Called with (done, total) designs.
     folder : path, optional
-        Keeps the limits of finished designs in points.jsonl there, and reuses those of the same
+        Keeps the limits of finished designs in the result cache there, and reuses those of the same
         case.
 
     Returns
@@ -65,14 +64,14 @@ def pitch(
     case.require("tool", "material", "cut", "structure")
     if case.tool.teeth < 2:
         raise InputError(f"{case.name}: tool.teeth: one tooth has no pitch to choose")
-    kept = KeptPieces(folder, key_of("pitch", fingerprint(case)))
-    try:
-        return _designed(case, kept, progress)
-    except KeyboardInterrupt:
-        raise kept.interrupted() from None
+    with ResultCache(folder, "pitch", fingerprint(case)) as cache:
+        try:
+            return _designed(case, cache, progress)
+        except KeyboardInterrupt:
+            raise cache.search_interrupted() from None
 
 
-def _designed(case: Case, kept: KeptPieces, progress: Progress) -> PitchResult:
+def _designed(case: Case, cache: ResultCache, progress: Progress) -> PitchResult:
     section = case.pitch_design or PitchDesign()
     model = milling_model(case)
     wide, fine = _speeds(case, section)
@@ -81,7 +80,7 @@ def _designed(case: Case, kept: KeptPieces, progress: Progress) -> PitchResult:
     done = iter(range(1, 10 * total))
     search = PitchSearch(
         case, wide, _depths(case, section, model), section.goal, section.largest_chip,
-        lambda: progress(min(next(done), total), total), kept,
+        lambda: progress(min(next(done), total), total), cache,
     )  # fmt: skip
     standing = search.design("the case", np.degrees(pitch_angles(case)))
     even = search.design("even", np.full(case.tool.teeth, 360.0 / case.tool.teeth))

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.errors import InputError
-from chatter.studies.whatif.model import deviations_of, field_of, value_of
+from chatter.studies.model import field_of, standard_deviations, value_of
 
 if TYPE_CHECKING:
     from chatter.description.case import Case
-    from chatter.studies.whatif.model import Subject
+    from chatter.studies.model import Model
 
 #: of the open ends, where the quantile function is infinite or a bound itself
 _SMALLEST = 1e-12
@@ -48,7 +48,7 @@ class UncertainParameter:
         return truncnorm.ppf(inside, *ends, loc=self.mean, scale=self.deviation)
 
 
-def parameters_of(subject: Subject) -> tuple[UncertainParameter, ...]:
+def parameters_of(model: Model) -> tuple[UncertainParameter, ...]:
     """Uncertain values of a case with its machine; `correlation_of` says how they go together.
 
     Raises
@@ -57,12 +57,12 @@ def parameters_of(subject: Subject) -> tuple[UncertainParameter, ...]:
         If no value has a deviation.
     """
     found = []
-    for path, deviation in deviations_of(subject).items():
-        mean = float(value_of(subject, path))
-        found.append(UncertainParameter(path, mean, deviation, *_bounds(subject, path, mean)))
+    for path, deviation in standard_deviations(model).items():
+        mean = float(value_of(model, path))
+        found.append(UncertainParameter(path, mean, deviation, *_bounds(model, path, mean)))
     if not found:
         raise InputError(
-            f"{subject.name}: no value is uncertain; write its standard deviation, such as "
+            f"{model.name}: no value is uncertain; write its standard deviation, such as "
             'Ktc = "1650 +- 80 MPa", or --set material.Ktc="1650 +- 80 MPa"'
         )
     return tuple(found)
@@ -103,8 +103,8 @@ def correlation_of(
     return matrix
 
 
-def _bounds(subject: Subject, path: str, mean: float) -> tuple[float, float]:
-    kind = field_of(subject, path)
+def _bounds(model: Model, path: str, mean: float) -> tuple[float, float]:
+    kind = field_of(model, path)
     low = [0.0 if mean > 0.0 else -np.inf]
     high = [0.0 if mean < 0.0 else np.inf]
     low += [end for end in (kind.above, kind.at_least) if end is not None]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.engine.parallel import no_progress
+from chatter.description.progress import no_progress
 from chatter.stability.model import milling_model
 from chatter.stability.registry import chosen_method, resolution, zero_order_of
 from chatter.stability.search_range import deepest_depth, spindle_speeds

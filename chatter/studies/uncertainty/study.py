@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -14,11 +13,13 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
+from chatter.description.units import rpm
+from chatter.engine.parallel import Executor
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, write_results
-from chatter.studies.executor import Computing, computing_on
-from chatter.studies.finished_points import FinishedPoints, key_of
+from chatter.studies.model import fingerprint, patched
+from chatter.studies.result_cache import ResultCache
 from chatter.studies.uncertainty.confidence import wilson_interval
 from chatter.studies.uncertainty.parameters import UncertainParameter, correlation_of, parameters_of
 from chatter.studies.uncertainty.propagation import (
@@ -29,14 +30,12 @@ from chatter.studies.uncertainty.propagation import (
     shared_net,
 )
 from chatter.studies.uncertainty.sampling import samples
-from chatter.studies.whatif.model import fingerprint, patched
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
-_RPM = 30.0 / math.pi
 #: probabilities of the band
 LEVELS = (0.05, 0.5, 0.95)
 DEFAULT_SAMPLES, DEFAULT_SPEEDS, DEFAULT_SEED = 200, 31, 1
@@ -140,7 +139,7 @@ class Uncertainty:
                 for one in self.parameters
             ],
             "operating_point": {
-                "spindle_speed_rpm": cut.spindle_speed * _RPM,
+                "spindle_speed_rpm": rpm(cut.spindle_speed),
                 "axial_depth_mm": cut.axial_depth * 1e3,
                 "probability_of_stability": self.probability,
                 "confidence_interval_95": list(self.interval),
@@ -192,7 +191,7 @@ class Uncertainty:
         probability = self.probability_at(self.case.cut.axial_depth)
         for speed, row, share in zip(self.speeds, self.quantiles().T, probability, strict=True):
             depths = ",".join("" if np.isinf(depth) else f"{depth * 1e3:.7g}" for depth in row)
-            lines.append(f"{speed * _RPM:.4f},{depths},{share:.6g}")
+            lines.append(f"{rpm(speed):.4f},{depths},{share:.6g}")
         return "\n".join(lines) + "\n"
 
     def _samples(self) -> str:
@@ -230,7 +229,7 @@ def uncertainty(
     folder: str | Path | None = None,
     progress: Progress = no_progress,
     resumed: Callable[[int, int], None] | None = None,
-    cluster: str | Computing | None = None,
+    cluster: str | Executor | None = None,
 ) -> Uncertainty:
     """Propagate the standard deviations of a case, and of its machine, to its limits.
 
@@ -246,13 +245,13 @@ def uncertainty(
     method : str, optional
         Of stability, as for `chatter.lobes`.
     folder : path, optional
-        Keeps finished samples in points.jsonl there, and reuses those of the same input.
+        Keeps finished samples in the result cache there, and reuses those of the same input.
     progress : callable, optional
         Called with (done, total) samples.
     resumed : callable, optional
         Called once with (finished before, total) samples.
-    cluster : str or Computing, optional
-        Where samples are computed, as for `chatter.studies.executor.computing_on`; here by default.
+    cluster : str or Executor, optional
+        Where samples are computed, as for `chatter.studies.executor.open_executor`; None: here.
 
     Returns
     -------
@@ -293,29 +292,20 @@ def _all_limits(
     folder: str | Path | None,
     progress: Progress,
     resumed: Callable[[int, int], None] | None,
-    cluster: str | Computing | None,
+    cluster: str | Executor | None,
 ) -> list[SampleLimits]:
     """Limits of every sample, those finished before read from the folder."""
-    store = FinishedPoints(folder)
-    base = key_of(fingerprint(case), method or "", repr(net.speeds.tolist()), repr(net.depths[-1]))
-    keys = [key_of(base, repr(row.tolist())) for row in values]
-    before = sum(key in store for key in keys)
-    if before and resumed is not None:
-        resumed(before, len(keys))
-    missing = [place for place, key in enumerate(keys) if key not in store]
+    inputs = (fingerprint(case), method or "", repr(net.speeds.tolist()), repr(net.depths[-1]))
     paths = tuple(one.path for one in parameters)
     limits_of_sample = partial(_one_sample, case, paths, net, method)
-    progress(before, len(keys))
-    try:
-        with computing_on(cluster if missing else None) as computing:
-            wanted = [(place + 1, values[place].tolist()) for place in missing]
-            found = computing.results(limits_of_sample, wanted)
-            for done, (place, record) in enumerate(found, start=before + 1):
-                store.add(keys[missing[place]], record)
-                progress(done, len(keys))
-    except KeyboardInterrupt:
-        raise store.interrupted(keys, "samples") from None
-    return [SampleLimits.from_record(store[key]) for key in keys]
+    numbered = [(number, row.tolist()) for number, row in enumerate(values, start=1)]
+    with ResultCache(folder, *inputs) as cache:
+        keys = [cache.key(repr(row)) for _, row in numbered]
+        before = cache.finished(keys)
+        if before and resumed is not None:
+            resumed(before, len(keys))
+        records = cache.evaluate(limits_of_sample, numbered, keys, "samples", cluster, progress)
+    return [SampleLimits.from_record(record) for record in records]
 
 
 def _one_sample(

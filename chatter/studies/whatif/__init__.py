@@ -3,7 +3,7 @@
 =========== ========================================================================
 module      responsibility
 =========== ========================================================================
-subject     a case with its machine, or a machine alone: values, patches, fingerprint
+model     a case with its machine, or a machine alone: values, patches, fingerprint
 variation   ``PATH=v1,v2``, ``PATH=from..to``, ``PATH=+-10%``: the values of a path
 design      which points a study has: overlay, heat map, tornado
 measures    what is computed at a point: lobes, critical depth, forces, surface, FRF

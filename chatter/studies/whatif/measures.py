@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from chatter.description.units import rpm
 
 if TYPE_CHECKING:
     from chatter.simulation.result import SimulationResult
-    from chatter.studies.whatif.model import Subject
+    from chatter.studies.model import Model
 
-_RPM = 30.0 / math.pi
 _SHOWN_TURNS = 2.0
 _POINTS_A_TURN = 720
 _PROFILE_TURNS = 12.0
@@ -98,14 +98,14 @@ class Measure:
     quantities : mapping of str to Quantity
         The first is the main one.
     evaluate : callable
-        Of subject, method and names, returns an Outcome.
+        Of model, method and names, returns an Outcome.
     logarithmic : bool
         Scale of the curves.
     """
 
     name: str
     quantities: Mapping[str, Quantity]
-    evaluate: Callable[[Subject, str | None, tuple[str, ...]], Outcome]
+    evaluate: Callable[[Model, str | None, tuple[str, ...]], Outcome]
     logarithmic: bool = False
 
 
@@ -126,7 +126,7 @@ def _lobes(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
     curve = Curve(
         "limit depth [mm]",
         "",
-        _numbers(told.limits.spindle_speed * _RPM),
+        _numbers(rpm(told.limits.spindle_speed)),
         _numbers(told.limits.critical_depth * 1e3),
         "spindle speed [rpm]",
     )
@@ -227,9 +227,9 @@ def _surface(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
     return Outcome(numbers, {"verdict": told["verdict"]}, tuple(curves))
 
 
-def _frf(subject: Subject, method: str | None, only: tuple[str, ...]) -> Outcome:
+def _frf(model: Model, method: str | None, only: tuple[str, ...]) -> Outcome:
     del method
-    frfs = _case_frfs(subject) if isinstance(subject, Case) else _machine_frfs(subject, only)
+    frfs = _case_frfs(model) if isinstance(model, Case) else _machine_frfs(model, only)
     numbers: dict[str, float | None] = {}
     curves = []
     highest = (-1.0, "", 0.0, "")
@@ -335,7 +335,7 @@ MEASURES: dict[str, Measure] = {
 }
 
 
-def measure_of(name: str | None, subject: Subject) -> Measure:
+def measure_of(name: str | None, model: Model) -> Measure:
     """Kind of result by its name; lobes of a case and FRFs of a machine by default.
 
     Raises
@@ -343,14 +343,14 @@ def measure_of(name: str | None, subject: Subject) -> Measure:
     InputError
         If there is none of that name, or a machine alone cannot have it.
     """
-    of_case = isinstance(subject, Case)
+    of_case = isinstance(model, Case)
     chosen = (name or ("lobes" if of_case else "frf")).replace("-", " ")
     if chosen not in MEASURES:
         known = ", ".join(MEASURES)
         raise InputError(f'--result "{name}" is not known; there are {known}')
     if not of_case and chosen != "frf":
         raise InputError(
-            f"{subject.name}: --result {chosen}: a machine alone makes no cut; give a case with "
+            f"{model.name}: --result {chosen}: a machine alone makes no cut; give a case with "
             "[structure] machine, or --result frf"
         )
     return MEASURES[chosen]

@@ -6,18 +6,18 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from chatter.description.errors import InputError, RunError
-from chatter.engine.parallel import Progress, no_progress
-from chatter.studies.executor import Computing, computing_on
-from chatter.studies.finished_points import FinishedPoints, key_of
+from chatter.description.progress import Progress, no_progress
+from chatter.engine.parallel import Executor
+from chatter.studies.model import fingerprint, patched
+from chatter.studies.result_cache import ResultCache
 from chatter.studies.whatif.design import DesignPoint
 from chatter.studies.whatif.measures import Curve, Measure, Outcome, measure_of
-from chatter.studies.whatif.model import fingerprint, patched
 
 if TYPE_CHECKING:
-    from chatter.studies.whatif.model import Subject
+    from chatter.studies.model import Model
 
 #: called with the number of points that were finished before, and of all
 Resumed = Callable[[int, int], None]
@@ -28,7 +28,7 @@ def no_report(before: int, total: int) -> None:
 
 
 def outcomes_of(
-    subject: Subject,
+    model: Model,
     points: Sequence[DesignPoint],
     measure: Measure,
     method: str | None = None,
@@ -36,13 +36,13 @@ def outcomes_of(
     folder: str | Path | None = None,
     progress: Progress = no_progress,
     resumed: Resumed = no_report,
-    cluster: str | Computing | None = None,
+    cluster: str | Executor | None = None,
 ) -> list[Outcome]:
     """Outcome of every point; those that the folder holds already are not computed again.
 
     Parameters
     ----------
-    subject : Case or MachineFile
+    model : Case or MachineFile
     points : sequence of DesignPoint
     measure : Measure
     method : str, optional
@@ -52,8 +52,8 @@ def outcomes_of(
     folder : path, optional
         Where finished points are kept.
     progress, resumed : callable, optional
-    cluster : str or Computing, optional
-        Where points are computed, as for `chatter.studies.executor.computing_on`.
+    cluster : str or Executor, optional
+        Where points are computed, as for `chatter.studies.executor.open_executor`.
 
     Raises
     ------
@@ -62,52 +62,36 @@ def outcomes_of(
     RunError
         If it is interrupted, or every run fails.
     """
-    subjects = [patched(subject, point.patch) for point in points]
-    store = FinishedPoints(folder)
-    asked = (measure.name, method or "", ",".join(only))
-    keys = [key_of(fingerprint(each), *asked) for each in subjects]
-    before = sum(key in store for key in keys)
-    if before:
-        resumed(before, len(points))
-    # two points of the same input are computed once
-    missing = list(
-        {key: each for key, each in zip(keys, subjects, strict=True) if key not in store}.items()
-    )
-    errors: dict[str, tuple[str, ...]] = {}
-    done = len(points) - len(missing)
-    progress(done, len(points))
-    try:
-        with computing_on(cluster if missing else None) as computing:
-            evaluate = partial(_outcome, measure.name, method, only)
-            wanted = [each for _, each in missing]
-            for place, (outcome, wrong) in computing.results(evaluate, wanted):
-                key = missing[place][0]
-                # what failed is not kept on disk: it is tried again
-                keep = store.remember if outcome["failure"] else store.add
-                keep(key, outcome)
-                errors.update({key: wrong} if wrong else {})
-                done += 1
-                progress(done, len(points))
-    except KeyboardInterrupt:
-        raise store.interrupted(keys, "points") from None
-    if all(store[key]["failure"] for key in keys):
-        first = next(key for key in keys if store[key]["failure"])
-        raise InputError(errors[first]) if errors.get(first) else RunError(store[first]["failure"])
-    return [_read(store[key]) for key in keys]
+    models = [patched(model, point.patch) for point in points]
+    evaluate = partial(_record, measure.name, method, only)
+    with ResultCache(folder, measure.name, method or "", ",".join(only)) as cache:
+        keys = [cache.key(fingerprint(each)) for each in models]
+        before = cache.finished(keys)
+        if before:
+            resumed(before, len(points))
+        records = cache.evaluate(evaluate, models, keys, "points", cluster, progress)
+    if all(record["failure"] for record in records):
+        first = records[0]
+        raise (
+            InputError(first["wrong_input"]) if first["wrong_input"] else RunError(first["failure"])
+        )
+    return [_outcome(record) for record in records]
 
 
-def _outcome(
-    measure: str, method: str | None, only: tuple[str, ...], subject: Subject
-) -> tuple[dict, tuple[str, ...]]:
-    """Record of a point, and what is wrong with its input."""
+def _record(
+    measure: str, method: str | None, only: tuple[str, ...], model: Model
+) -> dict[str, Any]:
+    """Record of a point, with what is wrong with its input."""
+    messages: tuple[str, ...] = ()
     try:
-        return asdict(measure_of(measure, subject).evaluate(subject, method, only)), ()
+        outcome = measure_of(measure, model).evaluate(model, method, only)
     except InputError as error:
-        return asdict(Outcome(failure=str(error))), error.messages
+        outcome, messages = Outcome(failure=str(error)), error.messages
     except RunError as error:
-        return asdict(Outcome(failure=str(error))), ()
+        outcome = Outcome(failure=str(error))
+    return {**asdict(outcome), "input_errors": messages}
 
 
-def _read(record: dict) -> Outcome:
+def _outcome(record: dict[str, Any]) -> Outcome:
     curves = tuple(Curve(**curve) for curve in record["curves"])
     return Outcome(record["numbers"], record["words"], curves, record["failure"], record["units"])

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from chatter.description.errors import InputError
-from chatter.engine.parallel import Progress, no_progress
+from chatter.description.progress import Progress, no_progress
+from chatter.engine.parallel import Executor
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, write_results
-from chatter.studies.executor import Computing
 from chatter.studies.whatif import summary as telling
 from chatter.studies.whatif.design import AS_GIVEN, DesignPoint, Layout, chosen_layout, points_of
 from chatter.studies.whatif.measures import Measure, Outcome, measure_of
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from chatter.studies.whatif.model import Subject
+    from chatter.studies.model import Model
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class WhatIf:
 
     Parameters
     ----------
-    subject : Case or MachineFile
+    model : Case or MachineFile
         As given.
     variations : tuple of Variation
     layout : {"overlay", "heat map", "tornado"}
@@ -42,11 +42,11 @@ class WhatIf:
     quantity : str
         Key of the number that is shown.
     points : tuple of DesignPoint
-        A tornado begins with the subject as given, then low and high of each path.
+        A tornado begins with the model as given, then low and high of each path.
     outcomes : tuple of Outcome
     """
 
-    subject: Subject
+    model: Model
     variations: tuple[Variation, ...]
     layout: Layout
     measure: Measure
@@ -66,7 +66,7 @@ class WhatIf:
     def summary(self) -> dict:
         """Return the content of summary.json."""
         return {
-            "title": self.subject.title,
+            "title": self.model.title,
             "result": self.measure.name,
             "layout": self.layout,
             "quantity": self.quantity,
@@ -128,7 +128,7 @@ def _cell(one: Variation, place: int | None) -> str:
 
 
 def whatif(
-    subject: Subject,
+    model: Model,
     vary: Mapping[str, Sequence[Any] | str] | Sequence[Variation | str],
     result: str | None = None,
     *,
@@ -140,13 +140,13 @@ def whatif(
     folder: str | Path | None = None,
     progress: Progress = no_progress,
     resumed: Resumed = no_report,
-    cluster: str | Computing | None = None,
+    cluster: str | Executor | None = None,
 ) -> WhatIf:
     """Ask what would change if values of a case or machine were others.
 
     Parameters
     ----------
-    subject : Case or MachineFile
+    model : Case or MachineFile
         Paths into the machine of a case begin with "machine.".
     vary : mapping of str to values, or sequence of str
         Path -> values (text with units, numbers in SI, None to take a key away), or texts as on
@@ -154,7 +154,7 @@ def whatif(
     result : {"lobes", "critical depth", "forces", "surface", "frf"}, optional
         Lobes of a case, FRFs of a machine by default.
     tornado : bool
-        One path at a time, each at its first and last value, against the subject as given. By
+        One path at a time, each at its first and last value, against the model as given. By
         default one path gives an overlay and two a heat map.
     count : int, optional
         Values of ranges; 5 by default.
@@ -165,13 +165,13 @@ def whatif(
     only : sequence of str
         Names of [frf.NAME] of a machine.
     folder : path, optional
-        Keeps finished points in points.jsonl there, and reuses those of the same input.
+        Keeps finished points in the result cache there, and reuses those of the same input.
     progress : callable, optional
         Called with (done, total) points.
     resumed : callable, optional
         Called once with (finished before, total) points.
-    cluster : str or Computing, optional
-        Where points are computed, as for `chatter.studies.executor.computing_on`; here by default.
+    cluster : str or Executor, optional
+        Where points are computed, as for `chatter.studies.executor.open_executor`; here by default.
 
     Returns
     -------
@@ -184,32 +184,32 @@ def whatif(
     RunError
         If every run fails, or the study is interrupted; finished points are in the folder.
     """
-    variations = _variations(subject, vary, count)
+    variations = _variations(model, vary, count)
     layout = chosen_layout(variations, tornado)
-    measure = measure_of(result, subject)
+    measure = measure_of(result, model)
     shown = quantity or next(iter(measure.quantities))
     if shown not in measure.quantities:
         known = ", ".join(measure.quantities)
         raise InputError(f'--quantity "{shown}" is not known; {measure.name} has {known}')
     points = points_of(variations, layout)
     outcomes = outcomes_of(
-        subject, points, measure, method, tuple(only), folder, progress, resumed, cluster
+        model, points, measure, method, tuple(only), folder, progress, resumed, cluster
     )
-    return WhatIf(subject, variations, layout, measure, shown, points, tuple(outcomes))
+    return WhatIf(model, variations, layout, measure, shown, points, tuple(outcomes))
 
 
 def _variations(
-    subject: Subject,
+    model: Model,
     vary: Mapping[str, Sequence[Any] | str] | Sequence[Variation | str],
     count: int | None,
 ) -> tuple[Variation, ...]:
     if hasattr(vary, "items"):
         return tuple(
-            read_variation(f"{path}={values}", subject, count)
+            read_variation(f"{path}={values}", model, count)
             if isinstance(values, str)
-            else variation(path, list(values), subject)
+            else variation(path, list(values), model)
             for path, values in vary.items()
         )
     return tuple(
-        one if isinstance(one, Variation) else read_variation(one, subject, count) for one in vary
+        one if isinstance(one, Variation) else read_variation(one, model, count) for one in vary
     )

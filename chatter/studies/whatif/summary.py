@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from chatter.description.case import Case
+from chatter.description.units import rpm
 from chatter.studies.whatif.measures import Outcome, Quantity
 
 if TYPE_CHECKING:
     from chatter.studies.whatif.study import WhatIf
 
-_RPM = 30.0 / math.pi
 #: a relative change smaller than this is none
 _NO_CHANGE = 5e-4
 #: quantities beside the main one are told where they change by more than this
@@ -23,11 +22,11 @@ _MANY_TIMES = 2.0
 
 def title_of(study: WhatIf, quantity: Quantity) -> str:
     """Title of a quantity, with the speed where that is the same at all points."""
-    case = study.subject
+    case = study.model
     speed = "the speed of the cut"
     varied = any(one.path == "cut.spindle_speed" for one in study.variations)
     if isinstance(case, Case) and case.cut is not None and not varied:
-        speed = f"{case.cut.spindle_speed * _RPM:.0f} rpm"
+        speed = f"{rpm(case.cut.spindle_speed):.0f} rpm"
     return quantity.title.format(speed=speed)
 
 

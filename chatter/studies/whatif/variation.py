@@ -18,10 +18,10 @@ from chatter.description.errors import InputError
 from chatter.description.formatting import printable, shown
 from chatter.description.quantities import QuantityField
 from chatter.description.units import DIMENSIONS, NUMBER, parse, unit_factor
-from chatter.studies.whatif.model import PREFIX, field_of, value_of
+from chatter.studies.model import PREFIX, field_of, value_of
 
 if TYPE_CHECKING:
-    from chatter.studies.whatif.model import Subject
+    from chatter.studies.model import Model
 
 #: points of a range where the count is not given
 DEFAULT_COUNT = 5
@@ -80,13 +80,13 @@ class Variation:
         return f"{self.path} [{self.unit}]" if self.unit and self.numbers else self.path
 
 
-def read_variation(text: str, subject: Subject, count: int | None = None) -> Variation:
+def read_variation(text: str, model: Model, count: int | None = None) -> Variation:
     """Read a variation of the command line.
 
     Parameters
     ----------
     text : str
-    subject : Case or MachineFile
+    model : Case or MachineFile
         That it is to change.
     count : int, optional
         Values of a range.
@@ -100,12 +100,12 @@ def read_variation(text: str, subject: Subject, count: int | None = None) -> Var
     path = path.strip()
     if not equals or not path:
         raise InputError(f"--vary {shown(text)}: PATH=VALUES is wanted, {_EXAMPLE}")
-    if not isinstance(subject, Case):
+    if not isinstance(model, Case):
         path = path.removeprefix(PREFIX)
-    kind = field_of(subject, path)
+    kind = field_of(model, path)
     relative = _RELATIVE.match(given)
     if relative:
-        return _relative(subject, path, float(relative[1]) / 100.0, kind)
+        return _relative(model, path, float(relative[1]) / 100.0, kind)
     parts = _split(given)
     if not parts:
         raise InputError(f"--vary {path}: there are no values; give some, {_EXAMPLE}")
@@ -118,7 +118,7 @@ def read_variation(text: str, subject: Subject, count: int | None = None) -> Var
     return _listed(path, list(values.items()), kind)
 
 
-def variation(path: str, values: list[Any], subject: Subject) -> Variation:
+def variation(path: str, values: list[Any], model: Model) -> Variation:
     """Variation from values of Python: quantities as text, numbers in SI, None takes a key away.
 
     Raises
@@ -129,7 +129,7 @@ def variation(path: str, values: list[Any], subject: Subject) -> Variation:
     if len(values) == 0:
         raise InputError(f"{path}: there are no values")
     pairs = [(value if isinstance(value, str) else shown(value), value) for value in values]
-    return _listed(path, pairs, field_of(subject, path))
+    return _listed(path, pairs, field_of(model, path))
 
 
 def _split(text: str) -> list[str]:
@@ -233,12 +233,12 @@ def _text(number: float, unit: str) -> str | float:
     return f"{float(number)!r} {unit}" if unit else float(number)
 
 
-def _relative(subject: Subject, path: str, share: float, kind: QuantityField | None) -> Variation:
+def _relative(model: Model, path: str, share: float, kind: QuantityField | None) -> Variation:
     """Two values a share below and above what stands; of all of them where the path has [*]."""
-    standing = value_of(subject, path)
+    standing = value_of(model, path)
     if kind is None or standing is None:
         raise InputError(
-            f"{subject.name}: --vary {path}: there is no quantity to take {share:.3g} of; "
+            f"{model.name}: --vary {path}: there is no quantity to take {share:.3g} of; "
             "give values instead"
         )
     several = isinstance(standing, tuple)

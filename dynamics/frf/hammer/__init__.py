@@ -3,7 +3,7 @@
 =============== ====================================================================== ============
 module          responsibility                                                         source
 =============== ====================================================================== ============
-record          the record of one blow; reading a file, a folder
+record          the record of one blow
 hit             where the blow lies; rest level and noise of the channels
 findings        what the examination reports
 force_checks    force by itself: cut, second blow, dropouts, drift
@@ -22,12 +22,7 @@ result          the examined and averaged set
 
 from dynamics.frf.hammer.examine import examine_records
 from dynamics.frf.hammer.findings import Finding
-from dynamics.frf.hammer.record import (
-    HammerFolder,
-    HammerRecord,
-    read_hammer_folder,
-    read_hammer_record,
-)
+from dynamics.frf.hammer.record import HammerRecord
 from dynamics.frf.hammer.result import HammerTest, hammer_test
 from dynamics.frf.hammer.spectra import (
     Spectra,
@@ -41,7 +36,6 @@ from dynamics.frf.hammer.spectra import (
 
 __all__ = [
     "Finding",
-    "HammerFolder",
     "HammerRecord",
     "HammerTest",
     "Spectra",
@@ -52,7 +46,5 @@ __all__ = [
     "h1",
     "h2",
     "hammer_test",
-    "read_hammer_folder",
-    "read_hammer_record",
     "usable_band",
 ]

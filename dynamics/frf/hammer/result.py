@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from dynamics.frf.container import Frf, MeasurementError
 from dynamics.frf.hammer.examine import examine_records
 from dynamics.frf.hammer.findings import Finding
 from dynamics.frf.hammer.hit import locate_hit, with_later_blows
-from dynamics.frf.hammer.record import HammerRecord, read_hammer_folder
+from dynamics.frf.hammer.record import HammerRecord
 from dynamics.frf.hammer.spectra import Estimator, averaged_spectra, frf_of, h1, usable_band
 from dynamics.frf.hammer.windows import choose_windows
 
@@ -57,20 +56,23 @@ class HammerTest:
 
 
 def hammer_test(
-    records: Sequence[HammerRecord] | str | Path,
+    records: Sequence[HammerRecord],
     keep: Collection[str] = (),
     estimator: Estimator = h1,
+    unreadable: Sequence[tuple[str, str]] = (),
 ) -> HammerTest:
     """Examine hammer records, leave out the faulty ones and average the rest.
 
     Parameters
     ----------
-    records : sequence of HammerRecord, or path of a folder of them
+    records : sequence of HammerRecord
         Of one sampling rate and quantity.
     keep : collection of str
         Names of records to average whatever the examination finds.
     estimator : callable
         `dynamics.frf.hammer.spectra.h1` or `h2`.
+    unreadable : sequence of (str, str)
+        Name and reason of files of the set that could not be read.
 
     Returns
     -------
@@ -79,15 +81,11 @@ def hammer_test(
     Raises
     ------
     MeasurementError
-        If the folder holds no record, no good record is left, a name in `keep` is unknown, or a
+        If no good record is left, a name in `keep` is unknown, or a
         record that is unreadable or without any hit is to be kept.
     """
-    unreadable: list[Finding] = []
-    if isinstance(records, (str, Path)):
-        folder = read_hammer_folder(records)
-        records = folder.records
-        unreadable = [Finding(name, "unreadable", reason) for name, reason in folder.unreadable]
-    findings = unreadable + examine_records(records)
+    findings = [Finding(name, "unreadable", reason) for name, reason in unreadable]
+    findings += examine_records(records)
     _require_keepable(records, keep, findings)
     decisive = [finding for finding in findings if finding.is_decisive]
     faulty = {finding.record for finding in decisive} - set(keep)

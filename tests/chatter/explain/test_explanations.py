@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import pytest
 import tomlkit
@@ -13,8 +12,9 @@ from chatter.description.errors import InputError
 from chatter.explain.comparison import compare
 from chatter.explain.explanation import Explanation, explain
 from chatter.explain.measurement_file import read_measurement
+from tests.places import SHARED
 
-SETS = Path(__file__).resolve().parents[3] / "../shared/measurements"
+SETS = SHARED / "measurements"
 needs_sets = pytest.mark.skipif(not SETS.is_dir(), reason="no measurement sets here")
 
 

@@ -10,7 +10,7 @@ import pytest
 from chatter.description.errors import InputError
 from chatter.explain.measurement_file import read_measurement
 from chatter.io.headings import named
-from chatter.io.signal_tables import read_signals
+from chatter.io.signals import read_signals
 
 TIME = np.arange(20) * 1e-3
 FORCE = 100.0 + 5.0 * np.arange(20)
@@ -89,7 +89,7 @@ def test_universal_time_records_of_an_axis(tmp_path):
 def test_a_universal_file_without_time_records_is_told(tmp_path):
     path = tmp_path / "run.uff"
     path.write_text(HEADERS)
-    with pytest.raises(InputError, match="holds no time record; it holds dataset 151"):
+    with pytest.raises(InputError, match="holds no time record; it holds 1 x dataset 151"):
         read_signals(path, "milling")
 
 

@@ -1,21 +1,20 @@
 """Compares the reference simulator with the measurement sets, and with itself refined.
 
-python tests/validation/reference/time_domain_check.py [MEASUREMENTS] [--runs 3] [--random 20]
+python -m tests.validation.reference.time_domain_check [MEASUREMENTS] [--runs 3] [--random 20]
 """
 
 from __future__ import annotations
 
 import argparse
 import dataclasses
-import sys
 import time
 from pathlib import Path
 
 import numpy as np
 import tomlkit
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from reference.time_domain import (
+from tests.places import SHARED
+from tests.validation.reference.time_domain import (
     ReferenceCut,
     ReferenceMode,
     nrmse,
@@ -153,7 +152,7 @@ def check_random(count: int, seed: int) -> None:
 if __name__ == "__main__":
     parser = argparse.ArgumentParser()
     parser.add_argument("measurements", nargs="?", type=Path,
-                        default=Path(__file__).parents[4] / "shared" / "measurements")  # fmt: skip
+                        default=SHARED / "measurements")  # fmt: skip
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--random", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1)

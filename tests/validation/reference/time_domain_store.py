@@ -1,6 +1,6 @@
 """Random cuts with reference signals of the whole run, made once and stored.
 
-python tests/validation/reference/time_domain_store.py
+python -m tests.validation.reference.time_domain_store
 
 Only cuts whose signals stand when the steps of the reference are halved and its slices doubled are
 kept: a cut that chatters chaotically has no signals to compare with.
@@ -9,13 +9,11 @@ kept: a cut that chatters chaotically has no signals to compare with.
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from reference.time_domain import (
+from tests.validation.reference.time_domain import (
     ReferenceCut,
     ReferenceMode,
     nrmse,

@@ -1,6 +1,6 @@
 """Makes random cuts with a clear truth for the tests of verdicts: verdict_cases.json.
 
-python tests/validation/reference/verdict_cases.py [SEED]
+python -m tests.validation.reference.verdict_cases [SEED]
 
 The truth is that of the linear equations (semi-discretization; the growth of small vibration for
 unequal pitch), where a run of 300 turns bears it out.

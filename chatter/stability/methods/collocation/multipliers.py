@@ -13,7 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.errors import RunError
-from chatter.engine.parallel import Progress, kept_threads, no_progress, sweep, worker_count
+from chatter.description.progress import Progress, no_progress
+from chatter.description.units import rpm
+from chatter.engine.parallel import kept_threads, sweep, worker_count
 from chatter.stability.boundary_continuation import followed_crossings
 from chatter.stability.brackets import Growth
 from chatter.stability.floquet_multiplier import Multiplier
@@ -99,12 +101,12 @@ def _refuse_endless(cut: CutArrays, speeds: NDArray[np.float64]) -> None:
     """Raise RunError where a period at one of the speeds (rad/s) holds too many vibrations."""
     hertz = cut.resolution.fastest / (2.0 * math.pi)
     of_tool = hertz * cut.period_angle / float(np.min(speeds))
-    rpm = float(np.min(speeds)) * 30.0 / math.pi
+    slowest = rpm(float(np.min(speeds)))
     if of_tool > _MOST_VIBRATIONS:
         raise RunError(
-            f"at {rpm:.4g} rpm the tool takes {of_tool:.3g} vibrations of {hertz:.4g} Hz to look "
-            f"the same again; at most {_MOST_VIBRATIONS} can be computed: raise the lowest spindle "
-            "speed, or leave out modes that are far too stiff to chatter"
+            f"at {slowest:.4g} rpm the tool takes {of_tool:.3g} vibrations of {hertz:.4g} Hz to "
+            f"look the same again; at most {_MOST_VIBRATIONS} can be computed: raise the lowest "
+            "spindle speed, or leave out modes that are far too stiff to chatter"
         )
     if not varies(cut):
         return

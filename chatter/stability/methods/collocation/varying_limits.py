@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.engine.parallel import Progress
+from chatter.description.progress import Progress
 from chatter.stability.boundary_continuation import followed_crossings
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.limit_search import limits_at

@@ -19,7 +19,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from chatter.description.errors import RunError
-from chatter.engine.parallel import Progress, no_progress, sweep
+from chatter.description.progress import Progress, no_progress
+from chatter.description.units import rpm
+from chatter.engine.parallel import sweep
 from chatter.engine.presets import DRIVER
 from chatter.stability.floquet_multiplier import Multiplier
 from chatter.stability.limit_curve import LimitCurve
@@ -157,7 +159,7 @@ def _plan(cut: SteppedCut, speed: float, depth: float, refinement: int) -> StepP
     if _steps_a_turn(cut, speed, refinement) > _MOST_STEPS:
         waves = cut.fastest / speed
         raise RunError(
-            f"at {speed * 30.0 / math.pi:.4g} rpm a turn holds {waves:.3g} vibrations, more than "
+            f"at {rpm(speed):.4g} rpm a turn holds {waves:.3g} vibrations, more than "
             "the matrix-free method can step through; raise the lowest spindle speed"
         )
     return step_plan(cut, speed, depth, STEPS_A_WAVE, refinement)

@@ -21,7 +21,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from chatter.description.errors import RunError
-from chatter.engine.parallel import Progress, no_progress, sweep
+from chatter.description.progress import Progress, no_progress
+from chatter.description.units import rpm
+from chatter.engine.parallel import sweep
 from chatter.engine.presets import DRIVER, KERNEL
 from chatter.stability.crossings import find_crossings
 from chatter.stability.limit_curve import LimitCurve
@@ -407,7 +409,7 @@ def harmonic_counts(
     slowest = float(base.min())
     if _LEAST_REACH * highest > _MOST * slowest:
         raise RunError(
-            f"at {float(np.min(speeds)) * 30.0 / np.pi:.4g} rpm the cut repeats itself "
+            f"at {rpm(float(np.min(speeds))):.4g} rpm the cut repeats itself "
             f"{slowest / (2.0 * np.pi):.3g} times a second and modes reach up to "
             f"{highest / (2.0 * np.pi):.4g} Hz; the {_MOST} harmonics of the multi-frequency "
             'solution do not: raise the lowest spindle speed, or take "collocation"'

@@ -13,7 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.errors import RunError
-from chatter.engine.parallel import Progress, no_progress, sweep
+from chatter.description.progress import Progress, no_progress
+from chatter.description.units import rpm
+from chatter.engine.parallel import sweep
 from chatter.stability.arnoldi import dominant_multiplier
 from chatter.stability.floquet_multiplier import Multiplier
 from chatter.stability.limit_curve import LimitCurve
@@ -60,7 +62,7 @@ def automatic_steps(arrays: MillingArrays, speeds: NDArray[np.float64]) -> NDArr
     waves = _CHATTER_ABOVE_NATURAL * highest_relevant_frequency(arrays) * period
     steps = np.maximum(_FEWEST_STEPS, np.ceil(_STEPS_A_PERIOD * waves)).astype(np.int64)
     if steps.max() > _MOST_STEPS:
-        slowest = float(np.min(speeds)) * 30.0 / math.pi
+        slowest = rpm(float(np.min(speeds)))
         raise RunError(
             f"at {slowest:.4g} rpm a tooth period holds {waves.max():.3g} vibrations; that needs "
             f"{steps.max()} steps, more than {_MOST_STEPS}; raise the lowest spindle speed"

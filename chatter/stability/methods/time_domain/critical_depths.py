@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
-from chatter.engine.parallel import Progress, no_progress, sweep
+from chatter.description.progress import Progress, no_progress
+from chatter.engine.parallel import sweep
 from chatter.simulation.perturbation.growth_rate import Growth, growth_of
 from chatter.stability.crossings import find_crossings
 from chatter.stability.limit_curve import LimitCurve

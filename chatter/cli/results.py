@@ -1,0 +1,69 @@
+"""What every command does with its result: files, JSON or words, notes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Protocol, TypeVar
+
+from chatter.report.console import print_json, print_line, print_notes, print_written
+
+
+class Saved(Protocol):
+    """A result that writes its own files."""
+
+    def summary(self) -> dict:
+        """Content of summary.json."""
+        ...
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write the files and return which."""
+        ...
+
+
+Result = TypeVar("Result", bound=Saved)
+
+
+def present(
+    result: Result,
+    folder: Path,
+    *,
+    json: bool,
+    words: Callable[[Result], None],
+    notes: Sequence[str] = (),
+) -> None:
+    """Write the files of a result and print it.
+
+    Parameters
+    ----------
+    result : Saved
+    folder : Path
+        Where the files go.
+    json : bool
+        Whether the summary is printed as JSON instead of words.
+    words : callable
+        Prints the result for people.
+    notes : sequence of str
+        Printed after the result, on stderr.
+    """
+    written = result.save(folder)
+    if json:
+        print_json(result.summary())
+    else:
+        words(result)
+    print_notes(notes)
+    print_written(written)
+
+
+class Told(Saved, Protocol):
+    """A result that has its own sentences."""
+
+    def told(self) -> list[str]:
+        """Sentences for the terminal."""
+        ...
+
+
+def print_sentences(result: Told) -> None:
+    """Print the sentences of a result."""
+    for line in result.told():
+        print_line(line)

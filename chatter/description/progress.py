@@ -1,0 +1,12 @@
+"""Type of the callable by which a computation reports its progress."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+#: called with (done, total) parts of the work; may raise to give it up
+Progress = Callable[[int, int], None]
+
+
+def no_progress(done: int, total: int) -> None:
+    """Report nothing."""

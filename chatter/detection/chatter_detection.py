@@ -1,0 +1,290 @@
+"""Chatter detection: whether a recorded cut is stable, its bifurcation and chatter frequency."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.detection.bifurcation_type import bifurcation_of
+from chatter.detection.chatter_frequency import strongest_line
+from chatter.detection.cut_record import CutRecord
+from chatter.detection.deviations import Deviations, deviations_of, growth_of, slowest_growth
+from chatter.detection.period_doubling import doubling_within_revolution
+from chatter.detection.poincare_sections import (
+    Periods,
+    cut_into_periods,
+    once_per_revolution,
+    once_per_tooth,
+)
+
+#: deviation per relative variation of the speed that may be its doing
+_BY_SPEED = 60.0
+#: deviations below this share are rounding; a small one counts when it has grown so many e-folds
+_ROUNDING = 1e-7
+_GROWN = 2.0
+#: logarithm of the decay per revolution below which a motion counts as sustained
+_SUSTAINED = -0.004
+#: standard errors by which a decay has to be certain
+_CERTAIN = 3.0
+#: a decay at the end has to be a decay of the whole record, at this share of the rate at least
+_SHARE_OF_RATE = 0.4
+#: share of the deviations that multipliers may leave unpredicted if they are to be relied on
+_GOOD_MAP = 0.05
+#: drift over the later half that counts as slow, rad: no more can be told from a swell
+_SLOW = 4.0
+#: part of the mean that counts as motion: a slot with three or more teeth leaves little else
+_PART_OF_MEAN = 0.3
+
+
+@dataclass(frozen=True, eq=False)
+class Detection:
+    """Result of chatter detection.
+
+    Attributes
+    ----------
+    verdict : {"stable", "chatter"}
+    confidence : float
+        0 to 1; below about 0.6 a longer record is worth having.
+    reason : str
+        One sentence.
+    bifurcation : {"none", "hopf", "flip", "period-n"}
+    period : int
+        Of the motion, in units of `period_unit`: 1 if stable, 0 if it never repeats.
+    period_unit : {"revolution", "tooth"}
+        Interval over which the motion was compared: teeth only if the tool is symmetric.
+    chatter_frequency : float
+        Hz, of the strongest line that is no harmonic; nan if stable.
+    growth_rate : float
+        1/s, of the deviation from period to period; negative: decays; nan if it drowns in noise.
+    once_per_revolution, once_per_tooth : (m, k) array of float
+        Signals where the first tooth, or any tooth, is at zero angle; m or N.
+    metrics : dict of str to float
+    """
+
+    verdict: str
+    confidence: float
+    reason: str
+    bifurcation: str
+    period: int
+    period_unit: str
+    chatter_frequency: float
+    growth_rate: float
+    once_per_revolution: NDArray[np.float64]
+    once_per_tooth: NDArray[np.float64]
+    metrics: dict[str, float]
+
+    @property
+    def stable(self) -> bool:
+        """Whether the verdict is "stable"."""
+        return self.verdict == "stable"
+
+
+class _Trend(NamedTuple):
+    """Deviation in the last quarter and how it changes, in periods."""
+
+    level: float  # share of the rms of the signal
+    floor: float  # below it the deviation counts as none
+    slope: float  # logarithm a period
+    error: float
+    whole: float  # logarithm a period from the first to the last quarter
+    slowest: float  # logarithm a period of the multiplier that decays least
+    misfit: float  # share of the deviations that multipliers do not predict
+
+
+class _Motion(NamedTuple):
+    """What repeats, and the chatter line of what does not."""
+
+    bifurcation: str
+    period: int  # periods after which it repeats; 0 if never
+    frequency: float  # Hz
+    share: float  # of the variance from period to period that the chatter line explains
+    per_revolution: int  # periods per revolution
+
+
+def detect_chatter(record: CutRecord) -> Detection:
+    """Detect whether a cut is stable or chatters.
+
+    A stable cut repeats with every revolution of the spindle: runout and unequal pitch put lines
+    at every multiple of the spindle frequency, none of which is chatter. So each revolution is
+    compared with the next, noise is removed by the singular values that it alone would reach, and
+    the cut is stable where the deviation has vanished or decays steadily. What stays or grows is
+    chatter; the rotation of the deviation per revolution gives the bifurcation and the frequency.
+    If the tool is declared symmetric (equal pitch, runout of zeros), tooth is compared with tooth,
+    which also shows a period doubled within a revolution. If runout is not known and the number of
+    teeth is even, such doubling is taken for chatter only where the record shows it growing.
+
+    Parameters
+    ----------
+    record : CutRecord
+        From rest or from an established cut; 20 revolutions or more are wanted.
+
+    Returns
+    -------
+    Detection
+    """
+    per_revolution = record.teeth if record.is_symmetric else 1
+    periods = cut_into_periods(record, per_revolution)
+    deviations = deviations_of(periods.values)
+    trend = _trend_of(deviations, periods, record.negligible)
+    verdict, confidence, reason = _decide(trend, periods)
+    motion = _Motion("none", 1, math.nan, math.nan, per_revolution)
+    if verdict == "stable" and _may_hide_doubling(record):
+        doubling = doubling_within_revolution(record)
+        if doubling.grew:
+            verdict, confidence = "chatter", 0.6
+            reason = "the motion grew until it repeats with every second tooth"
+            motion = _motion(cut_into_periods(record, record.teeth), deviations.noise, 0.0)
+        elif doubling.is_there:
+            confidence = min(confidence, 0.6)
+            reason += "; every second tooth is alike, by runout or by a flip that grew at once"
+    elif verdict == "chatter":
+        motion = _motion(periods, deviations.noise, max(trend.slope, 0.0))
+        could_be_flip = motion.bifurcation == "hopf" and per_revolution == 1
+        if could_be_flip and record.has_equal_pitch and _is_slow(periods):
+            # a motion that nearly repeats with the revolution is a flip if two teeth repeat it
+            by_tooth = _motion(cut_into_periods(record, record.teeth), deviations.noise, 0.0)
+            motion = by_tooth if by_tooth.bifurcation == "flip" else motion
+    return Detection(
+        verdict=verdict,
+        confidence=confidence,
+        reason=reason,
+        bifurcation=motion.bifurcation,
+        period=motion.period,
+        period_unit=_unit(motion.per_revolution),
+        chatter_frequency=motion.frequency,
+        growth_rate=trend.slope / periods.period if deviations.rank else math.nan,
+        once_per_revolution=once_per_revolution(record),
+        once_per_tooth=once_per_tooth(record),
+        metrics=_metrics(record, periods, deviations, trend, motion.share),
+    )
+
+
+def _motion(periods: Periods, noise: float, growth: float) -> _Motion:
+    """Fit the chatter motion in the later half of the record."""
+    later = periods.values[len(periods.values) // 2 :]
+    line = strongest_line(later, growth)
+    bifurcation, period = bifurcation_of(later, line, growth, noise)
+    if period > 0:
+        # a closed orbit has its lines exactly at multiples of 1/period
+        order = max(round(line.rotation * period / (2.0 * math.pi)), 1)
+        line = strongest_line(later, growth, 2.0 * math.pi * order / period)
+    frequency = line.cycles / periods.period
+    return _Motion(bifurcation, period, frequency, line.share, periods.per_revolution)
+
+
+def _is_slow(periods: Periods) -> bool:
+    """Whether the motion drifts less than a fifth of a cycle or so over the later half."""
+    later = periods.values[len(periods.values) // 2 :]
+    return strongest_line(later).rotation * len(later) < _SLOW
+
+
+def _unit(per_revolution: int) -> str:
+    return "revolution" if per_revolution == 1 else "tooth"
+
+
+def _may_hide_doubling(record: CutRecord) -> bool:
+    return record.runout is None and record.has_equal_pitch and record.teeth % 2 == 0
+
+
+def _trend_of(deviations: Deviations, periods: Periods, negligible: float) -> _Trend:
+    """Level and slope of the deviations in the later half of the record."""
+    sizes = deviations.sizes
+    later = periods.values[len(periods.values) // 2 :]
+    mean = later.mean(axis=(0, 1))
+    spread = math.sqrt(np.mean(np.sum((later - mean) ** 2, axis=2)))
+    spread = math.hypot(spread, _PART_OF_MEAN * float(np.linalg.norm(mean))) or 1.0
+    by_speed = _BY_SPEED * periods.speed_variation
+    by_sampling = math.sqrt(max(periods.roughness**2 - (1.2 * deviations.noise) ** 2, 0.0)) / spread
+    floor = math.hypot(negligible, by_speed, by_sampling, deviations.noise_size / spread)
+    quarter = max(len(sizes) // 4, 2)
+    level = float(np.sqrt(np.mean(sizes[-quarter:] ** 2))) / spread
+    if deviations.rank == 0:
+        return _Trend(0.0, floor, -math.inf, 0.0, -math.inf, -math.inf, 0.0)
+    slope, error = growth_of(sizes[len(sizes) // 2 :])
+    first = float(np.sqrt(np.mean(sizes[:quarter] ** 2))) / spread
+    whole = math.log(max(level, 1e-300) / max(first, 1e-300)) / (len(sizes) - quarter)
+    slowest, misfit = slowest_growth(deviations.rows[len(sizes) // 2 :])
+    return _Trend(level, floor, slope, error, whole, slowest, misfit)
+
+
+def _decide(trend: _Trend, periods: Periods) -> tuple[str, float, str]:
+    growth, error = trend.slope * periods.per_revolution, trend.error * periods.per_revolution
+    of_what = _unit(periods.per_revolution)
+    if trend.level < trend.floor and _grows(trend, len(periods.values)):
+        return (
+            "chatter", 0.7,
+            f"the deviation from {of_what} to {of_what} is but {trend.level:.2%} of the rms of the "
+            f"motion, but it grows by {math.expm1(growth):.1%} per revolution",
+        )  # fmt: skip
+    if trend.level < trend.floor:
+        sure = 1.0 - 0.4 * trend.level / trend.floor
+        return (
+            "stable", sure,
+            f"the motion repeats from {of_what} to {of_what} within {trend.level:.2%} of its rms",
+        )  # fmt: skip
+    decays = _decays(trend, periods.per_revolution)
+    away = abs(growth - _SUSTAINED) / (0.01 + 2.0 * error)
+    sure = 0.5 + 0.5 * min(1.0, max(away, 0.0 if decays else trend.level))
+    if decays:
+        return (
+            "stable", sure,
+            f"the deviation from {of_what} to {of_what} decays by {-math.expm1(growth):.1%} per "
+            "revolution",
+        )  # fmt: skip
+    return (
+        "chatter", sure,
+        f"the deviation from {of_what} to {of_what} stays at {trend.level:.1%} of the rms of the "
+        f"motion, with a change of {math.expm1(growth):+.1%} per revolution",
+    )  # fmt: skip
+
+
+def _grows(trend: _Trend, count: int) -> bool:
+    """Whether a small deviation grows steadily over the record, far above rounding."""
+    steady = trend.slope > _CERTAIN * trend.error and trend.whole > _SHARE_OF_RATE * trend.slope
+    return trend.level > _ROUNDING and steady and trend.whole * count > _GROWN
+
+
+def _decays(trend: _Trend, per_revolution: int) -> bool:
+    """Whether the deviation decays, by its multipliers and by its size or the quality of those."""
+    if trend.slowest * per_revolution >= _SUSTAINED:
+        return False
+    by_size = (
+        trend.slope * per_revolution < min(_SUSTAINED, -_CERTAIN * trend.error * per_revolution)
+        and trend.whole < _SHARE_OF_RATE * trend.slope
+    )
+    by_multipliers = trend.misfit < _GOOD_MAP and trend.whole < _SHARE_OF_RATE * trend.slowest
+    return by_size or by_multipliers
+
+
+def _metrics(
+    record: CutRecord,
+    periods: Periods,
+    deviations: Deviations,
+    trend: _Trend,
+    share: float,
+) -> dict[str, float]:
+    sections = once_per_revolution(record)
+    later = sections[len(sections) // 2 :]
+    values = periods.values[len(periods.values) // 2 :]
+    about_mean = np.sum((values - values.mean(axis=(0, 1))) ** 2)
+    off = np.sum((values - values.mean(axis=0)) ** 2)
+    metrics = {
+        "once_per_revolution_variance": float(np.sum(np.var(later, axis=0))),
+        "off_harmonic_share": float(off / about_mean) if about_mean > 0.0 else 0.0,
+        "deviation": trend.level,
+        "deviation_floor": trend.floor,
+        "growth_per_revolution": trend.slope * periods.per_revolution,
+        "growth_error_per_revolution": trend.error * periods.per_revolution,
+        "noise": deviations.noise * periods.scale,
+        "slowest_growth_per_revolution": trend.slowest * periods.per_revolution,
+        "whole_growth_per_revolution": trend.whole * periods.per_revolution,
+        "misfit": trend.misfit,
+        "rank": float(deviations.rank),
+        "line_share": share,
+    }
+    # where nothing stands out of the noise there is no rate
+    return {name: value if math.isfinite(value) else math.nan for name, value in metrics.items()}

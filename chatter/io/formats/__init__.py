@@ -1,0 +1,20 @@
+"""Formats of files with measured FRFs, signals and matrices.
+
+=============== ============================================================ ===================
+module          responsibility                                               layout
+=============== ============================================================ ===================
+registry        the list of formats; the format of a file
+format          what a format is
+uff58           functions of universal files: FRFs and time records          SDRC dataset 58, 58b
+universal       datasets of a universal file, its units                      SDRC dataset 164
+cutpro          ``.frf`` text of CutPro
+csv             tables with names and units in the heading
+frf_columns     FRFs of the columns of a table
+npz             arrays by name, matrices                                     numpy, scipy.sparse
+tdms            channels of LabVIEW files                                    npTDMS
+matrix_market   matrices of finite element programs                          NIST Matrix Market
+=============== ============================================================ ===================
+
+A further format is one module with a `format.Format` and one line in `registry.FORMATS`; another
+package adds one with an entry point of the group ``chatter.formats``.
+"""

@@ -1,0 +1,170 @@
+"""Tables in text: comma, semicolon, tab or space separated, names and units in the heading."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from chatter.io.files import read_lines
+from chatter.io.formats.format import Format
+from chatter.io.formats.frf_columns import frfs_of_table
+from chatter.io.table import Column, Table, is_number
+from dynamics.frf.container import Frf, MeasurementError
+
+_COMMENT = ("#", "%", "//", "!")
+_DECIMAL_COMMA = re.compile(r"[+-]?\d+(,\d+)?([eE][+-]?\d+)?")
+
+
+def read_table(path: Path) -> Table:
+    """Read a table with a heading line.
+
+    Separators may be comma, semicolon, tab or spaces; where it is not the comma, a decimal comma
+    is understood. Lines that begin with ``#``, ``%``, ``!`` or ``//`` are comments; the last of
+    them may be the heading. Cells may be words.
+
+    Parameters
+    ----------
+    path : Path
+        Text file.
+
+    Returns
+    -------
+    Table
+
+    Raises
+    ------
+    MeasurementError
+        If the file is not text, has no rows of numbers, no heading, or a row with too few or too
+        many cells; the message names file and line.
+    """
+    lines = read_lines(path)
+    first = _first_row(lines)
+    if first is None:
+        raise MeasurementError(f"{path}: no line of numbers; the file is text only")
+    separator = _separator(lines[first])
+    headings, begin = _headings(lines[:first], separator, _cells(lines[first], separator))
+    if not headings:
+        raise MeasurementError(
+            f"{path}: no heading with names and units above the numbers; the first line must be "
+            'like "frequency [Hz],real [m/N],imag [m/N]" or "time [s],force [N]"'
+        )
+    rows, numbers = [], []
+    for index in range(begin, len(lines)):
+        if not lines[index].strip() or _is_comment(lines[index]):
+            continue
+        row = _cells(lines[index], separator)
+        if len(row) == len(headings) + 1 and not row[-1].strip():
+            row.pop()
+        if len(row) != len(headings):
+            if index < first:
+                continue
+            raise MeasurementError(
+                f"{path}: line {index + 1} has {len(row)} columns where the heading has "
+                f"{len(headings)}: {lines[index].strip()[:60]!r}"
+            )
+        rows.append(row)
+        numbers.append(index + 1)
+    columns = zip(headings, zip(*rows, strict=True), strict=True)
+    return Table(path, tuple(Column(heading, cells) for heading, cells in columns), numbers)
+
+
+def _read_frfs(path: Path) -> list[Frf]:
+    return frfs_of_table(read_table(path))
+
+
+def _is_comment(line: str) -> bool:
+    return line.lstrip().startswith(_COMMENT)
+
+
+def _separator(line: str) -> str | None:
+    """Separator of a line of numbers; None for white space."""
+    words = line.split()
+    if len(words) > 1 and all(_DECIMAL_COMMA.fullmatch(word) for word in words):
+        return None
+    return next((one for one in (";", "\t", ",") if one in line.strip()), None)
+
+
+def _cells(line: str, separator: str | None) -> list[str]:
+    """Cells of a line of numbers, with decimal points."""
+    if separator != ",":
+        line = line.replace(",", ".")
+    if separator is None:
+        return line.split()
+    if '"' in line:
+        return next(csv.reader([line], delimiter=separator, skipinitialspace=True))
+    return line.split(separator)
+
+
+def _first_row(lines: Sequence[str]) -> int | None:
+    """First line that begins with a number, else the first with a number in it."""
+    with_numbers = None
+    for index, line in enumerate(lines):
+        if not line.strip() or _is_comment(line):
+            continue
+        are_numbers = [is_number(cell) for cell in _cells(line, _separator(line))]
+        if are_numbers[0]:
+            return index
+        if with_numbers is None and any(are_numbers):
+            with_numbers = index
+    return with_numbers
+
+
+def _headings(
+    lines: Sequence[str], separator: str | None, row: Sequence[str]
+) -> tuple[list[str], int]:
+    """Headings among the lines above the first row, and the line on which rows may begin."""
+    counts = (len(row), len(row) - (not row[-1].strip()))
+    for are_comments in (False, True):
+        found = [
+            (cells, index)
+            for cells, index in _candidates(lines, separator, len(row))
+            if len(cells) in counts and (are_comments or not _is_comment(lines[index]))
+        ]
+        if not found:
+            continue
+        headings, index = found[-1]
+        if len(found) > 1 and not any("[" in cell or "(" in cell for cell in headings):
+            # names on one line, units on the next
+            pairs = zip(found[-2][0], headings, strict=True)
+            headings = [_with_unit(name, unit) for name, unit in pairs]
+        return headings, index + 1
+    return [], len(lines)
+
+
+def _with_unit(name: str, unit: str) -> str:
+    unit = unit.strip('" ') if "/" in unit else unit.strip('" ()[]')
+    return f"{name.strip(chr(34) + ' ')} [{unit}]"
+
+
+def _candidates(
+    lines: Sequence[str], separator: str | None, count: int
+) -> Iterator[tuple[list[str], int]]:
+    """Cells and number of every line that may be a heading; the unit "1" is one."""
+    for index, line in enumerate(lines):
+        if line.strip():
+            cells = _heading_cells(line, separator, count)
+            if cells and not any(is_number(cell) and cell != "1" for cell in cells):
+                yield cells, index
+
+
+def _heading_cells(line: str, separator: str | None, count: int) -> list[str]:
+    line = line.strip().lstrip("#%!/").strip()
+    if separator is None or separator not in line:
+        separator = _separator(re.sub(r"\[[^\]]*\]", "", line))
+    if separator is not None:
+        return [cell.strip().strip('"') for cell in line.rstrip(separator).split(separator)]
+    cells = re.findall(r"[^\[\]]+\[[^\]]*\]|\S+", line) if "[" in line else line.split()
+    return [cell.strip() for cell in cells] if len(cells) == count else []
+
+
+CSV = Format(
+    name="csv",
+    label="table in text",
+    help="name and unit of every column in the heading; comma, semicolon, tab or spaces between "
+    "columns; with any of the last three also decimal commas",
+    extensions=(".csv", ".txt", ".tsv", ".dat", ".asc"),
+    read_frfs=_read_frfs,
+    read_signals=read_table,
+)

@@ -1,0 +1,52 @@
+"""Matrices in Matrix Market files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import scipy.io
+import scipy.sparse
+from numpy.typing import NDArray
+
+from chatter.io.formats.format import Format
+from dynamics.frf.container import MeasurementError
+
+#: more rows than a desk computer can factorise
+MOST_ROWS = 5_000_000
+
+
+def require_square(path: Path, shape: tuple[int, ...]) -> None:
+    """Raise MeasurementError unless a matrix is square, of a size that can be worked with."""
+    if len(shape) != 2 or shape[0] != shape[1] or not 1 <= shape[0] <= MOST_ROWS:
+        size = " x ".join(str(length) for length in shape)
+        raise MeasurementError(f"{path}: is {size}; it must be square, 1 to {MOST_ROWS} rows")
+
+
+def read_matrix(path: Path) -> NDArray[np.float64] | scipy.sparse.sparray:
+    """Real or integer matrix, general or symmetric.
+
+    Raises
+    ------
+    MeasurementError
+        If it is complex or a pattern, or larger than its file.
+    """
+    rows, columns, _, layout, kind, symmetry = scipy.io.mminfo(path)
+    if kind not in ("real", "integer") or symmetry not in ("general", "symmetric"):
+        raise MeasurementError(
+            f"{path}: {kind} {symmetry}; a matrix must be real, and general or symmetric"
+        )
+    require_square(path, (rows, columns))
+    if layout == "array" and rows * columns > path.stat().st_size:
+        raise MeasurementError(f"{path}: {rows} x {columns} entries do not fit into the file")
+    return scipy.io.mmread(path)
+
+
+MATRIX_MARKET = Format(
+    name="matrix-market",
+    label="Matrix Market",
+    help="real or integer entries, general or symmetric",
+    extensions=(".mtx",),
+    read_matrix=read_matrix,
+    recognises=lambda head: head.startswith(b"%%MatrixMarket"),
+)

@@ -1,0 +1,82 @@
+"""NumPy archives: signals and FRFs as arrays by name, matrices dense or sparse."""
+
+from __future__ import annotations
+
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import scipy.sparse
+from numpy.typing import NDArray
+
+from chatter.io.formats.format import Format
+from chatter.io.formats.frf_columns import frfs_of_table
+from chatter.io.formats.matrix_market import require_square
+from chatter.io.table import Column, Table
+from dynamics.frf.container import Frf, MeasurementError
+
+
+def read_columns(path: Path) -> Table:
+    """Arrays (n,) of an archive by name; a complex one as its real and imaginary part.
+
+    Raises
+    ------
+    MeasurementError
+        If the file is no archive of arrays, or their lengths differ.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as content:
+            arrays = {name: content[name] for name in content.files}
+    except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+        raise MeasurementError(f"{path}: cannot be read: {error}") from error
+    except AttributeError as error:  # a single array, not a file of several
+        raise MeasurementError(
+            f"{path}: holds one array; save them by name with numpy.savez"
+        ) from error
+    columns = []
+    for name, array in arrays.items():
+        if array.ndim != 1:
+            continue
+        if np.iscomplexobj(array):
+            unit = name[name.index("[") :] if "[" in name else ""
+            columns += [Column(f"real {unit}", array.real), Column(f"imag {unit}", array.imag)]
+        else:
+            columns.append(Column(name, array))
+    lengths = {column.heading: len(column.cells) for column in columns}
+    if len(set(lengths.values())) != 1:
+        raise MeasurementError(f"{path}: the columns differ in length or there are none: {lengths}")
+    return Table(path, tuple(columns))
+
+
+def _read_frfs(path: Path) -> list[Frf]:
+    return frfs_of_table(read_columns(path))
+
+
+def read_matrix(path: Path) -> NDArray[np.float64] | scipy.sparse.sparray:
+    """Matrix of `scipy.sparse.save_npz`, or the one plain array of an archive."""
+    with path.open("rb") as file, zipfile.ZipFile(file) as archive:
+        names = [Path(name).stem for name in archive.namelist()]
+        file.seek(0)
+        arrays = np.load(file, allow_pickle=False)
+        if "format" not in names:
+            if len(names) != 1 or not isinstance(arrays[arrays.files[0]], np.ndarray):
+                raise MeasurementError(f"{path}: has {', '.join(names)}; it must have one array")
+            return arrays[arrays.files[0]]
+        require_square(path, tuple(arrays["shape"]))
+        file.seek(0)
+        matrix = scipy.sparse.load_npz(file)
+        if hasattr(matrix, "check_format"):
+            matrix.check_format(full_check=True)
+        return matrix
+
+
+NPZ = Format(
+    name="npz",
+    label="NumPy archive",
+    help='arrays by name and unit, such as "time [s]"; FRFs may be complex; matrices by '
+    "`scipy.sparse.save_npz`, or one plain array",
+    extensions=(".npz",),
+    read_frfs=_read_frfs,
+    read_signals=read_columns,
+    read_matrix=read_matrix,
+)

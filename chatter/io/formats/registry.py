@@ -1,0 +1,101 @@
+"""The registry of file formats, and the format of a file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from chatter.description.registry import Registry
+from chatter.io.files import read_content
+from chatter.io.formats.csv import CSV
+from chatter.io.formats.cutpro import CUTPRO
+from chatter.io.formats.format import CONTENTS, Content, Format
+from chatter.io.formats.matrix_market import MATRIX_MARKET
+from chatter.io.formats.npz import NPZ
+from chatter.io.formats.tdms import TDMS
+from chatter.io.formats.uff58 import UFF58
+from dynamics.frf.container import Frf, MeasurementError
+
+FORMATS: Registry[Format] = Registry(
+    group="chatter.formats",
+    what="file format",
+    built_in=(
+        UFF58,
+        CUTPRO,
+        CSV,
+        NPZ,
+        TDMS,
+        MATRIX_MARKET,
+    ),
+)
+#: enough of a file to recognise its format
+_HEAD_BYTES = 65536
+
+
+def formats_of(content: Content) -> list[Format]:
+    """Formats that can hold FRFs, signals or matrices."""
+    return [one for one in FORMATS if content in one.holds]
+
+
+def listed(formats: list[Format]) -> str:
+    """Formats with their extensions, as in messages."""
+    return "; ".join(f"{one.label} ({', '.join(one.extensions)})" for one in formats)
+
+
+def format_of(path: Path, content: Content) -> Format:
+    """Tell the format of a file by its content where that is possible, else by its extension.
+
+    Parameters
+    ----------
+    path : Path
+    content : {"FRFs", "signals", "matrices"}
+        What is to be read of it.
+
+    Raises
+    ------
+    MeasurementError
+        If the file is missing, a folder, empty, too large, or of no known format.
+    """
+    head = read_content(path, _HEAD_BYTES)
+    candidates = formats_of(content)
+    for one in candidates:
+        if one.recognises(head):
+            return one
+    for one in candidates:
+        if path.suffix.lower() in one.extensions:
+            return one
+    raise MeasurementError(
+        f"{path}: the extension {path.suffix!r} is of no known format; formats of {content} that "
+        f"are read: {listed(candidates)}"
+    )
+
+
+def read_frfs(path: str | Path) -> list[Frf]:
+    """Read every FRF of a measured file, whatever its format.
+
+    Parameters
+    ----------
+    path : str or Path
+
+    Returns
+    -------
+    list of Frf
+        At least one, in SI units, in the order of the file.
+
+    Raises
+    ------
+    MeasurementError
+        If the file is missing, a folder, empty, of no known format, or malformed; the message
+        names file, line and reason.
+    """
+    path = Path(path)
+    return format_of(path, "FRFs").read_frfs(path)
+
+
+def documentation() -> str:
+    """Table of all formats for the documentation, in Markdown."""
+    rows = [f"| format | extensions | {' | '.join(CONTENTS)} | remarks |", "|---" * 6 + "|"]
+    for one in FORMATS:
+        marks = " | ".join("yes" if content in one.holds else "" for content in CONTENTS)
+        extensions = ", ".join(f"`{extension}`" for extension in one.extensions)
+        rows.append(f"| {one.label} | {extensions} | {marks} | {one.help} |")
+    return "\n".join(rows) + "\n"

@@ -1,0 +1,238 @@
+"""Hammer records from files: one file, a folder of files."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.io.formats.registry import format_of, formats_of
+from chatter.io.formats.units import Channel, channel_unit
+from chatter.io.table import Column, Table
+from dynamics.frf.container import QUANTITY_OF_MOTION, MeasurementError, Point
+from dynamics.frf.hammer.record import FEWEST_SAMPLES, HammerRecord
+
+_EXAMPLE = "time [s],force [N],acceleration [m/s^2]"
+#: share of a sampling interval by which a time stamp may lie off the even grid, beyond rounding
+_TIME_JITTER = 0.1
+
+
+@dataclass(frozen=True)
+class HammerFolder:
+    """What a folder of hammer records holds.
+
+    Parameters
+    ----------
+    records : tuple of HammerRecord
+        In natural order of their names (tap2 before tap10).
+    unreadable : tuple of (str, str)
+        Name and reason for each file that could not be read as a record.
+    passed_over : tuple of str
+        Names of the files of other extensions.
+    """
+
+    records: tuple[HammerRecord, ...]
+    unreadable: tuple[tuple[str, str], ...] = ()
+    passed_over: tuple[str, ...] = ()
+
+
+def read_hammer_record(path: str | Path, response: str | None = None) -> HammerRecord:
+    """Read one hammer record from a file of any format of signals.
+
+    The columns are told by their units: a time, a force, and a displacement, velocity or
+    acceleration.
+
+    Parameters
+    ----------
+    path : str or Path
+        File such as ``time [s],force [N],acceleration [m/s^2]`` followed by rows of numbers.
+    response : str, optional
+        Name of the response column, where there are several.
+
+    Returns
+    -------
+    HammerRecord
+
+    Raises
+    ------
+    MeasurementError
+        If the file is no such table, its samples are not evenly spaced, or the response column
+        cannot be told.
+    """
+    path = Path(path)
+    table = format_of(path, "signals").read_signals(path)
+    if not any(column.unit or column.content for column in table.columns):
+        raise MeasurementError(
+            f"{path}: no heading with names and units above the numbers; "
+            f"the first line must be like: {_EXAMPLE}"
+        )
+    channels = [_channel(path, column) for column in table.columns]
+    time = _only(path, table, channels, ("time",), None)
+    force = _only(path, table, channels, ("force",), None)
+    motion = _only(path, table, channels, tuple(QUANTITY_OF_MOTION), response)
+    force_values = table.numbers(force) * channels[force][1]
+    response_values = table.numbers(motion) * channels[motion][1]
+    start, rate = _even_sampling(path, table, time, channels[time][1])
+    return HammerRecord(
+        name=path.name,
+        sampling_rate=rate,
+        force=force_values,
+        response=response_values,
+        quantity=QUANTITY_OF_MOTION[channels[motion][0]],
+        start_time=start,
+        response_point=_point(table.columns[motion]),
+        reference_point=_point(table.columns[force]),
+        source=str(path),
+    )
+
+
+def read_hammer_folder(path: str | Path) -> HammerFolder:
+    """Read every hammer record of a folder.
+
+    Parameters
+    ----------
+    path : str or Path
+        Folder of files as `read_hammer_record` reads them. Files of other extensions are passed
+        over; a file that is no record is named with the reason. Hidden files and folders in it
+        are passed over too.
+
+    Returns
+    -------
+    HammerFolder
+
+    Raises
+    ------
+    MeasurementError
+        If `path` is no folder or holds no record.
+    """
+    path = Path(path)
+    if not path.is_dir():
+        problem = "is a file, not a folder" if path.exists() else "no such folder"
+        raise MeasurementError(f"{path}: {problem}")
+    extensions = [extension for one in formats_of("signals") for extension in one.extensions]
+    records: list[HammerRecord] = []
+    unreadable: list[tuple[str, str]] = []
+    passed_over: list[str] = []
+    for file in sorted(path.iterdir(), key=_natural_order):
+        if file.name.startswith(".") or file.is_dir():
+            continue
+        if file.suffix.lower() not in extensions:
+            passed_over.append(file.name)
+            continue
+        try:
+            records.append(read_hammer_record(file))
+        except MeasurementError as error:
+            unreadable.append((file.name, str(error).removeprefix(f"{file}: ")))
+    if not records:
+        listed = "; ".join(f"{name}: {reason}" for name, reason in unreadable[:3])
+        listed = listed or f"no file ends in {', '.join(extensions)}"
+        raise MeasurementError(f"{path}: holds no hammer record ({listed})")
+    return HammerFolder(tuple(records), tuple(unreadable), tuple(passed_over))
+
+
+def _natural_order(file: Path) -> list[tuple[int, str]]:
+    pieces = re.split(r"(\d+)", file.name.lower())
+    return [(int(piece), "") if piece.isdigit() else (-1, piece) for piece in pieces]
+
+
+def _channel(path: Path, column: Column) -> tuple[Channel | None, float]:
+    if column.content is not None:
+        return column.content, 1.0
+    if not column.unit:
+        return None, 1.0
+    try:
+        return channel_unit(column.unit)
+    except MeasurementError as error:
+        raise MeasurementError(f"{path}: column {column.name!r}: {error}") from None
+
+
+def _only(
+    path: Path,
+    table: Table,
+    channels: list[tuple[Channel | None, float]],
+    kinds: tuple[Channel, ...],
+    name: str | None,
+) -> int:
+    """Index of the one column of these kinds (and of that name, where given)."""
+    found = [index for index, (channel, _) in enumerate(channels) if channel in kinds]
+    names = ", ".join(repr(table.columns[index].name) for index in found)
+    if name is not None:
+        found = [index for index in found if table.columns[index].name == name]
+        if not found:
+            raise MeasurementError(f"{path}: no response column {name!r}; there are {names}")
+    wanted = "displacement, velocity or acceleration" if len(kinds) > 1 else kinds[0]
+    if not found:
+        raise MeasurementError(
+            f"{path}: no column is a {wanted}; the heading must be like: {_EXAMPLE}"
+        )
+    if len(found) > 1:
+        raise MeasurementError(f"{path}: several columns are a {wanted}: {names}; name one")
+    return found[0]
+
+
+def _point(column: Column) -> Point:
+    if column.content is not None:
+        return column.point
+    axes = [word for word in re.findall(r"[A-Za-z]+", column.name.lower()) if word in "xyz"]
+    return Point(direction=axes[0]) if len(axes) == 1 else Point()
+
+
+def _even_sampling(path: Path, table: Table, index: int, factor: float) -> tuple[float, float]:
+    """Start time and sampling rate of a time column that may have been rounded.
+
+    Printed times are rounded, some so coarsely that neighbours repeat; the rate comes from the
+    span. A round rate within what the rounding leaves open is taken as meant.
+    """
+    time = table.numbers(index)
+    if time.size < FEWEST_SAMPLES:
+        raise MeasurementError(
+            f"{path}: {time.size} samples; a hammer record needs {FEWEST_SAMPLES}"
+        )
+    span = time[-1] - time[0]
+    if span <= 0.0 or np.any(np.diff(time) < 0.0):
+        row = int(np.argmax(np.diff(time) < 0.0)) if span > 0.0 else 0
+        raise MeasurementError(
+            f"{path}: {table.where(row + 1)}: time {time[row + 1]:g} after "
+            f"{time[row]:g}; times must rise"
+        )
+    steps = np.diff(time)
+    rounding = _rounding(time)
+    interval = span / (time.size - 1)
+    if interval > 1.5 * np.median(steps) + rounding:  # a gap stretches the mean step
+        interval = float(np.median(steps))
+    allowed = 1.01 * rounding + _TIME_JITTER * interval
+    wrong = np.abs(steps - interval) > allowed
+    drift = np.abs(time - (time[0] + interval * np.arange(time.size)))
+    if np.any(wrong) or np.any(drift > allowed):
+        row = int(np.argmax(np.abs(steps - interval)))
+        raise MeasurementError(
+            f"{path}: {table.where(row + 1)}: time steps by {steps[row]:.6g} where the "
+            f"others step by {interval:.6g}; samples must be evenly spaced without gaps"
+        )
+    return float(time[0]) * factor, _rate(time, rounding) / factor
+
+
+def _rate(time: NDArray[np.float64], rounding: float) -> float:
+    """Samples per unit of time by least squares; a round number where the rounding allows it."""
+    count = time.size
+    index = np.arange(count) - 0.5 * (count - 1)
+    rate = float(np.sum(index**2) / np.sum(index * (time - time.mean())))
+    # standard error of the slope where each time is off by up to half its last digit
+    doubt = 5.0 * rate**2 * rounding / count**1.5
+    for digits in range(-3, 4):
+        rounded = round(rate, digits)
+        if rounded > 0.0 and abs(rounded - rate) <= doubt:
+            return rounded
+    return rate
+
+
+def _rounding(time: NDArray[np.float64]) -> float:
+    """Unit of the last digit the times were printed with."""
+    scale = float(np.max(np.abs(time)))
+    for digits in range(-3, 13):
+        if np.allclose(np.round(time, digits), time, rtol=0.0, atol=1e-9 * scale * 10.0**-6):
+            return 10.0**-digits
+    return 1e-12 * scale

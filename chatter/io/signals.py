@@ -1,0 +1,150 @@
+"""Signals of a measurement from files of any format: columns in SI by their standard names."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.errors import InputError
+from chatter.description.formatting import shown
+from chatter.io.formats.registry import format_of
+from chatter.io.headings import named
+from chatter.io.table import Column, Table
+from dynamics.frf.container import Frf, MeasurementError
+
+Signals = dict[str, NDArray[np.float64]]
+
+#: words of a verdict -> stable or not; marginal and unknown ones are no verdict
+_VERDICTS = {
+    **dict.fromkeys(("1", "1.0", "true", "yes", "stable", "ok"), 1.0),
+    **dict.fromkeys(("0", "0.0", "false", "no", "chatter", "unstable"), 0.0),
+    **dict.fromkeys(("", "nan", "marginal", "unknown", "?", "-"), np.nan),
+}
+
+
+#: kind of measurement -> names of what a format itself says a column holds; {axis} is x, y or z
+_NAMES_OF_CONTENT = {
+    "milling": {"force": "F{axis}", "displacement": "{axis}"},
+    "axis": {"force": "force", "displacement": "position", "velocity": "velocity"},
+}
+
+
+def read_signals(path: Path, kind: str = "", direction: str = "") -> Signals:
+    """Columns of a file in SI, by name.
+
+    Parameters
+    ----------
+    path : Path
+    kind : str
+        Kind of measurement: what a displacement or a force of a universal file is called there.
+    direction : str
+        Of the FRF that is wanted of a file of several, response first.
+
+    Raises
+    ------
+    InputError
+        If it is missing, of a format that is not read, or holds what is no number.
+    """
+    try:
+        if kind == "frf":
+            return _frf(path, direction)
+        return _in_si(format_of(path, "signals").read_signals(path), kind)
+    except MeasurementError as error:
+        raise InputError(str(error)) from error
+
+
+def _in_si(table: Table, kind: str) -> Signals:
+    signals: Signals = {}
+    for column in table.columns:
+        name, factor = _name_and_factor(table.path, column, kind)
+        if name in signals:
+            raise InputError(f'{table.path}: there are two columns "{name}"')
+        if name in ("stable", "chatter"):
+            stable = np.array([_verdict(table, column, k) for k in range(table.size)])
+            signals["stable"] = stable if name == "stable" else 1.0 - stable
+        else:
+            signals[name] = _numbers(table, column) * factor
+    return signals
+
+
+def _name_and_factor(path: Path, column: Column, kind: str) -> tuple[str, float]:
+    """Name of a column by what the format says it holds, else by its heading; factor to SI."""
+    pattern = _NAMES_OF_CONTENT.get(kind, {}).get(column.content or "")
+    if pattern is None:
+        name, factor = named(path, column.heading)
+        return name, 1.0 if column.content else factor
+    if "{axis}" not in pattern:
+        return pattern, 1.0
+    if not column.point.direction:
+        raise InputError(f"{path}: {column.heading}: a {column.content} without a direction")
+    return pattern.format(axis=column.point.direction), float(column.point.sign)
+
+
+def _numbers(table: Table, column: Column) -> NDArray[np.float64]:
+    """Numbers of a column; NaN where a cell is blank."""
+    try:
+        return np.array(column.cells, dtype=np.float64)
+    except (TypeError, ValueError):
+        return np.array([_number(table, column, row) for row in range(table.size)])
+
+
+def _number(table: Table, column: Column, row: int) -> float:
+    text = str(column.cells[row]).strip()
+    try:
+        return float(text) if text else np.nan
+    except ValueError:
+        where = f"{table.path}: {table.where(row)}: {column.heading}"
+        raise InputError(f"{where}: {shown(text)} is no number") from None
+
+
+def _verdict(table: Table, column: Column, row: int) -> float:
+    text = str(column.cells[row]).strip()
+    if text.lower() not in _VERDICTS:
+        raise InputError(
+            f"{table.path}: {table.where(row)}: {column.heading}: {shown(text)} is no verdict; 1, "
+            "true or stable, 0, false or chatter, or marginal"
+        )
+    return _VERDICTS[text.lower()]
+
+
+def _frf(path: Path, direction: str) -> Signals:
+    """Receptance in columns frequency, real and imag; else of the FRF of a direction."""
+    one = format_of(path, "FRFs")
+    if one.read_signals is not None:
+        try:
+            signals = with_parts(path, _in_si(one.read_signals(path), "frf"))
+        except (InputError, MeasurementError):
+            signals = {}  # a table of another quantity, of several FRFs, or no table
+        if {"frequency", "real", "imag"} <= signals.keys():
+            return signals
+    return _frf_of_direction(path, one.read_frfs(path), direction)
+
+
+def with_parts(path: Path, signals: Signals) -> Signals:
+    """Real and imaginary part in the place of magnitude and phase."""
+    if "magnitude" not in signals or "real" in signals:
+        return signals
+    if "phase" not in signals:
+        raise InputError(f"{path}: there is a magnitude without a phase")
+    rest = {k: v for k, v in signals.items() if k not in ("magnitude", "phase")}
+    values = signals["magnitude"] * np.exp(1j * signals["phase"])
+    return {**rest, "real": values.real, "imag": values.imag}
+
+
+def _frf_of_direction(path: Path, measured: Sequence[Frf], direction: str) -> Signals:
+    frfs = [frf.along_axes() for frf in measured]
+    wanted = (direction[:1], direction[-1:])
+    chosen = [frf for frf in frfs if wanted == (frf.response.direction, frf.reference.direction)]
+    if len(frfs) == 1 and not (frfs[0].response.direction and frfs[0].reference.direction):
+        chosen = frfs
+    if len(chosen) != 1:
+        held = ", ".join(f"{f.response.direction}{f.reference.direction}" or "?" for f in frfs)
+        raise InputError(
+            f'{path}: holds {len(chosen)} FRFs of direction "{direction}" (response, then force); '
+            f"there are {held}"
+        )
+    frf = chosen[0].receptance()
+    return {"frequency": frf.frequency, "real": frf.values.real, "imag": frf.values.imag}

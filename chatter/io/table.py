@@ -1,0 +1,120 @@
+"""Columns of numbers or words that a file holds, whatever its format."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.frf.container import MeasurementError, Point
+
+if TYPE_CHECKING:
+    from chatter.io.formats.units import Channel
+
+
+@dataclass(frozen=True, eq=False)
+class Column:
+    """One column as stored.
+
+    Parameters
+    ----------
+    heading : str
+        Name and unit as written: "Fx [N]".
+    cells : (n,) sequence of str or array of float
+    content : str or None
+        "force", "displacement", ... where the format says so itself; the cells are then in SI.
+    point : Point
+        Where and in which direction it was measured, where the format says so.
+    """
+
+    heading: str
+    cells: Sequence[str] | NDArray
+    content: Channel | None = None
+    point: Point = field(default_factory=Point)
+
+    @property
+    def name(self) -> str:
+        """Heading without its unit."""
+        return split_heading(self.heading)[0]
+
+    @property
+    def unit(self) -> str:
+        """Unit in the heading; empty where there is none."""
+        return split_heading(self.heading)[1]
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """Columns of equal length.
+
+    Parameters
+    ----------
+    path : Path
+    columns : tuple of Column
+    lines : (n,) sequence of int, optional
+        Line of the text file each row stood on, from 1.
+    """
+
+    path: Path
+    columns: tuple[Column, ...]
+    lines: Sequence[int] | None = None
+
+    @property
+    def size(self) -> int:
+        """Number of rows."""
+        return len(self.columns[0].cells)
+
+    def where(self, row: int) -> str:
+        """Name a row, from 0, as in messages."""
+        return f"row {row + 1}" if self.lines is None else f"line {self.lines[row]}"
+
+    def numbers(self, index: int) -> NDArray[np.float64]:
+        """Cells of a column as finite numbers.
+
+        Raises
+        ------
+        MeasurementError
+            If a cell is no finite number; the message names file and line.
+        """
+        cells = self.columns[index].cells
+        try:
+            values = np.asarray(cells, dtype=np.float64)
+            wrong = np.flatnonzero(~np.isfinite(values))
+        except (TypeError, ValueError):
+            wrong = [next(row for row, cell in enumerate(cells) if not is_number(str(cell)))]
+        if len(wrong):
+            cell = str(cells[wrong[0]]).strip()
+            finite = "finite " if is_number(cell) else ""
+            raise MeasurementError(
+                f"{self.path}: {self.where(int(wrong[0]))}: {cell[:40]!r} is not a {finite}number"
+            )
+        return values
+
+
+def is_number(cell: str) -> bool:
+    """Tell whether a cell is a number, NaN and infinity included."""
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return "_" not in cell
+
+
+def split_heading(heading: str) -> tuple[str, str]:
+    """Split ``"real xx [m/N]"`` or ``"Real ((m/s^2)/N)"`` into name and unit."""
+    text = heading.strip().strip('"').strip()
+    found = re.fullmatch(r"(.*?)\[(.*)\]", text)
+    if found:
+        return found.group(1).strip(), found.group(2).strip()
+    if text.endswith(")"):
+        depth = 0
+        for index in range(len(text) - 1, -1, -1):
+            depth += {")": 1, "(": -1}.get(text[index], 0)
+            if depth == 0:
+                return text[:index].strip(), text[index + 1 : -1].strip()
+    return text, ""

@@ -1,0 +1,154 @@
+"""What a study changes: a case, with the machine that it is on, or a machine alone.
+
+Paths that begin with "machine." lead into the machine.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from chatter.description.case import Case
+from chatter.description.errors import InputError
+from chatter.description.path import field_at, parse_path
+from chatter.description.quantities import QuantityField
+from chatter.description.toml_document import parse_document, read_text
+
+if TYPE_CHECKING:
+    from chatter.description.machine.machine_file import MachineFile
+
+    Model: TypeAlias = Case | MachineFile
+
+#: beginning of paths into the machine of a case
+PREFIX = "machine."
+#: tables that only a machine file has
+_OF_MACHINES = ("body", "beam", "imported", "connector")
+
+
+def load_model(path: str | Path) -> Model:
+    """Read a case or a machine file, whichever it is.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read or describes neither.
+    """
+    path = Path(path)
+    document = parse_document(read_text(path), str(path))
+    if any(key in document for key in _OF_MACHINES):
+        from chatter.description.machine.machine_file import load_machine
+
+        return load_machine(path)
+    return Case.from_file(path)
+
+
+def machine_of(model: Model) -> MachineFile | None:
+    """Machine of a case, or the machine that the model is; None where there is none."""
+    if not isinstance(model, Case):
+        return model
+    on_machine = model.structure is not None and model.structure.machine is not None
+    return model.machine_file() if on_machine else None
+
+
+def patched(model: Model, values: Mapping[str, Any]) -> Model:
+    """Return a model with some values changed.
+
+    Parameters
+    ----------
+    model : Case or MachineFile
+    values : mapping
+        Path -> value as for `Case.patch`.
+
+    Raises
+    ------
+    InputError
+        If a path is unknown, there is no machine for it, or what comes of it is wrong.
+    """
+    of_machine = {
+        path.removeprefix(PREFIX): value
+        for path, value in values.items()
+        if path.startswith(PREFIX)
+    }
+    own = {path: value for path, value in values.items() if not path.startswith(PREFIX)}
+    if not isinstance(model, Case):
+        return model.patch({**own, **of_machine}) if values else model
+    changed = model.patch(own) if own else model
+    if not of_machine:
+        return changed
+    return changed.with_machine(_machine(changed, next(iter(of_machine))).patch(of_machine))
+
+
+def value_of(model: Model, path: str) -> Any:
+    """Value at a path, in SI; None where the model has none.
+
+    Raises
+    ------
+    InputError
+        If the path leads into a machine and there is none.
+    """
+    where, inside = _into(model, path)
+    try:
+        return where.get(inside)
+    except InputError:
+        return None
+
+
+def field_of(model: Model, path: str) -> QuantityField | None:
+    """Kind of quantity at a path; None where it takes none, or there is no such path."""
+    where, inside = _into(model, path)
+    return field_at(type(where), parse_path(inside, f"a {where.NOUN}"))
+
+
+def standard_deviations(model: Model) -> dict[str, float]:
+    """Standard deviations (SI) of all values given with one, by path, the machine's too."""
+    found = dict(model.deviations())
+    machine = machine_of(model)
+    if machine is not None and machine is not model:
+        found.update({PREFIX + path: one for path, one in machine.deviations().items()})
+    return found
+
+
+def fingerprint(model: Model) -> str:
+    """Text that changes where the model, a file that it names or the program changes."""
+    from chatter.engine.presets import CACHE_FOLDER
+
+    digest = hashlib.sha256()
+    parts = [model] if machine_of(model) in (None, model) else [model, machine_of(model)]
+    for part in parts:
+        # the folder of compiled code is named by a hash of all sources
+        digest.update(f"{CACHE_FOLDER.name} {type(part).__name__} {part._content()}".encode())
+        for path in sorted(_files(part.model_dump(mode="python"))):
+            digest.update(path.read_bytes() if path.is_file() else b"")
+    return digest.hexdigest()
+
+
+def _files(content: Any) -> Iterator[Path]:
+    """Names of files anywhere in a description."""
+    if isinstance(content, Path):
+        yield content
+    elif isinstance(content, Mapping):
+        for entry in content.values():
+            yield from _files(entry)
+    elif isinstance(content, (list, tuple)):
+        for entry in content:
+            yield from _files(entry)
+
+
+def _into(model: Model, path: str) -> tuple[Model, str]:
+    """Description that a path leads into, and the path there."""
+    if not path.startswith(PREFIX):
+        return model, path
+    inside = path.removeprefix(PREFIX)
+    return _machine(model, inside), inside
+
+
+def _machine(model: Model, path: str) -> MachineFile:
+    machine = machine_of(model)
+    if machine is None:
+        raise InputError(
+            f"{model.name}: {PREFIX}{path}: the case is on no machine; [structure] machine = "
+            '"machine.toml" puts it on one'
+        )
+    return machine

@@ -1,6 +1,0 @@
-"""Make the cuts that the tests share importable under any import mode."""
-
-import sys
-from pathlib import Path
-
-sys.path.insert(0, str(Path(__file__).parent))

@@ -1,0 +1,26 @@
+"""First use: what the second process compiles is what cases call."""
+
+import numba
+import numpy as np
+import pytest
+
+from chatter.description.case import load
+from chatter.stability.methods.collocation import drivers, first_use
+from chatter.stability.methods.collocation.element_assembly import map_arrays
+from chatter.stability.model import milling_model
+from tests.places import EXAMPLES
+
+
+@pytest.mark.parametrize("name", ["two-degrees-of-freedom", "helix-islands", "two-insert-cutter"])
+def test_second_process_compiles_for_the_types_of_a_case(name):
+    case = load(EXAMPLES / name / "case.toml")
+    cut = milling_model(case).cut(case.cut.axial_depth)
+    speed, depth = np.array([case.cut.spindle_speed]), np.array([case.cut.axial_depth])
+    plans = drivers.cut_plans(cut, speed, depth)
+    called = map_arrays(cut), plans, speed, np.zeros(1, dtype=np.bool_)
+    compiled = first_use.arguments_of_map()
+    assert [numba.typeof(a) for a in compiled] == [numba.typeof(a) for a in called]
+
+
+def test_second_process_succeeds():
+    assert first_use._start().wait() == 0

@@ -1,0 +1,85 @@
+"""The test machining centre of the examples: published frequencies and trends."""
+
+import numpy as np
+import pytest
+
+import chatter
+from chatter.compile.machine_parts import assembled_machine
+from chatter.simulation.virtual_tests.frf import linearised_frf, peaks
+from dynamics.frf.container import Frf
+from dynamics.receptance.coupling import PointPort
+from dynamics.reduction.modal_truncation import state_space, truncated, undamped_modes
+from tests.places import EXAMPLES
+
+EXAMPLE = EXAMPLES / "machine-drive-control" / "machine.toml"
+BRAKES = {"X": "brake", "Y": "brake", "Z": "brake"}
+S1 = {"X": 0.885, "Y": 0.327, "Z": 0.0}
+S2 = {"X": 0.855, "Y": 0.373, "Z": 0.342}
+
+
+@pytest.fixture(scope="module")
+def machine():
+    return chatter.load_machine(EXAMPLE)
+
+
+def response(file, state, way="x", against="work", velocity=None, lowest=25.0):
+    row = state.structure.port("tool", np.eye(3)["xyz".index(way)], against)
+    lines = np.arange(lowest, 150.0, 0.25)
+    values = linearised_frf(state, file.step, lines, row, row, velocity)
+    return peaks(Frf(lines, values, "receptance"))
+
+
+def nearest(found, frequency):
+    return min(found, key=lambda one: abs(one["frequency_Hz"] - frequency))
+
+
+@pytest.mark.parametrize(
+    ("position", "way", "against", "published"),
+    [
+        (S1, "x", None, (74.0, 100.0)),
+        (S1, "y", None, (55.0,)),
+        (S2, "x", "work", (38.0, 75.0, 110.0, 122.0)),
+    ],
+)
+def test_frequencies_with_brakes_on(machine, position, way, against, published):
+    state = assembled_machine(machine, BRAKES, position).without_friction()
+    found = response(machine, state, way, against)
+    for frequency in published:
+        # the publication's own model deviates by up to 4 Hz
+        assert nearest(found, frequency)["frequency_Hz"] == pytest.approx(frequency, abs=2.0)
+
+
+@pytest.mark.parametrize(
+    ("conditions", "there"),
+    [(BRAKES, True), ({"Y": "brake", "Z": "brake"}, True), ({"X": "brake", "Y": "brake"}, False),
+     ({}, False)],
+)  # fmt: skip
+@pytest.mark.parametrize("way", ["x", "z"])
+def test_the_control_of_z_takes_the_axial_mode_of_z_away(machine, conditions, there, way):
+    found = response(machine, assembled_machine(machine, conditions, S2), way, lowest=105.0)
+    assert any(118.0 < one["frequency_Hz"] < 126.0 for one in found) == there
+
+
+def test_higher_velocity_gain_raises_the_first_mode_and_lowers_its_frequency(machine):
+    key = "axis.X.control.velocity.proportional_gain"
+    modes = []
+    for gain in (30.0, 15.0, 7.5):
+        state = assembled_machine(machine.patch({key: gain}), {}, S2)
+        modes.append(nearest(response(machine, state, velocity={"X": 0.1 / 60.0}), 38.0))
+    heights = [one["magnitude"] for one in modes]
+    frequencies = [one["frequency_Hz"] for one in modes]
+    assert heights[0] > heights[1] > heights[2]
+    assert frequencies[0] < frequencies[1] < frequencies[2]
+
+
+def test_modal_state_space_below_200_hz_is_the_full_model(machine):
+    full = assembled_machine(machine.patch({"highest_frequency": None}), BRAKES, S2).structure
+    modal = truncated(full, undamped_modes(full, 200.0), 0.015, residual_at=("tool", "work"))
+    port = PointPort("tool", [1.0, 0.0, 0.0], "work")
+    system = state_space(modal, [port], [port])
+    row = port.row(full)
+    for omega in 2.0 * np.pi * np.array([22.5, 38.0, 76.0, 109.0, 122.0]):
+        dynamic = full.stiffness - omega**2 * full.mass + 1j * omega * full.damping
+        exact = row @ np.linalg.solve(dynamic, row)
+        inner = np.linalg.solve(1j * omega * np.eye(len(system.a)) - system.a, system.b)
+        assert (system.c @ inner + system.d)[0, 0] == pytest.approx(exact, rel=0.01)

@@ -1,0 +1,89 @@
+"""The machines of Twin-Control of the examples, against its chapter 3 and by themselves."""
+
+import numpy as np
+import pytest
+
+import chatter
+from chatter.compile.machine_parts import assembled_machine
+from chatter.simulation.virtual_tests.frf import peaks
+from chatter.simulation.virtual_tests.loop_stability import least_stable_motion
+from tests.places import EXAMPLES, example_module
+
+EXAMPLE = EXAMPLES / "machine-twin-control"
+
+
+@pytest.fixture(scope="module")
+def run():
+    return example_module("machine-twin-control")
+
+
+@pytest.fixture(scope="module")
+def comau():
+    return chatter.load_machine(EXAMPLE / "comau.toml")
+
+
+@pytest.fixture(scope="module")
+def gepro():
+    return chatter.load_machine(EXAMPLE / "gepro.toml")
+
+
+@pytest.fixture(scope="module")
+def hammered(comau):
+    return chatter.frf(comau)
+
+
+def test_peaks_lie_where_published(hammered, run):
+    for name, published in run.PUBLISHED.items():
+        for frequency in published:
+            for tested in (False, True):
+                found = run.peak_near(hammered[name], frequency, tested)["frequency_Hz"]
+                # the chapter's own model is within 10 % of its measurement
+                assert found == pytest.approx(frequency, rel=0.03), name
+
+
+def test_blow_in_time_agrees_with_harmonic_response(hammered, run):
+    for curve in hammered.curves:
+        assert np.median(run.difference(curve)) < 2e-3
+        assert np.percentile(run.difference(curve), 95.0) < 1.2e-2
+        for one in peaks(curve.harmonic):
+            level = np.interp(
+                one["frequency_Hz"], curve.tested.frequency, np.abs(curve.tested.values)
+            )
+            assert level == pytest.approx(one["magnitude"], rel=2e-2)
+
+
+def test_fastest_move_has_the_published_error_and_its_own_force(comau):
+    move = chatter.move(comau, "fast")
+    assert np.max(np.abs(move.tracking_error)) == pytest.approx(28e-6, rel=0.02)
+    # it comes while accelerating, and is gone at the end
+    assert abs(move.tracking_error[-1, 0]) < 0.5e-6
+    masses = sum(comau.get(f"body.{one}.mass") for one in ("y_frame", "z_frame"))
+    assert np.max(move.effort) == pytest.approx((masses + 12.0) * 15.0, rel=0.06)
+
+
+def test_loops_are_stable(comau, gepro):
+    for machine in (comau, gepro):
+        assert least_stable_motion(assembled_machine(machine), machine.step).stable
+
+
+def test_four_drives_in_parallel_carry_the_gantry(gepro, run):
+    # its nodding on the guides lowers the mode a little
+    assert run.drive_mode(gepro) == pytest.approx(run.of_springs(gepro), rel=0.05)
+    stiff = gepro.patch({"connector.guide.stiffness.z": 1e12})
+    assert run.drive_mode(stiff) == pytest.approx(run.of_springs(stiff), rel=0.01)
+
+
+def test_preload_closes_over_the_teeth_and_torque_is_shared(gepro, run):
+    gentle, fast = (run.teeth_in(gepro, name) for name in ("gentle", "fast"))
+    still = gentle.teeth[gentle.time < 0.58][-1]
+    travel = 0.060 / 20.0
+    assert still == pytest.approx(12.0 / travel * np.array([1.0, -1.0, 1.0, -1.0]), rel=1e-3)
+    begun = gentle.time > 0.6
+    assert np.all(gentle.teeth[begun][:, [0, 2]] > 0.0)
+    assert np.all(gentle.teeth[begun][:, [1, 3]] < 0.0)
+    assert np.min(fast.teeth[fast.time > 0.6][:, 0]) < 0.0
+    # while the acceleration is constant the teeth carry m a
+    accelerating = (fast.time > 0.75) & (fast.time < 0.80)
+    pushing = np.mean(np.sum(fast.teeth[accelerating], axis=1))
+    assert pushing == pytest.approx(12_000.0 * 2.0, rel=0.02)
+    assert np.ptp(fast.torque - fast.torque[:, :1], axis=0) == pytest.approx(0.0, abs=1e-9)

@@ -1,0 +1,262 @@
+"""Walls between the packages, light imports, and the cache of compiled code."""
+
+import ast
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.places import ROOT
+
+#: what kernels and physics know nothing of
+FOREIGN = {"chatter", "matplotlib", "pint", "pydantic", "typer", "rich", "tomlkit"}
+HEAVY = ["numba", "scipy", "numpy", "matplotlib", "pint", "pydantic", "tomlkit", "typer", "rich"]
+
+CASE = {
+    "tool": {"teeth": 2, "diameter": "16 mm"},
+    "material": {"Ktc": "600 MPa", "Krc": "200 MPa"},
+    "cut": {
+        "mode": "down", "spindle_speed": "10000 rpm", "feed_per_tooth": "0.1 mm",
+        "axial_depth": "1 mm", "radial_depth": "8 mm",
+    },
+    "structure": {
+        "mode": [
+            {"frequency": "922 Hz", "damping": 0.011, "mass": "0.03993 kg", "direction": [1, 0, 0]}
+        ]
+    },
+}  # fmt: skip
+
+
+def modules(package):
+    return sorted((ROOT / package).rglob("*.py"))
+
+
+def imported(path):
+    """Full names of all modules that a file imports, wherever in it."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: relative import"
+            yield node.module
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
+@pytest.mark.parametrize(
+    ("package", "others"), [("dynamics", {"cutting"}), ("cutting", {"dynamics"})]
+)
+def test_machine_and_cutting_know_nothing_of_each_other(package, others):
+    assert len(modules(package)) > 3
+    for path in modules(package):
+        names = {name.split(".")[0] for name in imported(path)}
+        # units are read where files are read, and nowhere else
+        allowed = {"pint"} if path.parent.name == "formats" else set()
+        assert not names & (FOREIGN - allowed | others), path
+
+
+def test_kernels_know_nothing_of_units_files_and_pictures():
+    for path in modules("chatter/stability/methods"):
+        for name in imported(path):
+            assert name.split(".")[0] not in FOREIGN - {"chatter"}, (path, name)
+            known = (
+                "chatter.stability",
+                "chatter.engine.presets",
+                "chatter.stability.simd_batch",
+                "chatter.description.errors",
+            )
+            inside = name.startswith(known)
+            assert inside or not name.startswith("chatter"), (path, name)
+
+
+def test_pictures_are_drawn_in_one_place():
+    for path in modules("chatter"):
+        if path.parent.name != "plots":
+            lines = path.read_text(encoding="utf-8").splitlines()
+            found = [line for line in lines if "matplotlib" in line and "import" in line]
+            # for a type, never at import
+            assert all(line.startswith("    from matplotlib.figure") for line in found), path
+
+
+def test_no_code_is_taken_from_files():
+    for package in ("chatter", "cutting", "dynamics"):
+        for path in modules(package):
+            tree = ast.parse(path.read_text(encoding="utf-8"))
+            called = {
+                node.func.id
+                for node in ast.walk(tree)
+                if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
+            }
+            assert not called & {"eval", "exec", "compile", "__import__"}, path
+            names = {name.split(".")[0] for name in imported(path)}
+            assert not names & {"pickle", "shelve", "marshal", "dill"}, path
+            assert "allow_pickle=True" not in path.read_text(encoding="utf-8"), path
+
+
+def test_modules_are_small():
+    for package in ("chatter", "cutting", "dynamics"):
+        for path in modules(package):
+            assert len(path.read_text(encoding="utf-8").splitlines()) < 600, path
+
+
+def python(code, **variables):
+    """Run code in a fresh interpreter; return what it prints, as JSON."""
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code],
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+        env={**os.environ, **variables},
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def loaded_by(statement):
+    code = f"import json, sys\n{statement}\nprint(json.dumps(sorted(sys.modules)))"
+    return {name for name in python(code) if "." not in name}
+
+
+def test_import_is_light():
+    assert not loaded_by("import chatter; dir(chatter)") & set(HEAVY)
+
+
+def test_reading_a_case_needs_no_compiler_and_no_pictures():
+    names = loaded_by("import chatter; chatter.load; import chatter.cli")
+    assert "pydantic" in names
+    assert not names & {"numba", "scipy", "matplotlib", "pint"}
+
+
+def test_stability_needs_no_pictures():
+    assert "matplotlib" not in loaded_by("import chatter; chatter.lobes; chatter.check")
+
+
+@pytest.fixture
+def sources(tmp_path):
+    for package in ("chatter", "cutting", "dynamics"):
+        for path in modules(package):
+            copied = tmp_path / path.relative_to(ROOT)
+            copied.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(path, copied)
+    return tmp_path
+
+
+def test_cache_folder_changes_with_every_source(sources):
+    from chatter.engine.presets import CACHE_FOLDER, source_hash
+
+    first = source_hash(sources)
+    assert CACHE_FOLDER.name == f"kernels-{first}"
+    seen = {first}
+    for name in (
+        "cutting/force/directional_coefficients.py",
+        "dynamics/modal/modes.py",
+        "chatter/stability/methods/collocation/drivers.py",
+    ):
+        path = sources / name
+        text = path.read_text(encoding="utf-8")
+        path.write_text(text + "\n# edited\n", encoding="utf-8")
+        seen.add(source_hash(sources))
+        path.write_text(text, encoding="utf-8")
+        assert source_hash(sources) == first
+    assert len(seen) == 4
+    (sources / "cutting/force/directional_coefficients.py").rename(sources / "cutting/renamed.py")
+    assert source_hash(sources) not in seen
+
+
+def test_an_edited_leaf_is_compiled_anew(sources):
+    """The leaf lives in another file than the cached driver, where numba does not look."""
+    code = (
+        "import json, sys\n"
+        "sys.path.insert(0, sys.argv[1] if len(sys.argv) > 1 else '.')\n"
+        "from chatter.engine.presets import CACHE_FOLDER\n"
+        "print(json.dumps(str(CACHE_FOLDER)))"
+    )
+    base = sources / "cache"
+
+    def folder():
+        done = subprocess.run(
+            [sys.executable, "-c", code, str(sources)],
+            capture_output=True,
+            text=True,
+            cwd=sources,
+            env={**os.environ, "NUMBA_CACHE_DIR": str(base)},
+            check=True,
+        )
+        return json.loads(done.stdout)
+
+    first = folder()
+    assert Path(first).parent == base
+    assert folder() == first
+    leaf = sources / "cutting/force/force_law.py"
+    leaf.write_text(leaf.read_text(encoding="utf-8") + "\n", encoding="utf-8")
+    assert folder() != first
+
+
+def test_other_values_and_counts_compile_nothing_new():
+    from chatter import Case
+    from chatter.stability.methods.collocation.drivers import multipliers_at
+    from chatter.stability.methods.semi_discretization.method import multipliers
+    from chatter.stability.model import milling_model
+
+    case = Case.from_dict(CASE)
+    second = {
+        "frequency": "700 Hz", "damping": 0.02, "stiffness": "2 N/um", "direction": [0, 1, 0]
+    }  # fmt: skip
+    third = {**second, "direction": [0.6, 0.0, 0.8], "side": "workpiece"}
+    patches = [
+        {},
+        {"tool.teeth": 5, "tool.helix": "30 deg", "cut.mode": "up"},
+        {"structure.mode[1]": second},
+        {"structure.mode[1]": second, "structure.mode[2]": third},
+        {"process_damping.coefficient": "0.2 N/mm", "cut.mode": "slot", "cut.radial_depth": None},
+        {"material": {"law": "exponential", "Ktc": 6e8, "h0": 1e-4, "exponent": 0.7}},
+    ]
+    for values in patches:
+        patched = case.patch(values)
+        point = (
+            np.array([value]) for value in (patched.cut.spindle_speed, patched.cut.axial_depth)
+        )
+        value = multipliers(milling_model(patched).arrays, *point, 24)
+        assert abs(value[0]) > 0.0
+    assert len(multipliers_at.signatures) == 1
+
+
+MULTIPLIER = """
+import json, sys
+import numpy as np
+from chatter import Case
+from chatter.stability.model import milling_model
+from chatter.stability.methods.collocation.drivers import multipliers_at
+case = Case.from_dict(json.loads({case!r}))
+arrays = milling_model(case).arrays
+point = [np.array([float(v)]) for v in (case.cut.spindle_speed, case.cut.axial_depth)]
+value = multipliers_at(arrays, *point, np.array([16]), 1)[0]
+print(json.dumps([value.real, value.imag]))
+"""
+
+
+def test_without_the_compiler_the_multiplier_is_the_same():
+    code = MULTIPLIER.format(case=json.dumps(CASE))
+    compiled = complex(*python(code))
+    plain = complex(*python(code, NUMBA_DISABLE_JIT="1"))
+    assert abs(compiled) > 0.1
+    assert plain == pytest.approx(compiled, abs=1e-12)
+
+
+def test_leaves_of_both_packages_are_compiled_alike():
+    """Neither package may know the other, so that both have the presets and the dispatch."""
+    from chatter.engine import presets
+    from cutting import compiled
+
+    text = [(ROOT / package / "compiled.py").read_text() for package in ("cutting", "dynamics")]
+    assert text[0] == text[1]
+    assert compiled.UNCOUNTED.items() <= presets.TIME_LOOP.items()
+    for package in ("chatter", "cutting", "dynamics"):
+        for path in modules(package):
+            if path.name not in ("compiled.py", "presets.py"):
+                assert "_nrt" not in path.read_text(encoding="utf-8"), path
