@@ -8,11 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.identification.marquardt import levenberg_marquardt
 from dynamics.identification.refinement import (
     ModalModel,
     bounded_poles,
-    limited_pole_step,
+    pole_reach,
     solve_linear,
 )
 from dynamics.identification.residues import (
@@ -23,6 +22,7 @@ from dynamics.identification.residues import (
     residual_columns,
 )
 from dynamics.identification.tall import gram, product
+from dynamics.least_squares import least_squares
 
 
 @dataclass(frozen=True)
@@ -218,14 +218,12 @@ def refine_real_modes(
     def evaluate(parameters: NDArray[np.float64]) -> RealModel:
         return _evaluate(tool, parameters, modes, axes, terms)
 
-    def limit(parameters: NDArray[np.float64], step: NDArray[np.float64]) -> NDArray[np.float64]:
-        return limited_pole_step(parameters, step, modes)
-
     lag = [] if delay is None else [delay / DELAY_UNIT]
     start = np.concatenate(
         [np.log(natural_frequency), np.log(damping), vectors.ravel(), np.array(lag)]
     )
-    return levenberg_marquardt(evaluate, start, limit)[1]
+    others = np.maximum(np.abs(start[2 * modes :]), 1e-3)
+    return least_squares(evaluate, start, np.concatenate([pole_reach(damping), others]))
 
 
 def _evaluate(
