@@ -105,7 +105,8 @@ class _Points(Generic[Point]):
     def residuals(self, step: NDArray[np.float64]) -> NDArray[np.float64]:
         point = self.at(step)
         root, basis, scale = _factor(point)
-        projected = basis.T @ (scale * point.gradient) / root
+        projected = basis.T @ (scale * point.gradient)
+        projected = np.divide(projected, root, out=np.zeros_like(root), where=root > 0.0)
         rest = max(point.chi_square - float(projected @ projected), 0.0)
         return np.append(projected, np.sqrt(rest))
 
@@ -117,8 +118,11 @@ class _Points(Generic[Point]):
 def _factor(
     point: Linearised,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Square roots of eigenvalues (p,), vectors (p, p) and scale (p,) of the normal equations."""
+    """Square roots of eigenvalues (p,), vectors (p, p) and scale (p,) of the normal equations.
+
+    A direction that the residuals do not depend on has the root 0 and is not moved along.
+    """
     diagonal = np.diag(point.normal)
     scale = 1.0 / np.sqrt(np.maximum(diagonal, _SINGULAR * np.max(diagonal) + 1e-300))
     values, basis = np.linalg.eigh(point.normal * scale[:, None] * scale)
-    return np.sqrt(np.maximum(values, _SINGULAR * values[-1])), basis, scale
+    return np.sqrt(np.where(values > _SINGULAR * values[-1], values, 0.0)), basis, scale

@@ -15,18 +15,3 @@
 | real_modes, tool_point | real modes, mass and direction at the tool point | |
 | fit, result, report | the call, its result, uncertainty and warnings | |
 """
-
-from dynamics.identification.band import Band
-from dynamics.identification.fit import identify_modes
-from dynamics.identification.result import FrfModel, IdentifiedMode, ModalFit, SynthesisError
-from dynamics.identification.stabilisation import StabilisationDiagram
-
-__all__ = [
-    "Band",
-    "FrfModel",
-    "IdentifiedMode",
-    "ModalFit",
-    "StabilisationDiagram",
-    "SynthesisError",
-    "identify_modes",
-]

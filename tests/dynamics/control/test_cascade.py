@@ -7,28 +7,25 @@ import numpy as np
 import pytest
 from numba import njit
 
-from dynamics.control import (
-    ControlError,
+from dynamics.control.brake import MotorBrake, brake_table, brake_torque, engage_brake
+from dynamics.control.cascade import (
     DriveController,
     Feedforward,
-    FirstOrderCurrentLoop,
     LoopTiming,
-    MeasuringSystem,
-    MotorBrake,
     PositionController,
-    ReferenceModel,
+    VelocityController,
+)
+from dynamics.control.current_loop import (
+    FirstOrderCurrentLoop,
     RegulatedMotor,
     SecondOrderCurrentLoop,
-    VelocityController,
-    brake_table,
-    brake_torque,
-    control_step,
-    control_table,
-    engage_brake,
-    low_pass,
-    notch,
-    rest_at,
 )
+from dynamics.control.drive_step import control_step
+from dynamics.control.drive_table import control_table, rest_at
+from dynamics.control.filters import low_pass, notch
+from dynamics.control.measurement import MeasuringSystem
+from dynamics.control.reference_model import ReferenceModel
+from dynamics.control.sampling import ControlError
 
 H = 125e-6
 ONE = LoopTiming(H)

@@ -10,7 +10,7 @@ import pytest
 import tomlkit
 
 from dynamics.frf.container import Frf, MeasurementError, Point
-from dynamics.identification import identify_modes
+from dynamics.identification.fit import identify_modes
 from dynamics.modal.modes import Mode, receptance_matrix
 from tests.dynamics.identification import made_up_frfs as made_up
 from tests.places import SHARED
