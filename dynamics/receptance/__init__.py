@@ -1,1 +1,1 @@
-"""Receptances of components: coupled and taken apart (`coupling`: RCSA, Schmitz and Duncan 2005)."""
+"""Receptances of components, coupled and taken apart: RCSA (Schmitz and Duncan 2005)."""
