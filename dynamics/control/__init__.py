@@ -12,7 +12,6 @@ cascade          the specification of a drive: controllers, limits, dead times
 drive_table      specification -> columns, and a drive at rest
 drive_step       one step of time of the cascade (kernel)
 response         closed-form frequency response of the same cascade
-brake            motor held by its brake instead of the cascade
 ================ ===================================================================
 
 A drive is specified by `DriveController`; `control_table` makes the columns for k drives at a

@@ -144,16 +144,6 @@ def test_function_with_residues_of_both_signs_is_refused_as_drive_point():
     assert fit.errors[0].maximum < 1e-6
 
 
-def test_symmetric_ends_give_masses_by_magnitude():
-    first, second, third = THREE
-    values = drive_point((first, third)).values - drive_point((second,)).values
-    ends = Point("left", "z"), Point("right", "z")
-    fit = identify_modes([Frf(LINES, values, "receptance", *ends)])
-    modes = fit.modes_by_magnitude(0, (0.0, 0.0, 1.0), "workpiece")
-    assert_modes(modes, THREE)
-    assert {(mode.direction, mode.side) for mode in modes} == {((0.0, 0.0, 1.0), "workpiece")}
-
-
 def matrix_frfs(modes, pairs, noise=0.0, seed=0):
     rng = np.random.default_rng(seed)
     h = receptance_matrix(modes, LINES) * ((2j * np.pi * LINES) ** 2)[:, None, None]
