@@ -32,7 +32,8 @@ from dynamics.friction.lugre import LuGre
 from dynamics.machine.description import Machine
 from dynamics.machine.loop import Loads
 from dynamics.machine.tables import machine_tables
-from dynamics.trajectory import SetPoints, SineMotion, set_points
+from dynamics.trajectory.periodic import SineMotion
+from dynamics.trajectory.set_points import SetPoints, set_points
 
 STEP = 50e-6  # s
 DURATION = 5.0  # s, simulated

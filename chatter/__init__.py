@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from chatter.description.errors import InputError as InputError
     from chatter.description.errors import RunError as RunError
     from chatter.description.machine.machine_file import load_machine as load_machine
+    from chatter.explain.comparison import compare as compare
     from chatter.io.shipped_examples import examples as examples
     from chatter.simulation.simulate import simulate as simulate
     from chatter.simulation.virtual_tests.from_file import frf as frf
@@ -62,6 +63,7 @@ _PUBLIC = {
     "RunError": "chatter.description.errors",
     "bifurcation": "chatter.studies.bifurcation",
     "check": "chatter.stability.check",
+    "compare": "chatter.explain.comparison",
     "examples": "chatter.io.shipped_examples",
     "frf": "chatter.simulation.virtual_tests.from_file",
     "load": "chatter.description.case",
@@ -78,14 +80,17 @@ _PUBLIC = {
     "whatif": "chatter.studies.whatif.study",
 }
 
-__all__ = sorted(_PUBLIC)
+__all__ = sorted([*_PUBLIC, "explain"])
 
 
 def __getattr__(name: str) -> Any:
+    if name == "explain":
+        # a package and a call: see chatter.explain
+        return import_module("chatter.explain")
     if name in _PUBLIC:
         return getattr(import_module(_PUBLIC[name]), name)
     raise AttributeError(f"module 'chatter' has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *_PUBLIC])
+    return sorted({*globals(), *__all__})

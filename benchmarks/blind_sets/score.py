@@ -185,7 +185,7 @@ def _simulated(case: Path, folder: Path) -> np.ndarray:
 def _compared(case: Path, folder: Path) -> np.ndarray:
     """Errors (runs, channels) as ``chatter compare`` gives them."""
     from chatter.explain.comparison import compare
-    from chatter.explain.measurement import read_measurement
+    from chatter.explain.measurement_file import read_measurement
 
     found = compare(read_measurement(folder, case)).errors
     channels = sorted({one.channel for one in found})

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from chatter.cli.explain import DeclaredCase, MeasurementPath, print_checks, print_views
+from chatter.cli.explain import DeclaredCase, MeasurementPath, print_checks, print_diagnostics
 from chatter.cli.options import Json, OutputFolder, output_folder
 from chatter.cli.progress import announce_compilation
 from chatter.cli.results import present
@@ -23,7 +23,7 @@ def compare(
 ) -> None:
     """Error of a case's prediction, by run and channel."""
     from chatter.explain.comparison import compare as run_compare
-    from chatter.explain.measurement import read_measurement
+    from chatter.explain.measurement_file import read_measurement
 
     declared = read_measurement(measurement, case)
     announce_compilation()
@@ -47,4 +47,4 @@ def _print_errors(title: str, result: Comparison) -> None:
     headers = ["run", "channel", "rms error [SI]", "of the signal [%]", "times the noise"]
     print_table(title, headers, rows)
     if result.signature is not None:
-        print_views(result.signature.summary())
+        print_diagnostics(result.signature.summary())

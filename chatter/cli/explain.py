@@ -31,31 +31,31 @@ def explain(
 ) -> None:
     """Trace what a measurement shows and its declared case lacks, and add it."""
     from chatter.explain.explanation import explain as run_explain
-    from chatter.explain.measurement import read_measurement
+    from chatter.explain.measurement_file import read_measurement
 
     declared = read_measurement(measurement, case)
     announce_compilation()
     with progress_bar("searching, %") as bar:
 
-        def told(_: str, share: float) -> None:
+        def progress(_: str, share: float) -> None:
             bar(round(100 * share), 100)
 
-        result = run_explain(declared, told)
+        result = run_explain(declared, progress=progress)
     folder = output_folder(out, measurement.resolve().stem)
     present(result, folder, json=json, words=_print_explanation)
 
 
 def print_checks(checks: list[dict[str, str]]) -> None:
     """Print what was found in the signals, with what follows."""
-    from chatter.report.explanation.sections import FOLLOWS
+    from chatter.explain.data_checks.finding import FOLLOWS
 
     fatal = [one for one in checks if one["severity"] == "fatal"]
     for one in fatal or checks:
-        typer.echo(f"{one['says']} ({FOLLOWS[one['severity']]})")
+        typer.echo(f"{one['description']} ({FOLLOWS[one['severity']]})")
 
 
 def _print_explanation(result: Explanation) -> None:
-    from chatter.explain.selection.separation import told_apart
+    from chatter.explain.selection.discriminating_test import in_words
 
     summary = result.summary()
     typer.echo(f"verdict: {summary['verdict']}")
@@ -70,32 +70,36 @@ def _print_explanation(result: Explanation) -> None:
             ]
             for key, one in effect["parameters"].items()
         ]
-        title = f"{effect['name']} (probability {effect['probability']:.3g}): {effect['says']}"
+        title = (
+            f"{effect['name']} (probability {effect['probability']:.3g}): {effect['description']}"
+        )
         print_table(title, ["parameter", "value", "unit", "95 % interval"], rows)
         if effect["confounded_with"]:
-            typer.echo(f"cannot be told from: {', '.join(effect['confounded_with'])}")
-        for name, trial in effect["told_apart_by"].items():
-            typer.echo(f"  {told_apart(name, trial)}")
+            typer.echo(
+                f"the data do not discriminate against: {', '.join(effect['confounded_with'])}"
+            )
+        for name, test in effect["discriminating_test"].items():
+            typer.echo(f"  {in_words(name, test)}")
     helping = [one["name"] for one in summary.get("partial", ())]
     if helping:
-        typer.echo(f"helps, and is not enough: {', '.join(helping)}")
+        typer.echo(f"explains a part: {', '.join(helping)}")
     error = summary["error"]
     rows = [[key, f"{value:.4g}"] for key, value in error.items() if isinstance(value, float)]
     print_table("error, rms over signal", ["", ""], rows)
     signature = summary["signature"]
     if signature["refitted"] is None:
         return
-    lead = signature["lead"]
-    if lead is not None:
-        typer.echo(f"a lead: {lead['says']}")
-    typer.echo("what the refitted case leaves:")
-    print_views(signature["refitted"])
+    dependence = signature["residual_dependence"]
+    if dependence is not None:
+        typer.echo(f"residual dependence: {dependence['description']}")
+    typer.echo("residual of the refitted case:")
+    print_diagnostics(signature["refitted"])
 
 
-def print_views(signature: dict) -> None:
-    """Print what the views of a residual say."""
-    for view in signature["views"]:
-        if view["beyond_chance"]:
-            typer.echo(f"  {view['says']}")
-    if signature["nothing_beyond_chance"]:
-        typer.echo(f"  {signature['nothing_beyond_chance']}")
+def print_diagnostics(signature: dict) -> None:
+    """Print what the diagnostics of a residual find."""
+    for one in signature["diagnostics"]:
+        if one["significant"]:
+            typer.echo(f"  {one['description']}")
+    if signature["no_significant_dependence"]:
+        typer.echo(f"  {signature['no_significant_dependence']}")

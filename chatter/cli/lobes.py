@@ -24,7 +24,7 @@ from chatter.description.errors import InputError
 from chatter.report.console import print_table
 
 if TYPE_CHECKING:
-    from chatter.stability.diagram import LobeDiagram
+    from chatter.stability.diagram import StabilityDiagram
 
 
 def lobes(
@@ -129,7 +129,7 @@ def _serve(description: Case, method: str | None, port: int, no_browser: bool) -
         server.end()
 
 
-def _print_diagram(diagram: LobeDiagram) -> None:
+def _print_diagram(diagram: StabilityDiagram) -> None:
     _print_pockets(diagram.summary())
     _print_method(diagram.summary())
 

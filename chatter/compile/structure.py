@@ -13,7 +13,7 @@ from chatter.compile.measured_frf import MeasuredSide, measured_sides
 from chatter.description.errors import InputError
 from chatter.description.units import rpm
 from dynamics.frf.container import MeasurementError
-from dynamics.identification import ModalFit
+from dynamics.identification.result import ModalFit
 from dynamics.modal.frequency_lines import frequency_lines
 from dynamics.modal.modes import Mode, receptance_matrix
 

@@ -1,25 +1,46 @@
 """Closing the loop: what a measurement says that the declared case lacks.
 
-=============== ====================================================================
-module          responsibility
-=============== ====================================================================
-measurement     measurement folders: runs, signals in SI, declared case
-tables          signals from CSV, NPZ, TDMS, universal files
-headings        names and units of columns
-columns         columns that a kind needs
-signals         checks of the signals before anything is blamed on physics
-unusable        verdict where the data and the declared case plainly contradict each other
-kinds           milling, axis, stability, frf: predictions and uncertain values
-effects         what a case may lack, each a patch
-tolerance       how far declared values may be off
-fitting         least squares with priors
-noise           noise floor of signals
-problem         a measurement as a least-squares problem
-search          candidates fitted on some runs, judged on others
-separation      measurements that would tell apart what fits alike
-signature       where the residual lives
-explanation     verdict, effects, errors; files
-report          report.html
-comparison      `compare`: errors of the declared case
-=============== ====================================================================
+The package is called as a function too: ``chatter.explain(folder)`` is
+`chatter.explain.explanation.explain`.
+
+=================== ================================================================
+module              responsibility
+=================== ================================================================
+measurement         runs with their signals, and the declared case
+measurement_file    measurement folders
+kinds               milling, axis, stability, frf: predictions, nuisance parameters
+data_checks         checks of the signals before anything is blamed on physics
+prediction          predictions of a case for every run, each made once
+effects             what a case may lack, each a patch of it
+selection           fits, candidates, search, discriminating tests; every tuned number
+residuals           where the residual lives
+errors              errors of predictions, before and after
+lobes_before_after  stability lobes before and after
+stability_margin    how far cutting tests are from the limit
+explanation         `explain`: verdict, effects, errors; files
+comparison          `compare`: errors of the declared case
+=================== ================================================================
 """
+
+from __future__ import annotations
+
+import sys
+from types import ModuleType
+from typing import Any
+
+
+class _CallablePackage(ModuleType):
+    """Package that is the call of its name: whatever was imported before, `chatter.explain` is it.
+
+    Importing any module below sets the attribute ``chatter.explain`` to the package, so that no
+    function can stand there under this name.
+    """
+
+    def __call__(self, *args: Any, **options: Any) -> Any:
+        """Find out what the declared case of a measurement lacks; see `explanation.explain`."""
+        from chatter.explain.explanation import explain
+
+        return explain(*args, **options)
+
+
+sys.modules[__name__].__class__ = _CallablePackage

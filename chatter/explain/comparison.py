@@ -7,12 +7,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from chatter.description.case import Case
 from chatter.explain.data_checks.checking import checked
 from chatter.explain.data_checks.finding import SignalFinding
-from chatter.explain.errors_of_runs import ChannelError, errors_of, overall
-from chatter.explain.kinds.registry import kind_of
+from chatter.explain.errors import ChannelError, errors_of, overall
+from chatter.explain.explanation import as_measurement
+from chatter.explain.kinds.registry import KINDS
 from chatter.explain.measurement import Measurement
-from chatter.explain.signature import Signature, signature_of
+from chatter.explain.prediction import Predictions
+from chatter.explain.residuals.signature import Signature, signature_of
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, write_results
 
@@ -31,7 +34,7 @@ class Comparison:
     signature : Signature or None
         Where the residual lives; None where nothing could be predicted.
     checks : tuple of SignalFinding
-        What is no good in the signals.
+        What is unusable in the signals.
     """
 
     measurement: Measurement
@@ -51,21 +54,13 @@ class Comparison:
         }
 
     def plot(self) -> Figure:
-        """Picture of measured signals and what the case leaves of them."""
-        if self.measurement.kind == "stability":
-            return presentation("plots.residual_diagnostics").plot_findings(
-                self.signature.findings[:1]
-            )
-        title = f"{self.measurement.title}: what {self.measurement.case.name} leaves"
-        return presentation("plots.explanation").plot_residuals(
-            {"left": self.signature.residual}, title
-        )
+        """Picture of measured signals and their residuals."""
+        return presentation("plots.explanation").plot_comparison(self)
 
     def plot_signature(self) -> Figure:
         """Picture of where the residual lives."""
-        return presentation("plots.residual_diagnostics").plot_findings(
-            self.signature.telling or self.signature.findings[:1]
-        )
+        findings = self.signature.significant or self.signature.findings[:1]
+        return presentation("plots.residual_diagnostics").plot_findings(findings)
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write compare.csv, compare.json, compare.png and signature.png."""
@@ -85,22 +80,34 @@ class Comparison:
         return "\n".join([heading, *rows]) + "\n"
 
 
-def compare(measurement: Measurement) -> Comparison:
-    """Compare the declared case of a measurement with its runs.
+def compare(
+    measurement: str | Path | Measurement, case: str | Path | Case | None = None
+) -> Comparison:
+    """Compare the predictions of a case with the runs of a measurement.
+
+    Parameters
+    ----------
+    measurement : path or Measurement
+        Folder with measurement.toml, or what was read from one.
+    case : path or Case, optional
+        Instead of the case that the folder names.
 
     Raises
     ------
     InputError
         If the measurement or its case cannot be used.
+    RunError
+        If the case cannot predict a run.
     """
-    looked_at = checked(measurement)
-    if looked_at.forbids_prediction:
-        return Comparison(looked_at.measurement, (), None, looked_at.findings)
-    kind, prepared = kind_of(looked_at.measurement)
-    signature = signature_of(prepared, kind, prepared.case)
+    usable = checked(as_measurement(measurement, case))
+    if usable.forbids_prediction:
+        return Comparison(usable.measurement, (), None, usable.findings)
+    kind = KINDS[usable.measurement.kind]
+    prepared, predictions = kind.prepared(usable.measurement), Predictions(kind)
+    signature = signature_of(prepared, predictions, prepared.case)
     parts = {(part.run.name, part.channel): part for part in signature.residual.parts}
     errors = []
-    for one in errors_of(prepared.case, prepared, kind):
+    for one in errors_of(prepared.case, predictions, prepared.runs):
         part = parts[one.run, one.channel]
         errors.append(one._replace(noise=part.noise, over_noise=part.over_noise))
-    return Comparison(prepared, errors, signature, looked_at.findings)
+    return Comparison(prepared, errors, signature, usable.findings)

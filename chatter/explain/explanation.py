@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,35 +12,38 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
-from chatter.explain.before_after import BeforeAfter, before_after
-from chatter.explain.data_checks.checking import checked
+from chatter.description.errors import InputError, RunError
+from chatter.explain.data_checks.checking import Checked, checked
 from chatter.explain.data_checks.finding import SignalFinding
-from chatter.explain.data_checks.unusable import Unusable
-from chatter.explain.errors_of_runs import errors_of, overall
-from chatter.explain.kinds.kind import Effect
-from chatter.explain.kinds.registry import kind_of
+from chatter.explain.effects.effect import Effect
+from chatter.explain.errors import (
+    DECLARED,
+    REFITTED,
+    REPAIRED,
+    BeforeAfter,
+    before_after,
+    errors_of,
+    overall,
+)
+from chatter.explain.kinds.registry import KINDS
+from chatter.explain.lobes_before_after import Added, LobesBeforeAfter, lobes_before_after
 from chatter.explain.measurement import Measurement
+from chatter.explain.measurement_file import read_measurement
+from chatter.explain.prediction import Predictions
+from chatter.explain.residuals.residual_dependence import ResidualDependence
+from chatter.explain.residuals.signature import Signature, signature_of
+from chatter.explain.selection.candidates import Candidate, Progress, Stage
+from chatter.explain.selection.criteria import CONFOUNDED, CORRELATED_SAMPLES, NUMERICS
+from chatter.explain.selection.discriminating_test import discriminating_test
 from chatter.explain.selection.fitting import Fit
-from chatter.explain.selection.problem import NUMERICS
-from chatter.explain.selection.search import Candidate, Search, Stage, search
-from chatter.explain.selection.separation import separation
-from chatter.explain.signature import Signatures, signatures_of
+from chatter.explain.selection.search import Search, search
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, write_results
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from chatter.explain.lobes_before_after import LobesBeforeAfter
-
-#: what is left of any channel over the noise up to which the measurement is at its noise floor
-AT_NOISE = 1.12
-#: gain that a candidate may lack against the best and still not be told from it, as a share
-_ALIKE = 0.03
-#: samples that count as one: residuals beside a wrong model are not independent
-_CORRELATED = 20.0
-
-Progress = Callable[[str, float], None]
+EXPLAINED, NOTHING_MISSING, UNEXPLAINED = "explained", "nothing-missing", "unexplained"
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,104 +58,138 @@ class Explanation:
     verdict : str
         "explained", "nothing-missing" or "unexplained".
     checks : tuple of SignalFinding
-        What is no good in the signals, and was left out.
+        What is unusable in the signals, and was excluded.
+    predictions : Predictions
+        Made so far.
     """
 
     measurement: Measurement
     found: Search
     verdict: str
+    predictions: Predictions
     checks: tuple[SignalFinding, ...] = ()
 
-    @property
+    @cached_property
     def case(self) -> Case:
         """Case refitted, with the effects added where they explain."""
-        if self.verdict == "explained":
-            return self.found.problem.case(self.found.final.by_name)
-        return self.refitted
+        return self._with_effects if self.verdict == EXPLAINED else self.refitted
 
-    @property
+    @cached_property
     def refitted(self) -> Case:
-        """Declared case with what is merely uncertain refitted to all runs."""
-        names = {one.name for one in self.found.base.parameters}
-        values = {key: v for key, v in self.found.base.by_name.items() if key in names}
-        return self.measurement.case.patch(values) if values else self.measurement.case
+        """Declared case with the nuisance parameters refitted to all runs."""
+        return self.measurement.with_values(self.found.base.by_name)
+
+    @cached_property
+    def _with_effects(self) -> Case:
+        return self.found.problem.case(self.found.final.by_name)
+
+    @cached_property
+    def _of_fitted(self) -> dict[str, Case]:
+        """Model -> case fitted to the runs for fitting alone."""
+        cases = {
+            DECLARED: self.measurement.case,
+            REFITTED: self.measurement.with_values(self.found.first.before.by_name),
+        }
+        if self.verdict == EXPLAINED:
+            cases[REPAIRED] = self.found.problem.case(self.found.of_fitted.by_name)
+        return cases
 
     def summary(self) -> dict[str, Any]:
         """Content of explanation.json."""
+        return self._summary
+
+    @cached_property
+    def _summary(self) -> dict[str, Any]:
+        effects = self._effects()
+        explained = self.verdict == EXPLAINED
+        dependence = self.residual_dependence
         return {
             "verdict": self.verdict,
             "checks": [one.as_dict() for one in self.checks],
-            "effects": self._effects() if self.verdict == "explained" else [],
-            # what helps, but leaves something that is not known
-            "partial": self._effects() if self.verdict == "unexplained" else [],
+            "effects": effects if explained else [],
+            # what helps, but leaves a residual that is not known
+            "partial": effects if self.verdict == UNEXPLAINED else [],
             "error": self._errors(),
             "candidates": self._candidates(),
             "error_by_channel": self.before_after.summary(),
-            "signature": self.signatures.summary(),
-            "left_over_noise": {
-                channel: finite_or_none(left) for channel, left in self.found.left.items()
+            "signature": {
+                "refitted": self.refitted_signature.summary(),
+                "repaired_model": self.repaired_signature.summary()
+                if self.repaired_signature
+                else None,
+                "residual_dependence": dependence.summary() if dependence else None,
+            },
+            "normalised_residual": {
+                channel: finite_or_none(rms)
+                for channel, rms in self.found.normalised_residual.items()
             },
         }
 
     @cached_property
-    def signatures(self) -> Signatures:
-        """Where the residual lives, before and after."""
-        return signatures_of(self)
+    def refitted_signature(self) -> Signature:
+        """Where the residual of the refitted case lives."""
+        noise = self.found.problem.noise
+        return signature_of(self.measurement, self.predictions, self.refitted, noise)
+
+    @cached_property
+    def repaired_signature(self) -> Signature | None:
+        """Where the residual lives with the effects added, also where they explain a part alone."""
+        if not self.found.accepted:
+            return None
+        # samples count as far as the law that was found is certain of them
+        problem = self.found.problem
+        return signature_of(
+            problem.measurement, self.predictions, self._with_effects, problem.noise
+        )
+
+    @cached_property
+    def residual_dependence(self) -> ResidualDependence | None:
+        """On what a residual that no effect explains depends; None where there is none."""
+        if self.verdict != UNEXPLAINED:
+            return None
+        repaired = self.repaired_signature
+        if repaired is not None and repaired.dependence.finding.significant:
+            return repaired.dependence
+        return self.refitted_signature.dependence
 
     @cached_property
     def before_after(self) -> BeforeAfter:
-        """Errors by channel, before and after."""
-        return before_after(self, self.signatures.refitted.residual)
+        """Errors by channel of the declared, the refitted and the repaired case."""
+        residual = self.refitted_signature.residual
+        return before_after(self._of_fitted, self.predictions, self.found.split, residual)
 
     @cached_property
     def lobes(self) -> LobesBeforeAfter | None:
         """Stability lobes before and after; None where the case holds no cut."""
-        from chatter.explain.lobes_before_after import lobes_before_after
-
-        return lobes_before_after(self)
+        cases = {DECLARED: self.measurement.case, REFITTED: self.refitted}
+        added = None
+        if self.verdict == EXPLAINED:
+            cases[REPAIRED] = self.case
+            nuisance = {one.name for one in self.found.base.parameters}
+            values = {key: v for key, v in self.found.final.by_name.items() if key in nuisance}
+            added = Added(self.found.effect_names, self.measurement.with_values(values))
+        return lobes_before_after(self.measurement, cases, added)
 
     def _errors(self) -> dict[str, Any]:
-        kind, measurement = self.found.kind, self.measurement
-        unseen = self.found.unseen
+        runs, holdout = self.measurement.runs, self.found.split.holdout
+        noise, kind = self.found.problem.noise, self.predictions.kind
+        fitted = list(self._of_fitted.values())
 
-        def error(case: Case, runs=None) -> float | None:
-            return finite_or_none(overall(errors_of(case, measurement, kind, runs)))
+        def error(case: Case, some=runs) -> float | None:
+            return finite_or_none(overall(errors_of(case, self.predictions, some)))
 
-        before, after = self.refitted, self.case
+        floor = kind.noise_floor(
+            self.measurement, lambda run: self.predictions.of(self.case, run), noise
+        )
         return {
             "metric": "nrmse",
-            "noise_floor": self._noise_floor(),
-            "declared": error(measurement.case),
-            "before": error(before),
-            "after": error(after),
-            "holdout_before": error(self.refitted_to_fitted, unseen),
-            "holdout_after": error(self.explained_by_fitted, unseen),
+            "noise_floor": finite_or_none(floor),
+            "declared": error(self.measurement.case),
+            "before": error(self.refitted),
+            "after": error(self.case),
+            "holdout_before": error(fitted[1], holdout),
+            "holdout_after": error(fitted[-1], holdout),
         }
-
-    @property
-    def refitted_to_fitted(self) -> Case:
-        """Declared case refitted to the runs for fitting alone."""
-        values = self.found.first.before.by_name
-        return self.measurement.case.patch(values) if values else self.measurement.case
-
-    @property
-    def explained_by_fitted(self) -> Case:
-        """Case with the effects added, fitted to the runs for fitting alone."""
-        if self.verdict != "explained":
-            return self.refitted_to_fitted
-        return self.found.problem.case(self.found.of_fitted.by_name)
-
-    def _noise_floor(self) -> float | None:
-        floor = getattr(self.found.kind, "noise_floor", None)
-        if floor is not None:
-            return finite_or_none(floor(self.measurement, self.case))
-        shares = {}
-        for run in self.measurement.runs:
-            for channel in getattr(self.found.kind, "judged", self.found.kind.channels)(run):
-                level = float(np.sqrt(np.mean(run.signals[channel] ** 2)))
-                noise = self.found.problem.noise[run.name][channel]
-                shares.setdefault(channel, []).append((noise / max(level, 1e-300)) ** 2)
-        return finite_or_none(float(np.mean([math.sqrt(np.mean(v)) for v in shares.values()])))
 
     def _effects(self) -> list[dict[str, Any]]:
         return [
@@ -162,74 +198,151 @@ class Explanation:
                 "parameters": parameters_of(self.found.final, stage.best.effect),
                 "probability": round(probability(stage.tried, stage.best), 4),
                 "confounded_with": [one.effect.name for one in _confounded(stage)],
-                "told_apart_by": self._told_apart(stage),
-                "says": stage.best.effect.says,
+                "discriminating_test": self._discriminating_tests(stage),
+                "description": stage.best.effect.help,
             }
             for stage in self.found.accepted
         ]
 
-    def _told_apart(self, stage: Stage) -> dict[str, Any]:
-        """Confounded effect -> measurement that would tell it from the one named, if any would."""
+    def _discriminating_tests(self, stage: Stage) -> dict[str, Any]:
+        """Confounded effect -> measurement that tells it from the one named, if any does."""
         problem = self.found.problem
-        others = tuple(e for e in problem.effects if e is not stage.best.effect)
+        others = problem.without_effect(stage.best.effect)
 
         def case_with(one: Candidate) -> Case:
-            trial = replace(problem, effects=(*others, one.effect))
+            trial = replace(others, effects=(*others.effects, one.effect))
             # what was tried may have been beside effects that were dropped since
             found = {**self.found.final.by_name, **one.fit.by_name}
             return trial.case({p.name: found.get(p.name, p.start) for p in trial.parameters()})
 
-        cases = {one.effect.name: case_with(one) for one in _confounded(stage)}
-        named = case_with(stage.best)
-        measurement, kind = self.found.measurement, self.found.kind
+        confounded = _confounded(stage)
+        if not confounded:
+            return {}
+        named, kind = case_with(stage.best), self.predictions.kind
         return {
-            name: separation(measurement, kind, problem.noise, named, case)
-            for name, case in cases.items()
+            one.effect.name: discriminating_test(
+                problem.measurement, kind, problem.noise, named, case_with(one)
+            )
+            for one in confounded
         }
 
     def _candidates(self) -> list[dict[str, Any]]:
         stage = self.found.first
-        count, unseen = stage.before.count, self.found.problem.count(self.found.unseen)
+        holdout = self.found.problem.count(self.found.split.holdout)
+        count = max(stage.before.residuals.size, 2)
         return [
             {
                 "name": one.effect.name,
-                "holdout_error": finite_or_none(math.sqrt(one.unseen / unseen)),
-                "bic": finite_or_none(
-                    one.fit.cost + len(one.fit.parameters) * math.log(max(count, 2))
-                ),
+                "holdout_error": finite_or_none(math.sqrt(one.holdout / holdout)),
+                "bic": finite_or_none(one.fit.cost + len(one.fit.parameters) * math.log(count)),
             }
             for one in stage.tried
         ]
 
     def plot(self) -> Figure:
-        """Picture of what is left of the runs, before and after."""
+        """Picture of the residuals of some runs, before and after."""
         return presentation("plots.explanation").plot_explanation(self)
 
     def save(self, folder: str | Path) -> list[Path]:
-        """Write explanation.json, case-updated.toml, report.html and residual.png."""
-        summary = self.summary()
-        picture = self.plot()
-        written = write_results(
-            folder,
-            {
-                "explanation.json": as_json(summary),
-                "report.html": presentation("report.explanation").report_of(self, summary, picture),
+        """Write explanation.json, report.html, residual.png and case-updated.toml."""
+        summary, picture = self.summary(), self.plot()
+        page = presentation("report.explanation").page_of(self, summary, picture)
+        texts = {"explanation.json": as_json(summary), "report.html": page}
+        written = write_results(folder, texts, {"residual.png": picture})
+        path = Path(folder) / "case-updated.toml"
+        self.case.save(path)
+        return [*written, path]
+
+
+@dataclass(frozen=True, eq=False)
+class Contradiction:
+    """Verdict on data that would mislead any search for effects.
+
+    Parameters
+    ----------
+    checked : Checked
+        With a finding that is fatal.
+    """
+
+    checked: Checked
+    verdict: str = field(default=UNEXPLAINED, init=False)
+
+    @property
+    def measurement(self) -> Measurement:
+        """What was measured."""
+        return self.checked.measurement
+
+    @property
+    def checks(self) -> tuple[SignalFinding, ...]:
+        """What was found."""
+        return self.checked.findings
+
+    @property
+    def case(self) -> Case:
+        """The declared case, as it is."""
+        return self.measurement.case
+
+    def summary(self) -> dict[str, Any]:
+        """Content of explanation.json."""
+        declared = self._error()
+        return {
+            "verdict": self.verdict,
+            "checks": self.checked.as_list(),
+            "effects": [],
+            "partial": [],
+            "error": {
+                "metric": "nrmse",
+                "noise_floor": None,
+                "declared": declared,
+                "before": declared,
+                "after": declared,
+                "holdout_before": None,
+                "holdout_after": None,
             },
-            {"residual.png": picture},
-        )
+            "candidates": [],
+            "signature": {"refitted": None, "repaired_model": None, "residual_dependence": None},
+            "normalised_residual": {},
+        }
+
+    def _error(self) -> float | None:
+        """Error of the declared case, where it can be predicted."""
+        if self.checked.forbids_prediction:
+            return None
+        try:
+            kind = KINDS[self.measurement.kind]
+            runs = kind.prepared(self.measurement).runs
+            return finite_or_none(overall(errors_of(self.case, Predictions(kind), runs)))
+        except (InputError, RunError):
+            return None
+
+    def plot(self) -> Figure:
+        """Picture of the signals as recorded."""
+        return presentation("plots.explanation").plot_signals(self.measurement)
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write explanation.json, report.html and the case as declared."""
+        summary = self.summary()
+        page = presentation("report.explanation").page_of_contradiction(self, summary)
+        texts = {"explanation.json": as_json(summary), "report.html": page}
+        written = write_results(folder, texts, {})
         path = Path(folder) / "case-updated.toml"
         self.case.save(path)
         return [*written, path]
 
 
 def explain(
-    measurement: Measurement, progress: Progress = lambda *_: None
-) -> Explanation | Unusable:
+    measurement: str | Path | Measurement,
+    case: str | Path | Case | None = None,
+    progress: Progress = lambda *_: None,
+) -> Explanation | Contradiction:
     """Find out what the declared case of a measurement lacks.
 
     Parameters
     ----------
-    measurement : Measurement
+    measurement : path or Measurement
+        Folder with measurement.toml, or what was read from one.
+    case : path or Case, optional
+        Instead of the case that the folder names.
     progress : callable, optional
         Called with (what is being done, share done).
 
@@ -242,71 +355,79 @@ def explain(
     -----
     Where the checks find the set or its declared case plainly wrong, no effect is looked for.
     """
+    measurement = as_measurement(measurement, case)
     progress("checking the signals", 0.0)
-    looked_at = checked(measurement)
-    if looked_at.is_fatal:
-        return Unusable(looked_at)
-    kind, prepared = kind_of(looked_at.measurement)
-    found = search(prepared, kind, progress)
-    at_noise = max(found.left.values()) <= getattr(kind, "at_noise", AT_NOISE)
-    if found.accepted and at_noise:
-        verdict = "explained"
-    elif at_noise:
-        verdict = "nothing-missing"
-    else:
-        verdict = "unexplained"
-    return Explanation(prepared, found, verdict, looked_at.findings)
+    usable = checked(measurement)
+    if usable.is_fatal:
+        return Contradiction(usable)
+    kind = KINDS[measurement.kind]
+    prepared, predictions = kind.prepared(usable.measurement), Predictions(kind)
+    found = search(prepared, predictions, progress)
+    verdict = UNEXPLAINED
+    if max(found.normalised_residual.values()) <= kind.at_noise:
+        verdict = EXPLAINED if found.accepted else NOTHING_MISSING
+    return Explanation(prepared, found, verdict, predictions, usable.findings)
+
+
+def as_measurement(
+    given: str | Path | Measurement, case: str | Path | Case | None = None
+) -> Measurement:
+    """Return a measurement as it is, or read its folder; with another case declared, if given."""
+    if not isinstance(given, Measurement):
+        return read_measurement(given, case)
+    if case is None:
+        return given
+    return given.with_case(case if isinstance(case, Case) else Case.from_file(case))
 
 
 def probability(tried: tuple[Candidate, ...], of: Candidate) -> float:
-    """Probability of a candidate among those tried, by their fit to unseen runs."""
-    best = min(one.unseen for one in tried)
-    scale = 2.0 * _CORRELATED
-    weights = {one.effect.name: math.exp(-(one.unseen - best) / scale) for one in tried}
+    """Probability of a candidate among those tried, by their fit to holdout runs."""
+    best = min(one.holdout for one in tried)
+    scale = 2.0 * CORRELATED_SAMPLES
+    weights = {one.effect.name: math.exp(-(one.holdout - best) / scale) for one in tried}
     return weights[of.effect.name] / sum(weights.values())
 
 
 def _confounded(stage: Stage) -> list[Candidate]:
-    """Candidates no more intricate than the best that gain nearly as much."""
-    gain = stage.unseen - stage.best.unseen
-    intricate = len(stage.best.fit.parameters)
+    """Candidates with no more parameters than the best that gain nearly as much."""
+    gain = stage.holdout - stage.best.holdout
+    most = len(stage.best.fit.parameters)
     return [
         other
         for other in stage.tried[1:]
-        if stage.unseen - other.unseen > (1.0 - _ALIKE) * gain
-        and len(other.fit.parameters) <= intricate
+        if stage.holdout - other.holdout > (1.0 - CONFOUNDED) * gain
+        and len(other.fit.parameters) <= most
     ]
 
 
 def parameters_of(fit: Fit, effect: Effect) -> dict[str, dict[str, Any]]:
-    """Numbers that people want of an effect, with their 95 % intervals."""
-    places, own = [], {}
-    for place, one in enumerate(fit.parameters):
+    """Numbers that an effect reports, with their 95 % intervals."""
+    indices, own = [], {}
+    for index, one in enumerate(fit.parameters):
         name, _, key = one.name.partition(".")
         if name == effect.name:
-            places.append(place)
+            indices.append(index)
             own[key] = one
-    values = fit.values[places]
-    keys = list(own)
+    values, keys = fit.values[indices], list(own)
 
     def numbers(at: NDArray[np.float64]) -> dict[str, tuple[float, str]]:
         given = dict(zip(keys, (float(v) for v in at), strict=True))
-        if effect.told is None:
+        reported = effect.reported(given)
+        if reported is None:
             return {key: (value, own[key].unit) for key, value in given.items()}
-        return dict(effect.told(given))
+        return dict(reported)
 
-    told = numbers(values)
-    # spread of what is told by its slopes over the parameters
-    deviation = np.sqrt(np.maximum(np.diag(fit.covariance)[places], 0.0))
-    slopes = {key: np.zeros(len(places)) for key in told}
-    for place, moved in enumerate(1e-3 * deviation):
+    reported = numbers(values)
+    covariance = fit.covariance[np.ix_(indices, indices)]
+    # spread of what is reported by its slopes over the parameters
+    slopes = {key: np.zeros(len(indices)) for key in reported}
+    for index, moved in enumerate(1e-3 * np.sqrt(np.maximum(np.diag(covariance), 0.0))):
         if moved > 0.0:
-            beside = numbers(values + moved * (np.arange(len(places)) == place))
-            for key in told:
-                slopes[key][place] = (beside[key][0] - told[key][0]) / moved
-    covariance = fit.covariance[np.ix_(places, places)]
+            beside = numbers(values + moved * (np.arange(len(indices)) == index))
+            for key in reported:
+                slopes[key][index] = (beside[key][0] - reported[key][0]) / moved
     found = {}
-    for key, (value, unit) in told.items():
+    for key, (value, unit) in reported.items():
         half = 1.96 * math.sqrt(max(slopes[key] @ covariance @ slopes[key], 0.0))
         # the simulation itself is no better than this
         half = math.hypot(half, NUMERICS * abs(value))

@@ -1,4 +1,4 @@
-"""Pictures of an explanation: what is left of signals, errors and lobes before and after."""
+"""Pictures of an explanation: residuals of signals, errors and lobes before and after."""
 
 from __future__ import annotations
 
@@ -12,21 +12,31 @@ from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
 from chatter.description.units import rpm
+from chatter.explain.residuals.variables import reported_unit
 from chatter.plots import style
 from chatter.plots.residual_diagnostics import plot_findings
 
 if TYPE_CHECKING:
-    from chatter.explain.before_after import BeforeAfter
+    from chatter.explain.comparison import Comparison
+    from chatter.explain.errors import BeforeAfter
     from chatter.explain.explanation import Explanation
-    from chatter.explain.kinds.kind import Signals
+    from chatter.explain.kinds.kind import Cuts, Signals
     from chatter.explain.lobes_before_after import LobesBeforeAfter
-    from chatter.explain.residuals.normalised_residual import Left, Residual
+    from chatter.explain.measurement import Measurement
+    from chatter.explain.residuals.channel_residual import ChannelResidual
+    from chatter.explain.residuals.residual import Residual
 
 _SHOWN_RUNS = 3
+#: columns over which signals are drawn: label, drawn over SI
+_ABSCISSAE = {
+    "time": ("time [s]", 1.0),
+    "frequency": ("frequency [Hz]", 1.0),
+    "spindle_speed": ("spindle speed [rpm]", rpm(1.0)),
+}
 #: deepest over shallowest cut beyond which depths are drawn on a logarithmic scale
 _WIDE = 15.0
-_STEP_COLOURS = (style.GREY, style.ORANGE, style.BLUE)
-_STEP_LINES = ("--", "-.", "-")
+_MODEL_COLOURS = (style.GREY, style.ORANGE, style.BLUE)
+_MODEL_LINES = ("--", "-.", "-")
 
 
 def plot_explanation(explanation: Explanation) -> Figure:
@@ -36,34 +46,57 @@ def plot_explanation(explanation: Explanation) -> Figure:
     ----------
     explanation : Explanation
     """
-    added = explanation.signatures.with_added
-    residuals = {"left, refitted": explanation.signatures.refitted.residual}
-    if added is not None:
-        label = "left, with " + " and ".join(
-            stage.best.effect.name for stage in explanation.found.accepted
-        )
-        residuals[label] = added.residual
-    if explanation.measurement.kind == "stability":
-        return _plot_verdicts(explanation)
+    added = " and ".join(explanation.found.effect_names)
+    signatures = {"residual of the refitted case": explanation.refitted_signature}
+    if explanation.repaired_signature is not None:
+        signatures[f"residual with {added} added"] = explanation.repaired_signature
+    if not explanation.predictions.kind.is_sampled:
+        findings = [(signature.findings[0], name) for name, signature in signatures.items()]
+        return plot_findings([replace(one, name=f"{one.name}: {name}") for one, name in findings])
     title = f"{explanation.measurement.title}: {explanation.verdict}"
-    return plot_residuals(residuals, title)
+    return plot_residuals({name: one.residual for name, one in signatures.items()}, title)
 
 
-def _plot_verdicts(explanation: Explanation) -> Figure:
-    """Draw where tests are judged wrongly, before and after."""
-    signatures = {"refitted": explanation.signatures.refitted}
-    if explanation.signatures.with_added is not None:
-        signatures["with what was added"] = explanation.signatures.with_added
-    return plot_findings(
-        [
-            replace(signature.findings[0], view=f"{signature.findings[0].view}, {name}")
-            for name, signature in signatures.items()
-        ]
-    )
+def plot_comparison(comparison: Comparison) -> Figure:
+    """Draw measured signals and residuals of some runs.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        With a signature.
+    """
+    residual = comparison.signature.residual
+    if not residual.kind.is_sampled:
+        return plot_findings(comparison.signature.findings[:1])
+    measurement = comparison.measurement
+    title = f"{measurement.title}: residual of {measurement.case.name}"
+    return plot_residuals({"residual": residual}, title)
+
+
+def plot_signals(measurement: Measurement) -> Figure:
+    """Draw the signals of the first run as recorded.
+
+    Parameters
+    ----------
+    measurement : Measurement
+    """
+    run = measurement.runs[0]
+    abscissa = next((name for name in _ABSCISSAE if name in run.signals), "")
+    channels = [name for name in run.signals if name != abscissa]
+    figure = style.new_figure(7.0, 0.8 + 1.4 * len(channels))
+    figure.suptitle(f"{measurement.title}: {run.name}", fontsize=11.0, x=0.01, ha="left")
+    panels = figure.subplots(len(channels), 1, squeeze=False)
+    for axes, channel in zip(panels.ravel(), channels, strict=True):
+        x, label = _abscissa(run.signals, run.signals[channel].size)
+        axes.plot(x, run.signals[channel], color=style.BLUE, lw=0.8)
+        axes.set_ylabel(f"{channel} [SI]")
+        axes.set_xlabel(label)
+        style.finish(axes)
+    return figure
 
 
 def plot_residuals(residuals: dict[str, Residual], title: str) -> Figure:
-    """Draw measured signals of some runs, and what cases leave of them.
+    """Draw measured signals of some runs, and their residuals.
 
     Parameters
     ----------
@@ -79,13 +112,13 @@ def plot_residuals(residuals: dict[str, Residual], title: str) -> Figure:
     panels = figure.subplots(len(channels), len(runs), squeeze=False)
     for row, channel in enumerate(channels):
         for column, name in enumerate(runs):
-            _draw_left(panels[row, column], _parts(residuals, channel, name))
+            _draw_residuals(panels[row, column], _parts(residuals, channel, name))
             if row == 0:
                 panels[row, column].set_title(name, loc="left")
             style.finish(panels[row, column])
-    told = [axes.get_legend_handles_labels() for axes in panels.ravel()]
+    legends = [axes.get_legend_handles_labels() for axes in panels.ravel()]
     figure.legend(
-        *max(told, key=lambda one: len(one[1])),
+        *max(legends, key=lambda one: len(one[1])),
         loc="outside upper right",
         ncols=4,
         fontsize=8.0,
@@ -102,8 +135,8 @@ def _shown(residual: Residual) -> list[str]:
     return [name for name in names if name in wanted[:_SHOWN_RUNS]]
 
 
-def _parts(residuals: dict[str, Residual], channel: str, run: str) -> dict[str, Left]:
-    """Parts of a channel of a run; none where it was left out."""
+def _parts(residuals: dict[str, Residual], channel: str, run: str) -> dict[str, ChannelResidual]:
+    """Parts of a channel of a run; none where it was excluded."""
     return {
         label: part
         for label, residual in residuals.items()
@@ -112,9 +145,9 @@ def _parts(residuals: dict[str, Residual], channel: str, run: str) -> dict[str, 
     }
 
 
-def _draw_left(axes: Axes, parts: dict[str, Left]) -> None:
+def _draw_residuals(axes: Axes, parts: dict[str, ChannelResidual]) -> None:
     if not parts:
-        axes.text(0.5, 0.5, "left out", ha="center", transform=axes.transAxes)
+        axes.text(0.5, 0.5, "excluded", ha="center", transform=axes.transAxes)
         return
     first = next(iter(parts.values()))
     x, label = _abscissa(first.run.signals, first.measured.size)
@@ -133,25 +166,18 @@ def _unit(channel: str) -> tuple[str, float]:
         return "µm/N", 1e6
     if channel == "stable":
         return "", 1.0
-    from chatter.explain.residuals.variables import told_unit
-
-    return told_unit(channel)
+    return reported_unit(channel)
 
 
 def _abscissa(signals: Signals, count: int) -> tuple[NDArray[np.float64], str]:
-    told = (
-        ("time", "time [s]", 1.0),
-        ("frequency", "frequency [Hz]", 1.0),
-        ("spindle_speed", "spindle speed [rpm]", rpm(1.0)),
-    )
-    for name, label, scale in told:
+    for name, (label, scale) in _ABSCISSAE.items():
         if name in signals and signals[name].size == count:
             return scale * signals[name], label
     return np.arange(count), "point"
 
 
 def plot_errors(errors: BeforeAfter) -> Figure:
-    """Draw errors over the signal by channel, on fitted and on unseen runs, with the noise.
+    """Draw errors over the signal by channel, on fitted and on holdout runs, with the noise.
 
     Parameters
     ----------
@@ -159,30 +185,30 @@ def plot_errors(errors: BeforeAfter) -> Figure:
     """
     figure = style.new_figure(9.5, 3.4)
     panels = figure.subplots(1, 2, sharey=True)
-    told = ("runs that were fitted", "runs that were not seen")
-    for axes, steps, title in zip(panels, (errors.fitted, errors.unseen), told, strict=True):
-        places = np.arange(len(errors.channels))
-        width = 0.8 / len(steps)
-        for number, (step, values) in enumerate(steps.items()):
-            at = places + (number - 0.5 * (len(steps) - 1)) * width
+    titles = ("fitted runs", "holdout runs")
+    for axes, models, title in zip(panels, (errors.fitted, errors.holdout), titles, strict=True):
+        positions = np.arange(len(errors.channels))
+        width = 0.8 / len(models)
+        for number, (model, values) in enumerate(models.items()):
+            at = positions + (number - 0.5 * (len(models) - 1)) * width
             bars = axes.bar(
                 at,
                 [100.0 * values[channel] for channel in errors.channels],
                 width,
-                color=_STEP_COLOURS[number],
-                label=step,
+                color=_MODEL_COLOURS[number],
+                label=model,
             )
             axes.bar_label(bars, fmt="%.2g", fontsize=7.0, padding=1.0)
-        for place, channel in zip(places, errors.channels, strict=True):
+        for x, channel in zip(positions, errors.channels, strict=True):
             axes.hlines(
                 100.0 * errors.noise[channel],
-                place - 0.45,
-                place + 0.45,
+                x - 0.45,
+                x + 0.45,
                 color="black",
                 lw=1.4,
-                label="noise" if place == 0 else None,
+                label="noise" if x == 0 else None,
             )
-        axes.set_xticks(places, errors.channels)
+        axes.set_xticks(positions, errors.channels)
         axes.set_title(title, loc="left")
         style.finish(axes)
     panels[0].set_ylabel("error over signal [%]")
@@ -202,19 +228,19 @@ def plot_lobes_before_after(found: LobesBeforeAfter) -> Figure:
     figure = style.new_figure(8.5, 4.4)
     axes = figure.subplots()
     top = 0.0
-    for number, (step, diagram) in enumerate(found.diagrams.items()):
+    for number, (model, diagram) in enumerate(found.diagrams.items()):
         limit = diagram.limits.critical_depth
         axes.plot(
             rpm(diagram.limits.spindle_speed),
             1e3 * np.where(np.isfinite(limit), limit, np.nan),
-            color=_STEP_COLOURS[number],
-            ls=_STEP_LINES[number],
+            color=_MODEL_COLOURS[number],
+            ls=_MODEL_LINES[number],
             lw=1.6,
-            label=f"limit, {step}",
+            label=f"limit, {model}",
         )
         top = max(top, 1e3 * float(diagram.max_depth[0]))
-    _draw_cuts(axes, found)
-    depths = 1e3 * found.depth
+    _draw_cuts(axes, found.cuts)
+    depths = 1e3 * found.cuts.depth
     if depths.max() > _WIDE * depths.min():
         axes.set_yscale("log")
         axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
@@ -228,13 +254,13 @@ def plot_lobes_before_after(found: LobesBeforeAfter) -> Figure:
     return figure
 
 
-def _draw_cuts(axes: Axes, found: LobesBeforeAfter) -> None:
-    speed, depth = rpm(found.speed), 1e3 * found.depth
-    if found.stable is None:
+def _draw_cuts(axes: Axes, cuts: Cuts) -> None:
+    speed, depth = rpm(cuts.speed), 1e3 * cuts.depth
+    if cuts.stable is None:
         axes.plot(speed, depth, "D", color="black", mfc="white", ms=5, label="cuts")
         return
     for chosen, marker, colour, label in (
-        (found.stable, "o", style.GREEN, "measured stable"),
-        (~found.stable, "x", style.RED, "measured chatter"),
+        (cuts.stable, "o", style.GREEN, "measured stable"),
+        (~cuts.stable, "x", style.RED, "measured chatter"),
     ):
         axes.plot(speed[chosen], depth[chosen], marker, color=colour, mfc="none", ms=5, label=label)

@@ -1,4 +1,4 @@
-"""Panels of what views found of a residual, and pages of them."""
+"""Panels of residual diagnostics, and pages of them."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def plot_findings(findings: Sequence[Finding], columns: int = 2) -> Figure:
 def draw_finding(axes: Axes, finding: Finding) -> None:
     """Draw the panel of a finding with its name."""
     draw(finding.panel, axes)
-    axes.set_title(finding.view, loc="left")
+    axes.set_title(finding.name, loc="left")
     style.finish(axes)
 
 
@@ -58,10 +58,10 @@ def draw(panel: Panel, axes: Axes) -> None:
 def _(panel: Bars, axes: Axes) -> None:
     count = max(1, len(panel.series))
     width = 0.8 / count
-    places = np.arange(len(panel.categories))
+    positions = np.arange(len(panel.categories))
     for number, (name, values) in enumerate(panel.series.items()):
         axes.bar(
-            places + (number - 0.5 * (count - 1)) * width,
+            positions + (number - 0.5 * (count - 1)) * width,
             values,
             width,
             color=_COLOURS[number % len(_COLOURS)],
@@ -69,7 +69,7 @@ def _(panel: Bars, axes: Axes) -> None:
         )
     if panel.floor is not None:
         axes.axhline(panel.floor, color="black", lw=0.9, ls="--")
-    axes.set_xticks(places, panel.categories)
+    axes.set_xticks(positions, panel.categories)
     if len(panel.categories) > 5:
         axes.tick_params(axis="x", rotation=45)
     axes.set_ylabel(panel.label)
@@ -96,10 +96,10 @@ def _(panel: Curves, axes: Axes) -> None:
             axes.fill_between(
                 curve.x, curve.y - spread, curve.y + spread, color=colour, alpha=0.2, lw=0.0
             )
-    for name, places in panel.marks.items():
-        for number, place in enumerate(places):
+    for name, values in panel.marks.items():
+        for number, value in enumerate(values):
             label = name if number == 0 else None
-            axes.axvline(place, color=style.GREY, lw=0.9, ls=":", label=label)
+            axes.axvline(value, color=style.GREY, lw=0.9, ls=":", label=label)
     _scale(axes, panel.logarithmic)
     if panel.floor is not None:
         axes.axhline(panel.floor, color="black", lw=0.9, ls="--")

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.friction.identification import friction_along
+from dynamics.friction.identification.dynamic_fit import friction_along
 from dynamics.friction.lugre import LuGre
 
 #: speed within which a direction is not one, m/s: sliding friction passes through zero there

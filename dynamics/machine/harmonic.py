@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
 
-from dynamics.control import controller_response
+from dynamics.control.response import controller_response
 from dynamics.control.sampling import zero_order_hold_response
 from dynamics.friction.laws import FrictionLaw
 from dynamics.machine.description import Friction, Machine

@@ -5,18 +5,17 @@ Six moves, position and motor force measured; the README tells the story.
 
 from pathlib import Path
 
-from chatter.explain.explanation import explain
-from chatter.explain.measurement import read_measurement
+import chatter
 
 HERE = Path(__file__).parent
 
 
 def main(out: Path) -> list[Path]:
     """Find out what the declared case lacks, print the story, return what was written."""
-    result = explain(read_measurement(HERE / "measurement"))
+    result = chatter.explain(HERE / "measurement")
     print(f"verdict: {result.verdict}")
-    for finding in result.signatures.refitted.telling:
-        print(finding.says)
+    for finding in result.refitted_signature.significant:
+        print(finding.description)
     summary = result.summary()
     for effect in summary["effects"]:
         numbers = ", ".join(

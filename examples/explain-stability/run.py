@@ -5,8 +5,7 @@
 
 from pathlib import Path
 
-from chatter.explain.explanation import explain
-from chatter.explain.measurement import read_measurement
+import chatter
 from chatter.plots.explanation import plot_lobes_before_after
 
 HERE = Path(__file__).parent
@@ -14,10 +13,10 @@ HERE = Path(__file__).parent
 
 def main(out: Path) -> list[Path]:
     """Find out what the declared case lacks, print the story, return what was written."""
-    result = explain(read_measurement(HERE / "measurement"))
+    result = chatter.explain(HERE / "measurement")
     print(f"verdict: {result.verdict}")
-    for finding in result.signatures.refitted.telling:
-        print(finding.says)
+    for finding in result.refitted_signature.significant:
+        print(finding.description)
     summary = result.summary()
     for effect in summary["effects"]:
         numbers = ", ".join(
@@ -31,7 +30,7 @@ def main(out: Path) -> list[Path]:
         f"{100 * error['holdout_after']:.3g} % after, noise {100 * error['noise_floor']:.3g} %"
     )
     written = result.save(out)
-    for sentence in result.lobes.says:
+    for sentence in result.lobes.description:
         print(sentence)
     plot_lobes_before_after(result.lobes).savefig(out / "lobes.png")
     return [*written, out / "lobes.png"]

@@ -17,15 +17,14 @@ from chatter.description.machine.machine_file import MachineFile
 from chatter.plots.style import BLUE, GREEN, GREY, ORANGE, RED, finish, new_figure
 from chatter.report.published_against_obtained import Finding, write_findings
 from chatter.simulation.virtual_tests.frf import FrfCurve, peaks
-from dynamics.friction.identification import (
+from dynamics.friction.identification.dynamic_fit import (
     AxisFit,
     AxisModel,
-    DriveRecord,
-    LowPass,
     fit_axis,
     friction_over_position,
-    record_from_current,
 )
+from dynamics.friction.identification.filtering import LowPass
+from dynamics.friction.identification.record import DriveRecord, record_from_current
 from dynamics.friction.lugre import LuGre
 from dynamics.receptance.coupling import PointPort
 from dynamics.reduction.modal_truncation import state_space, truncated, undamped_modes

@@ -1,20 +1,20 @@
 """Checks of measured data before anything is blamed on physics.
 
-=============== ====================================================================
-module          responsibility
-=============== ====================================================================
-finding         what a check says, how bad it is, and what follows
-clock           clocks: rising, even, in seconds, without holes
-samples         gaps, flat tops, dropouts, dead channels, copies of runs
-spindle         spindle speed and number of teeth against angle and forces
-patterns        mean force of a tooth passing, measured and of a rigid cut
-arrangement     force channels, teeth, mode of milling and depths against the declared cut
-scale           units of the forces, dead sensors
-displacement    displacements against the forces through the declared structure
-motion          axis moves: force, velocity and position against each other
-responses       FRFs against each other and the declared structure
-verdicts        points judged stable or chatter
-leaving_out     leaving out samples, channels, runs
-checking        the table of checks, and going through it
-=============== ====================================================================
+=================== ================================================================
+module              responsibility
+=================== ================================================================
+finding             what a check found, how bad it is, and what follows
+clock               clocks: rising, even, in seconds, without holes
+samples             gaps, flat tops, dropouts, dead channels, copies of runs
+spindle             spindle speed and number of teeth against angle and forces
+patterns            mean force of a tooth passing, measured and of a rigid cut
+channel_assignment  force channels, teeth, mode of milling and depths against the cut
+scale               units of the forces, dead sensors
+displacement        displacements against the forces through the declared structure
+motion              axis moves: force, velocity and position against each other
+responses           FRFs against each other and the declared structure
+verdicts            points judged stable or chatter
+exclusion           exclusion of samples, channels, runs
+checking            the checks of a kind, one after the other
+=================== ================================================================
 """

@@ -1,7 +1,7 @@
 """Forces against the pattern of the declared cut: axes, signs, teeth, mode of milling, depths.
 
-What is left by the cut as declared is compared with what is left by others; another is said only
-if it fits well in itself and much better.
+The residual of the cut as declared is compared with that of others; another is reported only if
+it fits well in itself and much better.
 """
 
 from __future__ import annotations
@@ -24,18 +24,17 @@ from chatter.explain.data_checks.patterns import (
     fitted,
     force_power,
     of_most_runs,
-    own_case,
-    share_left,
+    residual_share,
     tooth_pattern,
 )
 from chatter.explain.measurement import Measurement, Run
 
-#: share that is left by a cut that fits, and of what the declared one leaves
+#: residual, as a share, of a cut that fits, and over that of the declared one
 _FITS, _BETTER = 0.25, 0.5
-#: share of what all the forces leave by which a multiple of the teeth must do better: it holds less
-#: of them always, unless it is right
+#: residual over that of the declared teeth below which a multiple of them counts: a multiple always
+#: holds less of the forces, unless it is right
 _CLEARER = 0.8
-#: declared cuts that leave less than this are not doubted
+#: residual, as a share, below which the declared cut is not doubted
 _DOUBTED = 0.3
 #: radial depths and teeth that are tried, the former over the declared one
 _WIDTHS = (0.4, 0.55, 1.6, 2.2)
@@ -46,7 +45,7 @@ _TURNED = {"up": "down", "down": "up"}
 
 
 @dataclass(frozen=True)
-class Arrangement:
+class ChannelAssignment:
     """How measured channels may really be meant: swapped, then turned."""
 
     swapped: bool
@@ -57,7 +56,7 @@ class Arrangement:
         rows = values[::-1] if self.swapped else values
         return rows * np.array(self.signs, dtype=np.float64)[:, None]
 
-    def says(self, names: tuple[str, str]) -> str:
+    def fault(self, names: tuple[str, str]) -> str:
         """What would be wrong, in words."""
         parts = [f"{names[0]} and {names[1]} are swapped"] if self.swapped else []
         turned = [name for name, sign in zip(names, self.signs, strict=True) if sign < 0]
@@ -66,8 +65,8 @@ class Arrangement:
         return " and ".join(parts)
 
 
-ARRANGEMENTS = tuple(
-    Arrangement(swapped, signs)
+ASSIGNMENTS = tuple(
+    ChannelAssignment(swapped, signs)
     for swapped in (False, True)
     for signs in itertools.product((1, -1), repeat=2)
 )
@@ -79,63 +78,64 @@ class Cut:
 
     Parameters
     ----------
-    says : str
+    description : str
     measured : list of (2, bins) array of float
     basis : list of (4, 2, bins) array of float
     held : list of float
         Share of the forces' power that is in the measured pattern.
     """
 
-    says: str
+    description: str
     measured: list[Patterns]
     basis: list[NDArray[np.float64]]
     held: list[float]
 
-    def of_all(self, left: float, runs: Sequence[int] | None = None) -> float:
-        """Share left of the forces as a whole, of that which is left of the pattern."""
+    def of_all(self, share: float, runs: Sequence[int] | None = None) -> float:
+        """Residual share of the forces as a whole, from that of the pattern."""
         held = float(np.mean([self.held[k] for k in runs or range(len(self.held))]))
-        return float(np.sqrt(1.0 - held + left**2 * held))
+        return float(np.sqrt(1.0 - held + share**2 * held))
 
 
-def wrong_arrangement(measurement: Measurement) -> list[SignalFinding]:
+def wrong_assignment(measurement: Measurement) -> list[SignalFinding]:
     """Force channels swapped or turned, another tool or mode of milling, depths grossly off."""
     runs = [run for run in measurement.runs if "Fx" in run.signals and "Fy" in run.signals]
     try:
         return _compared(measurement, runs) if runs else []
     except (InputError, RunError):
-        return []  # a case that cannot be simulated is told where it is used
+        return []  # a case that cannot be simulated is reported where it is used
 
 
 def _compared(measurement: Measurement, runs: Sequence[Run]) -> list[SignalFinding]:
     declared = _cut("", measurement, runs)
-    coefficients, left = fitted(declared.measured, declared.basis)
-    if max([left, *_lefts(declared, coefficients)]) < _DOUBTED:
-        return _multiple(declared, left, measurement, runs)
+    coefficients, share = fitted(declared.measured, declared.basis)
+    if max([share, *_shares(declared, coefficients)]) < _DOUBTED:
+        return _multiple(declared, share, measurement, runs)
     others = _others(declared, measurement, runs)
-    if left > _DOUBTED:
+    if share > _DOUBTED:
         tried = [(fitted(cut.measured, cut.basis)[1], cut) for cut in others]
         good = [(cut.of_all(one), one, cut) for one, cut in tried if one < _FITS]
-        _, best, cut = min(good, key=lambda entry: entry[0], default=(0.0, left, declared))
-        if best < _BETTER * left:
-            return [SignalFinding(FATAL, "", "Fx, Fy", f"{cut.says}: {_numbers(best, left)}")]
+        _, best, cut = min(good, key=lambda entry: entry[0], default=(0.0, share, declared))
+        if best < _BETTER * share:
+            description = f"{cut.description}: {_numbers(best, share)}"
+            return [SignalFinding(FATAL, "", "Fx, Fy", description)]
     coefficients = of_most_runs(declared.measured, declared.basis)
     found = [
-        SignalFinding(RUN, run.name, "Fx, Fy", f"{run.name}: {says}")
+        SignalFinding(RUN, run.name, "Fx, Fy", f"{run.name}: {description}")
         for place, run in enumerate(runs)
-        if (says := _single(place, declared, others, coefficients))
+        if (description := _single(place, declared, others, coefficients))
     ]
     about = "the forces of {count} of {runs} runs do not belong to the cut that is declared"
     return of_all_or_some(found, measurement, about)
 
 
 def _multiple(
-    declared: Cut, left: float, measurement: Measurement, runs: Sequence[Run]
+    declared: Cut, share: float, measurement: Measurement, runs: Sequence[Run]
 ) -> list[SignalFinding]:
     """Find a number of teeth that divides the declared one, or is a multiple of it.
 
     The pattern of the declared teeth then fits, but much of the forces is not in it.
     """
-    of_all, teeth = declared.of_all(left), measurement.case.tool.teeth
+    of_all, teeth = declared.of_all(share), measurement.case.tool.teeth
     if of_all < _DOUBTED:
         return []
     for other in _TEETH:
@@ -144,21 +144,21 @@ def _multiple(
         cut = _other_teeth(other, measurement, runs)
         best = fitted(cut.measured, cut.basis)[1]
         if best < _FITS and cut.of_all(best) < _CLEARER * of_all:
-            says = f"{cut.says}: {_numbers(cut.of_all(best), of_all)}"
-            return [SignalFinding(FATAL, "", "Fx, Fy", says)]
+            description = f"{cut.description}: {_numbers(cut.of_all(best), of_all)}"
+            return [SignalFinding(FATAL, "", "Fx, Fy", description)]
     return []
 
 
-def _numbers(best: float, left: float) -> str:
+def _numbers(best: float, declared: float) -> str:
     return (
-        f"so the cut leaves {100.0 * best:.0f} % of the pattern of the forces, as declared "
-        f"{100.0 * left:.0f} %"
+        f"the residual of the pattern of the forces is then {100.0 * best:.0f} %, as declared "
+        f"{100.0 * declared:.0f} %"
     )
 
 
-def _lefts(cut: Cut, coefficients: NDArray[np.float64]) -> list[float]:
+def _shares(cut: Cut, coefficients: NDArray[np.float64]) -> list[float]:
     return [
-        share_left(pattern, basis, coefficients)
+        residual_share(pattern, basis, coefficients)
         for pattern, basis in zip(cut.measured, cut.basis, strict=True)
     ]
 
@@ -168,63 +168,65 @@ def _single(
 ) -> str:
     """What is wrong with one run by the coefficients of the others; empty for nothing."""
     pattern, basis = declared.measured[place], declared.basis[place]
-    left = share_left(pattern, basis, coefficients)
-    if left < _DOUBTED:
+    share = residual_share(pattern, basis, coefficients)
+    if share < _DOUBTED:
         return ""
     tried = [
-        (share_left(cut.measured[place], cut.basis[place], coefficients), cut) for cut in others
+        (residual_share(cut.measured[place], cut.basis[place], coefficients), cut) for cut in others
     ]
     best, cut = min(tried, key=lambda entry: entry[1].of_all(entry[0], [place]))
     factor = factor_of(pattern, basis, coefficients)
     if factor > _GROSS or 0.0 < factor < 1.0 / _GROSS:
-        scaled = share_left(pattern / factor, basis, coefficients)
-        if scaled < min(_FITS, _BETTER * left, best):
+        scaled = residual_share(pattern / factor, basis, coefficients)
+        if scaled < min(_FITS, _BETTER * share, best):
             return (
-                f"the forces are {factor:.3g} times what the other runs lead to expect: its axial "
+                f"the forces are {factor:.3g} times what the other runs predict: its axial "
                 "depth, its feed, or their unit is declared wrong"
             )
-    return f"{cut.says}: {_numbers(best, left)}" if best < min(_FITS, _BETTER * left) else ""
+    return (
+        f"{cut.description}: {_numbers(best, share)}" if best < min(_FITS, _BETTER * share) else ""
+    )
 
 
 def _cut(
-    says: str,
+    description: str,
     measurement: Measurement,
     runs: Sequence[Run],
     changed: Callable[[Case], Case] = lambda case: case,
 ) -> Cut:
     """Cut whose case is changed in every run."""
-    cases = [changed(own_case(measurement.case, run)) for run in runs]
+    cases = [changed(run.of(measurement.case)) for run in runs]
     measured = [tooth_pattern(measurement, run) for run in runs]
     held = [
         float(np.mean(pattern**2)) / force_power(measurement, run)
         for pattern, run in zip(measured, runs, strict=True)
     ]
-    return Cut(says, measured, [basis_patterns(case) for case in cases], held)
+    return Cut(description, measured, [basis_patterns(case) for case in cases], held)
 
 
 def _others(declared: Cut, measurement: Measurement, runs: Sequence[Run]) -> list[Cut]:
     """Cuts that may have been run, and ways they may have been measured, beside the declared."""
     found = [
         Cut(
-            one.says(("Fx", "Fy")),
+            one.fault(("Fx", "Fy")),
             [one.applied(pattern) for pattern in declared.measured],
             declared.basis,
             declared.held,
         )
-        for one in ARRANGEMENTS[1:]
+        for one in ASSIGNMENTS[1:]
     ]
     for teeth in _TEETH:
         if teeth != measurement.case.tool.teeth:
             found.append(_other_teeth(teeth, measurement, runs))
-    modes = {own_case(measurement.case, run).cut.mode for run in runs}
+    modes = {run.of(measurement.case).cut.mode for run in runs}
     if modes <= {"up", "down"}:
-        says = " and ".join(
+        description = " and ".join(
             f"{_TURNED[mode]}-milling, not {mode}-milling" for mode in sorted(modes)
         )
-        found.append(_cut(f"it was {says}", measurement, runs, _other_mode))
+        found.append(_cut(f"it was {description}", measurement, runs, _other_mode))
         for factor in _WIDTHS:
-            says = f"the radial depth was about {factor:g} times the declared one"
-            found.append(_cut(says, measurement, runs, partial(_of_width, factor)))
+            description = f"the radial depth was about {factor:g} times the declared one"
+            found.append(_cut(description, measurement, runs, partial(_of_width, factor)))
     return found
 
 
@@ -236,8 +238,10 @@ def _other_teeth(teeth: int, measurement: Measurement, runs: Sequence[Run]) -> C
         "diameter": tool.diameter,
         "helix": float(np.mean(tool.helix)),
     }
-    says = f"the forces repeat {teeth} times a revolution; the case declares {tool.teeth} teeth"
-    return _cut(says, measurement.with_case(measurement.case.patch({"tool": other})), runs)
+    description = (
+        f"the forces repeat {teeth} times a revolution; the case declares {tool.teeth} teeth"
+    )
+    return _cut(description, measurement.with_case(measurement.case.patch({"tool": other})), runs)
 
 
 def _other_mode(case: Case) -> Case:

@@ -1,4 +1,4 @@
-"""The table of checks, and going through it."""
+"""Checks of a measurement, group by group, and the exclusion of what they find."""
 
 from __future__ import annotations
 
@@ -6,49 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from chatter.explain.data_checks.channel_assignment import wrong_arrangement
-from chatter.explain.data_checks.clock import clock_findings
-from chatter.explain.data_checks.displacement import wrong_displacements
-from chatter.explain.data_checks.exclusion import left_out
-from chatter.explain.data_checks.finding import FATAL, NOTE, Check, SignalFinding
-from chatter.explain.data_checks.motion import wrong_motion
-from chatter.explain.data_checks.responses import disagreeing_responses, wrong_responses
-from chatter.explain.data_checks.samples import copies, dead_channels, dropouts, flat_tops, gaps
-from chatter.explain.data_checks.scale import wrong_scales
-from chatter.explain.data_checks.spindle import wrong_speeds, wrong_teeth
-from chatter.explain.data_checks.verdicts import wrong_verdicts
-from chatter.explain.kinds.columns import require_columns
-from chatter.explain.kinds.registry import require_sections
+from chatter.explain.data_checks.exclusion import excluding
+from chatter.explain.data_checks.finding import FATAL, FOLLOWS, SignalFinding
+from chatter.explain.kinds.registry import KINDS
 from chatter.explain.measurement import Measurement
 
-_TIME = ("milling", "axis")
-_SAMPLED = ("milling", "axis", "frf")
-
-#: checks in the order in which they are made; where one of a group finds what is fatal, those of
-#: the groups after it would only repeat it
-CHECKS: tuple[tuple[Check, ...], ...] = (
-    (
-        Check("copies", _SAMPLED, copies, "runs with the same numbers"),
-        Check("dead", _SAMPLED, dead_channels, "channels that never change"),
-        Check("gaps", _SAMPLED, gaps, "samples that are no numbers"),
-        Check("flat tops", _SAMPLED, flat_tops, "saturation"),
-        Check("dropouts", _TIME, dropouts, "samples at exactly zero in between"),
-        Check("clock", _TIME, clock_findings, "clocks that run back, jump, jitter; units"),
-    ),
-    (
-        Check("speed", ("milling",), wrong_speeds, "spindle speed against angle and forces"),
-        Check("teeth", ("milling",), wrong_teeth, "teeth counted in the forces"),
-        Check("motion", ("axis",), wrong_motion, "velocity, position and force of an axis"),
-        Check("responses", ("frf",), wrong_responses, "units and directions of FRFs"),
-        Check("verdicts", ("stability",), wrong_verdicts, "units and sense of verdicts"),
-    ),
-    (
-        Check("scale", ("milling",), wrong_scales, "units of the forces, dead sensors"),
-        Check("repetitions", ("frf",), disagreeing_responses, "FRFs that should be alike"),
-    ),
-    (Check("arrangement", ("milling",), wrong_arrangement, "axes, signs, mode and depths"),),
-    (Check("displacements", ("milling",), wrong_displacements, "axes, signs, units of motion"),),
-)
+#: channels without which no prediction can stand beside a signal
+_ABSCISSAE = ("time", "spindle_angle", "spindle_speed")
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +22,7 @@ class Checked:
     Parameters
     ----------
     measurement : Measurement
-        Without what is no good.
+        Without what is unusable.
     findings : tuple of SignalFinding
         The worst first.
     """
@@ -74,67 +38,48 @@ class Checked:
     @property
     def forbids_prediction(self) -> bool:
         """Whether not even times and samples are such that a prediction can stand beside them."""
-        alone = {"time", "spindle_angle", "spindle_speed"}
-        return self.is_fatal and (
-            any(one.severity == FATAL and one.channel in alone for one in self.findings)
-        )
+        return any(one.severity == FATAL and one.channel in _ABSCISSAE for one in self.findings)
 
     def as_list(self) -> list[dict[str, Any]]:
         """Findings as they stand in explanation.json."""
         return [one.as_dict() for one in self.findings]
 
 
-def checked(measurement: Measurement, checks: Sequence[Sequence[Check]] = CHECKS) -> Checked:
-    """Check a measurement and leave out what is no good.
+def checked(measurement: Measurement) -> Checked:
+    """Check a measurement by the checks of its kind and exclude what is unusable.
 
     Parameters
     ----------
     measurement : Measurement
         As read.
-    checks : sequence of sequence of Check
 
     Raises
     ------
     InputError
         If the case lacks a section, or a run a column that its kind needs.
     """
-    require_sections(measurement)
-    require_columns(measurement)
+    kind = KINDS[measurement.kind]
+    kind.require(measurement)
     found: list[SignalFinding] = []
     usable = measurement
-    for group in checks:
-        new = [
-            finding
-            for check in group
-            if measurement.kind in check.kinds
-            for finding in check.finds(usable)
-        ]
+    for group in kind.checks:
+        new = [finding for check in group for finding in check(usable)]
         found += new
-        remaining = left_out(usable, new)
+        remaining = excluding(usable, new)
         if any(one.severity == FATAL for one in new):
             break
         if not remaining.runs:
-            says = f"none of the {len(measurement.runs)} runs can be used"
-            found.append(SignalFinding(FATAL, "", "", says))
+            description = f"none of the {len(measurement.runs)} runs can be used"
+            found.append(SignalFinding(FATAL, "", "", description))
             break
         usable = remaining
-    return Checked(usable, tuple(sorted(_once(found), key=_rank)))
-
-
-_RANKS = {FATAL: 0, "run": 1, "channel": 2, "samples": 3, NOTE: 4}
-
-
-def _rank(finding: SignalFinding) -> int:
-    return _RANKS[finding.severity]
+    ranks = list(FOLLOWS)
+    return Checked(usable, tuple(sorted(_once(found), key=lambda one: ranks.index(one.severity))))
 
 
 def _once(found: Sequence[SignalFinding]) -> list[SignalFinding]:
-    """Findings without those that say the same again."""
-    seen: set[tuple[str, str, str]] = set()
-    kept = []
+    """Findings without those that report the same again."""
+    seen: dict[tuple[str, str, str], SignalFinding] = {}
     for one in found:
-        key = (one.severity, one.run, one.says)
-        if key not in seen:
-            seen.add(key)
-            kept.append(one)
-    return kept
+        seen.setdefault((one.severity, one.run, one.description), one)
+    return list(seen.values())

@@ -7,17 +7,16 @@ import scipy.fft
 from numpy.typing import NDArray
 
 from chatter.compile.structure import structure_of
-from chatter.explain.data_checks.channel_assignment import ARRANGEMENTS, Arrangement
+from chatter.explain.data_checks.channel_assignment import ASSIGNMENTS, ChannelAssignment
 from chatter.explain.data_checks.finding import FATAL, NOTE, RUN, SignalFinding, of_all_or_some
-from chatter.explain.data_checks.patterns import own_case
 from chatter.explain.data_checks.scale import factor_findings
 from chatter.explain.measurement import Measurement, Run
 from dynamics.modal.modes import receptance_matrix
 
-#: share that is left of a channel that fits, of one that a missing mode spoils, and of what the
-#: declared arrangement leaves
+#: residual share of a channel that fits, of one that a missing mode spoils, and over that of the
+#: declared channel assignment
 _FITS, _PASSES, _BETTER = 0.35, 0.8, 0.5
-#: share left of a channel that fits so well that of the other one no more is asked than to gain
+#: residual share of a channel that fits so well that the other one need only gain
 _WELL = 0.2
 #: tails after the end of a record, in its lengths: what rings on must not come round to the start
 _TAIL = 3
@@ -38,33 +37,36 @@ def wrong_displacements(measurement: Measurement) -> list[SignalFinding]:
     if found:
         return found
     by_run = [
-        {one: _left(one.applied(values), wanted) for one in ARRANGEMENTS}
+        {one: _residual_shares(one.applied(values), wanted) for one in ASSIGNMENTS}
         for values, wanted in zip(measured, expected, strict=True)
     ]
     of_all = {
         one: np.sqrt(np.mean([errors[one] ** 2 for errors in by_run], axis=0))
-        for one in ARRANGEMENTS
+        for one in ASSIGNMENTS
     }
     singles = [
-        SignalFinding(RUN, run.name, "x, y", f"{run.name}: {says}")
+        SignalFinding(RUN, run.name, "x, y", f"{run.name}: {description}")
         for run, errors in zip(runs, by_run, strict=True)
-        if (says := _better(errors))
+        if (description := _better(errors))
     ]
-    if says := _better(of_all):
-        notes = [SignalFinding(NOTE, one.run, one.channel, one.says) for one in singles]
-        return [SignalFinding(FATAL, "", "x, y", f"{says}, over all {len(runs)} runs"), *notes]
+    if description := _better(of_all):
+        notes = [SignalFinding(NOTE, one.run, one.channel, one.description) for one in singles]
+        return [
+            SignalFinding(FATAL, "", "x, y", f"{description}, over all {len(runs)} runs"),
+            *notes,
+        ]
     about = "the displacements of {count} of {runs} runs are swapped or turned"
     return of_all_or_some(singles, measurement, about)
 
 
-def _better(errors: dict[Arrangement, NDArray[np.float64]]) -> str:
-    """Arrangement that fits much better than the one given, in words; empty for none.
+def _better(errors: dict[ChannelAssignment, NDArray[np.float64]]) -> str:
+    """ChannelAssignment that fits much better than the one given, in words; empty for none.
 
     A mode that the case lacks spoils a channel. One must fit well, the other not badly, and each
     that would change must fit much better than it does now.
     """
-    given = errors[ARRANGEMENTS[0]]
-    best = min(ARRANGEMENTS, key=lambda one: float(np.sum(np.minimum(errors[one], 2.0))))
+    given = errors[ASSIGNMENTS[0]]
+    best = min(ASSIGNMENTS, key=lambda one: float(np.sum(np.minimum(errors[one], 2.0))))
     found = errors[best]
     changes = np.array([best.swapped or sign < 0 for sign in best.signs])
     if not changes.any() or found.min() > _FITS:
@@ -75,7 +77,7 @@ def _better(errors: dict[Arrangement, NDArray[np.float64]]) -> str:
     if not np.all(passes[changes]):
         return ""
     return (
-        f"{best.says(('x', 'y'))}: the measured forces move the declared structure like that but "
+        f"{best.fault(('x', 'y'))}: the measured forces move the declared structure like that but "
         f"for {100.0 * found[0]:.0f} % of x and {100.0 * found[1]:.0f} % of y, as given but for "
         f"{100.0 * given[0]:.0f} % and {100.0 * given[1]:.0f} %"
     )
@@ -83,7 +85,7 @@ def _better(errors: dict[Arrangement, NDArray[np.float64]]) -> str:
 
 def by_forces(measurement: Measurement, run: Run) -> NDArray[np.float64]:
     """Displacements (2, n) of the declared structure from rest under the measured forces, m."""
-    case = own_case(measurement.case, run)
+    case = run.of(measurement.case)
     time = run.signals["time"]
     step = float(np.median(np.diff(time)))
     size = scipy.fft.next_fast_len(_TAIL * time.size, real=True)
@@ -94,8 +96,10 @@ def by_forces(measurement: Measurement, run: Run) -> NDArray[np.float64]:
     return scipy.fft.irfft(moved, size, axis=1)[:, : time.size]
 
 
-def _left(values: NDArray[np.float64], wanted: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Shares (2,) that are left of both displacements."""
+def _residual_shares(
+    values: NDArray[np.float64], wanted: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Residuals (2,) of both displacements as shares of them."""
     return np.array([_rms(a - b) / _rms(b) for a, b in zip(values, wanted, strict=True)])
 
 

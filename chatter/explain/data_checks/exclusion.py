@@ -1,4 +1,4 @@
-"""Leaving out what findings say is no good: samples, channels, runs."""
+"""Exclusion of what findings call unusable: samples, channels, runs."""
 
 from __future__ import annotations
 
@@ -8,28 +8,25 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.explain.data_checks.clock import mended
+from chatter.explain.data_checks.clock import HOLE, evened
 from chatter.explain.data_checks.finding import CHANNEL, RUN, SAMPLES, SignalFinding
-from chatter.explain.measurement import USABLE, Measurement, Run
-
-#: a step of the clock of more than this many is a hole
-_HOLE = 1.6
+from chatter.explain.measurement import Measurement, Run
 
 
-def left_out(measurement: Measurement, found: Sequence[SignalFinding]) -> Measurement:
-    """Measurement without what is no good.
+def excluding(measurement: Measurement, found: Sequence[SignalFinding]) -> Measurement:
+    """Measurement without what is unusable.
 
-    Samples that are no good are bridged by a straight line, and marked as not usable in a column
-    of their own; holes in a clock are filled likewise.
+    Samples that are unusable are bridged by a straight line and marked; holes in a clock are filled
+    likewise.
     """
     dropped = {one.run for one in found if one.severity == RUN}
     runs = [run for run in measurement.runs if run.name not in dropped]
-    return replace(measurement, runs=tuple(_mended(run, found) for run in runs))
+    return replace(measurement, runs=tuple(_without(run, found) for run in runs))
 
 
-def _mended(run: Run, found: Sequence[SignalFinding]) -> Run:
+def _without(run: Run, found: Sequence[SignalFinding]) -> Run:
     own = [one for one in found if one.run == run.name]
-    signals = dict(run.signals)
+    signals, usable = dict(run.signals), run.usable
     for one in own:
         if one.severity == CHANNEL:
             for name in one.channel.split(", "):
@@ -40,15 +37,14 @@ def _mended(run: Run, found: Sequence[SignalFinding]) -> Run:
             signals["stable"] = np.where(one.samples, np.nan, signals["stable"])
         elif one.channel in signals:
             signals[one.channel] = bridged(signals[one.channel], one.samples)
-            before = signals.get(USABLE, np.ones(one.samples.size))
-            signals[USABLE] = before * ~one.samples
+            usable = (1.0 if usable is None else usable) * ~one.samples
     if any(one.channel == "time" for one in own) and "time" in signals:
-        signals["time"] = mended(signals["time"])
-        signals = _evened(signals)
+        signals["time"] = evened(signals["time"])
+        signals, usable = _on_even_clock(signals, usable)
     angle = signals.get("spindle_angle")
     if angle is not None and not np.all(np.isfinite(angle)) and np.isfinite(angle).any():
         signals["spindle_angle"] = bridged(angle, ~np.isfinite(angle))
-    return replace(run, signals=signals)
+    return replace(run, signals=signals, usable=usable)
 
 
 def bridged(values: NDArray[np.float64], bad: NDArray[np.bool_]) -> NDArray[np.float64]:
@@ -56,26 +52,27 @@ def bridged(values: NDArray[np.float64], bad: NDArray[np.bool_]) -> NDArray[np.f
     good = np.flatnonzero(~bad & np.isfinite(values))
     if not good.size:
         return np.zeros(values.size)
-    place = np.arange(values.size)
-    return np.where(bad, np.interp(place, good, values[good]), values)
+    return np.where(bad, np.interp(np.arange(values.size), good, values[good]), values)
 
 
-def _evened(signals: dict[str, NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
-    """Signals on an even clock; what falls into holes of the old one is not usable."""
+def _on_even_clock(
+    signals: dict[str, NDArray[np.float64]], usable: NDArray[np.float64] | None
+) -> tuple[dict[str, NDArray[np.float64]], NDArray[np.float64] | None]:
+    """Signals on an even clock, and which samples are usable: none in holes of the old one."""
     time = signals["time"]
     steps = np.diff(time)
     step = float(np.median(steps))
-    holes = np.flatnonzero(steps > _HOLE * step)
+    holes = np.flatnonzero(steps > HOLE * step)
     count = round(float(time[-1] - time[0]) / step) + 1
     if count > 10 * time.size:
-        return signals  # a clock that jumps by more than the record is long
+        return signals, usable  # a clock that jumps by more than the record is long
     even = time[0] + step * np.arange(count)
-    usable = np.interp(even, time, signals.get(USABLE, np.ones(time.size))) > 0.999
-    for place in holes:
-        usable &= ~((even > time[place] + 0.5 * step) & (even < time[place + 1] - 0.5 * step))
+    kept = np.interp(even, time, np.ones(time.size) if usable is None else usable) > 0.999
+    for hole in holes:
+        kept &= ~((even > time[hole] + 0.5 * step) & (even < time[hole + 1] - 0.5 * step))
     found = {
         name: np.interp(even, time, values)
         for name, values in signals.items()
         if values.size == time.size
     }
-    return {**found, "time": even, USABLE: usable.astype(np.float64)}
+    return {**found, "time": even}, kept.astype(np.float64)

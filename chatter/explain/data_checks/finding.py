@@ -1,4 +1,4 @@
-"""What a check of measured signals found: where, how bad, and what is left out for it."""
+"""What a check of measured signals found: where, how bad, and what is excluded for it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from chatter.explain.measurement import Measurement
 
 #: how bad, and what follows: nothing can be concluded from the set; the run, the channel of the
-#: run or samples of the run are left out; nothing follows
+#: run or samples of the run are excluded; nothing follows
 FATAL, RUN, CHANNEL, SAMPLES, NOTE = "fatal", "run", "channel", "samples", "note"
 
 
@@ -27,16 +27,16 @@ class SignalFinding:
         Name of its file; empty where it concerns the whole set.
     channel : str
         Empty where it concerns all.
-    says : str
+    description : str
         One sentence, with numbers.
     samples : (n,) array of bool, optional
-        Samples that are left out.
+        Samples that are excluded.
     """
 
     severity: str
     run: str
     channel: str
-    says: str
+    description: str
     samples: NDArray[np.bool_] | None = None
 
     def as_dict(self) -> dict[str, str]:
@@ -45,29 +45,20 @@ class SignalFinding:
             "severity": self.severity,
             "run": self.run,
             "channel": self.channel,
-            "says": self.says,
+            "description": self.description,
         }
 
 
-@dataclass(frozen=True)
-class Check:
-    """A check of a measurement.
-
-    Parameters
-    ----------
-    name : str
-    kinds : tuple of str
-        Kinds of measurement that it is for.
-    finds : callable
-        Measurement -> findings.
-    says : str
-        What it looks for.
-    """
-
-    name: str
-    kinds: tuple[str, ...]
-    finds: Callable[[Measurement], list[SignalFinding]]
-    says: str
+#: a check of a measurement
+Check = Callable[[Measurement], list[SignalFinding]]
+#: what follows of a finding, by its severity
+FOLLOWS = {
+    FATAL: "nothing can be concluded",
+    RUN: "the run is excluded",
+    CHANNEL: "the channel is excluded in this run",
+    SAMPLES: "the samples are excluded",
+    NOTE: "a note",
+}
 
 
 def of_all_or_some(
@@ -90,5 +81,5 @@ def of_all_or_some(
     text = about.format(count=count, runs=len(measurement.runs))
     channels = {one.channel for one in found}
     channel = channels.pop() if len(channels) == 1 else ""
-    notes = [SignalFinding(NOTE, one.run, one.channel, one.says) for one in found]
+    notes = [SignalFinding(NOTE, one.run, one.channel, one.description) for one in found]
     return [SignalFinding(FATAL, "", channel, text), *notes]

@@ -57,21 +57,21 @@ def _velocities(measurement: Measurement) -> list[SignalFinding]:
         together = _correlation(of_position, velocity)
         factor = float(of_position @ velocity / max(of_position @ of_position, 1e-300))
         if abs(together) > _TOGETHER and not 1.0 / _SAME < factor < _SAME:
-            says = (
+            description = (
                 f"{run.name}: velocity is {factor:.4g} times the derivative of position"
                 f"{_cause(factor)}"
             )
         elif abs(together) < _APART and np.ptp(run.signals["position"]) > _LEAST_STROKE:
-            says = (
+            description = (
                 f"{run.name}: velocity is not the derivative of position (their correlation is "
                 f"{together:.2f})"
             )
         else:
             continue
-        found.append(SignalFinding(RUN, run.name, "velocity", says))
+        found.append(SignalFinding(RUN, run.name, "velocity", description))
     about = "position, velocity and time contradict each other in {count} of {runs} runs"
     if found:
-        about += f"; {found[0].says}".replace("{", "(").replace("}", ")")
+        about += f"; {found[0].description}".replace("{", "(").replace("}", ")")
     return of_all_or_some(found, measurement, about)
 
 
@@ -97,8 +97,8 @@ def _commands(measurement: Measurement) -> list[SignalFinding]:
         factor = float(np.std(position) / np.std(command))
         if abs(together) > _TOGETHER and (together < 0.0 or thousand(factor)):
             turned = " turned round" if together < 0.0 else ""
-            says = f"{run.name}: position is {factor:.4g} times the command{turned}"
-            found.append(SignalFinding(RUN, run.name, "position", says))
+            description = f"{run.name}: position is {factor:.4g} times the command{turned}"
+            found.append(SignalFinding(RUN, run.name, "position", description))
     about = "position contradicts the command, in sign or unit, in {count} of {runs} runs"
     return of_all_or_some(found, measurement, about)
 
@@ -119,18 +119,18 @@ def _forces(measurement: Measurement) -> list[SignalFinding]:
         masses.append(mass)
         factor = mass / declared
         if thousand(abs(factor)):
-            says = (
+            description = (
                 f"{run.name}: the force is {factor:.3g} times the declared mass times the "
                 "acceleration: the unit of force, position or time is wrong"
             )
-            units.append(SignalFinding(RUN, run.name, "force", says))
+            units.append(SignalFinding(RUN, run.name, "force", description))
         elif factor < -0.3 and work < 0.0:
-            says = (
+            description = (
                 f"{run.name}: the sign of the force is turned: it brakes where the axis speeds up "
                 f"(apparent mass {mass:.4g} kg, declared {declared:.4g} kg) and does {work:.3g} J "
                 "of work on the whole"
             )
-            turned.append(SignalFinding(RUN, run.name, "force", says))
+            turned.append(SignalFinding(RUN, run.name, "force", description))
     found = of_all_or_some(
         turned, measurement, "the sign of the force is turned in {count} of {runs} runs"
     )
@@ -139,11 +139,11 @@ def _forces(measurement: Measurement) -> list[SignalFinding]:
     )
     typical = float(np.median(masses)) / declared if masses else 1.0
     if not found and (typical > 4.0 or 0.0 < typical < 0.25):
-        says = (
+        description = (
             f"the forces move a mass of {typical * declared:.4g} kg; the case declares "
             f"{declared:.4g} kg"
         )
-        found.append(SignalFinding(FATAL, "", "force", says))
+        found.append(SignalFinding(FATAL, "", "force", description))
     return found
 
 
@@ -168,10 +168,10 @@ def apparent_mass(run: Run) -> tuple[float, float, float]:
     size = np.linalg.norm(columns, axis=0) + 1e-300
     scaled = columns / size
     solution = np.linalg.lstsq(scaled, force, rcond=None)[0]
-    left = force - scaled @ solution
+    residual = force - scaled @ solution
     # samples within the low pass are one
     free = max(force.size * 2.0 * _CUT_OFF - 4.0, 1.0)
-    variance = float(left @ left) / force.size * np.linalg.pinv(scaled.T @ scaled)[0, 0]
+    variance = float(residual @ residual) / force.size * np.linalg.pinv(scaled.T @ scaled)[0, 0]
     error = float(np.sqrt(variance * force.size / free)) / size[0]
     work = float(np.sum(force * velocity) * step)
     return float(solution[0] / size[0]), error, work

@@ -1,7 +1,7 @@
 """Mean force of a tooth passing, measured and of a rigid cut.
 
 The patterns of a tooth passing a rigid cut are linear in the four force coefficients. With these
-free, what is left does not hang on coefficients, edge forces or wear that the case has wrong; and
+free, the residual does not depend on coefficients, edge forces or wear that the case has wrong; and
 as it is the mean over all teeth, hardly on runout or pitch.
 """
 
@@ -16,10 +16,9 @@ import scipy.optimize
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
-from chatter.explain.data_checks.spindle import declared_speed, settled
+from chatter.explain.data_checks.spindle import settled
 from chatter.explain.measurement import Measurement, Run
-from chatter.simulation.setup import set_up
-from chatter.simulation.simulate import run_setup
+from chatter.simulation.simulate import simulate
 
 Patterns = NDArray[np.float64]  # (2, bins): x and y
 
@@ -28,15 +27,15 @@ _COEFFICIENTS = ("Ktc", "Krc", "Kte", "Kre")
 _UNIT = {"Ktc": 1e9, "Krc": 1e9, "Kte": 1e4, "Kre": 1e4}
 _NOTHING = {"Ktc": 1e3, "Krc": 0.0, "Kte": 0.0, "Kre": 0.0}
 #: sections that a rigid cut of a fresh tool does without
-_LEFT_OUT = ("structure", "process_damping", "contact", "wear", "dynamometer")
-#: share that is left of a run that goes with the others
+_WITHOUT = ("structure", "process_damping", "contact", "wear", "dynamometer")
+#: residual, as a share, of a run that goes with the others
 _GOES_WITH = 0.3
 
 
 def tooth_pattern(measurement: Measurement, run: Run) -> Patterns:
     """Mean force over the tooth angle in whole revolutions, (2, bins), N."""
-    own = own_case(measurement.case, run)
-    speed = declared_speed(measurement, run)
+    own = run.of(measurement.case)
+    speed = own.cut.spindle_speed
     chosen = settled(run, speed)
     time = run.signals["time"]
     begin = float(run.signals["spindle_angle"][0]) if "spindle_angle" in run.signals else 0.0
@@ -47,7 +46,7 @@ def tooth_pattern(measurement: Measurement, run: Run) -> Patterns:
 
 def force_power(measurement: Measurement, run: Run) -> float:
     """Mean square of both forces where a run is settled, N^2."""
-    chosen = settled(run, declared_speed(measurement, run))
+    chosen = settled(run, run.of(measurement.case).cut.spindle_speed)
     force = np.array([run.signals[name][chosen] for name in ("Fx", "Fy")])
     return max(float(np.mean(force**2)), 1e-300)
 
@@ -60,8 +59,8 @@ def basis_patterns(case: Case) -> NDArray[np.float64]:
 
 def rigid_pattern(case: Case) -> Patterns:
     """Pattern of a tooth in a rigid cut, (2, bins), N."""
-    bare: dict[str, Any] = dict.fromkeys(_LEFT_OUT)
-    result, _ = run_setup(set_up(case.patch({**bare, "simulation": {"revolutions": 2}})))
+    bare: dict[str, Any] = dict.fromkeys(_WITHOUT)
+    result = simulate(case.patch({**bare, "simulation": {"revolutions": 2}}))
     last = result.spindle_angle >= 2.0 * math.pi - 1e-9
     return _folded(result.spindle_angle[last], result.force[last, :2].T, case.tool.teeth)
 
@@ -83,7 +82,7 @@ def _folded(angle: NDArray[np.float64], force: NDArray[np.float64], teeth: int) 
 def fitted(
     measured: Sequence[Patterns], basis: Sequence[NDArray]
 ) -> tuple[NDArray[np.float64], float]:
-    """Coefficients, none negative, that fit all runs, and the share that is left of the patterns.
+    """Coefficients, none negative, that fit all runs, and the residual as a share of the patterns.
 
     Every run counts the same, whatever its forces.
     """
@@ -93,8 +92,8 @@ def fitted(
         rows.append(patterns.reshape(len(_COEFFICIENTS), -1).T / level)
         right.append(pattern.ravel() / level)
     matrix, wanted = np.concatenate(rows), np.concatenate(right)
-    coefficients, left = scipy.optimize.nnls(matrix, wanted)
-    return coefficients, float(left / np.sqrt(wanted.size))
+    coefficients, residual = scipy.optimize.nnls(matrix, wanted)
+    return coefficients, float(residual / np.sqrt(wanted.size))
 
 
 def of_most_runs(measured: Sequence[Patterns], basis: Sequence[NDArray]) -> NDArray[np.float64]:
@@ -102,26 +101,21 @@ def of_most_runs(measured: Sequence[Patterns], basis: Sequence[NDArray]) -> NDAr
     kept = list(range(len(measured)))
     while True:
         coefficients, _ = fitted([measured[k] for k in kept], [basis[k] for k in kept])
-        left = {k: share_left(measured[k], basis[k], coefficients) for k in kept}
-        worst = max(left, key=left.__getitem__)
-        if left[worst] < _GOES_WITH or 3 * (len(kept) - 1) < 2 * len(measured):
+        shares = {k: residual_share(measured[k], basis[k], coefficients) for k in kept}
+        worst = max(shares, key=shares.__getitem__)
+        if shares[worst] < _GOES_WITH or 3 * (len(kept) - 1) < 2 * len(measured):
             return coefficients
         kept.remove(worst)
 
 
-def share_left(pattern: Patterns, basis: NDArray, coefficients: NDArray[np.float64]) -> float:
-    """Share of a pattern that coefficients leave."""
+def residual_share(pattern: Patterns, basis: NDArray, coefficients: NDArray[np.float64]) -> float:
+    """Residual of a pattern by coefficients, as a share of it."""
     expected = np.tensordot(coefficients, basis, axes=1)
     level = max(float(np.sqrt(np.mean(pattern**2))), 1e-300)
     return float(np.sqrt(np.mean((pattern - expected) ** 2))) / level
 
 
 def factor_of(pattern: Patterns, basis: NDArray, coefficients: NDArray[np.float64]) -> float:
-    """Factor of a pattern over what coefficients lead to expect."""
+    """Factor of a pattern over what coefficients predict."""
     expected = np.tensordot(coefficients, basis, axes=1)
     return float(np.sum(pattern * expected) / max(float(np.sum(expected**2)), 1e-300))
-
-
-def own_case(case: Case, run: Run) -> Case:
-    """Case with what is declared for a run."""
-    return case.patch(dict(run.overrides)) if run.overrides else case

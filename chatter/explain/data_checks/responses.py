@@ -33,12 +33,12 @@ def wrong_responses(measurement: Measurement) -> list[SignalFinding]:
         return []
     found = []
     for run in runs:
-        says = _single(measurement, run)
-        if says:
-            found.append(SignalFinding(RUN, run.name, "real, imag", f"{run.name}: {says}"))
+        description = _single(measurement, run)
+        if description:
+            found.append(SignalFinding(RUN, run.name, "real, imag", f"{run.name}: {description}"))
     about = "the FRFs do not go with the declared structure in {count} of {runs} runs"
     if found:
-        about += f"; {found[0].says}"
+        about += f"; {found[0].description}"
         return of_all_or_some(found, measurement, about)
     return _exchanged(measurement, runs)
 
@@ -104,12 +104,12 @@ def _exchanged(measurement: Measurement, runs: Sequence[Run]) -> list[SignalFind
     if min(exchanged) > _FITS and max(given) < _MISFIT + 0.25 < min(exchanged):
         gain = (1.0 - np.mean(exchanged)) / max(1.0 - np.mean(given), 1e-9)
         if gain < 0.4:
-            says = (
+            description = (
                 "the directions x and y of the FRFs are exchanged: so they correlate with the "
                 f"declared structure by {np.mean(exchanged):.2f}, as labelled by "
                 f"{np.mean(given):.2f}"
             )
-            return [SignalFinding(FATAL, "", "real, imag", says)]
+            return [SignalFinding(FATAL, "", "real, imag", description)]
     return []
 
 
@@ -127,17 +127,19 @@ def disagreeing_responses(measurement: Measurement) -> list[SignalFinding]:
         if len(alike) == 2:
             apart = float(np.linalg.norm(values[0] - values[1]) / np.linalg.norm(values[0]))
             if apart > 2.0 * _DIFFERS:
-                says = f"the two FRFs {what} differ by {100.0 * apart:.0f} %: which is right?"
-                found.append(SignalFinding(NOTE, "", "real, imag", says))
+                description = (
+                    f"the two FRFs {what} differ by {100.0 * apart:.0f} %: which is right?"
+                )
+                found.append(SignalFinding(NOTE, "", "real, imag", description))
             continue
         middle = np.median(values.real, axis=0) + 1j * np.median(values.imag, axis=0)
         apart = np.linalg.norm(values - middle, axis=1) / np.linalg.norm(middle)
         for place, run in enumerate(alike):
             others = float(np.median(np.delete(apart, place)))
             if apart[place] > max(_DIFFERS, _BEYOND * others):
-                says = (
+                description = (
                     f"{run.name}: differs from the other FRFs {what} by "
                     f"{100.0 * apart[place]:.0f} %, they among each other by {100.0 * others:.2g} %"
                 )
-                found.append(SignalFinding(RUN, run.name, "real, imag", says))
+                found.append(SignalFinding(RUN, run.name, "real, imag", description))
     return found

@@ -2,100 +2,126 @@
 
 from __future__ import annotations
 
+from functools import partial
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.explain.data_checks.finding import CHANNEL, FATAL, NOTE, RUN, SAMPLES, SignalFinding
+from chatter.explain.data_checks.finding import (
+    CHANNEL,
+    FATAL,
+    NOTE,
+    RUN,
+    SAMPLES,
+    Check,
+    SignalFinding,
+)
 from chatter.explain.measurement import Measurement, Run
 
-#: columns that are judged sample by sample, by kind of measurement; the first ones are needed
-CHANNELS = {
-    "milling": ("Fx", "Fy", "Fz", "x", "y", "z"),
-    "axis": ("position", "force", "velocity", "command"),
-    "frf": ("real", "imag"),
-}
-_NEEDED = {"milling": (), "axis": ("position", "force"), "frf": ("real", "imag")}
-#: out of the plane of the cut a case may well predict nothing
-_MAY_REST = ("Fz", "z", "command")
-#: share of a channel's samples up to which they are left out; beyond, the channel is
-_MOST_LEFT_OUT = 0.3
+#: share of a channel's samples up to which they are excluded; beyond, the channel is
+_MOST_EXCLUDED = 0.3
 #: zeros in a row that no signal with noise has
 _HELD = 3
 
 
-def stretches(of: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Begin and end (exclusive) of the stretches that are true."""
+class Columns(NamedTuple):
+    """Columns of a kind of measurement that are checked sample by sample.
+
+    Parameters
+    ----------
+    recorded : tuple of str
+    needed : tuple of str
+        Those without which a run is of no use.
+    optional : tuple of str
+        Those without which everything is done.
+    may_rest : tuple of str
+        Those that may be zero from end to end.
+    """
+
+    recorded: tuple[str, ...]
+    needed: tuple[str, ...] = ()
+    optional: tuple[str, ...] = ()
+    may_rest: tuple[str, ...] = ()
+
+    def of(self, run: Run) -> list[str]:
+        """Those that a run has."""
+        return [name for name in self.recorded if name in run.signals]
+
+
+def sample_checks(columns: Columns) -> tuple[Check, ...]:
+    """Checks of records of any kind: copies of runs, dead channels, gaps, flat tops."""
+    return tuple(partial(check, columns) for check in (copies, dead_channels, gaps, flat_tops))
+
+
+def dropouts(columns: Columns) -> Check:
+    """Check of records in time: samples at exactly zero in between."""
+    return partial(_dropouts, columns)
+
+
+def intervals(of: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """Begin and end (exclusive) of the intervals that are true."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], of, [False]]).astype(np.int8)))
     return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
-def _judged(measurement: Measurement, run: Run) -> list[str]:
-    return [name for name in CHANNELS[measurement.kind] if name in run.signals]
-
-
-def gaps(measurement: Measurement) -> list[SignalFinding]:
+def gaps(columns: Columns, measurement: Measurement) -> list[SignalFinding]:
     """Samples that are no numbers."""
     found = []
     for run in measurement.runs:
-        for channel in _judged(measurement, run):
+        for channel in columns.of(run):
             bad = ~np.isfinite(run.signals[channel])
             if bad.any():
-                says = (
+                description = (
                     f"{run.name}: {channel} has {bad.sum()} samples of {bad.size} that are no "
-                    f"numbers, in {len(stretches(bad))} gaps"
+                    f"numbers, in {len(intervals(bad))} gaps"
                 )
-                found.append(_of_samples(measurement, run, channel, bad, says))
+                found.append(_of_samples(columns, run, channel, bad, description))
     return found
 
 
-def dead_channels(measurement: Measurement) -> list[SignalFinding]:
+def dead_channels(columns: Columns, measurement: Measurement) -> list[SignalFinding]:
     """Channels that never change."""
     found = []
     for run in measurement.runs:
-        for channel in _judged(measurement, run):
+        for channel in columns.of(run):
             values = run.signals[channel]
             values = values[np.isfinite(values)]
-            if values.size < 2 or (np.ptp(values) == 0.0 and not _rests(channel, values)):
+            rests = channel in columns.may_rest and not np.any(values)
+            if values.size < 2 or (np.ptp(values) == 0.0 and not rests):
                 level = f" at {values[0]:.4g}" if values.size else ""
-                says = f"{run.name}: {channel} is dead: constant{level} (SI) from end to end"
-                found.append(_of_channel(measurement, run, channel, says))
-    return _fatal_where_everywhere(found, measurement)
-
-
-def _rests(channel: str, values: NDArray[np.float64]) -> bool:
-    return channel in _MAY_REST and not np.any(values)
-
-
-def _fatal_where_everywhere(
-    found: list[SignalFinding], measurement: Measurement
-) -> list[SignalFinding]:
-    """A channel that is dead in every run is missing from the set, which may need it."""
+                description = f"{run.name}: {channel} is dead: constant{level} (SI) from end to end"
+                found.append(_of_channel(columns, run, channel, description))
+    # a channel that is dead in every run is missing from the set, which may need it
     fatal = []
     for channel in {one.channel for one in found}:
         dead = [one for one in found if one.channel == channel]
-        if len(dead) == len(measurement.runs) and channel not in ("velocity", *_MAY_REST):
-            says = f"{channel} is dead, constant from end to end, in all {len(dead)} runs"
-            fatal.append(SignalFinding(FATAL, "", channel, says))
+        if len(dead) == len(measurement.runs) and channel not in (
+            *columns.optional,
+            *columns.may_rest,
+        ):
+            description = f"{channel} is dead, constant from end to end, in all {len(dead)} runs"
+            fatal.append(SignalFinding(FATAL, "", channel, description))
     return fatal + found
 
 
-def flat_tops(measurement: Measurement) -> list[SignalFinding]:
+def flat_tops(columns: Columns, measurement: Measurement) -> list[SignalFinding]:
     """Saturation: the extreme repeated exactly, cut off from a signal that was on its way."""
     found = []
     for run in measurement.runs:
-        for channel in _judged(measurement, run):
+        for channel in columns.of(run):
             values = run.signals[channel]
             if np.sum(np.isfinite(values)) < 16 or np.nanmax(values) == np.nanmin(values):
                 continue
             clipped = clipped_samples(values)
             if clipped.any():
                 level = float(np.abs(values[clipped]).max())
-                says = (
+                description = (
                     f"{run.name}: {channel} is cut off at {level:.4g} (SI): {clipped.sum()} "
-                    f"samples in {len(stretches(clipped))} flat tops; the amplifier or its range "
+                    f"samples in {len(intervals(clipped))} flat tops; the amplifier or its range "
                     "was at its end"
                 )
-                found.append(_of_samples(measurement, run, channel, clipped, says))
+                found.append(_of_samples(columns, run, channel, clipped, description))
     return found
 
 
@@ -112,7 +138,7 @@ def clipped_samples(values: NDArray[np.float64]) -> NDArray[np.bool_]:
     for extreme in (levels[0], levels[-1]):
         if extreme == 0.0:  # out of cut, at rest
             continue
-        flats = [(a, b) for a, b in stretches(values == extreme) if b - a >= 3]
+        flats = [(a, b) for a, b in intervals(values == extreme) if b - a >= 3]
         count = sum(b - a for a, b in flats)
         if not flats or (len(flats) < 2 and count < 6):
             continue
@@ -124,20 +150,18 @@ def clipped_samples(values: NDArray[np.float64]) -> NDArray[np.bool_]:
     return clipped
 
 
-def dropouts(measurement: Measurement) -> list[SignalFinding]:
+def _dropouts(columns: Columns, measurement: Measurement) -> list[SignalFinding]:
     """Samples that are exactly zero in the middle of a signal."""
     found = []
     for run in measurement.runs:
-        for channel in _judged(measurement, run):
-            if measurement.kind == "frf":
-                continue
+        for channel in columns.of(run):
             lost = dropped_samples(run.signals[channel])
             if lost.any():
-                says = (
+                description = (
                     f"{run.name}: {channel} drops to exactly zero for {lost.sum()} samples in "
-                    f"{len(stretches(lost))} places"
+                    f"{len(intervals(lost))} places"
                 )
-                found.append(_of_samples(measurement, run, channel, lost, says))
+                found.append(_of_samples(columns, run, channel, lost, description))
     return found
 
 
@@ -152,7 +176,7 @@ def dropped_samples(values: NDArray[np.float64]) -> NDArray[np.bool_]:
     if level == 0.0 or often:
         return lost
     step = 6.0 * float(np.nanmedian(np.abs(np.diff(values))))
-    for begin, end in stretches(values == 0.0):
+    for begin, end in intervals(values == 0.0):
         before = values[begin - 1] if begin > 0 else np.inf
         after = values[end] if end < values.size else np.inf
         jump = min(abs(before), abs(after))
@@ -163,21 +187,23 @@ def dropped_samples(values: NDArray[np.float64]) -> NDArray[np.bool_]:
     return lost
 
 
-def copies(measurement: Measurement) -> list[SignalFinding]:
+def copies(columns: Columns, measurement: Measurement) -> list[SignalFinding]:
     """Runs that hold the same numbers as another one."""
     found = []
     runs = measurement.runs
     for later in range(1, len(runs)):
         for earlier in range(later):
-            if not _same(measurement, runs[earlier], runs[later]):
-                continue
             a, b = runs[earlier], runs[later]
+            if not _same(columns, a, b):
+                continue
             alike = _declared(a) == _declared(b)
-            says = f"{b.name}: holds the same numbers as {a.name}"
+            description = f"{b.name}: holds the same numbers as {a.name}"
             if not alike:
-                says += ", though declared otherwise; one of them is another run: both are left out"
-                found.append(SignalFinding(RUN, a.name, "", says))
-            found.append(SignalFinding(RUN, b.name, "", says))
+                description += (
+                    ", though declared otherwise; one of them is wrong: both are excluded"
+                )
+                found.append(SignalFinding(RUN, a.name, "", description))
+            found.append(SignalFinding(RUN, b.name, "", description))
             break
     return found
 
@@ -186,8 +212,8 @@ def _declared(run: Run) -> tuple:
     return dict(run.overrides), run.condition, run.direction
 
 
-def _same(measurement: Measurement, a: Run, b: Run) -> bool:
-    shared = [name for name in _judged(measurement, a) if name in b.signals]
+def _same(columns: Columns, a: Run, b: Run) -> bool:
+    shared = [name for name in columns.of(a) if name in b.signals]
     for name in shared:
         one, other = a.signals[name], b.signals[name]
         if one.size != other.size or not np.array_equal(one, other, equal_nan=True):
@@ -195,20 +221,20 @@ def _same(measurement: Measurement, a: Run, b: Run) -> bool:
     return any(
         np.ptp(a.signals[name][np.isfinite(a.signals[name])]) > 0.0
         for name in shared
-        if (np.isfinite(a.signals[name]).any())
+        if np.isfinite(a.signals[name]).any()
     )
 
 
 def _of_samples(
-    measurement: Measurement, run: Run, channel: str, bad: NDArray[np.bool_], says: str
+    columns: Columns, run: Run, channel: str, bad: NDArray[np.bool_], description: str
 ) -> SignalFinding:
-    if bad.mean() > _MOST_LEFT_OUT:
-        return _of_channel(measurement, run, channel, says)
-    if channel in ("velocity", "command"):
-        return SignalFinding(NOTE, run.name, channel, says)
-    return SignalFinding(SAMPLES, run.name, channel, says, bad)
+    if bad.mean() > _MOST_EXCLUDED:
+        return _of_channel(columns, run, channel, description)
+    if channel in columns.optional:
+        return SignalFinding(NOTE, run.name, channel, description)
+    return SignalFinding(SAMPLES, run.name, channel, description, bad)
 
 
-def _of_channel(measurement: Measurement, run: Run, channel: str, says: str) -> SignalFinding:
-    severity = RUN if channel in _NEEDED[measurement.kind] else CHANNEL
-    return SignalFinding(severity, run.name, channel, says)
+def _of_channel(columns: Columns, run: Run, channel: str, description: str) -> SignalFinding:
+    severity = RUN if channel in columns.needed else CHANNEL
+    return SignalFinding(severity, run.name, channel, description)

@@ -1,4 +1,4 @@
-"""Size of signals against what the declared case leads to expect: units and dead sensors."""
+"""Size of signals against that predicted by the declared case: units and dead sensors."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from chatter.description.errors import InputError, RunError
 from chatter.explain.data_checks.finding import CHANNEL, FATAL, SignalFinding, of_all_or_some
-from chatter.explain.data_checks.patterns import own_case, rigid_pattern, tooth_pattern
+from chatter.explain.data_checks.patterns import rigid_pattern, tooth_pattern
 from chatter.explain.measurement import Measurement, Run
 
 #: factor within which a thousand is a wrong unit, and share below which a sensor is dead
@@ -22,9 +22,9 @@ def wrong_scales(measurement: Measurement) -> list[SignalFinding]:
     """Forces a thousand times too large or small, next to nothing, or grossly off in all runs."""
     runs = [run for run in measurement.runs if "Fx" in run.signals and "Fy" in run.signals]
     try:
-        expected = [rigid_pattern(own_case(measurement.case, run)) for run in runs]
+        expected = [rigid_pattern(run.of(measurement.case)) for run in runs]
     except (InputError, RunError):
-        return []  # a case that cannot be simulated is told where it is used
+        return []  # a case that cannot be simulated is reported where it is used
     measured = [tooth_pattern(measurement, run) for run in runs]
     found = []
     for row, channel in enumerate(("Fx", "Fy")):
@@ -35,11 +35,11 @@ def wrong_scales(measurement: Measurement) -> list[SignalFinding]:
     factors = [_rms(m) / _rms(e) for m, e in zip(measured, expected, strict=True)]
     typical = float(np.median(factors))
     if typical > _GROSS or typical < 1.0 / _GROSS:
-        says = (
+        description = (
             f"the forces are {typical:.3g} times those of the declared case over all runs: depth, "
             "feed, coefficients or the unit of the forces are declared wrong"
         )
-        found = [SignalFinding(FATAL, "", "Fx, Fy", says)]
+        found = [SignalFinding(FATAL, "", "Fx, Fy", description)]
     return found
 
 
@@ -51,17 +51,17 @@ def factor_findings(
     for run, factor in zip(runs, factors, strict=True):
         power = thousand(factor)
         if power:
-            says = (
-                f"{run.name}: {channel} is {factor:.3g} times what the declared case leads to "
-                f"expect: its unit is wrong by 1000{'' if power > 0 else ' (too small)'}"
+            description = (
+                f"{run.name}: {channel} is {factor:.3g} times what the declared case predicts: "
+                f"its unit is wrong by 1000{'' if power > 0 else ' (too small)'}"
             )
-            units.append(SignalFinding(CHANNEL, run.name, channel, says))
+            units.append(SignalFinding(CHANNEL, run.name, channel, description))
         elif factor < _DEAD:
-            says = (
-                f"{run.name}: {channel} holds {factor:.2g} of what the declared case leads to "
-                "expect: the sensor is dead"
+            description = (
+                f"{run.name}: {channel} holds {factor:.2g} of what the declared case "
+                "predicts: the sensor is dead"
             )
-            dead.append(SignalFinding(CHANNEL, run.name, channel, says))
+            dead.append(SignalFinding(CHANNEL, run.name, channel, description))
     about = f"{channel} is off by a factor of 1000 in {{count}} of {{runs}} runs: its unit is wrong"
     dead_about = f"{channel} holds next to nothing in {{count}} of {{runs}} runs: a dead sensor"
     return of_all_or_some(units, measurement, about) + of_all_or_some(

@@ -34,13 +34,6 @@ _MOST_TEETH = 16
 _TEETH_SHARE = 0.3
 
 
-def declared_speed(measurement: Measurement, run: Run) -> float:
-    """Spindle speed that is declared for a run, rad/s."""
-    case = measurement.case
-    own = case.patch(dict(run.overrides)) if run.overrides else case
-    return float(own.cut.spindle_speed)
-
-
 def forces(run: Run) -> list[Vector]:
     """In-plane forces of a run, as far as recorded."""
     return [run.signals[name] for name in ("Fx", "Fy") if name in run.signals]
@@ -49,10 +42,12 @@ def forces(run: Run) -> list[Vector]:
 def settled(run: Run, speed: float) -> slice:
     """Whole revolutions at the end of a record, two at least where it has them."""
     time = run.signals["time"]
-    turn = 2.0 * math.pi / speed
+    period = 2.0 * math.pi / speed
     duration = float(time[-1] - time[0])
-    turns = max(math.floor((1.0 - _SETTLED) * duration / turn), min(2, math.floor(duration / turn)))
-    begin = int(np.searchsorted(time, time[-1] - turns * turn))
+    revolutions = max(
+        math.floor((1.0 - _SETTLED) * duration / period), min(2, math.floor(duration / period))
+    )
+    begin = int(np.searchsorted(time, time[-1] - revolutions * period))
     return slice(begin, None)
 
 
@@ -61,7 +56,7 @@ def wrong_speeds(measurement: Measurement) -> list[SignalFinding]:
     found, ratios = [], []
     notes = []
     for run in measurement.runs:
-        declared = declared_speed(measurement, run)
+        declared = run.of(measurement.case).cut.spindle_speed
         by_angle = speed_by_angle(run)
         by_forces = speed_by_forces(run, declared, measurement.case.tool.teeth)
         words = []
@@ -73,22 +68,24 @@ def wrong_speeds(measurement: Measurement) -> list[SignalFinding]:
             words.append(f"its forces repeat with a spindle at {_rpm(by_forces)}")
             ratio = by_forces / declared if len(words) == 1 else by_angle / declared
         if words:
-            says = f"{run.name}: {' and '.join(words)}; the case declares {_rpm(declared)}"
-            found.append(SignalFinding(RUN, run.name, "spindle_angle" if by_angle else "", says))
+            description = f"{run.name}: {' and '.join(words)}; the case declares {_rpm(declared)}"
+            found.append(
+                SignalFinding(RUN, run.name, "spindle_angle" if by_angle else "", description)
+            )
             ratios.append(ratio)
         elif by_angle is not None and abs(by_angle / declared - 1.0) > _SAID:
-            says = (
+            description = (
                 f"{run.name}: the spindle angle turns at {_rpm(by_angle)}, "
                 f"{100.0 * (by_angle / declared - 1.0):+.2f} % off the declared {_rpm(declared)}"
             )
-            notes.append(SignalFinding(NOTE, run.name, "spindle_angle", says))
+            notes.append(SignalFinding(NOTE, run.name, "spindle_angle", description))
     about = "the declared spindle speed is wrong in {count} of {runs} runs"
     if ratios:
         about += (
             f": the spindle turned at {np.median(ratios):.4g} times what the case declares "
             f"({100.0 * (np.median(ratios) - 1.0):+.2g} %)"
         )
-    # runs that agree on how far it is off speak for those that are too short to tell
+    # runs that agree on how far it is off speak for those that are too short to show it
     agree = len(ratios) >= _AGREEING and np.ptp(ratios) < _WRONG
     share = _AGREEING_SHARE if agree else 0.5
     return of_all_or_some(found, measurement, about, share) + notes
@@ -125,20 +122,20 @@ def speed_by_angle(run: Run) -> float | None:
 
 
 def speed_by_forces(run: Run, declared: float, teeth: int) -> float | None:
-    """Spindle speed with whose revolution the forces repeat; None where they do not tell.
+    """Spindle speed with whose revolution the forces repeat; None where they do not show it.
 
     The share of the variance that means over the revolution's angle explain, over speeds around
-    the declared one; another speed is told only where it explains nearly all and the declared one
-    clearly less. Speeds with which another whole number of tooth periods makes a revolution are not
-    looked at.
+    the declared one; another speed is reported only where it explains nearly all and the declared
+    one clearly less. Speeds at which another whole number of tooth periods makes a revolution are
+    not examined.
     """
     chosen = settled(run, declared)
     time = run.signals["time"][chosen]
     signals = [values[chosen] for values in forces(run)]
-    turns = (time[-1] - time[0]) * declared / (2.0 * math.pi)
-    if not signals or turns < 2.0 or time.size < 4 * _BINS:
+    revolutions = (time[-1] - time[0]) * declared / (2.0 * math.pi)
+    if not signals or revolutions < 2.0 or time.size < 4 * _BINS:
         return None
-    step = 0.1 / (turns * 8.0)
+    step = 0.1 / (revolutions * 8.0)
     count = int(min(_SEARCHED, _BELOW_A_TOOTH / (teeth + 1)) / step)
     ratios = 1.0 + step * np.arange(-count, count + 1)
     shares = np.array([_repeating(time, signals, ratio * declared) for ratio in ratios])
@@ -181,13 +178,13 @@ def wrong_teeth(measurement: Measurement) -> list[SignalFinding]:
     teeth = measurement.case.tool.teeth
     found, counted = [], []
     for run in measurement.runs:
-        count = counted_teeth(run, declared_speed(measurement, run), teeth)
+        count = counted_teeth(run, run.of(measurement.case).cut.spindle_speed, teeth)
         if count is not None and count != teeth:
-            says = (
+            description = (
                 f"{run.name}: the forces repeat {count} times a revolution; the case declares "
                 f"{teeth} teeth"
             )
-            found.append(SignalFinding(RUN, run.name, "", says))
+            found.append(SignalFinding(RUN, run.name, "", description))
             counted.append(count)
     about = "the number of teeth is wrong in {count} of {runs} runs"
     if counted:
@@ -199,7 +196,7 @@ def wrong_teeth(measurement: Measurement) -> list[SignalFinding]:
 
 
 def counted_teeth(run: Run, speed: float, declared: int) -> int | None:
-    """Teeth that pass a revolution by the orders of the forces; None where they do not tell.
+    """Teeth that pass a revolution by the orders of the forces; None where they do not show it.
 
     Runout and unequal pitch put energy into all orders of the revolution, so that the orders of
     another number of teeth must hold nearly all of it, and those of the declared number not.
@@ -230,11 +227,11 @@ def order_energies(run: Run, speed: float) -> Vector | None:
     signals = [values[chosen] for values in forces(run)]
     if not signals or time.size < 3 * _MOST_TEETH:
         return None
-    turns = (time[-1] - time[0]) * speed / (2.0 * math.pi)
-    if turns < 0.95:
+    revolutions = (time[-1] - time[0]) * speed / (2.0 * math.pi)
+    if revolutions < 0.95:
         return None
-    samples_a_turn = time.size / turns
-    orders = np.arange(1, int(min(4 * _MOST_TEETH, 0.45 * samples_a_turn)) + 1)
+    samples_a_revolution = time.size / revolutions
+    orders = np.arange(1, int(min(4 * _MOST_TEETH, 0.45 * samples_a_revolution)) + 1)
     waves = np.exp(-1j * np.outer(orders, (time - time[0]) * speed))
     energies = np.zeros(orders.size)
     for values in signals:

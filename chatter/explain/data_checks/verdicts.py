@@ -9,6 +9,7 @@ from chatter.description.errors import InputError, RunError
 from chatter.description.units import from_rpm, rpm
 from chatter.explain.data_checks.finding import FATAL, NOTE, RUN, SAMPLES, SignalFinding
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.stability_margin import stability_margins
 
 Vector = NDArray[np.float64]
 
@@ -28,14 +29,11 @@ _UNITS = {
 }
 #: of the range of speeds beyond which a declared speed has nothing to do with it
 _OUTSIDE = 3.0
-_NEEDED = ("spindle_speed", "axial_depth", "stable")
 
 
 def wrong_verdicts(measurement: Measurement) -> list[SignalFinding]:
     """Points without sense, speeds in a wrong unit, verdicts turned round."""
     run = measurement.runs[0]
-    if any(name not in run.signals for name in _NEEDED):
-        return []
     found = _senseless(run)
     bad = found[0].samples if found else np.zeros(run.signals["stable"].size, dtype=bool)
     judged = np.isfinite(run.signals["stable"]) & ~bad
@@ -45,8 +43,10 @@ def wrong_verdicts(measurement: Measurement) -> list[SignalFinding]:
         return found
     if stable.all() or not stable.any():
         word = "stable" if stable.all() else "chatter"
-        says = f"{run.name}: all {stable.size} verdicts are {word}: no limit lies among the points"
-        return [*found, SignalFinding(NOTE, run.name, "stable", says)]
+        description = (
+            f"{run.name}: all {stable.size} verdicts are {word}: no limit lies among the points"
+        )
+        return [*found, SignalFinding(NOTE, run.name, "stable", description)]
     return [*found, *_units(measurement, run, speeds), *_turned(measurement, run, judged)]
 
 
@@ -57,13 +57,13 @@ def _senseless(run: Run) -> list[SignalFinding]:
     if good.all():
         return []
     first = int(np.argmin(good))
-    says = (
+    description = (
         f"{run.name}: {np.sum(~good)} of {good.size} points are out of any sense, the first at "
         f"point {first + 1}: {rpm(speeds[first]):.4g} rpm, "
         f"{depths[first] * 1e3:.4g} mm"
     )
     severity = SAMPLES if good.mean() > 0.7 else RUN
-    return [SignalFinding(severity, run.name, "stable", says, ~good)]
+    return [SignalFinding(severity, run.name, "stable", description, ~good)]
 
 
 def _units(measurement: Measurement, run: Run, speeds: Vector) -> list[SignalFinding]:
@@ -73,10 +73,10 @@ def _units(measurement: Measurement, run: Run, speeds: Vector) -> list[SignalFin
     low, high = float(speeds.min()), float(speeds.max())
     if low / _OUTSIDE <= declared <= high * _OUTSIDE:
         return []
-    for says, factor in _UNITS.items():
+    for description, factor in _UNITS.items():
         if low * factor / 1.3 <= declared <= high * factor * 1.3:
             text = (
-                f"{run.name}: the speeds are {says}: {rpm(low):.4g} to "
+                f"{run.name}: the speeds are {description}: {rpm(low):.4g} to "
                 f"{rpm(high):.4g} rpm; the case declares "
                 f"{rpm(declared):.4g} rpm"
             )
@@ -90,22 +90,20 @@ def _turned(measurement: Measurement, run: Run, judged: NDArray[np.bool_]) -> li
     deeper = stable_is_deeper(speeds, depths, stable)
     if deeper < _TURNED:
         return []
-    from chatter.explain.kinds.stability import stability_margins
-
     try:
         margins = stability_margins(measurement.case, speeds, depths)
     except (InputError, RunError):
-        return []  # a case that cannot be used is told where it is
+        return []  # a case that cannot be used is reported where it is
     right = float(np.mean((margins > 0.0) == stable))
     if right > _MOST_RIGHT:
         return []
-    says = (
+    description = (
         f"{run.name}: the verdicts are turned round: of two points at like speeds the stable one "
         f"is the deeper one in {100.0 * deeper:.0f} % of the pairs, and the declared case has "
         f"{100.0 * right:.0f} % of the verdicts right, turned round "
         f"{100.0 * (1.0 - right):.0f} %"
     )
-    return [SignalFinding(FATAL, run.name, "stable", says)]
+    return [SignalFinding(FATAL, run.name, "stable", description)]
 
 
 def stable_is_deeper(speeds: Vector, depths: Vector, stable: NDArray[np.bool_]) -> float:
@@ -116,5 +114,5 @@ def stable_is_deeper(speeds: Vector, depths: Vector, stable: NDArray[np.bool_]) 
     speed, depth = np.log(speeds), np.log(depths)
     degree = 2 if np.unique(speed).size > 5 else 0
     trend = np.polyval(np.polyfit(speed - speed.mean(), depth, degree), speed - speed.mean())
-    left = depth - trend
-    return float(np.mean(left[stable][:, None] > left[~stable][None, :]))
+    above = depth - trend
+    return float(np.mean(above[stable][:, None] > above[~stable][None, :]))

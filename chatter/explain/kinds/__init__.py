@@ -1,1 +1,14 @@
-"""Kinds."""
+"""Kinds of measurement: what each predicts, refits, checks and reports.
+
+=============== ====================================================================
+module          responsibility
+=============== ====================================================================
+kind            `Kind`: everything that is asked of a kind, with defaults
+milling         forces and displacements of cuts, by the time-domain engine
+axis            force of a feed axis along its measured motion
+axis_record     smoothed motion, weights and noise of the record of a move
+stability       cutting tests judged stable or chatter
+frf             receptances at the tool point, idle and in the cut
+registry        the list: where a new kind joins
+=============== ====================================================================
+"""

@@ -2,20 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from chatter.compile.structure import structure_of
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from chatter.explain.data_checks.responses import disagreeing_responses, wrong_responses
+from chatter.explain.data_checks.samples import Columns, sample_checks
+from chatter.explain.kinds.kind import (
+    Array,
+    Deviation,
+    Kind,
+    Noise,
+    Signals,
+    mean_over_channels,
+)
 from chatter.explain.kinds.milling import structural_paths
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.residuals.over_lines import by_condition, over_lines
 from chatter.explain.selection.fitting import Parameter
-from chatter.explain.selection.prior import tolerated
-from chatter.explain.selection.problem import scaled_difference
+from chatter.explain.selection.prior import with_priors
 from dynamics.modal.modes import receptance_matrix
 
 IN_CUT = "in_cut"
@@ -25,30 +34,41 @@ _AXES = "xyz"
 _SMOOTHED = 31
 
 
-class FrequencyResponse:
+@dataclass(frozen=True, eq=False)
+class FrfRecord:
+    """Standard deviation (m,) of real and imaginary part at every line, m/N."""
+
+    scatter: Array
+
+
+class FrequencyResponse(Kind):
     """Receptances measured in one direction each."""
 
     name = "frf"
-    #: the noise is known of every line
-    noise_is_white = False
+    sections = ("structure",)
+    columns = (("frequency",), ("real",), ("imag",))
+    estimates_noise = False
+    diagnostics = (by_condition, over_lines)
+    checks = (
+        sample_checks(Columns(_CHANNELS, needed=_CHANNELS)),
+        (wrong_responses,),
+        (disagreeing_responses,),
+    )
 
-    def channels(self, run: Run) -> tuple[str, ...]:  # noqa: ARG002
+    def channels(self, run: Run) -> tuple[str, ...]:
         """Real and imaginary part."""
         return _CHANNELS
 
     def prepared(self, measurement: Measurement) -> Measurement:
-        """Measurement with the scatter of its FRFs at every line.
+        """Return the measurement with the scatter of its FRFs at every line.
 
         Raises
         ------
         InputError
-            If a run lacks a channel or its direction.
+            If a run lacks its direction.
         """
         runs = []
         for run in measurement.runs:
-            missing = [name for name in ("frequency", *_CHANNELS) if name not in run.signals]
-            if missing:
-                raise InputError(f"{run.name}: column {', '.join(missing)} is missing")
             if not run.direction or any(axis not in _AXES for axis in run.direction):
                 raise InputError(f'{run.name}: direction: "{run.direction}" is none; x, y, z or xy')
             alike = [
@@ -57,21 +77,25 @@ class FrequencyResponse:
                 if (other.condition, other.direction) == (run.condition, run.direction)
                 and other.signals["real"].size == run.signals["real"].size
             ]
-            scatter = _scatter(run, alike)
-            runs.append(replace(run, signals={**run.signals, "certainty": 1.0 / scatter}))
-        return replace(measurement, runs=tuple(runs))
+            runs.append(replace(run, record=FrfRecord(_scatter(run, alike))))
+        return measurement.with_runs(runs)
 
-    def noise_floor(self, measurement: Measurement, case: Case) -> float:  # noqa: ARG002
-        """Scatter over the signals, as errors are told."""
-        shares = {channel: [] for channel in _CHANNELS}
+    def noise_floor(
+        self,
+        measurement: Measurement,
+        predict: Callable[[Run], Signals],
+        noise: Noise,
+    ) -> float:
+        """Scatter over the signals, as errors are reported."""
+        shares: dict[str, list[float]] = {channel: [] for channel in _CHANNELS}
         for run in measurement.runs:
-            scatter = float(np.sqrt(np.mean(run.signals["certainty"] ** -2.0)))
+            scatter = float(np.sqrt(np.mean(run.record.scatter**2)))
             for channel in _CHANNELS:
                 level = float(np.sqrt(np.mean(run.signals[channel] ** 2)))
                 shares[channel].append((scatter / level) ** 2)
-        return float(np.mean([np.sqrt(np.mean(parts)) for parts in shares.values()]))
+        return mean_over_channels(shares)
 
-    def predict(self, case: Case, run: Run) -> Mapping[str, NDArray[np.float64]]:
+    def predict(self, case: Case, run: Run) -> Signals:
         """Receptance of the modes, with the contact where the tool is in the cut."""
         frequency = run.signals["frequency"]
         free = receptance_matrix(structure_of(case).modes, frequency)
@@ -81,23 +105,39 @@ class FrequencyResponse:
         values = free[:, response, force]
         return {"real": values.real, "imag": values.imag}
 
-    def residuals(self, case: Case, run: Run, noise: Mapping[str, float]) -> NDArray[np.float64]:
-        """Predicted less measured over the scatter."""
-        plain = dict.fromkeys(noise, 1.0)
-        left = scaled_difference(self, case, run, plain).reshape(2, -1)
-        return (left * run.signals["certainty"]).ravel()
+    def residuals(
+        self,
+        run: Run,
+        predicted: Signals,
+        noise: Mapping[str, float],
+    ) -> Array:
+        """Predicted less measured over the scatter of every line."""
+        scatter = run.record.scatter
+        return np.concatenate(
+            [
+                (predicted[channel] - run.signals[channel]) * (run.weight(channel) / scatter)
+                for channel in _CHANNELS
+            ]
+        )
 
-    def uncertain(self, measurement: Measurement) -> list[Parameter]:
+    def deviation(
+        self,
+        run: Run,
+        channel: str,
+        measured: Array,
+        predicted: Array,
+        level: float | None,
+    ) -> Deviation:
+        """Scatter of every line."""
+        scatter = run.record.scatter
+        return Deviation(scatter, float(np.sqrt(np.mean(scatter**2))))
+
+    def nuisance_parameters(self, measurement: Measurement) -> list[Parameter]:
         """Modal parameters."""
-        return tolerated(measurement, structural_paths(measurement.case))
+        return with_priors(measurement, structural_paths(measurement.case))
 
 
-def touching(
-    free: NDArray[np.complex128],
-    frequency: NDArray[np.float64],
-    stiffness: float,
-    damping: float,
-) -> NDArray[np.complex128]:
+def touching(free: Array, frequency: Array, stiffness: float, damping: float) -> Array:
     """Receptance (m, 3, 3) with a spring and a damper between tool and work in x and y."""
     joint = np.zeros((frequency.size, 3, 3), dtype=np.complex128)
     for axis in range(2):
@@ -105,7 +145,7 @@ def touching(
     return np.linalg.solve(np.eye(3) + free @ joint, free)
 
 
-def _scatter(run: Run, alike: list[Run]) -> NDArray[np.float64]:
+def _scatter(run: Run, alike: Sequence[Run]) -> Array:
     """Standard deviation of real and imaginary part at every line, from repetitions."""
     values = np.array([one.signals["real"] + 1j * one.signals["imag"] for one in alike])
     if len(values) > 1:

@@ -1,69 +1,243 @@
-"""What every kind of measurement tells the search: predictions, uncertain values, effects."""
+"""Kinds of measurement: everything that the checks, the search and the reports ask of one.
+
+A kind is one module with a subclass of `Kind`, and one line in `chatter.explain.kinds.registry`.
+"""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
+from chatter.description.errors import InputError
+from chatter.explain.data_checks.finding import Check
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.residuals.finding import Finding
+from chatter.explain.residuals.noise import white_level
+from chatter.explain.residuals.variables import Condition, Form, Measure, Variable
+from chatter.explain.selection.criteria import (
+    AT_NOISE,
+    FIRST_NOISE,
+    LEAST_GAIN,
+    LEAST_GAIN_SHARE,
+    NUMERICS,
+)
 from chatter.explain.selection.fitting import Parameter
 
-Signals = Mapping[str, NDArray[np.float64]]
+Array = NDArray[np.float64]
+Signals = Mapping[str, Array]
+#: run -> channel -> standard deviation, SI
+Noise = Mapping[str, Mapping[str, float]]
+
+#: least noise, as a share of the signal, and least weight of a sample: none divides by zero
+_LEAST_NOISE, _LEAST_WEIGHT = 1e-6, 1e-6
 
 
-class Kind(Protocol):
-    """A kind of measurement."""
+class Deviation(NamedTuple):
+    """Noise of one channel of one run, SI: (n,) standard deviations of its samples, and the rms."""
 
-    #: as in measurement.toml
-    name: str
+    samples: Array
+    level: float
 
+
+class Trial(NamedTuple):
+    """A measurement that might be made: description, run to predict, noise by channel."""
+
+    description: str
+    run: Run
+    noise: Mapping[str, float]
+
+
+class Cuts(NamedTuple):
+    """Cuts that were measured: speeds, rad/s, depths, m, and verdicts where there are any."""
+
+    speed: Array
+    depth: Array
+    stable: NDArray[np.bool_] | None = None
+
+
+class Kind(ABC):
+    """A kind of measurement.
+
+    Attributes
+    ----------
+    name : str
+        As in measurement.toml.
+    table_key : str
+        Key of measurement.toml that names the one file of the set; empty where it has [[run]]s.
+    sections : tuple of str
+        Sections of a case that predictions need.
+    columns : tuple of tuple of str
+        Groups of columns, of each of which a run needs one.
+    checks : tuple of tuple of callable
+        Checks of the data, group by group: where one finds what is fatal, the groups after it
+        would only repeat it.
+    diagnostics : tuple of callable
+        Residual -> Finding.
+    variables, forms, conditions, measures : tuple
+        What the residual may depend on, and how.
+    periodic_variable : str
+        Name of the variable in which periods are looked for.
+    sources : tuple of str
+        Channels that others follow from: what explains them explains all.
+    is_sampled : bool
+        Whether a run is a series of samples that is drawn as such.
+    estimates_noise : bool
+        Whether the noise is estimated anew from the residual; else what is known of it stays.
+    at_noise : float
+        Rms of the normalised residual up to which a channel is at its noise.
+    least_gain : (float, float)
+        Fall of the sum of squares of holdout runs that is significant, and what is added to it
+        for each of their samples.
+    """
+
+    name: ClassVar[str]
+    table_key: ClassVar[str] = ""
+    sections: ClassVar[tuple[str, ...]] = ("tool", "material", "cut", "structure")
+    columns: ClassVar[tuple[tuple[str, ...], ...]]
+    checks: ClassVar[tuple[tuple[Check, ...], ...]] = ()
+    diagnostics: ClassVar[tuple[Callable[..., Finding], ...]] = ()
+    variables: ClassVar[tuple[Variable, ...]] = ()
+    forms: ClassVar[tuple[Form, ...]] = ()
+    conditions: ClassVar[tuple[Condition, ...]] = ()
+    measures: ClassVar[tuple[Measure, ...]] = ()
+    periodic_variable: ClassVar[str] = ""
+    sources: ClassVar[tuple[str, ...]] = ()
+    is_sampled: ClassVar[bool] = True
+    estimates_noise: ClassVar[bool] = True
+    at_noise: ClassVar[float] = AT_NOISE
+    least_gain: ClassVar[tuple[float, float]] = (LEAST_GAIN, LEAST_GAIN_SHARE)
+
+    @abstractmethod
     def channels(self, run: Run) -> tuple[str, ...]:
         """Signals of a run that are predicted."""
 
+    @abstractmethod
     def predict(self, case: Case, run: Run) -> Signals:
-        """Signals of a run by a case with the overrides of the run, at its samples, SI."""
+        """Signals of a whole run by a case with the overrides of the run, at its samples, SI."""
 
-    def residuals(self, case: Case, run: Run, noise: Mapping[str, float]) -> NDArray[np.float64]:
-        """What is left of a run, scaled to a standard deviation of one."""
+    @abstractmethod
+    def nuisance_parameters(self, measurement: Measurement) -> list[Parameter]:
+        """Declared values that are refitted within their tolerances, by their paths."""
 
-    def uncertain(self, measurement: Measurement) -> list[Parameter]:
-        """Declared values that are merely uncertain, by their paths."""
+    def reported_channels(self, run: Run) -> tuple[str, ...]:
+        """Channels whose errors are reported; all that are predicted by default."""
+        return self.channels(run)
+
+    def prepared(self, measurement: Measurement) -> Measurement:
+        """Return the measurement as it is searched; unchanged by default.
+
+        Raises
+        ------
+        InputError
+            If a run lacks what the kind needs.
+        """
+        return measurement
+
+    def reweighted(self, measurement: Measurement, case: Case) -> Measurement:
+        """Return the measurement with weights by a case that was found; unchanged by default."""
+        return measurement
+
+    def residuals(self, run: Run, predicted: Signals, noise: Mapping[str, float]) -> Array:
+        """Residuals of all channels of a run, scaled to a standard deviation of one."""
+        return np.concatenate(
+            [
+                (predicted[channel] - run.signals[channel]) * (run.weight(channel) / noise[channel])
+                for channel in self.channels(run)
+            ]
+        )
+
+    def known_noise(self, run: Run) -> Mapping[str, float]:
+        """Standard deviation of the noise of channels where it is known before any fit, SI."""
+        return {}
+
+    def first_noise(self, run: Run) -> Mapping[str, float]:
+        """Standard deviation of every channel for the first fit, SI."""
+        known = self.known_noise(run)
+        return {
+            channel: known[channel]
+            if channel in known
+            else FIRST_NOISE * float(np.sqrt(np.mean(run.signals[channel] ** 2))) + 1e-30
+            for channel in self.channels(run)
+        }
+
+    def noise_beside(
+        self, run: Run, predicted: Signals, noise: Mapping[str, float]
+    ) -> Mapping[str, float]:
+        """Standard deviation of every channel from the residual; `noise` is that used so far."""
+        if not self.estimates_noise:
+            return noise
+        levels = {}
+        for channel in self.channels(run):
+            measured = run.signals[channel]
+            white = white_level((measured - predicted[channel]) * run.weight(channel))
+            levels[channel] = float(np.hypot(white, NUMERICS * np.sqrt(np.mean(measured**2))))
+        return levels
+
+    def deviation(
+        self, run: Run, channel: str, measured: Array, predicted: Array, level: float | None
+    ) -> Deviation:
+        """Noise of one channel, sample by sample; estimated where its level is not given."""
+        weight = np.maximum(run.weights.get(channel, np.ones(measured.size)), _LEAST_WEIGHT)
+        if level is None:
+            level = white_level((measured - predicted) * weight)
+        least = _LEAST_NOISE * float(np.sqrt(np.mean(measured**2))) + 1e-300
+        level = max(level, least)
+        return Deviation(level / weight, level)
+
+    def noise_floor(
+        self,
+        measurement: Measurement,
+        predict: Callable[[Run], Signals],
+        noise: Noise,
+    ) -> float:
+        """Error over the signal that a model has that is right."""
+        shares: dict[str, list[float]] = {}
+        for run in measurement.runs:
+            for channel in self.reported_channels(run):
+                level = float(np.sqrt(np.mean(run.signals[channel] ** 2)))
+                share = noise[run.name][channel] / max(level, 1e-300)
+                shares.setdefault(channel, []).append(share**2)
+        return mean_over_channels(shares)
+
+    def trials(self, measurement: Measurement, noise: Noise) -> Sequence[Trial]:
+        """Measurements that might tell apart cases that fit alike; none by default."""
+        return ()
+
+    def cuts(self, measurement: Measurement) -> Cuts:
+        """Cuts to draw among lobes; that of the declared case by default."""
+        cut = measurement.case.cut
+        return Cuts(np.array([cut.spindle_speed]), np.array([cut.axial_depth]))
+
+    def variable(self, name: str) -> Variable:
+        """One of the variables, by name."""
+        return next(one for one in self.variables if one.name == name)
+
+    def require(self, measurement: Measurement) -> None:
+        """Raise InputError where the case lacks a section, or a run a column, that is needed."""
+        measurement.case.require(*self.sections)
+        wanted = [" or ".join(group) for group in self.columns]
+        problems = []
+        for run in measurement.runs:
+            missing = [
+                words
+                for words, group in zip(wanted, self.columns, strict=True)
+                if not any(name in run.signals for name in group)
+            ]
+            if missing:
+                problems.append(
+                    f"{measurement.folder / run.name}: column {', '.join(missing)} is missing; "
+                    f"there are {', '.join(run.signals)}; a run of kind {self.name} needs "
+                    f"{', '.join(wanted)}"
+                )
+        if problems:
+            raise InputError(problems)
 
 
-@dataclass(frozen=True)
-class Effect:
-    """An effect that a model may lack: a patch of the case with named numbers.
-
-    Parameters
-    ----------
-    name : str
-    kinds : tuple of str
-        Kinds of measurement in which it shows.
-    applies : callable
-        Measurement -> whether it may be missing there.
-    parameters : callable
-        Measurement -> parameters, in SI.
-    patch : callable
-        (case, values by name) -> assignments of the case by path.
-    starts : callable
-        Measurement -> start values to try, each by name; one empty mapping for the defaults.
-    says : str
-        What it does, for reports.
-    told : callable, optional
-        Values by name -> the numbers that people want, each with its SI unit; the parameters
-        themselves by default.
-    """
-
-    name: str
-    kinds: tuple[str, ...]
-    applies: Callable[[Measurement], bool]
-    parameters: Callable[[Measurement], Sequence[Parameter]]
-    patch: Callable[[Case, Mapping[str, float]], dict[str, Any]]
-    starts: Callable[[Measurement], Sequence[Mapping[str, float]]] = lambda _: ({},)
-    says: str = ""
-    told: Callable[[Mapping[str, float]], Mapping[str, tuple[float, str]]] | None = None
+def mean_over_channels(squares: Mapping[str, Sequence[Any]]) -> float:
+    """Mean over the channels of the root of the mean square of each."""
+    return float(np.mean([np.sqrt(np.mean(values)) for values in squares.values()]))

@@ -3,80 +3,163 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from chatter.description.case import Case
+from chatter.description.units import rpm
+from chatter.explain.data_checks.channel_assignment import wrong_assignment
+from chatter.explain.data_checks.clock import clock_check
+from chatter.explain.data_checks.displacement import wrong_displacements
+from chatter.explain.data_checks.samples import Columns, dropouts, sample_checks
+from chatter.explain.data_checks.scale import wrong_scales
+from chatter.explain.data_checks.spindle import wrong_speeds, wrong_teeth
+from chatter.explain.kinds.kind import Cuts, Kind, Noise, Signals, Trial
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.residuals.by_channel import by_channel
+from chatter.explain.residuals.over_runs import over_runs
+from chatter.explain.residuals.over_time import over_time
+from chatter.explain.residuals.over_variable import over_period, over_variable
+from chatter.explain.residuals.spectrum import spectrum
+from chatter.explain.residuals.variables import (
+    MILLING_CONDITIONS,
+    MILLING_FORMS,
+    MILLING_MEASURES,
+    MILLING_VARIABLES,
+)
 from chatter.explain.selection.fitting import Parameter
-from chatter.explain.selection.prior import tolerated
-from chatter.explain.selection.problem import scaled_difference
-from chatter.simulation.setup import set_up
-from chatter.simulation.simulate import run_setup
+from chatter.explain.selection.prior import with_priors
+from chatter.simulation.simulate import simulate
 
 _FORCES = ("Fx", "Fy", "Fz")
 _DISPLACEMENTS = ("x", "y", "z")
-#: of steps beyond the end of a record
+#: steps of the clock that no record of a cut has, s
+_LONGEST_STEP = 0.02
+#: revolutions simulated beyond the end of a record
 _BEYOND = 1e-3
+#: conditions of a cut that a discriminating test may change: unit, reported over SI
+_VARIED = {
+    "cut.spindle_speed": ("rpm", rpm(1.0)),
+    "cut.axial_depth": ("mm", 1e3),
+    "cut.feed_per_tooth": ("mm", 1e3),
+    "cut.radial_depth": ("mm", 1e3),
+}
+#: factors on these, and revolutions of such a test
+_FACTORS = (0.5, 0.7, 1.4, 2.0)
+_REVOLUTIONS = 10.0
 
 
-class Milling:
+class Milling(Kind):
     """Runs from rest at the moment the tool meets full immersion."""
 
     name = "milling"
+    columns = (("time",), (*_FORCES, *_DISPLACEMENTS))
+    variables = MILLING_VARIABLES
+    forms = MILLING_FORMS
+    conditions = MILLING_CONDITIONS
+    measures = MILLING_MEASURES
+    periodic_variable = "feed distance"
+    sources = _FORCES
+    diagnostics = (
+        by_channel,
+        spectrum,
+        over_variable("tooth angle"),
+        over_variable("spindle angle"),
+        over_period("feed distance"),
+        over_runs,
+        over_time,
+    )
+    checks = (
+        (
+            # out of the plane of the cut a case may well predict nothing
+            *sample_checks(Columns((*_FORCES, *_DISPLACEMENTS), may_rest=("Fz", "z"))),
+            dropouts(Columns((*_FORCES, *_DISPLACEMENTS))),
+            clock_check(_LONGEST_STEP),
+        ),
+        (wrong_speeds, wrong_teeth),
+        (wrong_scales,),
+        (wrong_assignment,),
+        (wrong_displacements,),
+    )
 
     def channels(self, run: Run) -> tuple[str, ...]:
         """Forces and displacements that were recorded."""
         return tuple(name for name in (*_FORCES, *_DISPLACEMENTS) if name in run.signals)
 
     def prepared(self, measurement: Measurement) -> Measurement:
-        """Measurement whose runs, where they are few, are judged in parts."""
-        runs = [
-            replace(run, signals={**run.signals, "whole time": run.signals["time"]})
-            for run in measurement.runs
-        ]
-        # a channel that is no good may be missing in some runs
-        columns = ("time", *{name for run in measurement.runs for name in run.signals})
-        return replace(measurement, runs=tuple(runs)).in_parts(columns)
+        """Return the measurement whose runs, where they are few, are judged in parts."""
+        return measurement.in_parts()
 
-    def predict(self, case: Case, run: Run) -> Mapping[str, NDArray[np.float64]]:
+    def predict(self, case: Case, run: Run) -> Signals:
         """Simulated signals at the samples of a run."""
-        whole = run.signals["whole time"]
-        duration = float(whole[-1] - whole[0])
-        turns = duration * case.cut.spindle_speed / (2.0 * math.pi) + _BEYOND
-        lasting = case.patch({"simulation.revolutions": turns})
-        result, _ = run_setup(set_up(lasting))
-        at = run.signals["time"] - whole[0]
-        found = {}
-        for axis in range(3):
-            found[_FORCES[axis]] = np.interp(at, result.time, result.force[:, axis])
-            found[_DISPLACEMENTS[axis]] = np.interp(at, result.time, result.displacement[:, axis])
-        return found
+        at = run.signals["time"] - run.signals["time"][0]
+        revolutions = float(at[-1]) * case.cut.spindle_speed / (2.0 * math.pi) + _BEYOND
+        result = simulate(case.patch({"simulation.revolutions": revolutions}))
+        columns = {
+            **dict(zip(_FORCES, result.force.T, strict=True)),
+            **dict(zip(_DISPLACEMENTS, result.displacement.T, strict=True)),
+        }
+        return {
+            name: np.interp(at, result.time, columns[name]) for name in (*_FORCES, *_DISPLACEMENTS)
+        }
 
-    def residuals(self, case: Case, run: Run, noise: Mapping[str, float]) -> NDArray[np.float64]:
-        """Predicted less measured over the noise."""
-        return scaled_difference(self, case, run, noise)
-
-    def uncertain(self, measurement: Measurement) -> list[Parameter]:
+    def nuisance_parameters(self, measurement: Measurement) -> list[Parameter]:
         """Cutting coefficients and modal parameters."""
-        case = measurement.case
-        keys = ("Ktc", "Krc", "Kac", "Kte", "Kre", "Kae")
-        paths = [f"material.{key}" for key in keys if getattr(case.material, key)]
-        paths += structural_paths(case)
-        if case.process_damping is not None and case.process_damping.coefficient:
-            paths.append("process_damping.coefficient")
-        if case.tool.runout is not None and case.tool.runout.offset:
-            paths += ["tool.runout.offset"]
-        return tolerated(measurement, paths)
+        paths = cutting_paths(measurement.case, ("Ktc", "Krc", "Kac", "Kte", "Kre", "Kae"))
+        runout = measurement.case.tool.runout
+        if runout is not None and runout.offset:
+            paths.append("tool.runout.offset")
+        return with_priors(measurement, paths)
+
+    def cuts(self, measurement: Measurement) -> Cuts:
+        """Cuts of the runs."""
+        cuts = [run.of(measurement.case).cut for run in measurement.runs]
+        return Cuts(
+            np.array([cut.spindle_speed for cut in cuts]),
+            np.array([cut.axial_depth for cut in cuts]),
+        )
+
+    def trials(self, measurement: Measurement, noise: Noise) -> list[Trial]:
+        """Cuts as one that was made, with one condition changed."""
+        run = measurement.runs[len(measurement.runs) // 2]
+        made = run.of(measurement.case)
+        step = float(np.median(np.diff(run.signals["time"])))
+        levels = {name: level for name, level in noise[run.name].items() if name in run.signals}
+        trials = []
+        for path, (unit, scale) in _VARIED.items():
+            value = made.get(path)
+            for factor in _FACTORS if value else ():
+                most = made.tool.diameter if path == "cut.radial_depth" else math.inf
+                if value * factor > most:
+                    continue
+                speed = made.cut.spindle_speed * (factor if path == "cut.spindle_speed" else 1.0)
+                time = np.arange(0.0, _REVOLUTIONS * 2.0 * math.pi / speed, step)
+                overrides = {**run.overrides, path: float(value * factor)}
+                trial = replace(
+                    run, overrides=overrides, signals={"time": time}, whole=None, part=None
+                )
+                name = path.partition(".")[2].replace("_", " ")
+                words = (
+                    f"a cut like {run.name} with a {name} of {value * factor * scale:.4g} {unit}"
+                )
+                trials.append(Trial(words, trial, levels))
+        return trials
+
+
+def cutting_paths(case: Case, coefficients: tuple[str, ...]) -> list[str]:
+    """Paths of the declared values of a cut: coefficients of the material, modes, damping."""
+    paths = [f"material.{key}" for key in coefficients if getattr(case.material, key)]
+    paths += structural_paths(case)
+    if case.process_damping is not None and case.process_damping.coefficient:
+        paths.append("process_damping.coefficient")
+    return paths
 
 
 def structural_paths(case: Case) -> list[str]:
     """Paths of the modal parameters of a case."""
     paths = []
-    for place, mode in enumerate(case.structure.mode if case.structure else ()):
+    for index, mode in enumerate(case.structure.mode if case.structure else ()):
         inertia = "mass" if mode.mass is not None else "stiffness"
-        paths += [f"structure.mode[{place}].{key}" for key in ("frequency", "damping", inertia)]
+        paths += [f"structure.mode[{index}].{key}" for key in ("frequency", "damping", inertia)]
     return paths

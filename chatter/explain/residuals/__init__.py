@@ -1,16 +1,25 @@
 """Where the residual of a measurement lives.
 
-=============== ====================================================================
-module          responsibility
-=============== ====================================================================
-left            what a case leaves of every run and channel, against its noise
-finding         what a view found: a sentence, numbers, a panel
-variables       what a residual may hang on, sample by sample
-dependence      how much of it hangs on a variable, by runs that were not looked at
-periods         periods in a variable
-views           the views of every kind of measurement: where a new one joins
-lead            free-form description of a residual that nothing known explains
-=============== ====================================================================
-
-The other modules hold one view each.
+=================== ================================================================
+module              responsibility
+=================== ================================================================
+channel_residual    residual of one channel of one run, against its noise
+residual            residual of a measurement
+noise               level of white noise beneath lines
+variables           what a residual may depend on: variables, forms, conditions
+finding             what a diagnostic found: a sentence, numbers, a panel
+dependence          share of a residual that depends on a variable, by holdout runs
+periods             periods in a variable
+ranks               rank correlation over runs
+regression          dependence on a variable or a period in the form that suits best
+by_channel          diagnostic: residual by run and channel
+spectrum, harmonics diagnostic: frequency
+over_variable       diagnostics: one variable, and periods in it
+over_runs           diagnostic: trend over the runs
+over_time           diagnostic: within a run
+over_lines          diagnostics of FRFs
+misclassified_tests diagnostics of cutting tests
+signature           all diagnostics of a kind of measurement
+residual_dependence on what a residual that no effect explains depends most
+=================== ================================================================
 """

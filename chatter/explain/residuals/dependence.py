@@ -1,10 +1,10 @@
-"""How much of a residual hangs on a variable, judged on runs that were not looked at.
+"""How much of a residual depends on a variable, judged on holdout runs.
 
 The residual is fitted by g(v) w, g a step function over bins of the variable v and w a weight (one,
-or the predicted signal where a coefficient may hang on v). The steps are read from all runs but
-one and explain that one, so that a share of zero or less is what noise gives. Chance is looked at
+or the predicted signal where a coefficient may depend on v). The steps are read from all runs but
+one and explain that one, so that a share of zero or less is what noise gives. Chance is examined
 by shifting every run's residual in time against its variables: that keeps its spectrum and its
-size and breaks nothing but the tie.
+size and breaks nothing but the dependence.
 """
 
 from __future__ import annotations
@@ -33,26 +33,26 @@ class Sample(NamedTuple):
 
     Parameters
     ----------
-    scaled : (n,) array
+    normalised : (n,) array
         Residual over the noise.
     weight : (n,) array
         Weight over the noise.
-    place : (n,) array of int
+    bins : (n,) array of int
         Bin of every sample; -1 for none.
     """
 
-    scaled: Array
+    normalised: Array
     weight: Array
-    place: Indices
+    bins: Indices
 
 
 class Dependence(NamedTuple):
-    """Share of a residual that hangs on a variable.
+    """Share of a residual that depends on a variable.
 
     Parameters
     ----------
     share : float
-        Of the sum of squares over the noise, by runs not looked at; below 0 for noise.
+        Of the sum of squares over the noise, by holdout runs; below 0 for noise.
     chance : float
         Share that shifted residuals do not exceed.
     coefficients, errors : (bins,) array
@@ -65,7 +65,7 @@ class Dependence(NamedTuple):
     errors: Array
 
     @property
-    def beyond_chance(self) -> bool:
+    def significant(self) -> bool:
         """Whether it is more than noise gives."""
         return self.share > max(self.chance, LEAST_SHARE)
 
@@ -85,14 +85,14 @@ def edges_of(values: Array, count: int = 24) -> Array:
     return edges[keep]
 
 
-def places_in(values: Array, edges: Array) -> Indices:
+def bins_of(values: Array, edges: Array) -> Indices:
     """Bin of every value; -1 where it is not known."""
-    place = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
-    return np.where(np.isfinite(values), place, -1)
+    bins = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
+    return np.where(np.isfinite(values), bins, -1)
 
 
 def dependence(samples: Sequence[Sample], bins: int, seed: int = 0) -> Dependence:
-    """Share of a residual that a step function of a variable explains in runs not looked at.
+    """Share of a residual that a step function of a variable explains in holdout runs.
 
     Parameters
     ----------
@@ -103,9 +103,9 @@ def dependence(samples: Sequence[Sample], bins: int, seed: int = 0) -> Dependenc
         Of the shifts.
     """
     folds = [fold for sample in samples for fold in _folds(sample, len(samples))]
-    weights = [_sums(fold.place, fold.weight**2, bins) for fold in folds]
+    weights = [_sums(fold.bins, fold.weight**2, bins) for fold in folds]
     folds = _without_constant(folds)
-    total = sum(float(s.scaled @ s.scaled) for s in samples)
+    total = sum(float(s.normalised @ s.normalised) for s in samples)
     share = _share(folds, weights, bins) / max(total, 1e-300)
     chance = np.inf
     if share > LEAST_SHARE:
@@ -116,7 +116,7 @@ def dependence(samples: Sequence[Sample], bins: int, seed: int = 0) -> Dependenc
         spread = float(np.std(shifted))
         chance = max(float(shifted.max()), float(shifted.mean()) + _BEYOND * spread)
     all_weights = np.sum(weights, axis=0)
-    products = sum(_sums(s.place, s.scaled * s.weight, bins) for s in samples)
+    products = sum(_sums(s.bins, s.normalised * s.weight, bins) for s in samples)
     known = all_weights > _LEAST_WEIGHT * all_weights.max()
     with np.errstate(divide="ignore", invalid="ignore"):
         coefficients = np.where(known, products / all_weights, np.nan)
@@ -127,31 +127,33 @@ def dependence(samples: Sequence[Sample], bins: int, seed: int = 0) -> Dependenc
 def _folds(sample: Sample, runs: int) -> list[Sample]:
     if runs >= _FEW_RUNS:
         return [sample]
-    cuts = np.array_split(np.arange(sample.scaled.size), _FOLDS)
+    cuts = np.array_split(np.arange(sample.normalised.size), _FOLDS)
     return [Sample(*(column[cut] for column in sample)) for cut in cuts]
 
 
 def _without_constant(folds: Sequence[Sample]) -> list[Sample]:
-    """Folds less the one multiple of the weight that suits all: a constant hangs on nothing."""
+    """Folds less the one multiple of the weight that suits all: a constant depends on nothing."""
     weights = sum(float(s.weight @ s.weight) for s in folds)
-    constant = sum(float(s.scaled @ s.weight) for s in folds) / max(weights, 1e-300)
-    return [s._replace(scaled=s.scaled - constant * s.weight) for s in folds]
+    constant = sum(float(s.normalised @ s.weight) for s in folds) / max(weights, 1e-300)
+    return [s._replace(normalised=s.normalised - constant * s.weight) for s in folds]
 
 
 def _shifted(folds: Sequence[Sample], rng: np.random.Generator) -> list[Sample]:
-    return [s._replace(scaled=np.roll(s.scaled, rng.integers(s.scaled.size))) for s in folds]
+    return [
+        s._replace(normalised=np.roll(s.normalised, rng.integers(s.normalised.size))) for s in folds
+    ]
 
 
-def _sums(place: Indices, values: Array, bins: int) -> Array:
-    known = place >= 0
+def _sums(bins: Indices, values: Array, count: int) -> Array:
+    known = bins >= 0
     if known.all():
-        return np.bincount(place, weights=values, minlength=bins)
-    return np.bincount(place[known], weights=values[known], minlength=bins)
+        return np.bincount(bins, weights=values, minlength=count)
+    return np.bincount(bins[known], weights=values[known], minlength=count)
 
 
 def _share(folds: Sequence[Sample], weights: Sequence[Array], bins: int) -> float:
     """Sum of squares that every fold loses by the steps of the others."""
-    products = [_sums(s.place, s.scaled * s.weight, bins) for s in folds]
+    products = [_sums(s.bins, s.normalised * s.weight, bins) for s in folds]
     all_products, all_weights = np.sum(products, axis=0), np.sum(weights, axis=0)
     lost = 0.0
     for own, weight in zip(products, weights, strict=True):

@@ -1,4 +1,4 @@
-"""What a view found: a sentence in plain words, its numbers, and what to draw."""
+"""Result of a residual diagnostic: a sentence in plain words, its numbers, and what to draw."""
 
 from __future__ import annotations
 
@@ -97,32 +97,32 @@ Panel = Bars | Curves | Map | Points
 
 @dataclass(frozen=True, eq=False)
 class Finding:
-    """What one view says of a residual.
+    """Result of one diagnostic of a residual.
 
     Parameters
     ----------
-    view : str
-        Name of the view.
-    says : str
-        One sentence with numbers; what was looked at, where nothing was found.
-    beyond_chance : bool
+    name : str
+        Of the diagnostic.
+    description : str
+        One sentence with numbers; the variable alone where no dependence is significant.
+    significant : bool
         Whether it shows more than chance does.
     numbers : mapping
         As JSON knows them.
     panel : Panel, optional
     """
 
-    view: str
-    says: str
-    beyond_chance: bool
+    name: str
+    description: str
+    significant: bool
     numbers: Mapping[str, Any] = field(default_factory=dict)
     panel: Panel | None = None
 
     def summary(self) -> dict[str, Any]:
         """Entry of explanation.json."""
         return {
-            "view": self.view,
-            "says": self.says,
-            "beyond_chance": self.beyond_chance,
+            "name": self.name,
+            "description": self.description,
+            "significant": self.significant,
             "numbers": dict(self.numbers),
         }

@@ -8,12 +8,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.explain.residuals.normalised_residual import Left
+from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.variables import spindle_angle
 
 Array = NDArray[np.float64]
 
-#: samples of a run that are looked at, and the fewest a harmonic
+#: samples of a run that are examined, and the fewest a harmonic
 _MOST_SAMPLES, _SAMPLES_A_HARMONIC = 6000, 6
 #: of a harmonic the fewest samples a cycle
 _SAMPLES_A_CYCLE = 2.2
@@ -51,10 +51,10 @@ class Split(NamedTuple):
 class Harmonics:
     """Harmonics of the spindle in one run, shared by its channels."""
 
-    def __init__(self, left: Left) -> None:
-        angle = spindle_angle(left)[:_MOST_SAMPLES]
+    def __init__(self, residual: ChannelResidual) -> None:
+        angle = spindle_angle(residual)[:_MOST_SAMPLES]
         self.samples = angle.size
-        self.step = left.step
+        self.step = residual.step
         a_sample = float(np.median(np.diff(angle)))
         highest = int(2.0 * math.pi / (a_sample * _SAMPLES_A_CYCLE))
         count = max(1, min(highest, self.samples // (2 * _SAMPLES_A_HARMONIC)))
@@ -66,18 +66,18 @@ class Harmonics:
         self.window = np.hanning(self.samples)
         self.frequency = np.fft.rfftfreq(self.samples, self.step)
 
-    def split(self, left: Left) -> Split:
+    def split(self, residual: ChannelResidual) -> Split:
         """Split one channel of the run."""
-        scaled = left.scaled[: self.samples]
-        parts = self.basis.T @ scaled
-        between = scaled - self.basis @ parts
+        values = residual.normalised[: self.samples]
+        parts = self.basis.T @ values
+        between = values - self.basis @ parts
         density = self._density(between)
         return Split(
             self.orders,
             np.sum(parts[1:].reshape(-1, 2) ** 2, axis=1),
             self.frequency,
             density,
-            self._density(scaled),
+            self._density(values),
             _level_beside(density),
             self.samples,
         )

@@ -1,4 +1,4 @@
-"""Where the cutting tests lie that a case judges wrongly."""
+"""Where the cutting tests lie that a case misclassifies."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.units import rpm
-from chatter.explain.kinds.stability import stability_margins
 from chatter.explain.residuals.finding import Curve, Curves, Finding, Points
-from chatter.explain.residuals.normalised_residual import Residual
 from chatter.explain.residuals.ranks import rank_correlation
+from chatter.explain.residuals.residual import Residual
+from chatter.explain.stability_margin import stability_margins
 
 Array = NDArray[np.float64]
 
 #: standard deviations by which wrong verdicts outnumber those of chance
 _BEYOND = 3.0
-#: probability of a chance finding of a rank correlation
-_ALLOWED = 5e-3
+#: significance level of a rank correlation
+_SIGNIFICANCE = 5e-3
 _BINS = 8
 
 
 class _Tests:
-    """All tests of a measurement, with what a case says of them."""
+    """All tests of a measurement, with what a case predicts of them."""
 
     def __init__(self, residual: Residual) -> None:
         def column(name: str) -> Array:
@@ -32,48 +32,48 @@ class _Tests:
         self.speed, self.depth = column("spindle_speed"), column("axial_depth")
         self.stable = column("stable") > 0.5
         self.likely = np.concatenate([part.predicted for part in residual.parts])
-        self.wrong = self.stable != (self.likely > 0.5)
+        self.misclassified = self.stable != (self.likely > 0.5)
         #: above zero where a test is more stable than the case
         self.surprise = self.stable - self.likely
 
 
-def misjudged(residual: Residual) -> Finding:
-    """Number of tests judged wrongly against what scatter gives, and how far from the limit."""
+def misclassified(residual: Residual) -> Finding:
+    """Number of misclassified tests against what scatter gives, and how far from the limit."""
     tests = _Tests(residual)
     chance = np.minimum(tests.likely, 1.0 - tests.likely)
     expected, spread = float(chance.sum()), math.sqrt(float(np.sum(chance * (1.0 - chance))))
-    count = int(tests.wrong.sum())
+    count = int(tests.misclassified.sum())
     beyond = count > expected + _BEYOND * max(spread, 0.7)
-    too_careful = int(np.sum(tests.wrong & tests.stable))
+    too_careful = int(np.sum(tests.misclassified & tests.stable))
     margins = stability_margins(residual.case, tests.speed, tests.depth)
-    far = float(np.median(np.abs(margins[tests.wrong]))) if count else 0.0
-    says = (
-        f"{count} of {tests.stable.size} tests are judged wrongly ({expected:.1f} by scatter "
-        f"alone): {too_careful} held stable where the case says chatter, {count - too_careful} the "
-        f"other way round, half of them farther than {100.0 * far:.0f} % of the depth from the "
+    far = float(np.median(np.abs(margins[tests.misclassified]))) if count else 0.0
+    description = (
+        f"{count} of {tests.stable.size} tests are misclassified ({expected:.1f} by scatter "
+        f"alone): {too_careful} were stable where the case predicts chatter, {count - too_careful} "
+        f"the other way round, half of them farther than {100.0 * far:.0f} % of the depth from the "
         f"limit."
     )
     if not beyond:
-        says = (
-            f"{count} of {tests.stable.size} tests are judged wrongly, as scatter near the limit "
+        description = (
+            f"{count} of {tests.stable.size} tests are misclassified, as scatter near the limit "
             f"gives ({expected:.1f})."
         )
     numbers = {
-        "wrong": count,
-        "by_chance": expected,
+        "misclassified": count,
+        "expected_by_scatter": expected,
         "stable_though_predicted_chatter": too_careful,
         "median_distance_from_limit": far,
     }
-    return Finding("wrong verdicts", says, beyond, numbers, _map_of(tests))
+    return Finding("misclassified tests", description, beyond, numbers, _map_of(tests))
 
 
 def _map_of(tests: _Tests) -> Points:
-    right = ~tests.wrong
+    right = ~tests.misclassified
     classes = {
-        "stable, as judged": right & tests.stable,
-        "chatter, as judged": right & ~tests.stable,
-        "stable, judged chatter": tests.wrong & tests.stable,
-        "chatter, judged stable": tests.wrong & ~tests.stable,
+        "stable, as predicted": right & tests.stable,
+        "chatter, as predicted": right & ~tests.stable,
+        "stable, predicted chatter": tests.misclassified & tests.stable,
+        "chatter, predicted stable": tests.misclassified & ~tests.stable,
     }
     points = {
         name: (rpm(tests.speed[chosen]), tests.depth[chosen] * 1e3)
@@ -95,23 +95,24 @@ def over_depth(residual: Residual) -> Finding:
 
 
 def _over(tests: _Tests, values: Array, name: str, unit: str) -> Finding:
-    """Where tests of the verdict that is foretold worst are judged wrongly.
+    """Where tests of the verdict that is predicted worst are misclassified.
 
-    Tests far above any limit chatter by every case: they would hide what the others tell.
+    Tests far above any limit chatter by every case: they would hide what the others show.
     """
-    too_careful = np.sum(tests.wrong & tests.stable) >= np.sum(tests.wrong & ~tests.stable)
-    verdict, foretold = ("stable", "chatter") if too_careful else ("to chatter", "stable")
+    stable = tests.stable[tests.misclassified]
+    too_careful = stable.sum() >= (~stable).sum()
+    verdict, predicted = ("stable", "chatter") if too_careful else ("to chatter", "stable")
     chosen = tests.stable if too_careful else ~tests.stable
-    x, surprise, wrong = values[chosen], tests.surprise[chosen], tests.wrong[chosen]
+    x, surprise, wrong = values[chosen], tests.surprise[chosen], tests.misclassified[chosen]
     found = rank_correlation(x, surprise)
-    beyond = found.probability < _ALLOWED and wrong.any() and not wrong.all()
-    says = name
+    beyond = found.probability < _SIGNIFICANCE and wrong.any() and not wrong.all()
+    description = name
     if beyond:
         bad, good = (
-            f"{part.size} judged {words} lie at {part.min():.4g} to {part.max():.4g} {unit}"
-            for part, words in ((x[wrong], foretold), (x[~wrong], "right"))
+            f"{part.size} predicted {words} lie at {part.min():.4g} to {part.max():.4g} {unit}"
+            for part, words in ((x[wrong], predicted), (x[~wrong], "rightly"))
         )
-        says = (
+        description = (
             f"Of the {x.size} tests found {verdict}, the {bad}, the {good} (rank correlation with "
             f"the {name} {found.coefficient:+.2f})."
         )
@@ -119,15 +120,15 @@ def _over(tests: _Tests, values: Array, name: str, unit: str) -> Finding:
     middles = np.array([float(np.mean(x[cut])) for cut in cuts])
     means = np.array([float(np.mean(wrong[cut])) for cut in cuts])
     numbers = {
-        "of_tests_found": verdict,
+        "verdict": verdict,
         "rank_correlation": found.coefficient,
-        "probability_of_chance": found.probability,
-        "share_judged_wrongly": [[float(m), float(y)] for m, y in zip(middles, means, strict=True)],
+        "p_value": found.probability,
+        "misclassified_share": [[float(m), float(y)] for m, y in zip(middles, means, strict=True)],
     }
     panel = Curves(
         (Curve(middles, 100.0 * means),),
         f"{name} [{unit}]",
-        f"judged wrongly of those found {verdict} [%]",
+        f"misclassified of those found {verdict} [%]",
         floor=0.0,
     )
-    return Finding(name, says, bool(beyond), numbers, panel)
+    return Finding(name, description, bool(beyond), numbers, panel)

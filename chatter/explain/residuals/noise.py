@@ -1,4 +1,4 @@
-"""Noise floor of signals, from what is left of them beside a model."""
+"""Noise floor of signals, from the residual of them beside a model."""
 
 from __future__ import annotations
 

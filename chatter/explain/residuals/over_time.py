@@ -1,4 +1,4 @@
-"""Whether what is left grows or dies away within a run."""
+"""Whether the residual grows or dies away within a run."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ import numpy as np
 import scipy.stats
 from numpy.typing import NDArray
 
-from chatter.explain.residuals.by_channel import is_above
+from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.finding import Curve, Curves, Finding
-from chatter.explain.residuals.normalised_residual import Left, Residual
+from chatter.explain.residuals.residual import Residual
 
 _SEGMENTS = 12
-#: factor in size that counts, and probability of a chance finding, all channels together
-_FACTOR, _ALLOWED = 1.25, 2e-3
+#: factor in size that counts, and significance level, all channels together
+_FACTOR, _SIGNIFICANCE = 1.25, 2e-3
 _FEWEST_RUNS = 4
 
 
 def over_time(residual: Residual) -> Finding:
     """Size of the residual from the start of a run to its end, over the noise."""
-    curves, told, numbers = [], [], {}
+    curves, listed, numbers = [], [], {}
     for channel in residual.channels:
         parts = residual.of(channel)
         sizes = np.array([_sizes(part) for part in parts])
@@ -31,25 +31,29 @@ def over_time(residual: Residual) -> Finding:
                 channel,
             )
         )
-        factor, likely = _end_over_start(sizes)
-        numbers[channel] = {"end_over_start": factor, "probability_of_chance": likely}
+        factor, p_value = _end_over_start(sizes)
+        numbers[channel] = {"end_over_start": factor, "p_value": p_value}
         big = max(factor, 1.0 / factor) > _FACTOR
-        if big and is_above(residual, channel) and likely < _ALLOWED / len(residual.channels):
-            told.append(
+        if (
+            big
+            and residual.is_above_noise(channel)
+            and p_value < _SIGNIFICANCE / len(residual.channels)
+        ):
+            listed.append(
                 f"{channel} is {max(factor, 1.0 / factor):.2g} times as large in the "
                 f"{'last' if factor > 1.0 else 'first'} third of a run"
             )
-    says = (
-        f"What is left does not stay the same within a run: {'; '.join(told)}."
-        if told
+    description = (
+        f"The residual does not stay the same within a run: {'; '.join(listed)}."
+        if listed
         else "the time within a run"
     )
-    panel = Curves(tuple(curves), "share of the run", "left over noise", floor=1.0)
-    return Finding("time", says, bool(told), numbers, panel)
+    panel = Curves(tuple(curves), "share of the run", "residual over noise", floor=1.0)
+    return Finding("time", description, bool(listed), numbers, panel)
 
 
-def _sizes(part: Left) -> NDArray[np.float64]:
-    return np.array([np.mean(cut**2) for cut in np.array_split(part.scaled, _SEGMENTS)])
+def _sizes(part: ChannelResidual) -> NDArray[np.float64]:
+    return np.array([np.mean(cut**2) for cut in np.array_split(part.normalised, _SEGMENTS)])
 
 
 def _end_over_start(sizes: NDArray[np.float64]) -> tuple[float, float]:

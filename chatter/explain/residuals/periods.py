@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 #: draws of periods near by against which a share is held, and their share that may reach it
-_DRAWS, _ALLOWED = 4000, 5e-4
+_DRAWS, _SIGNIFICANCE = 4000, 5e-4
 #: factor in wavelength within which they are drawn, and by which a line stands out of them
 _NEAR, _OUTSTANDING = 1.6, 4.0
 #: periods over the range of the variable at least
@@ -20,9 +20,9 @@ _FEWEST_PERIODS = 3.0
 _LEAST_TURNS = 1.5
 #: distance from a pattern that a run has by itself, in lines that its length can tell apart
 _ASIDE = 1.5
-#: periods looked at within one over the range of the variable
+#: periods examined within one over the range of the variable
 _FINENESS = 4
-#: the most wavelengths looked at, and the most samples a run
+#: the most wavelengths examined, and the most samples a run
 _MOST, _MOST_SAMPLES = 900, 20000
 _LEAST_SHARE = 0.01
 
@@ -36,7 +36,7 @@ class Period(NamedTuple):
         SI unit of the variable.
     share : float
         Of the sum of squares over the noise; the period of a run is read from the others.
-    beyond_chance : bool
+    significant : bool
         Whether runs agree on it beyond chance.
     lengths, shares : (m,) array
         Share over the period.
@@ -44,13 +44,13 @@ class Period(NamedTuple):
 
     length: float
     share: float
-    beyond_chance: bool
+    significant: bool
     lengths: Array
     shares: Array
 
 
 def period_in(
-    scaled: Sequence[Array],
+    normalised: Sequence[Array],
     weight: Sequence[Array],
     variable: Sequence[Array],
     shortest: float,
@@ -61,7 +61,7 @@ def period_in(
 
     Parameters
     ----------
-    scaled, weight : sequence of (n,) array
+    normalised, weight : sequence of (n,) array
         Residual and weight over the noise, one a run.
     variable : sequence of (n,) array
     shortest : float
@@ -75,13 +75,13 @@ def period_in(
         None where the variable spans too few of the shortest periods.
     """
     longest = max(float(np.ptp(v)) for v in variable)
-    if longest < 2.0 * _FEWEST_PERIODS * shortest or len(scaled) < 2:
+    if longest < 2.0 * _FEWEST_PERIODS * shortest or len(normalised) < 2:
         return None
     count = int(min(_MOST, _FINENESS * longest / shortest))
     wavenumber = np.linspace(_FEWEST_PERIODS / longest, 1.0 / shortest, count)
-    total = sum(float(s @ s) for s in scaled)
+    total = sum(float(s @ s) for s in normalised)
     lines = np.array(
-        [_lines(s, w, v, wavenumber) for s, w, v in zip(scaled, weight, variable, strict=True)]
+        [_lines(s, w, v, wavenumber) for s, w, v in zip(normalised, weight, variable, strict=True)]
     )
     for line, values, length in zip(lines, variable, own or (), strict=False):
         turns = wavenumber * length
@@ -95,7 +95,7 @@ def period_in(
     drawn = np.clip(np.searchsorted(wavenumber, near), 0, count - 1)
     by_chance = lines[np.arange(len(lines)), drawn].sum(axis=1)
     share = explained / max(total, 1e-300)
-    rare = float(np.mean(by_chance >= explained)) <= _ALLOWED
+    rare = float(np.mean(by_chance >= explained)) <= _SIGNIFICANCE
     rare &= explained > _OUTSTANDING * float(np.median(by_chance))
     # runs agree where most of them choose the same line
     best = int(np.argmax(together))
@@ -109,12 +109,12 @@ def period_in(
     )
 
 
-def _lines(scaled: Array, weight: Array, variable: Array, wavenumber: Array) -> Array:
+def _lines(normalised: Array, weight: Array, variable: Array, wavenumber: Array) -> Array:
     """Sum of squares that a line of every wavenumber takes from one run, less that of noise."""
-    stride = max(1, scaled.size // _MOST_SAMPLES)
-    scaled, weight, variable = scaled[::stride], weight[::stride], variable[::stride]
-    constant = (scaled @ weight) / max(float(weight @ weight), 1e-300)
-    scaled = scaled - constant * weight
+    stride = max(1, normalised.size // _MOST_SAMPLES)
+    normalised, weight, variable = normalised[::stride], weight[::stride], variable[::stride]
+    constant = (normalised @ weight) / max(float(weight @ weight), 1e-300)
+    normalised = normalised - constant * weight
     taken, reach = np.empty(wavenumber.size), float(np.ptp(variable))
     # every wavenumber turns the samples on by the same angle
     wave = weight * np.exp(2j * np.pi * wavenumber[0] * variable)
@@ -127,7 +127,7 @@ def _lines(scaled: Array, weight: Array, variable: Array, wavenumber: Array) -> 
         if k * reach < _LEAST_TURNS:
             taken[place] = 2.0
             continue
-        p, q = cosine @ scaled, sine @ scaled
+        p, q = cosine @ normalised, sine @ normalised
         determinant = a * c - b * b
         if determinant > 1e-9 * a * c:
             taken[place] = (c * p * p - 2.0 * b * p * q + a * q * q) / determinant

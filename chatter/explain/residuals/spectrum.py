@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.compile.structure import structure_of
-from chatter.explain.residuals.by_channel import AT_NOISE, over_noise
+from chatter.explain.kinds.kind import AT_NOISE
+from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.finding import Curve, Curves, Finding
 from chatter.explain.residuals.harmonics import Harmonics, Split
-from chatter.explain.residuals.normalised_residual import Left, Residual
+from chatter.explain.residuals.residual import Residual
 from dynamics.modal.modes import Mode
 
 Array = NDArray[np.float64]
@@ -21,11 +22,11 @@ Array = NDArray[np.float64]
 #: half widths of a mode on each side that count as near it, and lines at least
 _NEAR, _NEAR_LINES = 3.0, 1.5
 #: of a line: over the level beside it, and probability that noise makes one in a run
-_OUTSTANDING, _ALLOWED = 10.0, 1e-3
+_OUTSTANDING, _SIGNIFICANCE = 10.0, 1e-3
 #: lines that a line fills on each side
 _FILLED = 2
-#: standard deviations beyond which a class is told, and the share that is worth it
-_BEYOND, _WORTH = 5.0, 0.05
+#: standard deviations beyond which a class is reported, and the least share of it
+_BEYOND, _LEAST_SHARE = 5.0, 0.05
 #: relative spread over the runs below which lines follow a rule
 _FOLLOWS, _CLEARLY = 0.08, 2.0
 _FEWEST_RUNS = 4
@@ -48,7 +49,7 @@ class Shares(NamedTuple):
     chance: Array
     lines: Array  # Hz, strongest first
     split: Split
-    left: Left
+    residual: ChannelResidual
 
 
 def spectrum(residual: Residual) -> Finding:
@@ -61,36 +62,38 @@ def spectrum(residual: Residual) -> Finding:
         harmonics = Harmonics(parts[0])
         for part in parts:
             by_channel[part.channel].append(_shares(part, harmonics.split(part)))
-    numbers, told = {}, {}
+    numbers, reported = {}, {}
     for channel, found in by_channel.items():
         squares = np.sum([one.squares for one in found], axis=0)
         chance = np.sqrt(np.sum([one.chance**2 for one in found], axis=0))
         everything = max(float(np.sum(np.maximum(squares, 0.0))), 1e-300)
         shares = np.maximum(squares, 0.0) / everything
-        sure = (squares > _BEYOND * chance) & (shares > _WORTH)
-        level = over_noise(residual.of(channel))
+        sure = (squares > _BEYOND * chance) & (shares > _LEAST_SHARE)
+        level = residual.over_noise(channel)
         rule = _rule(found) if sure[3] or sure[2] else None
         numbers[channel] = {
             "shares_beyond_noise": dict(zip(CLASSES, map(float, shares), strict=True)),
             "over_noise": level,
             "strongest_orders": _strongest_orders(found),
-            "lines_Hz": {one.left.run.name: [float(f) for f in one.lines[:3]] for one in found},
+            "lines_Hz": {one.residual.run.name: [float(f) for f in one.lines[:3]] for one in found},
             "lines_follow": rule,
         }
         if level > AT_NOISE and sure.any():
-            told[channel] = (level, shares, sure, rule)
+            reported[channel] = (level, shares, sure, rule)
     levels = {channel: numbers[channel]["over_noise"] for channel in numbers}
-    pooled = _pooled(max(told or levels, key=levels.get), by_channel)
-    says = _sentence(told, by_channel, numbers) + _strongest(pooled) if told else "frequency"
-    return Finding("frequency", says, bool(told), numbers, _panel(pooled))
+    pooled = _pooled(max(reported or levels, key=levels.get), by_channel)
+    description = "frequency"
+    if reported:
+        description = _sentence(reported, by_channel, numbers) + _strongest(pooled)
+    return Finding("frequency", description, bool(reported), numbers, _panel(pooled))
 
 
-def _shares(left: Left, split: Split) -> Shares:
-    teeth = left.case.tool.teeth
+def _shares(residual: ChannelResidual, split: Split) -> Shares:
+    teeth = residual.case.tool.teeth
     tooth = split.orders % teeth == 0
     spacing = float(split.frequency[1])
     near = np.zeros(split.frequency.size, dtype=bool)
-    for mode in structure_of(left.case).modes:
+    for mode in structure_of(residual.case).modes:
         width = max(_NEAR * mode.damping * mode.frequency, _NEAR_LINES * spacing)
         near |= np.abs(split.frequency - mode.frequency) <= width
     lines, filled = _lines(split, near)
@@ -110,21 +113,21 @@ def _shares(left: Left, split: Split) -> Shares:
     counts = np.array([2 * tooth.sum(), 2 * (~tooth).sum(), 2 * near.sum(), 0, 2 * rest.sum()])
     # beside a window of Hann lines are not independent
     chance = np.sqrt(2.0 * np.maximum(counts, 1)) * np.array([1.0, 1.0, 1.4, 1.0, 1.4])
-    return Shares(squares, chance, lines, split, left)
+    return Shares(squares, chance, lines, split, residual)
 
 
 def _lines(split: Split, near: NDArray[np.bool_]) -> tuple[Array, NDArray[np.bool_]]:
     """Frequencies of lines away from natural frequencies, and the samples that they fill."""
     density = split.density
-    least = -math.log(_ALLOWED / density.size)
+    least = -math.log(_SIGNIFICANCE / density.size)
     level = np.maximum(_OUTSTANDING * split.beside, least)
     inner = np.zeros(density.size, dtype=bool)
     inner[1:-1] = (density[1:-1] > density[:-2]) & (density[1:-1] >= density[2:])
     found = np.flatnonzero(inner & (density > level) & ~near)
     found = found[np.argsort(density[found])[::-1]]
     filled = np.zeros(density.size, dtype=bool)
-    for place in found:
-        filled[max(0, place - _FILLED) : place + _FILLED + 1] = True
+    for line in found:
+        filled[max(0, line - _FILLED) : line + _FILLED + 1] = True
     return split.frequency[found], filled & ~near
 
 
@@ -134,7 +137,7 @@ def _strongest_orders(found: list[Shares]) -> list[int]:
     for one in found:
         total[: one.split.orders.size] += one.split.at_orders - 2.0
     best = np.argsort(total)[::-1][:3]
-    return [int(place) + 1 for place in best if total[place] > 0.0]
+    return [int(order) + 1 for order in best if total[order] > 0.0]
 
 
 def _rule(found: list[Shares]) -> dict[str, float | str] | None:
@@ -143,14 +146,14 @@ def _rule(found: list[Shares]) -> dict[str, float | str] | None:
     for one in found:
         if one.lines.size == 0:
             continue
-        turns = one.left.case.cut.spindle_speed / (2.0 * math.pi)
-        tooth = turns * one.left.case.tool.teeth
+        rotation = one.residual.case.cut.spindle_speed / (2.0 * math.pi)
+        tooth = rotation * one.residual.case.tool.teeth
         strongest = one.lines[:4]
         frequency.append(float(strongest[0]))
         aside = np.abs(strongest - tooth * np.round(strongest / tooth))
         offset.append(float(np.median(aside)))
-        spindle.append(turns)
-        feed.append(tooth * one.left.case.cut.feed_per_tooth)
+        spindle.append(rotation)
+        feed.append(tooth * one.residual.case.cut.feed_per_tooth)
     if len(frequency) < _FEWEST_RUNS:
         return None
     trials = {
@@ -174,26 +177,26 @@ def _spread(values: Array) -> float:
     return 1.4826 * float(np.median(np.abs(values - middle))) / max(abs(middle), 1e-300)
 
 
-def _sentence(told: dict, by_channel: dict[str, list[Shares]], numbers: dict) -> str:
-    channel = max(told, key=lambda name: told[name][0])
-    level, shares, sure, rule = told[channel]
+def _sentence(reported: dict, by_channel: dict[str, list[Shares]], numbers: dict) -> str:
+    channel = max(reported, key=lambda name: reported[name][0])
+    level, shares, sure, rule = reported[channel]
     parts = []
-    for place in np.argsort(shares)[::-1]:
-        if not sure[place]:
+    for index in np.argsort(shares)[::-1]:
+        if not sure[index]:
             continue
-        words = f"{100.0 * shares[place]:.2g} % {_AT[place]}"
-        if place in (0, 1):
+        words = f"{100.0 * shares[index]:.2g} % {_AT[index]}"
+        if index in (0, 1):
             orders = numbers[channel]["strongest_orders"]
             words += f" (strongest orders of the spindle: {', '.join(map(str, orders))})"
-            if place == 1 and any("strongest" in part for part in parts):
+            if index == 1 and any("strongest" in part for part in parts):
                 words = words.partition(" (")[0]
-        if place == 3:
+        if index == 3:
             first = next((one for one in by_channel[channel] if one.lines.size), None)
             if first is not None:
-                words += f" (such as {first.lines[0]:.0f} Hz in {first.left.run.name})"
+                words += f" (such as {first.lines[0]:.0f} Hz in {first.residual.run.name})"
         parts.append(words)
     text = (
-        f"Of what is left of {channel} beyond the noise ({level:.3g} times the noise): "
+        f"Of the residual of {channel} beyond the noise ({level:.3g} times the noise): "
         f"{', '.join(parts)}."
     )
     return text + (f" {_rule_in_words(rule)}" if rule else "")
@@ -210,7 +213,7 @@ _AT = (
 
 def _rule_in_words(rule: dict) -> str:
     value, runs = rule["value"], rule["runs"]
-    told = {
+    sentences = {
         "one frequency": f"The lines lie at {value:.4g} Hz in {runs} runs, whatever the speed.",
         "order of the spindle": f"The lines lie at {value:.3f} times the spindle frequency "
         f"in {runs} runs.",
@@ -222,7 +225,7 @@ def _rule_in_words(rule: dict) -> str:
         f"frequency at a distance in proportion to the feed speed in {runs} runs, as of something "
         f"that repeats every {1e3 * value:.3g} mm of feed.",
     }
-    return told[rule["rule"]]
+    return sentences[rule["rule"]]
 
 
 class _Pooled(NamedTuple):
@@ -237,7 +240,7 @@ class _Pooled(NamedTuple):
 
 def _pooled(channel: str, by_channel: dict[str, list[Shares]]) -> _Pooled:
     found = by_channel[channel]
-    modes = structure_of(found[0].left.case).modes
+    modes = structure_of(found[0].residual.case).modes
     highest = min(float(one.split.frequency[-1]) for one in found)
     highest = min(highest, 4.0 * max(mode.frequency for mode in modes))
     grid = np.linspace(highest / _GRID, highest, _GRID)
@@ -272,7 +275,7 @@ def _panel(pooled: _Pooled) -> Curves:
             Curve(pooled.frequency, pooled.between, "between the harmonics"),
         ),
         "frequency [Hz]",
-        f"left of {pooled.channel} over noise, all runs",
+        f"residual of {pooled.channel} over noise, all runs",
         {"natural frequency": tuple(mode.frequency for mode in pooled.modes)},
         floor=1.0,
         logarithmic="y",

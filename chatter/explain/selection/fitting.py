@@ -1,7 +1,7 @@
-"""Least squares with priors: Levenberg-Marquardt with bounds, Jacobian in parallel.
+"""Least squares with priors: scipy's trust region, with a Jacobian that costs few simulations.
 
 Parameters are counted in standard deviations of their priors (or in a typical size where they
-have none) from where they start, so that one step fits all.
+have none) from where they start, so that one step fits all. A prior is one more row of residuals.
 """
 
 from __future__ import annotations
@@ -11,18 +11,26 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.optimize
 import scipy.stats
 from numpy.typing import NDArray
 
 Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
 Residuals = Callable[[Vector], Vector]
 
 #: threads; the simulations leave the interpreter alone
 WORKERS = 2
 #: of a finite difference, in units of a parameter's size
 _STEP = 1e-3
-_MOST_ROUNDS = 12
-_ENOUGH = 1e-4
+#: change of the sum of squares, and step over the sizes, below which a fit has converged
+_SMALLEST_GAIN, _SMALLEST_STEP = 1e-7, 1e-7
+#: scipy's first trust region is as large as the start is far from zero, which starts are moved to
+_FIRST_REGION = 100.0
+#: share of what the Jacobian promised below which a step asks for new differences
+_LEAST_OF_PROMISE = 0.5
+#: bounds as active sets: many effects start at a bound, zero
+_METHOD = "dogbox"
 #: groups from which a scatter between them can be told
 _LEAST_GROUPS = 4
 
@@ -66,10 +74,6 @@ class Fit:
         SI.
     covariance : (p, p) array of float
         SI, from the residuals' own standard deviations and the priors.
-    cost : float
-        Sum of squares of the residuals, without priors.
-    count : int
-        Residuals.
     jacobian : (n, p) array of float
         At the solution, per size of a parameter.
     residuals : (n,) array of float
@@ -77,31 +81,111 @@ class Fit:
 
     parameters: tuple[Parameter, ...]
     values: Vector
-    covariance: NDArray[np.float64]
-    cost: float
-    count: int
-    jacobian: NDArray[np.float64]
+    covariance: Matrix
+    jacobian: Matrix
     residuals: Vector
 
-    def interval(self, place: int) -> tuple[float, float]:
-        """95 % confidence interval of a parameter, within its bounds."""
-        parameter = self.parameters[place]
-        half = 1.96 * float(np.sqrt(max(self.covariance[place, place], 0.0)))
-        middle = float(self.values[place])
-        return max(middle - half, parameter.lower), min(middle + half, parameter.upper)
+    @property
+    def cost(self) -> float:
+        """Sum of squares of the residuals, without priors."""
+        return float(self.residuals @ self.residuals)
 
     @property
     def by_name(self) -> dict[str, float]:
         """Values by name."""
         return {one.name: float(v) for one, v in zip(self.parameters, self.values, strict=True)}
 
+    def interval(self, index: int) -> tuple[float, float]:
+        """95 % confidence interval of a parameter, within its bounds."""
+        parameter = self.parameters[index]
+        half = 1.96 * float(np.sqrt(max(self.covariance[index, index], 0.0)))
+        middle = float(self.values[index])
+        return max(middle - half, parameter.lower), min(middle + half, parameter.upper)
+
+
+class _Scaled:
+    """Residuals and priors over scaled parameters, and their Jacobian.
+
+    Between finite differences the Jacobian is brought up to date by Broyden's (1965) rank-one
+    formula: one simulation a step in place of one a parameter. Differences are taken anew where a
+    step gained less than half of what the Jacobian promised.
+    """
+
+    def __init__(
+        self, parameters: Sequence[Parameter], residuals: Residuals, jacobian: Matrix | None
+    ) -> None:
+        self.residuals_of = residuals
+        self.size = np.array([one.size for one in parameters])
+        self.origin = np.array([one.start for one in parameters])
+        self.lower = self.scaled(np.array([one.lower for one in parameters]))
+        self.upper = self.scaled(np.array([one.upper for one in parameters]))
+        has_prior = np.array([one.prior for one in parameters], dtype=bool)
+        self.priors = np.eye(self.size.size)[has_prior]
+        self.latest: tuple[Vector, Vector] | None = None
+        #: Jacobian of the residuals, where it is from, the rows there, updates since differences
+        self.known, self.at, self.then = jacobian, None, np.empty(0)
+        self.updates = 0 if jacobian is None else 1
+
+    def scaled(self, values: Vector) -> Vector:
+        """Parameters as counted in the search."""
+        return (values - self.origin) / self.size + _FIRST_REGION
+
+    def values(self, scaled: Vector) -> Vector:
+        """Parameters in SI."""
+        return self.origin + (scaled - _FIRST_REGION) * self.size
+
+    def residuals(self, scaled: Vector) -> Vector:
+        """Residuals (n,), those of the point before kept."""
+        if self.latest is None or not np.array_equal(scaled, self.latest[0]):
+            self.latest = scaled.copy(), self.residuals_of(self.values(scaled))
+        return self.latest[1]
+
+    def rows(self, scaled: Vector) -> Vector:
+        """Residuals, then what the priors add."""
+        return np.concatenate([self.residuals(scaled), self.priors @ (scaled - _FIRST_REGION)])
+
+    def jacobian(self, scaled: Vector) -> Matrix:
+        """Rows by parameters, at the last point that was accepted."""
+        now = self.rows(scaled)
+        if self.at is not None and not np.array_equal(scaled, self.at):
+            moved = scaled - self.at
+            promised = self.then + np.vstack([self.known, self.priors]) @ moved
+            before = self.then @ self.then
+            if before - now @ now < _LEAST_OF_PROMISE * (before - promised @ promised):
+                self.known = None
+            else:
+                change = (now - promised)[: len(self.known)]
+                self.known = self.known + np.outer(change, moved) / float(moved @ moved)
+                self.updates += 1
+        if self.known is None:
+            self.known, self.updates = self.differences(scaled), 0
+        self.at, self.then = scaled.copy(), now
+        return np.vstack([self.known, self.priors])
+
+    def differences(self, scaled: Vector) -> Matrix:
+        """Forward differences (n, p), in threads."""
+        now = self.residuals(scaled)
+
+        def column(index: int) -> Vector:
+            moved = scaled.copy()
+            step = _STEP if moved[index] + _STEP <= self.upper[index] else -_STEP
+            moved[index] += step
+            return (self.residuals_of(self.values(moved)) - now) / step
+
+        with ThreadPoolExecutor(WORKERS) as pool:
+            return np.array(list(pool.map(column, range(scaled.size)))).T.reshape(now.size, -1)
+
+    def forget_jacobian(self) -> None:
+        """Have differences taken next, where the point does not change."""
+        self.known, self.at = None, None
+
 
 def fit(
     parameters: Sequence[Parameter],
     residuals: Residuals,
-    start: Vector | None = None,
-    rounds: int = _MOST_ROUNDS,
-    jacobian: NDArray[np.float64] | None = None,
+    start: Vector,
+    most: int,
+    jacobian: Matrix | None = None,
 ) -> Fit:
     """Fit parameters to residuals that are scaled to a standard deviation of one.
 
@@ -110,68 +194,41 @@ def fit(
     parameters : sequence of Parameter
     residuals : callable
         (p,) values in SI -> (n,) residuals.
-    start : (p,) array of float, optional
-        SI; that of the parameters by default.
-    rounds : int
-        Steps at the most.
+    start : (p,) array of float
+        SI.
+    most : int
+        Steps tried at the most, without those of finite differences.
     jacobian : (n, p) array of float, optional
         Near the start, per size of a parameter, where it is known.
-
-    Notes
-    -----
-    Between differences the Jacobian is brought up to date by Broyden's (1965) rank-one formula;
-    differences are taken anew where a step gains less than half of what it promised.
     """
-    chosen = tuple(parameters)
-    size = np.array([one.size for one in chosen])
-    origin = np.array([one.start for one in chosen])
-    lower = np.array([one.lower for one in chosen])
-    upper = np.array([one.upper for one in chosen])
-    weight = np.array([1.0 if one.prior else 0.0 for one in chosen])
-    values = np.clip(origin if start is None else start, lower, upper)
-    now = residuals(values)
-    damping = 1e-3
-
-    def merit(r: Vector, v: Vector) -> float:
-        return float(r @ r + weight @ ((v - origin) / size) ** 2)
-
-    best, exact = merit(now, values), jacobian is None
-    if jacobian is None:
-        jacobian = differences(residuals, values, now, size, lower, upper)
-    else:
-        jacobian = jacobian.copy()
-    for _ in range(rounds):
-        normal = jacobian.T @ jacobian + np.diag(weight)
-        slope = jacobian.T @ now + weight * (values - origin) / size
-        gained = promised = 0.0
-        for _ in range(8 if exact else 3):
-            bent = normal + damping * np.diag(np.maximum(np.diag(normal), 1e-12))
-            step = -np.linalg.solve(bent, slope) * size
-            tried = np.clip(values + step, lower, upper)
-            after = residuals(tried)
-            reached = merit(after, tried)
-            moved = (tried - values) / size
-            if np.isfinite(reached) and reached < best:
-                gained = best - reached
-                promised = -float(2.0 * slope @ moved + moved @ normal @ moved)
-                change = after - now - jacobian @ moved
-                values, now, best = tried, after, reached
-                damping = max(damping / 5.0, 1e-9)
-                break
-            damping *= 6.0
-        enough = gained <= _ENOUGH * max(1.0, 1e-3 * best)
-        if enough and exact:
+    problem = _Scaled(parameters, residuals, jacobian)
+    scaled = np.clip(problem.scaled(start), problem.lower, problem.upper)
+    while parameters and most > 0:
+        found = scipy.optimize.least_squares(
+            problem.rows,
+            scaled,
+            problem.jacobian,
+            bounds=(problem.lower, problem.upper),
+            method=_METHOD,
+            ftol=_SMALLEST_GAIN,
+            xtol=_SMALLEST_STEP,
+            gtol=None,
+            max_nfev=most + 1,
+        )
+        scaled, most = found.x, most - (found.nfev - 1)
+        if problem.updates <= 1:
             break
-        if gained > 0.0:
-            jacobian += np.outer(change, moved) / max(float(moved @ moved), 1e-300)
-        exact = enough or gained < 0.5 * promised
-        if exact:
-            jacobian = differences(residuals, values, now, size, lower, upper)
-            damping = min(damping, 1e-3)
-    normal = jacobian.T @ jacobian + np.diag(weight)
-    inverse = np.linalg.pinv(normal, hermitian=True)
-    covariance = inverse * np.outer(size, size)
-    return Fit(chosen, values, covariance, float(now @ now), now.size, jacobian, now)
+        # what no longer gains by a Jacobian brought up to date may by differences
+        problem.forget_jacobian()
+    rows = problem.jacobian(scaled)
+    inverse = np.linalg.pinv(rows.T @ rows, hermitian=True)
+    return Fit(
+        tuple(parameters),
+        problem.values(scaled),
+        inverse * np.outer(problem.size, problem.size),
+        problem.known,
+        problem.residuals(scaled),
+    )
 
 
 def over_groups(fit: Fit, sizes: Sequence[int]) -> Fit:
@@ -207,26 +264,3 @@ def over_groups(fit: Fit, sizes: Sequence[int]) -> Fit:
     own = np.maximum(np.diag(inverse), 1e-300)
     factor = np.maximum(1.0, wider * np.sqrt(np.maximum(np.diag(spread), 0.0) / own))
     return replace(fit, covariance=fit.covariance * np.outer(factor, factor))
-
-
-def differences(
-    residuals: Residuals,
-    values: Vector,
-    now: Vector,
-    size: Vector,
-    lower: Vector,
-    upper: Vector,
-) -> NDArray[np.float64]:
-    """Jacobian (n, p) per size of each parameter, by forward differences, in threads."""
-
-    def column(place: int) -> Vector:
-        moved = values.copy()
-        step = _STEP * size[place]
-        if moved[place] + step > upper[place]:
-            step = -step
-        moved[place] += step
-        return (residuals(moved) - now) / (step / size[place])
-
-    del lower
-    with ThreadPoolExecutor(WORKERS) as pool:
-        return np.array(list(pool.map(column, range(values.size)))).T.reshape(now.size, -1)

@@ -28,7 +28,7 @@ TOLERANCES = {
 _OTHERS = 0.05
 
 
-def tolerated(measurement: Measurement, paths: Sequence[str]) -> list[Parameter]:
+def with_priors(measurement: Measurement, paths: Sequence[str]) -> list[Parameter]:
     """Declared values as parameters with a prior.
 
     The standard deviation is that of the measurement's [tolerance], by path or last key, or that

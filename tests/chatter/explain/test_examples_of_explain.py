@@ -10,7 +10,7 @@ from chatter.description.case import load
 from chatter.explain import lobes_before_after as lobes_before_after_module
 from chatter.explain.comparison import compare
 from chatter.explain.explanation import explain
-from chatter.explain.measurement import read_measurement
+from chatter.explain.measurement_file import read_measurement
 from chatter.io.shipped_examples import examples
 
 NAMES = ("explain-axis", "explain-frf", "explain-milling", "explain-stability")
@@ -61,25 +61,25 @@ def test_example_runs_and_reports(name, effect, numbers, lobes, tmp_path, capsys
     error = summary["error"]
     assert error["holdout_after"] < 1.3 * error["noise_floor"]
     signature = summary["signature"]
-    assert any(view["beyond_chance"] for view in signature["refitted"]["views"])
-    assert not any(view["beyond_chance"] for view in signature["with_what_was_added"]["views"])
+    assert any(view["significant"] for view in signature["refitted"]["diagnostics"])
+    assert not any(view["significant"] for view in signature["repaired_model"]["diagnostics"])
     for channel in summary["error_by_channel"].values():
-        assert channel["unseen_runs"]["with what was added"] < channel["unseen_runs"]["refitted"]
-        assert channel["unseen_runs"]["with what was added"] < 1.5 * channel["noise_floor"]
+        assert channel["holdout_runs"]["repaired"] < channel["holdout_runs"]["refitted"]
+        assert channel["holdout_runs"]["repaired"] < 1.5 * channel["noise_floor"]
 
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     for heading in (*HEADINGS, *(["Lobes before and after"] if lobes else [])):
         assert f"<h2>{heading}</h2>" in page
-    for view in signature["refitted"]["views"]:
-        if view["beyond_chance"]:
-            assert view["says"][:40] in page
+    for view in signature["refitted"]["diagnostics"]:
+        if view["significant"]:
+            assert view["description"][:40] in page
     assert "<script" not in page
     assert "http" not in page  # nothing is fetched
     assert page.count("data:image/png;base64") >= 3
     if lobes:
         # a contact acts in the cut, and the lobes with it are not those without
         assert "by itself does not act in linear lobes" not in page
-        assert "From refitted to with what was added, the lowest limit goes" in page
+        assert "From refitted to repaired, the lowest limit goes" in page
     load(tmp_path / "case-updated.toml")
 
 
@@ -92,23 +92,25 @@ def test_a_mode_that_was_missed_is_found_in_few_runs(monkeypatch):
     found = summary["effects"][0]["parameters"]
     assert found["frequency"]["value"] == pytest.approx(1648.8, rel=0.01)
     frequency = next(
-        view for view in summary["signature"]["refitted"]["views"] if view["view"] == "frequency"
+        view
+        for view in summary["signature"]["refitted"]["diagnostics"]
+        if view["name"] == "frequency"
     )
-    assert "the case has no natural frequency" in frequency["says"]
+    assert "the case has no natural frequency" in frequency["description"]
     monkeypatch.setattr(lobes_before_after_module, "_SPEEDS", 24)
     lobes = result.lobes
     before, after = (
-        lobes.diagrams[step].limits.critical_depth for step in ("refitted", "with what was added")
+        lobes.diagrams[step].limits.critical_depth for step in ("refitted", "repaired")
     )
     assert not math.isclose(before.min(), after.min(), rel_tol=1e-3)
-    assert not any("does not act" in sentence for sentence in lobes.says)
+    assert not any("does not act" in sentence for sentence in lobes.description)
 
 
 def test_declared_lobes_forbid_tests_that_were_stable(tmp_path):
     result = compare(measurement("explain-stability"))
     wrong = result.signature.findings[0]
-    assert wrong.beyond_chance
-    assert wrong.numbers["stable_though_predicted_chatter"] > 0.8 * wrong.numbers["wrong"]
+    assert wrong.significant
+    assert wrong.numbers["stable_though_predicted_chatter"] > 0.8 * wrong.numbers["misclassified"]
     written = result.save(tmp_path)
     assert {path.name for path in written} == {
         "compare.csv",
@@ -116,7 +118,7 @@ def test_declared_lobes_forbid_tests_that_were_stable(tmp_path):
         "compare.png",
         "signature.png",
     }
-    assert json.loads((tmp_path / "compare.json").read_text())["signature"]["views"]
+    assert json.loads((tmp_path / "compare.json").read_text())["signature"]["diagnostics"]
 
 
 def test_compare_tells_errors_over_the_noise(tmp_path):

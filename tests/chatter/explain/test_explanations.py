@@ -11,7 +11,7 @@ from chatter.description.case import load
 from chatter.description.errors import InputError
 from chatter.explain.comparison import compare
 from chatter.explain.explanation import Explanation, explain
-from chatter.explain.measurement import read_measurement
+from chatter.explain.measurement_file import read_measurement
 from tests.places import SHARED
 
 SETS = SHARED / "measurements"

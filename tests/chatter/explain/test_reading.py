@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from chatter.description.errors import InputError
-from chatter.explain.measurement import read_measurement
+from chatter.explain.measurement_file import read_measurement
 from chatter.io.headings import named
 from chatter.io.signals import read_signals
 

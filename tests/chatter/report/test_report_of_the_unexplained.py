@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from chatter.explain.explanation import explain
-from chatter.explain.measurement import read_measurement
+from chatter.explain.measurement_file import read_measurement
 
 MASS, VISCOUS, NOISE = 100.0, 500.0, 1.0
 PLACE, WIDTH, PUSH = 0.05, 0.006, 60.0
@@ -47,14 +47,14 @@ def test_a_push_at_a_place_is_told_as_such(pushed_at_a_place, tmp_path):
     assert result.verdict == "unexplained"
     result.save(tmp_path)
     summary = json.loads((tmp_path / "explanation.json").read_text())
-    lead = summary["signature"]["lead"]
-    assert lead["beyond_chance"]
+    lead = summary["signature"]["residual_dependence"]
+    assert lead["significant"]
     assert "position" in lead["over"]
     assert lead["table"]["rows"]
     if lead["over"] == ["position"]:
         place, push = np.array(lead["table"]["rows"])[:, :2].T
         assert place[np.argmax(push)] == pytest.approx(1e3 * PLACE, abs=1e3 * WIDTH)
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert "A lead: what is left, described freely" in page
-    assert lead["says"][:30] in page
+    assert "Residual dependence" in page
+    assert lead["description"][:30] in page
     assert "Something is missing that none of the effects known here explains" in page

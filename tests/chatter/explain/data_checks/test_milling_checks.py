@@ -8,7 +8,7 @@ import pytest
 from chatter.explain.comparison import compare
 from chatter.explain.data_checks.checking import checked
 from chatter.explain.explanation import explain
-from chatter.explain.measurement import read_measurement
+from chatter.explain.measurement_file import read_measurement
 from tests.chatter.explain.data_checks import simulated
 from tests.places import SHARED
 
@@ -93,22 +93,22 @@ def test_effects_of_physics_are_no_faults(changes):
 def test_a_fault_in_every_run_is_fatal(edit, words):
     finding = simulated.worst(simulated.edited(simulated.healthy(), edit))
     assert finding.severity == "fatal"
-    assert words in finding.says
+    assert words in finding.description
 
 
 @pytest.mark.parametrize("teeth", [2, 3, 5, 8])
 def test_teeth_are_counted(teeth):
     finding = simulated.worst(with_teeth(teeth))
     assert finding.severity == "fatal"
-    assert "repeat 4 times a revolution" in finding.says
-    assert f"the case declares {teeth}" in finding.says
+    assert "repeat 4 times a revolution" in finding.description
+    assert f"the case declares {teeth}" in finding.description
 
 
 def test_teeth_are_counted_in_spite_of_runout():
     measurement = simulated.milling(tool__runout={"offset": "25 um", "angle": "60 deg"})
     finding = simulated.worst(measurement.with_case(measurement.case.patch({"tool.teeth": 3})))
     assert finding.severity == "fatal"
-    assert "repeat 4 times a revolution; the case declares 3" in finding.says
+    assert "repeat 4 times a revolution; the case declares 3" in finding.description
 
 
 @pytest.mark.parametrize("with_angle", [True, False])
@@ -124,14 +124,14 @@ def test_a_wrong_spindle_speed_is_said(factor, with_angle):
         measurement = simulated.declared(measurement, [place], cut__spindle_speed=speed)
     finding = simulated.worst(measurement)
     assert finding.severity == "fatal"
-    times = float(finding.says.split("turned at ")[1].split()[0])
+    times = float(finding.description.split("turned at ")[1].split()[0])
     assert times == pytest.approx(1.0 / factor, abs=0.004)
 
 
 def test_the_other_mode_of_milling_is_said():
     finding = simulated.worst(simulated.declared(simulated.healthy(), cut__mode="up"))
     assert finding.severity == "fatal"
-    assert "down-milling, not up-milling" in finding.says
+    assert "down-milling, not up-milling" in finding.description
 
 
 def test_a_radial_depth_grossly_off_is_said():
@@ -139,7 +139,7 @@ def test_a_radial_depth_grossly_off_is_said():
         simulated.declared(simulated.healthy(), [1], cut__radial_depth="4 mm")
     )
     assert finding.severity == "run"
-    assert "radial depth" in finding.says
+    assert "radial depth" in finding.description
 
 
 @pytest.mark.parametrize(
@@ -209,7 +209,7 @@ def test_a_fault_of_one_run_costs_that_alone(made, severity, words):
     looked_at = checked(made())
     (finding,) = looked_at.findings
     assert finding.severity == severity
-    assert words in finding.says
+    assert words in finding.description
     assert finding.run
     left = {run.name: run for run in looked_at.measurement.runs}
     assert (finding.run in left) == (severity != "run")
@@ -217,7 +217,7 @@ def test_a_fault_of_one_run_costs_that_alone(made, severity, words):
         assert finding.channel not in left[finding.run].signals
     if severity == "samples":
         run = left[finding.run]
-        assert 0.0 < np.mean(run.usable(run.signals["time"].size)) < 1.0
+        assert 0.0 < np.mean(run.usable) < 1.0
         assert all(np.all(np.isfinite(values)) for values in run.signals.values())
 
 
@@ -233,7 +233,7 @@ def test_nothing_is_explained_beside_a_fatal_fault(tmp_path):
     summary = result.summary()
     assert summary["verdict"] == "unexplained"
     assert summary["effects"] == []
-    assert set(summary["checks"][0]) == {"severity", "run", "channel", "says"}
+    assert set(summary["checks"][0]) == {"severity", "run", "channel", "description"}
     written = {path.name for path in result.save(tmp_path)}
     assert written == {"explanation.json", "report.html", "case-updated.toml"}
     assert "repeat 4 times a revolution" in (tmp_path / "report.html").read_text()
@@ -244,7 +244,7 @@ def test_samples_left_out_do_not_count_in_the_error(tmp_path):
     spoiled = simulated.edited(simulated.healthy(), with_samples("Fy", slice(300, 320), 0.0), [0])
     result = compare(spoiled)
     assert result.summary()["nrmse"] == pytest.approx(clean, rel=0.02)
-    assert "zero" in result.summary()["checks"][0]["says"]
+    assert "zero" in result.summary()["checks"][0]["description"]
     result.save(tmp_path)
 
 

@@ -86,7 +86,7 @@ def tap_tests() -> Measurement:
 
 def cutting_tests() -> Measurement:
     """Sixty points around the limits of the declared case."""
-    from chatter.explain.kinds.stability import stability_margins
+    from chatter.explain.stability_margin import stability_margins
 
     case = loads(MODES)
     random = np.random.default_rng(0)
@@ -138,7 +138,7 @@ def test_healthy_data_pass(kind):
 def test_faults_of_axis_moves(edit, words):
     finding = checked(changed("axis", edit)).findings[0]
     assert finding.severity == "fatal"
-    assert words in finding.says
+    assert words in finding.description
 
 
 def test_a_gap_in_a_move_is_left_out_and_the_rest_explained():
@@ -181,7 +181,7 @@ def test_a_gap_in_a_move_is_left_out_and_the_rest_explained():
 def test_faults_of_all_frfs(edit, words):
     finding = checked(changed("frf", edit)).findings[0]
     assert finding.severity == "fatal"
-    assert words in finding.says
+    assert words in finding.description
 
 
 def test_exchanged_directions_are_said():
@@ -190,7 +190,7 @@ def test_exchanged_directions_are_said():
     runs = tuple(replace(run, direction=other[run.direction]) for run in measurement.runs)
     finding = checked(replace(measurement, runs=runs)).findings[0]
     assert finding.severity == "fatal"
-    assert "exchanged" in finding.says
+    assert "exchanged" in finding.description
 
 
 def test_an_frf_unlike_its_repetitions_is_left_out():
@@ -213,4 +213,4 @@ def test_an_frf_unlike_its_repetitions_is_left_out():
 def test_faults_of_points(edit, severity, words):
     finding = checked(changed("stability", edit)).findings[0]
     assert finding.severity == severity
-    assert words in finding.says
+    assert words in finding.description

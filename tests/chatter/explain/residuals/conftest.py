@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from chatter.description.case import Case
+from chatter.explain.kinds.axis_record import AxisRecord
 from chatter.explain.kinds.registry import KINDS
 from chatter.explain.measurement import Measurement, Run
-from chatter.explain.residuals.normalised_residual import Left, Residual
+from chatter.explain.residuals.channel_residual import ChannelResidual
+from chatter.explain.residuals.residual import Residual
 
 MILLING = {
     "tool": {"teeth": 4, "diameter": "16 mm"},
@@ -27,14 +29,14 @@ def residual_from(kind, case, runs, measured, predicted, deviation):
     """Residual of signals by run and channel."""
     measurement = Measurement(kind, "made up", None, case, tuple(runs))
     parts = [
-        Left(
+        ChannelResidual(
             run, run.of(case), channel, values, predicted[run.name][channel],
             np.full(values.size, deviation), deviation,
         )
         for run in runs
         for channel, values in measured[run.name].items()
     ]  # fmt: skip
-    return Residual(measurement, KINDS[kind](), case, tuple(parts))
+    return Residual(measurement, KINDS[kind], case, tuple(parts))
 
 
 @pytest.fixture
@@ -70,9 +72,9 @@ def milling():
 
 @pytest.fixture
 def axis():
-    """Moves to and fro; ``plant`` (signals) -> what is added to the force."""
+    """Moves to and fro; ``plant`` (run) -> what is added to the force."""
 
-    def made(plant=lambda signals: 0.0, seed=0):
+    def made(plant=lambda run: 0.0, seed=0):
         rng = np.random.default_rng([23, seed])
         case = Case.from_dict(AXIS)
         runs, measured, predicted, begun = [], {}, {}, 0.0
@@ -82,14 +84,14 @@ def axis():
             position = travel * np.sin(2.0 * np.pi * turns * time + rng.uniform(0, 6))
             signals = {
                 "time": time, "position": position, "velocity": np.gradient(position, time),
-                "motion begun": np.array([begun]),
             }  # fmt: skip
+            record = AxisRecord(None, 4e-3, begun)
             begun += time[-1]
             force = 500.0 * signals["velocity"]
             name = f"move{number}"
-            runs.append(Run(name, {}, signals))
+            runs.append(Run(name, {}, signals, record=record))
             predicted[name] = {"force": force}
-            measured[name] = {"force": force + rng.standard_normal(time.size) + plant(signals)}
+            measured[name] = {"force": force + rng.standard_normal(time.size) + plant(runs[-1])}
         return residual_from("axis", case, runs, measured, predicted, 1.0)
 
     return made

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from chatter.explain.residuals.dependence import Sample, dependence
-from chatter.explain.residuals.diagnostics import look
 from chatter.explain.residuals.finding import Bars, Curve, Curves, Finding, Map, Points
-from chatter.explain.residuals.residual_dependence import lead_of
+from chatter.explain.residuals.residual_dependence import residual_dependence
+from chatter.explain.residuals.signature import diagnosed
 from chatter.plots.residual_diagnostics import plot_findings
 
 X = np.array([0.01, 0.1, 1.0, 10.0])
@@ -22,7 +22,7 @@ PANELS = {
 
 @pytest.mark.parametrize("panel", PANELS.values(), ids=PANELS)
 def test_a_panel_is_drawn(panel, tmp_path):
-    figure = plot_findings([Finding("view", "says", True, {}, panel)])
+    figure = plot_findings([Finding("view", "description", True, {}, panel)])
     assert figure.axes[0].get_title(loc="left") == "view"
     figure.savefig(tmp_path / "panel.png")
 
@@ -30,13 +30,13 @@ def test_a_panel_is_drawn(panel, tmp_path):
 def test_all_views_and_the_lead_are_drawn(milling, axis, tmp_path):
     for made in (
         milling(lambda case, time, force: 0.1 * force),
-        axis(lambda s: 6.0 * np.sign(s["velocity"]) * np.sign(s["position"])),
+        axis(lambda r: 6.0 * np.sign(r.signals["velocity"]) * np.sign(r.signals["position"])),
     ):
-        findings = look(made)
-        figure = plot_findings([*findings, lead_of(made, findings).finding])
+        findings = diagnosed(made)
+        figure = plot_findings([*findings, residual_dependence(made, findings).finding])
         figure.savefig(tmp_path / "views.png")
         titles = {axes.get_title(loc="left") for axes in figure.axes}
-        assert {one.view for one in findings if one.panel is not None} <= titles
+        assert {one.name for one in findings if one.panel is not None} <= titles
 
 
 def test_nothing_is_told_where_nothing_is_predicted():
@@ -49,6 +49,6 @@ def test_nothing_is_told_where_nothing_is_predicted():
         values = 0.2 * weight * (place == 2) + rng.standard_normal(1000)
         samples.append(Sample(values, weight, place))
     found = dependence(samples, 5)
-    assert found.beyond_chance
+    assert found.significant
     np.testing.assert_allclose(found.coefficients[:4], [0.0, 0.0, 0.2, 0.0], atol=0.01)
     assert np.isnan(found.coefficients[4])

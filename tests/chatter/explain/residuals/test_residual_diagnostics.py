@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from chatter.explain.residuals.dependence import Sample, dependence
-from chatter.explain.residuals.diagnostics import look, nothing_beyond_chance
 from chatter.explain.residuals.ranks import rank_correlation
-from chatter.explain.residuals.residual_dependence import lead_of
+from chatter.explain.residuals.residual_dependence import residual_dependence
+from chatter.explain.residuals.signature import diagnosed, no_significant_dependence
 
 TURN = 2.0 * np.pi
 
 
 def telling(residual):
-    return {finding.view: finding for finding in look(residual) if finding.beyond_chance}
+    return {finding.name: finding for finding in diagnosed(residual) if finding.significant}
 
 
 # milling -----------------------------------------------------------------------------------------
@@ -33,9 +33,9 @@ def test_a_coloured_rest_hangs_on_no_angle_or_way(milling):
 
 
 def test_silent_views_are_told_in_one_sentence(milling):
-    findings = look(milling())
-    sentence = nothing_beyond_chance(findings)
-    assert sentence.count("Nothing beyond chance over") == 1
+    findings = diagnosed(milling())
+    sentence = no_significant_dependence(findings)
+    assert sentence.count("No significant dependence on") == 1
     for words in ("frequency", "angle of the spindle", "time within a run", "cut time"):
         assert words in sentence
 
@@ -69,7 +69,7 @@ def test_a_frequency_is_found_where_it_is(milling, frequency, where):
     if where == "other lines":
         assert numbers["lines_follow"]["rule"] == "one frequency"
         assert numbers["lines_follow"]["value"] == pytest.approx(frequency, rel=0.01)
-        assert "Hz in 8 runs, whatever the speed" in found["frequency"].says
+        assert "Hz in 8 runs, whatever the speed" in found["frequency"].description
 
 
 def hard_spots(case, time, force):
@@ -79,23 +79,23 @@ def hard_spots(case, time, force):
 
 def test_a_period_along_the_feed_is_found(milling):
     found = telling(milling(hard_spots))
-    numbers = found["period in feed way"].numbers
+    numbers = found["period in feed distance"].numbers
     assert numbers["form"] == "in proportion"
     assert numbers["period"] == pytest.approx(0.8e-3, rel=0.03)
-    assert "0.8" in found["period in feed way"].says
+    assert "0.8" in found["period in feed distance"].description
     assert "run and channel" in found
 
 
 def test_the_lead_tells_the_period_and_its_shape(milling):
     residual = milling(hard_spots)
-    lead = lead_of(residual, look(residual))
-    assert lead.finding.beyond_chance
-    assert lead.summary()["over"] == ["feed way"]
-    assert lead.summary()["period"] == pytest.approx(0.8e-3, rel=0.03)
-    assert "with a period of 0.8" in lead.finding.says
-    values = np.array(lead.table["rows"])[:, 1]
+    found = residual_dependence(residual, diagnosed(residual))
+    assert found.finding.significant
+    assert found.summary()["over"] == ["feed distance"]
+    assert found.summary()["period"] == pytest.approx(0.8e-3, rel=0.03)
+    assert "with a period of 0.8" in found.finding.description
+    values = np.array(found.rows)[:, 1]
     assert 0.5 * np.ptp(values) == pytest.approx(20.0, rel=0.15)  # percent of predicted
-    assert lead.summary()["share_beyond_noise"] > 0.85
+    assert found.summary()["share_beyond_noise"] > 0.85
 
 
 def test_growth_with_cut_time_is_found(milling):
@@ -108,12 +108,12 @@ def test_growth_with_cut_time_is_found(milling):
     found = telling(milling(wear))
     best = [one for one in found["runs"].numbers["correlations"] if one["with"] == "cut time"]
     assert best[0]["rank_correlation"] == pytest.approx(1.0)
-    assert "rises with the cut time" in found["runs"].says
+    assert "rises with the cut time" in found["runs"].description
 
 
 def test_what_dies_away_is_found_over_time(milling):
     found = telling(milling(lambda case, t, f: 6.0 * np.exp(-t / 0.02) * np.sin(TURN * 1500.0 * t)))
-    assert "first third" in found["time"].says
+    assert "first third" in found["time"].description
 
 
 # axis --------------------------------------------------------------------------------------------
@@ -127,9 +127,9 @@ def test_noise_says_nothing_on_an_axis(axis):
 @pytest.mark.parametrize(
     ("plant", "view"),
     [
-        (lambda s: 4.0 * np.sign(s["velocity"]), "direction"),
-        (lambda s: 40.0 * s["velocity"] ** 2 * np.sign(s["velocity"]), "velocity"),
-        (lambda s: 5.0 * (s["position"] > 0.05), "position"),
+        (lambda r: 4.0 * np.sign(r.signals["velocity"]), "direction"),
+        (lambda r: 40.0 * r.signals["velocity"] ** 2 * np.sign(r.signals["velocity"]), "velocity"),
+        (lambda r: 5.0 * (r.signals["position"] > 0.05), "position"),
     ],
 )
 def test_what_an_axis_lacks_is_found_over_its_variable(axis, plant, view):
@@ -137,24 +137,23 @@ def test_what_an_axis_lacks_is_found_over_its_variable(axis, plant, view):
 
 
 def test_a_period_of_position_is_found(axis):
-    found = telling(axis(lambda s: 3.0 * np.sin(TURN * s["position"] / 16e-3)))
+    found = telling(axis(lambda r: 3.0 * np.sin(TURN * r.signals["position"] / 16e-3)))
     assert found["period in position"].numbers["period"] == pytest.approx(16e-3, rel=0.02)
 
 
 def test_warming_up_is_found_over_the_moves(axis):
-    def plant(signals):
-        begun = signals["motion begun"][0]
-        return 10.0 * np.exp(-begun / 15.0) * np.sign(signals["velocity"])
+    def plant(run):
+        return 10.0 * np.exp(-run.record.begun / 15.0) * np.sign(run.signals["velocity"])
 
     found = telling(axis(plant))
-    assert "falls with the time since the first move" in found["runs"].says
+    assert "falls with the time since the first move" in found["runs"].description
 
 
 def test_two_variables_together_are_found(axis):
-    residual = axis(lambda s: 6.0 * np.sign(s["velocity"]) * np.sign(s["position"]))
-    lead = lead_of(residual, look(residual))
-    assert lead.finding.beyond_chance
-    assert lead.summary()["share"] > 0.8
+    residual = axis(lambda r: 6.0 * np.sign(r.signals["velocity"]) * np.sign(r.signals["position"]))
+    found = residual_dependence(residual, diagnosed(residual))
+    assert found.finding.significant
+    assert found.summary()["share"] > 0.8
 
 
 # chance ------------------------------------------------------------------------------------------
@@ -173,7 +172,7 @@ def test_noise_of_any_colour_hangs_on_nothing(colour):
             angle = rng.uniform(0.02, 0.05) * np.arange(800)
             place = (np.mod(angle, TURN) / TURN * 20).astype(int)
             samples.append(Sample(noise, np.ones(800), place))
-        found += dependence(samples, 20).beyond_chance
+        found += dependence(samples, 20).significant
     assert found <= 3
 
 
@@ -183,7 +182,7 @@ def test_a_constant_hangs_on_nothing():
         Sample(5.0 + rng.standard_normal(500), np.ones(500), rng.integers(0, 8, 500))
         for _ in range(5)
     ]
-    assert not dependence(samples, 8).beyond_chance
+    assert not dependence(samples, 8).significant
 
 
 def test_rank_correlation_of_few_runs_is_never_sure():

@@ -9,7 +9,7 @@ from chatter.description.case import loads
 from chatter.explain.kinds.axis import Axis
 from chatter.explain.kinds.milling import Milling
 from chatter.explain.measurement import Measurement, Run
-from chatter.explain.selection.separation import separation, told_apart
+from chatter.explain.selection.discriminating_test import discriminating_test, in_words
 
 AXIS = loads("""
 title = "an axis"
@@ -52,11 +52,11 @@ def test_an_offset_and_an_asymmetry_are_told_apart_at_rest():
     measurement = of("axis", AXIS, {"velocity": np.array([0.1, -0.1])})
     noise = {"run01.csv": {"force": 2.0}}
     one, other = AXIS.patch({"axis.asymmetry": 20.0}), AXIS.patch({"axis.offset": 20.0})
-    found = separation(measurement, Axis(), noise, one, other)
-    assert "at rest" in found["says"]
+    found = discriminating_test(measurement, Axis(), noise, one, other)
+    assert "at rest" in found["description"]
     # at rest the offset is held and the asymmetry is not: 20 N over 2 N
     assert found["over_noise"] == pytest.approx(10.0, rel=1e-3)
-    assert "at rest" in told_apart("offset", found)
+    assert "at rest" in in_words("offset", found)
 
 
 def test_edge_forces_are_told_from_thicker_chips_by_another_feed():
@@ -65,14 +65,16 @@ def test_edge_forces_are_told_from_thicker_chips_by_another_feed():
     edge = case.patch({"material.Kte": 40e3})
     stiff = case.patch({"material.Ktc": 800e6 + 40e3 / (0.05e-3 * 0.6)})
     time = np.arange(0.0, 0.1, 1.0 / 12800.0)
-    signals = {"time": time, "whole time": time, "Fx": np.ones(time.size)}
+    signals = {"time": time, "Fx": np.ones(time.size)}
     measurement = of("milling", case, signals)
-    found = separation(measurement, Milling(), {"run01.csv": {"Fx": 1.0}}, edge, stiff)
-    assert "feed per tooth" in found["says"] or "depth" in found["says"]
+    found = discriminating_test(measurement, Milling(), {"run01.csv": {"Fx": 1.0}}, edge, stiff)
+    assert "feed per tooth" in found["description"] or "depth" in found["description"]
     assert found["over_noise"] > 2.0
 
 
 def test_what_no_trial_tells_is_said():
     measurement = of("axis", AXIS, {"velocity": np.array([0.1, -0.1])})
-    assert separation(measurement, Axis(), {"run01.csv": {"force": 2.0}}, AXIS, AXIS) is None
-    assert "none of the trials" in told_apart("offset", None)
+    assert (
+        discriminating_test(measurement, Axis(), {"run01.csv": {"force": 2.0}}, AXIS, AXIS) is None
+    )
+    assert "no test among those considered" in in_words("offset", None)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dynamics.control import (
+from dynamics.control.cascade import (
     DriveController,
     Feedforward,
     LoopTiming,

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from dynamics.friction.identification import DriveRecord
+from dynamics.friction.identification.record import DriveRecord
 
 
 def back_and_forth(speeds, acceleration, dwell, step):

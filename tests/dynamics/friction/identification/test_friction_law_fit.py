@@ -7,17 +7,15 @@ import pytest
 
 from dynamics.frf.container import MeasurementError
 from dynamics.friction.coulomb_stribeck import CoulombStribeck
-from dynamics.friction.identification import (
+from dynamics.friction.identification.dynamic_fit import (
     AxisModel,
-    LowPass,
     fit_axis,
-    fit_linear,
     friction_along,
     friction_over_position,
-    guess_lugre,
-    guess_tanh,
-    reversal_way,
 )
+from dynamics.friction.identification.filtering import LowPass
+from dynamics.friction.identification.first_guess import guess_lugre, guess_tanh, reversal_way
+from dynamics.friction.identification.linear_fit import fit_linear
 from dynamics.friction.lugre import LuGre
 from dynamics.friction.tanh_hysteresis import TanhHysteresis
 from tests.dynamics.friction.identification.made_up_records import (

@@ -11,7 +11,10 @@ import numpy as np
 import pytest
 
 from dynamics.friction.coulomb_stribeck import CoulombStribeck
-from dynamics.friction.identification import AxisModel, DriveRecord, LowPass, fit_axis, fit_linear
+from dynamics.friction.identification.dynamic_fit import AxisModel, fit_axis
+from dynamics.friction.identification.filtering import LowPass
+from dynamics.friction.identification.linear_fit import fit_linear
+from dynamics.friction.identification.record import DriveRecord
 from dynamics.friction.lugre import LuGre
 from tests.places import SHARED
 

@@ -7,13 +7,12 @@ import pytest
 
 from dynamics.frf.container import MeasurementError
 from dynamics.friction.coulomb_stribeck import CoulombStribeck
-from dynamics.friction.identification import (
-    LowPass,
+from dynamics.friction.identification.filtering import LowPass
+from dynamics.friction.identification.shares import referred_to_slide, split_about_shaft
+from dynamics.friction.identification.steady_state import (
     SteadyPoint,
     constant_speed_points,
     fit_steady_state,
-    referred_to_slide,
-    split_about_shaft,
 )
 from dynamics.friction.lugre import LuGre
 from dynamics.friction.tanh_hysteresis import TanhHysteresis

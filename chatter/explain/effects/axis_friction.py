@@ -1,0 +1,186 @@
+"""Effects of the friction of a feed axis."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from chatter.description.case import Case
+from chatter.explain.effects.effect import Effect, Patch, Reported, Values, free
+from chatter.explain.measurement import Measurement
+from chatter.explain.selection.fitting import Parameter
+
+
+def typical_force(measurement: Measurement) -> float:
+    """Median of the absolute force of all moves, N."""
+    forces = np.concatenate([run.signals["force"] for run in measurement.runs])
+    return float(np.median(np.abs(forces)))
+
+
+def _coulomb_of(measurement: Measurement) -> float:
+    return measurement.case.axis.coulomb_friction or typical_force(measurement)
+
+
+class AxisValue(Effect):
+    """A value of [axis] that is not declared, of the size of a share of the typical force.
+
+    Parameters
+    ----------
+    bounds : float
+        Of the value, "lower" and "upper".
+    """
+
+    kinds = ("axis",)
+    unit = "N"
+
+    def __init__(self, **bounds: float) -> None:
+        self.bounds = bounds
+
+    @property
+    def key(self) -> str:
+        """Key of [axis]; as the effect is named by default."""
+        return self.name
+
+    def applies(self, measurement: Measurement) -> bool:
+        """Where no value is declared."""
+        return not getattr(measurement.case.axis, self.key)
+
+    def size(self, measurement: Measurement) -> float:
+        """Typical size of the value."""
+        return 0.05 * typical_force(measurement)
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """The value."""
+        return [free(self.key, 0.0, self.size(measurement), self.unit, **self.bounds)]
+
+    def patch(self, case: Case, values: Values) -> Patch:
+        """The value of [axis]."""
+        return {f"axis.{self.key}": float(values[self.key])}
+
+
+class CoulombFriction(AxisValue):
+    """Coulomb friction."""
+
+    name = "coulomb_friction"
+    label = "Coulomb friction"
+    help = "a friction that does not depend on speed opposes every motion"
+
+    def reported(self, values: Values) -> Reported:
+        """The friction."""
+        return {"coulomb": (values[self.key], "N")}
+
+
+class Asymmetry(AxisValue):
+    """Friction that differs with the direction."""
+
+    name = "asymmetry"
+    label = "asymmetry of friction"
+    help = "friction differs with the direction"
+
+
+class QuadraticDrag(AxisValue):
+    """Resistance with the square of speed."""
+
+    name = "quadratic_drag"
+    label = "quadratic drag"
+    help = "resistance grows with the square of speed"
+    unit = "N*s^2/m^2"
+
+    def size(self, measurement: Measurement) -> float:
+        """Typical size of the value."""
+        fastest = max(float(np.abs(run.signals["velocity"]).max()) for run in measurement.runs)
+        return super().size(measurement) / fastest**2
+
+
+class Stribeck(Effect):
+    """Static friction above the Coulomb friction."""
+
+    name = "stribeck"
+    label = "Stribeck friction"
+    help = "friction is higher at low speed"
+    kinds = ("axis",)
+
+    def applies(self, measurement: Measurement) -> bool:
+        """Where no static friction is declared."""
+        return measurement.case.axis.static_friction is None
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """Static friction above the Coulomb friction, and Stribeck velocity."""
+        coulomb = _coulomb_of(measurement)
+        return [
+            free("above", 0.1 * coulomb, 0.1 * coulomb, "N", lower=0.0, upper=3.0 * coulomb),
+            free("stribeck_velocity", 5e-3, 2e-3, "m/s", lower=1e-3, upper=0.3),
+        ]
+
+    def patch(self, case: Case, values: Values) -> Patch:
+        """Static friction and Stribeck velocity."""
+        return {
+            "axis.static_friction": case.axis.coulomb_friction + float(values["above"]),
+            "axis.stribeck_velocity": float(values["stribeck_velocity"]),
+        }
+
+
+class Presliding(Effect):
+    """Stiffness and damping of friction before it slides."""
+
+    name = "presliding"
+    label = "presliding"
+    help = "friction is a spring before it slides"
+    kinds = ("axis",)
+
+    def applies(self, measurement: Measurement) -> bool:
+        """Where no presliding is declared."""
+        return measurement.case.axis.presliding_stiffness is None
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """Stiffness and damping."""
+        # sliding begins after some micrometres
+        k = _coulomb_of(measurement) / 3e-5
+        return [
+            free("presliding_stiffness", k, 0.3 * k, "N/m", lower=1e-3 * k),
+            free("presliding_damping", 1e3, 1e3, "N*s/m", lower=0.0),
+        ]
+
+    def patch(self, case: Case, values: Values) -> Patch:
+        """Presliding of the axis."""
+        keys = ("presliding_stiffness", "presliding_damping")
+        return {f"axis.{key}": float(values[key]) for key in keys}
+
+    def starts(self, measurement: Measurement) -> list[Values]:
+        """Travels before sliding."""
+        coulomb = _coulomb_of(measurement)
+        return [
+            {"presliding_stiffness": coulomb / travel, "presliding_damping": 500.0}
+            for travel in (3e-6, 1e-5, 4e-5, 2e-4)
+        ]
+
+    def reported(self, values: Values) -> Reported:
+        """Under the names of the LuGre model."""
+        return {
+            "sigma0": (values["presliding_stiffness"], "N/m"),
+            "sigma1": (values["presliding_damping"], "N*s/m"),
+        }
+
+
+class WarmUp(Effect):
+    """Friction that falls from a share above its later value."""
+
+    name = "warm_up"
+    label = "warm-up"
+    help = "friction falls while the axis moves"
+    kinds = ("axis",)
+
+    def applies(self, measurement: Measurement) -> bool:
+        """Where no warm-up is declared."""
+        return measurement.case.axis.warm_up is None
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """Share and time."""
+        total = sum(float(np.ptp(run.signals["time"])) for run in measurement.runs)
+        return [
+            free("share", 0.0, 0.05, "", lower=-0.9, upper=20.0),
+            free("time", 0.4 * total, 0.2 * total, "s", lower=0.02 * total, upper=20.0 * total),
+        ]
+
+    def patch(self, case: Case, values: Values) -> Patch:
+        """Warm-up of the axis."""
+        return {"axis.warm_up": {key: float(values[key]) for key in ("share", "time")}}

@@ -1,0 +1,87 @@
+"""Effects of the cutting force: edge force, chip exponent, process damping."""
+
+from __future__ import annotations
+
+from chatter.description.case import Case
+from chatter.explain.effects.effect import Effect, Patch, Values, free
+from chatter.explain.measurement import Measurement
+from chatter.explain.selection.fitting import Parameter
+
+#: reference thickness of the exponential law where the case has none, m
+_H0 = 1e-4
+#: tangential over radial process damping where the case has none
+_FRICTION = 0.3
+
+
+class EdgeForce(Effect):
+    """Force of the edge that rubs."""
+
+    name = "edge_force"
+    label = "edge force"
+    help = "the edge rubs with a force that does not depend on the chip"
+    kinds = ("milling",)
+
+    def applies(self, measurement: Measurement) -> bool:
+        """Of laws with edge coefficients that are not declared."""
+        material = measurement.case.material
+        return material.law != "oblique" and not (material.Kte or material.Kre)
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """Edge coefficients."""
+        return [free(key, 0.0, 5e3, "N/m", lower=0.0) for key in ("Kte", "Kre")]
+
+    def patch(self, case: Case, values: Values) -> Patch:
+        """Edge coefficients of the material."""
+        return {f"material.{key}": values[key] for key in ("Kte", "Kre")}
+
+
+class ChipExponent(Effect):
+    """Exponential law in the place of the linear one."""
+
+    name = "chip_exponent"
+    label = "exponential chip thickness law"
+    help = "thin chips take more force per thickness than thick ones"
+    kinds = ("milling",)
+
+    def applies(self, measurement: Measurement) -> bool:
+        """Of the linear law."""
+        return measurement.case.material.law == "linear"
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """The exponent."""
+        return [free("exponent", 1.0, 0.03, "", lower=0.3, upper=1.0)]
+
+    def patch(self, case: Case, values: Values) -> Patch:
+        """Law of the material."""
+        return {
+            "material.law": "exponential",
+            "material.h0": case.material.h0 or _H0,
+            "material.exponent": float(values["exponent"]),
+        }
+
+
+class ProcessDamping(Effect):
+    """Viscous process damping of the flank."""
+
+    name = "process_damping"
+    label = "process damping"
+    help = "the flank resists vibration into the work, the more the slower the cut"
+    kinds = ("milling", "stability")
+
+    def applies(self, measurement: Measurement) -> bool:
+        """Where none is declared."""
+        return measurement.case.process_damping is None
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """The coefficient."""
+        return [free("coefficient", 0.0, 5e4, "N/m", lower=0.0)]
+
+    def patch(self, case: Case, values: Values) -> Patch:
+        """Process damping, with the friction that is declared."""
+        friction = case.process_damping.friction if case.process_damping else _FRICTION
+        coefficient = float(values["coefficient"])
+        return {"process_damping": {"coefficient": coefficient, "friction": friction}}
+
+    def starts(self, measurement: Measurement) -> list[Values]:
+        """From none to much."""
+        return [{"coefficient": value} for value in (0.0, 5e4, 2e5, 8e5)]

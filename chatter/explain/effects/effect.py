@@ -1,0 +1,74 @@
+"""What an effect is: a patch of a case with named numbers, and when it may be missing."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar
+
+from chatter.description.case import Case
+from chatter.explain.measurement import Measurement
+from chatter.explain.selection.fitting import Parameter
+
+Values = Mapping[str, float]
+#: paths of a case -> values
+Patch = dict[str, Any]
+#: name -> value and SI unit
+Reported = Mapping[str, tuple[float, str]]
+
+
+class Effect(ABC):
+    """An effect that a model may lack.
+
+    Attributes
+    ----------
+    name : str
+        As in explanation.json.
+    label : str
+        As in pictures.
+    help : str
+        What it does, for reports and the docs.
+    kinds : tuple of str
+        Kinds of measurement in which it shows.
+    """
+
+    name: ClassVar[str]
+    label: ClassVar[str]
+    help: ClassVar[str]
+    kinds: ClassVar[tuple[str, ...]]
+
+    @property
+    def variants(self) -> tuple[Effect, ...]:
+        """Forms of the effect that are tried, of which the best counts."""
+        return (self,)
+
+    @abstractmethod
+    def applies(self, measurement: Measurement) -> bool:
+        """Whether it may be missing in a measurement of one of its kinds."""
+
+    @abstractmethod
+    def parameters(self, measurement: Measurement) -> Sequence[Parameter]:
+        """Numbers that are fitted, with their priors or sizes and bounds, SI."""
+
+    @abstractmethod
+    def patch(self, case: Case, values: Values) -> Patch:
+        """Assignments of a case by path."""
+
+    def starts(self, measurement: Measurement) -> Sequence[Values]:
+        """Start values to try, each by name; those of the parameters where none is named."""
+        return ({},)
+
+    def reported(self, values: Values) -> Reported | None:
+        """Numbers for the report; None for the parameters themselves."""
+        return None
+
+
+def free(name: str, start: float, size: float, unit: str, **bounds: float) -> Parameter:
+    """A parameter without a prior, of a typical size."""
+    return Parameter(name, start, size, prior=False, unit=unit, **bounds)
+
+
+def polar(first: float, second: float) -> tuple[float, float]:
+    """Length and angle, rad from 0 to 2 pi, of two components."""
+    return math.hypot(first, second), math.atan2(second, first) % (2.0 * math.pi)

@@ -1,0 +1,66 @@
+"""Effects that a model may lack: where a new one joins.
+
+Installed packages add theirs by an entry point of the group ``chatter.effects``.
+"""
+
+from __future__ import annotations
+
+from chatter.description.registry import Registry
+from chatter.explain.effects.axis_drive import Backlash, Cogging, Offset
+from chatter.explain.effects.axis_friction import (
+    Asymmetry,
+    CoulombFriction,
+    Presliding,
+    QuadraticDrag,
+    Stribeck,
+    WarmUp,
+)
+from chatter.explain.effects.cutting_force import ChipExponent, EdgeForce, ProcessDamping
+from chatter.explain.effects.effect import Effect
+from chatter.explain.effects.sensor import Dynamometer
+from chatter.explain.effects.structure import Contact, MissingMode, ModeShift, SlideFriction
+from chatter.explain.effects.tool import Pitch, Runout, Wear
+from chatter.explain.measurement import Measurement
+
+#: in the order in which equals are named
+EFFECTS: Registry[Effect] = Registry(
+    group="chatter.effects",
+    what="effect",
+    built_in=(
+        Runout(),
+        EdgeForce(),
+        ProcessDamping(),
+        ChipExponent(),
+        MissingMode(),
+        ModeShift(),
+        Pitch(),
+        Wear(),
+        Contact(),
+        Dynamometer(),
+        SlideFriction(),
+        CoulombFriction(lower=0.0),
+        Stribeck(),
+        Presliding(),
+        Asymmetry(),
+        Offset(),
+        QuadraticDrag(lower=0.0),
+        Cogging(),
+        Backlash(),
+        WarmUp(),
+    ),
+)
+
+
+def candidates(measurement: Measurement) -> list[Effect]:
+    """Effects, each in all its variants, that may be missing in a measurement."""
+    return [
+        variant
+        for effect in EFFECTS
+        for variant in effect.variants
+        if measurement.kind in variant.kinds and variant.applies(measurement)
+    ]
+
+
+def rank(effect: Effect) -> int:
+    """Place of an effect in the list."""
+    return EFFECTS.names().index(effect.name)

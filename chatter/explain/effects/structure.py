@@ -1,0 +1,228 @@
+"""Effects of the structure: a missing mode, a frequency that shifts, contact, dry friction."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from chatter.description.case import Case
+from chatter.explain.effects.effect import Effect, Patch, Reported, Values, free
+from chatter.explain.measurement import Measurement
+from chatter.explain.selection.fitting import Parameter
+
+#: force of a typical cut where none was measured, N
+_TYPICAL_FORCE = 100.0
+
+
+def _stiffness(frequency: float, mass: float) -> float:
+    return mass * (2.0 * math.pi * frequency) ** 2
+
+
+def _has_modes(measurement: Measurement) -> bool:
+    case = measurement.case
+    return case.structure is not None and bool(case.structure.mode)
+
+
+class MissingMode(Effect):
+    """One mode more, in the plane of the cut."""
+
+    name = "missing_mode"
+    label = "missing mode"
+    help = "the structure has a mode more"
+    kinds = ("milling", "frf")
+
+    def applies(self, measurement: Measurement) -> bool:
+        """Of a structure of modes."""
+        return _has_modes(measurement)
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """Frequency, damping, compliance and direction; no compliance: no mode."""
+        modes = measurement.case.structure.mode
+        compliance = max(1.0 / _stiffness(m.frequency, m.modal_mass) for m in modes)
+        return [
+            free("frequency", 300.0, 5.0, "Hz", lower=5.0, upper=2e4),
+            Parameter("damping", 0.03, 0.01, 0.002, 0.3, True, ""),
+            free("compliance", 0.01 * compliance, 0.02 * compliance, "m/N", lower=0.0),
+            free("angle", 0.0, 0.3, "rad"),
+        ]
+
+    def patch(self, case: Case, values: Values) -> Patch:
+        """Modes of the structure."""
+        known = [mode.model_dump(exclude_none=True) for mode in case.structure.mode]
+        angle = float(values["angle"])
+        added = {
+            "frequency": float(values["frequency"]),
+            "damping": float(values["damping"]),
+            "mass": self._mass(values),
+            "direction": [math.cos(angle), math.sin(angle), 0.0],
+            "side": "tool",
+        }
+        return {"structure.mode": [*known, added]}
+
+    def starts(self, measurement: Measurement) -> list[Values]:
+        """Frequencies around and between the known modes, along x and y."""
+        known = sorted(mode.frequency for mode in measurement.case.structure.mode)
+        frequencies = np.geomspace(0.3 * known[0], 2.5 * known[-1], 14)
+        return [
+            {"frequency": float(frequency), "angle": angle}
+            for angle in (0.0, 0.5 * math.pi)
+            for frequency in frequencies
+        ]
+
+    def reported(self, values: Values) -> Reported:
+        """Frequency, damping, mass, and the direction as an angle from x within half a turn."""
+        return {
+            "frequency": (values["frequency"], "Hz"),
+            "damping": (values["damping"], ""),
+            "mass": (self._mass(values), "kg"),
+            "direction": (values["angle"] % math.pi, "rad"),
+        }
+
+    @staticmethod
+    def _mass(values: Values) -> float:
+        compliance = max(float(values["compliance"]), 1e-16)
+        return 1.0 / compliance / (2.0 * math.pi * float(values["frequency"])) ** 2
+
+
+class ModeShift(Effect):
+    """Natural frequencies in proportion to the spindle speed."""
+
+    name = "mode_shift"
+    label = "speed-dependent natural frequencies"
+    help = "natural frequencies change with the spindle speed"
+    kinds = ("milling", "stability")
+
+    def applies(self, measurement: Measurement) -> bool:
+        """Of modes at several speeds."""
+        speeds = {str(run.overrides.get("cut.spindle_speed")) for run in measurement.runs}
+        return _has_modes(measurement) and (measurement.kind == "stability" or len(speeds) > 2)
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """Relative change of the frequencies with the speed: one in a thousand at 1000 rpm."""
+        return [free("slope", 0.0, 1e-5, "s/rad", lower=-1e-3, upper=1e-3)]
+
+    def patch(self, case: Case, values: Values) -> Patch:
+        """Slope of every mode."""
+        return {
+            f"structure.mode[{index}].frequency_slope": float(values["slope"])
+            for index in range(len(case.structure.mode))
+        }
+
+    def starts(self, measurement: Measurement) -> list[Values]:
+        """Falling and rising."""
+        return [{"slope": value} for value in (0.0, 2e-5, -2e-5, 6e-5, -6e-5)]
+
+
+class Contact(Effect):
+    """Spring and damper between tool and workpiece, in proportion to the engaged depth.
+
+    Parameters
+    ----------
+    full_at : float
+        Share of the depth engaged from which on the contact is whole.
+    """
+
+    name = "contact"
+    label = "tool-workpiece contact"
+    help = "tool and workpiece touch like a spring and a damper while in the cut"
+
+    kinds = ("milling", "frf")
+
+    def __init__(self, full_at: float = 1.0) -> None:
+        self.full_at = full_at
+
+    @property
+    def variants(self) -> tuple[Effect, ...]:
+        """In proportion to the engaged depth, or whole as soon as an edge cuts."""
+        return (self, ContactAtOnce(1e-3))
+
+    def applies(self, measurement: Measurement) -> bool:
+        """Of modes without a contact."""
+        return _has_modes(measurement) and measurement.case.contact is None
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """Stiffness and damping."""
+        modes = measurement.case.structure.mode
+        stiffness = min(_stiffness(m.frequency, m.modal_mass) for m in modes)
+        damping = 0.01 * stiffness / (2.0 * math.pi * min(m.frequency for m in modes))
+        return [
+            free("stiffness", 0.0, 0.01 * stiffness, "N/m", lower=0.0),
+            free("damping", 0.0, damping, "N*s/m", lower=0.0),
+        ]
+
+    def patch(self, case: Case, values: Values) -> Patch:
+        """The contact."""
+        given = {key: float(values[key]) for key in ("stiffness", "damping")}
+        return {"contact": {**given, "full_at": self.full_at}}
+
+
+class ContactAtOnce(Contact):
+    """Contact that is whole as soon as an edge cuts."""
+
+    kinds = ("milling",)
+
+
+class SlideFriction(Effect):
+    """Dry friction on every mode, and the velocity below which it falls to zero."""
+
+    name = "slide_friction"
+    label = "friction on a mode"
+    help = "dry friction rubs on a mode of the structure"
+    kinds = ("milling",)
+
+    def applies(self, measurement: Measurement) -> bool:
+        """Of modes without friction."""
+        return _has_modes(measurement) and not any(
+            mode.friction for mode in measurement.case.structure.mode
+        )
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """Friction of every mode, and the smoothing velocity."""
+        size = self._size(measurement)
+        modes = range(1, len(measurement.case.structure.mode) + 1)
+        return [
+            *(free(f"coulomb_{mode}", 0.0, size, "N", lower=0.0) for mode in modes),
+            Parameter("smoothing_velocity", 1e-3, 5e-4, 5e-5, 2e-2, True, "m/s"),
+        ]
+
+    def patch(self, case: Case, values: Values) -> Patch:
+        """Friction laws, and the modes that they act on."""
+        given: Patch = {}
+        for index in range(len(case.structure.mode)):
+            coulomb = float(values[f"coulomb_{index + 1}"])
+            if coulomb > 0.0:
+                given[f"friction.slide_{index + 1}"] = {
+                    "law": "smooth-coulomb",
+                    "coulomb": coulomb,
+                    "smoothing_velocity": float(values["smoothing_velocity"]),
+                }
+                given[f"structure.mode[{index}].friction"] = f"slide_{index + 1}"
+        return given
+
+    def starts(self, measurement: Measurement) -> list[Values]:
+        """On each of the modes."""
+        modes = range(1, len(measurement.case.structure.mode) + 1)
+        return [{f"coulomb_{mode}": self._size(measurement)} for mode in modes]
+
+    def reported(self, values: Values) -> Reported:
+        """The strongest friction, on which mode, counted from 1, and the others."""
+        levels = {key: value for key, value in values.items() if key.startswith("coulomb_")}
+        strongest = max(levels, key=levels.__getitem__)
+        return {
+            "coulomb": (levels[strongest], "N"),
+            "mode": (float(strongest.rpartition("_")[2]), ""),
+            "smoothing_velocity": (values["smoothing_velocity"], "m/s"),
+            **{key: (level, "N") for key, level in levels.items() if key != strongest},
+        }
+
+    @staticmethod
+    def _size(measurement: Measurement) -> float:
+        """Share of the typical in-plane force, N."""
+        forces = [
+            float(np.sqrt(np.mean(run.signals[name] ** 2)))
+            for run in measurement.runs
+            for name in ("Fx", "Fy")
+            if name in run.signals
+        ]
+        return 0.1 * (float(np.median(forces)) if forces else _TYPICAL_FORCE)

@@ -1,0 +1,139 @@
+"""Measurement folders: measurement.toml, the declared case, and the signals of every run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+
+from chatter.description.case import Case, load
+from chatter.description.errors import InputError
+from chatter.description.formatting import shown
+from chatter.description.units import QuantityError, parse
+from chatter.explain.kinds.registry import KINDS
+from chatter.explain.measurement import Measurement, Run
+from chatter.io.signals import read_signals
+
+#: keys of [[run]] that are no override of the case
+_OWN_KEYS = ("file", "condition", "direction", "title")
+_KEYS = ("title", "kind", "case", "points", "run", "tolerance")
+#: sections of a case that a short key of a run may mean
+_SECTIONS = ("cut", "tool", "material", "axis")
+
+
+def read_measurement(folder: str | Path, case: str | Path | Case | None = None) -> Measurement:
+    """Read a measurement folder.
+
+    Parameters
+    ----------
+    folder : path
+        Holds measurement.toml, or is that file.
+    case : path or Case, optional
+        Instead of the case that it names.
+
+    Raises
+    ------
+    InputError
+        If a file is missing or cannot be read, a key is unknown, or runs lack a channel.
+    """
+    path = Path(folder)
+    path = path if path.is_file() else path / "measurement.toml"
+    content = _content(path)
+    unknown = [key for key in content if key not in _KEYS]
+    if unknown:
+        raise InputError(
+            [f"{path}: {key} is no key; there are {', '.join(_KEYS)}" for key in unknown]
+        )
+    name = content.get("kind")
+    if name not in KINDS:
+        raise InputError(f"{path}: kind: {shown(name)} is none of {', '.join(KINDS)}")
+    declared = case if isinstance(case, Case) else load(case or _file(path, content, "case"))
+    table = KINDS[name].table_key
+    if table:
+        file = _file(path, content, table)
+        runs = (Run(file.name, {}, read_signals(file)),)
+    else:
+        entries = content.get("run", [])
+        if not isinstance(entries, list) or any(not isinstance(one, dict) for one in entries):
+            raise InputError(f"{path}: run: runs are tables [[run]] with a file each")
+        runs = tuple(
+            _run(path, name, number, entry, declared)
+            for number, entry in enumerate(entries, start=1)
+        )
+    if not runs:
+        raise InputError(f"{path}: there is no [[run]]")
+    _refuse_names_twice(path, runs)
+    tolerances = _tolerances(path, content.get("tolerance", {}))
+    title = str(content.get("title", path.parent.name))
+    return Measurement(name, title, path.parent, declared, runs, tolerances)
+
+
+def _content(path: Path) -> dict[str, Any]:
+    try:
+        return tomlkit.parse(path.read_text(encoding="utf-8")).unwrap()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    except (UnicodeDecodeError, tomlkit.exceptions.TOMLKitError) as error:
+        raise InputError(f"{path}: is no TOML file: {error}") from error
+
+
+def _refuse_names_twice(path: Path, runs: Sequence[Run]) -> None:
+    names = [run.name for run in runs]
+    for name in sorted(set(names)):
+        if names.count(name) > 1:
+            raise InputError(f"{path}: {name} is the file of {names.count(name)} runs")
+
+
+def _tolerances(path: Path, given: Any) -> dict[str, float]:
+    if not isinstance(given, dict):
+        raise InputError(f"{path}: tolerance: {shown(given)} is no table of keys and shares")
+    for key, value in given.items():
+        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        if not is_number or not 0.0 <= value < 10.0:
+            raise InputError(f"{path}: tolerance.{key}: {shown(value)} is no share such as 0.05")
+    return {key: float(value) for key, value in given.items()}
+
+
+def _file(path: Path, content: Mapping[str, Any], key: str) -> Path:
+    name = content.get(key)
+    if not isinstance(name, str):
+        raise InputError(f"{path}: {key}: {shown(name)} is no file name")
+    return path.parent / name
+
+
+def _run(path: Path, kind: str, number: int, entry: Mapping[str, Any], declared: Case) -> Run:
+    where = f"{path}: run {number}"
+    if not isinstance(entry.get("file"), str):
+        raise InputError(f"{where}: file: {shown(entry.get('file'))} is no file name")
+    file = _file(path, entry, "file")
+    where = f"{where} ({file.name})"
+    overrides = {
+        _path_of(where, key, declared): value
+        for key, value in entry.items()
+        if key not in _OWN_KEYS
+    }
+    try:
+        declared.patch(overrides)
+        cut_time = parse(entry.get("cut_time", 0.0), "time").value
+    except InputError as error:
+        raise InputError([f"{where}: {message}" for message in error.messages]) from error
+    except QuantityError as error:
+        raise InputError(f"{where}: cut_time: {error}") from error
+    direction = str(entry.get("direction", ""))
+    condition = str(entry.get("condition", ""))
+    signals = read_signals(file, kind, direction)
+    return Run(file.name, overrides, signals, cut_time, condition, direction)
+
+
+def _path_of(where: str, key: str, declared: Case) -> str:
+    """Path of a key of a run: itself, or that of the section it belongs to."""
+    if "." in key:
+        return key
+    for section in _SECTIONS:
+        fields = type(declared).model_fields[section].annotation
+        for kind in getattr(fields, "__args__", (fields,)):
+            if key in getattr(kind, "model_fields", {}):
+                return f"{section}.{key}"
+    raise InputError(f"{where}: {key} is no key of a run, nor of cut, tool, material or axis")

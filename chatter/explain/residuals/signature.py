@@ -1,0 +1,87 @@
+"""Signature of a residual: what every diagnostic of the kind of measurement finds in it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from chatter.description.case import Case
+from chatter.explain.kinds.kind import Noise
+from chatter.explain.measurement import Measurement
+from chatter.explain.prediction import Predictions
+from chatter.explain.residuals.finding import Finding
+from chatter.explain.residuals.residual import Residual, residual_of
+from chatter.explain.residuals.residual_dependence import ResidualDependence, residual_dependence
+
+
+@dataclass(frozen=True, eq=False)
+class Signature:
+    """What the diagnostics find in a residual.
+
+    Parameters
+    ----------
+    residual : Residual
+    findings : tuple of Finding
+        One a diagnostic.
+    """
+
+    residual: Residual
+    findings: tuple[Finding, ...]
+
+    @property
+    def significant(self) -> tuple[Finding, ...]:
+        """Findings that show more than chance does."""
+        return tuple(finding for finding in self.findings if finding.significant)
+
+    @property
+    def no_significant_dependence(self) -> str:
+        """One sentence for the diagnostics that find nothing."""
+        return no_significant_dependence(self.findings)
+
+    @cached_property
+    def dependence(self) -> ResidualDependence:
+        """On what the residual depends most."""
+        return residual_dependence(self.residual, self.findings)
+
+    def summary(self) -> dict[str, Any]:
+        """Entry of explanation.json."""
+        return {
+            "diagnostics": [finding.summary() for finding in self.findings],
+            "no_significant_dependence": self.no_significant_dependence,
+        }
+
+
+def diagnosed(residual: Residual) -> tuple[Finding, ...]:
+    """Findings of every diagnostic of the kind of measurement."""
+    return tuple(diagnostic(residual) for diagnostic in residual.kind.diagnostics)
+
+
+def signature_of(
+    measurement: Measurement, predictions: Predictions, case: Case, noise: Noise | None = None
+) -> Signature:
+    """Signature of the residual of a measurement by a case.
+
+    Parameters
+    ----------
+    measurement : Measurement
+        As prepared for its kind.
+    predictions : Predictions
+    case : Case
+    noise : mapping, optional
+        Run -> channel -> standard deviation, SI; estimated from the residual where it is not given.
+    """
+    residual = residual_of(measurement, predictions, case, noise)
+    return Signature(residual, diagnosed(residual))
+
+
+def no_significant_dependence(findings: Sequence[Finding]) -> str:
+    """One sentence for all diagnostics that find nothing."""
+    silent = [finding.description for finding in findings if not finding.significant]
+    sentences = [text for text in silent if text.endswith(".")]
+    names = [text for text in silent if not text.endswith(".")]
+    if names:
+        listed = ", ".join(names[:-1]) + f" and {names[-1]}" if len(names) > 1 else names[0]
+        sentences.append(f"No significant dependence on {listed}.")
+    return " ".join(sentences)

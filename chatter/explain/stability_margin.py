@@ -1,0 +1,42 @@
+"""How far cutting tests are from the stability limit of a case."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.compile.structure import depends_on_speed
+from chatter.description.case import Case
+from chatter.stability.methods.collocation.element_cut import element_cut
+from chatter.stability.methods.collocation.multipliers import multipliers
+from chatter.stability.model import milling_model
+
+#: share of the depth over which the growth rate is evaluated
+_STEP = 0.04
+#: margins beyond this count as this
+_FAR = 3.0
+
+
+def stability_margins(
+    case: Case, speeds: NDArray[np.float64], depths: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Share of its depth by which a cut is away from the limit; above 0: stable.
+
+    Notes
+    -----
+    From the logarithm of the spectral radius at the depth and a little above, as if it were linear
+    in the logarithm of the depth.
+    """
+    rate, slope = np.empty(speeds.size), np.empty(speeds.size)
+    groups = np.unique(speeds) if depends_on_speed(case) else [None]
+    for speed in groups:
+        chosen = slice(None) if speed is None else speeds == speed
+        own = case if speed is None else case.patch({"cut.spindle_speed": float(speed)})
+        cut = element_cut(milling_model(own), (1.0 + _STEP) * float(depths[chosen].max()))
+        at = multipliers(cut, speeds[chosen], depths[chosen])
+        above = multipliers(cut, speeds[chosen], depths[chosen] * (1.0 + _STEP))
+        rate[chosen] = np.log(np.maximum(np.abs(at), 1e-12))
+        slope[chosen] = (np.log(np.maximum(np.abs(above), 1e-12)) - rate[chosen]) / np.log1p(_STEP)
+    # where rate does not rise with depth, its size tells no more than the side
+    rising = np.maximum(slope, 0.3 * np.abs(rate) + 1e-3)
+    return np.clip(-rate / rising, -_FAR, _FAR)

@@ -1,0 +1,106 @@
+"""report.html: the explanation on one page that needs nothing else; its text is in templates/."""
+
+from __future__ import annotations
+
+import base64
+from io import BytesIO
+from typing import TYPE_CHECKING, Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from chatter.explain.data_checks.finding import FOLLOWS
+from chatter.explain.explanation import EXPLAINED, Contradiction, Explanation
+from chatter.explain.residuals.finding import Finding
+from chatter.explain.selection.discriminating_test import in_words
+from chatter.plots.explanation import plot_errors, plot_lobes_before_after
+from chatter.plots.residual_diagnostics import plot_findings
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def page_of(explanation: Explanation, summary: dict[str, Any], picture: Figure) -> str:
+    """Return the page of an explanation.
+
+    Parameters
+    ----------
+    explanation : Explanation
+    summary : dict
+        Of explanation.json.
+    picture : Figure
+        Of signals and their residuals.
+    """
+    found = explanation.found
+    return (
+        _templates()
+        .get_template("explanation.html")
+        .render(
+            title=explanation.measurement.title,
+            summary=summary,
+            error=summary["error"],
+            errors=explanation.before_after,
+            dependence=explanation.residual_dependence,
+            refitted=explanation.refitted_signature,
+            repaired=explanation.repaired_signature,
+            effect_names=found.effect_names,
+            fit=found.final if explanation.verdict == EXPLAINED else found.base,
+            lobes=explanation.lobes,
+            residuals=picture,
+            follows=FOLLOWS,
+            in_words=in_words,
+        )
+    )
+
+
+def page_of_contradiction(contradiction: Contradiction, summary: dict[str, Any]) -> str:
+    """Return the page of data and a case that contradict each other."""
+    return (
+        _templates()
+        .get_template("contradiction.html")
+        .render(
+            title=contradiction.measurement.title,
+            verdict=contradiction.verdict,
+            found=summary["checks"],
+            follows=FOLLOWS,
+        )
+    )
+
+
+def _templates() -> Environment:
+    templates = Environment(
+        loader=PackageLoader("chatter.report"),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=StrictUndefined,
+    )
+    templates.filters |= {
+        "number": _number,
+        "percent": _percent,
+        "embedded": _embedded,
+        "drawn": _drawn,
+        "errors_drawn": plot_errors,
+        "lobes_drawn": plot_lobes_before_after,
+    }
+    return templates
+
+
+def _number(value: float | None, digits: int = 4) -> str:
+    """Number in a table; nothing where there is none."""
+    return "" if value is None else f"{value:.{digits}g}"
+
+
+def _percent(value: float | None) -> str:
+    """Share in a table, in percent."""
+    return "" if value is None else f"{100.0 * value:.3g} %"
+
+
+def _drawn(finding: Finding) -> Figure:
+    return plot_findings([finding])
+
+
+def _embedded(figure: Figure) -> str:
+    """Picture as the source of an image inside the page."""
+    buffer = BytesIO()
+    figure.savefig(buffer, format="png")
+    return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")
