@@ -93,7 +93,7 @@ def test_what_a_record_does_not_show_is_named():
 TABLE = TanhHysteresis(99.2, 426.7, 6000.0, 500.0, 1.15e4)
 
 
-def test_tanh_inclination_from_a_small_slow_circle():
+def test_hysteresis_slope_from_a_small_slow_circle():
     """Axis of a circle of 0.2 mm radius at 5 mm/min; force is the paper's eq. 2 itself."""
     feed, radius, step = 5.0 / 60e3, 0.2e-3, 5e-3
     t, x, v, a = sine_motion(radius, feed, 2, step)
