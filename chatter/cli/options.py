@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
-from chatter.cli.report import print_notes
 from chatter.description.assignments import parse_assignments
 from chatter.description.case import Case, load
 from chatter.description.patchable import Description
+from chatter.report.console import print_notes
 
 if TYPE_CHECKING:
     from chatter.description.machine.machine_file import MachineFile
