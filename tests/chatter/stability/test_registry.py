@@ -37,11 +37,13 @@ def test_auto_takes_what_the_case_needs():
 
 
 def test_a_former_name_is_read():
-    assert chosen_method(Case.from_dict(CASE), "time").name == "time-domain"
+    case = Case.from_dict({**CASE, "lobes": {"method": "time"}})
+    assert chosen_method(case).name == "time-domain"
+    assert "time-domain" in case.notes[0]
 
 
 def test_an_unknown_name_is_refused_with_those_there_are():
-    with pytest.raises(InputError, match=r'method "hugo" is not known; there are "auto", "colloc'):
+    with pytest.raises(InputError, match=r'method "hugo" is not known; there are "collocation"'):
         chosen_method(Case.from_dict(CASE), "hugo")
 
 
