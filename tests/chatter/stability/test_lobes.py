@@ -8,34 +8,21 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.description.case import Case
+from tests.cases import tool_of_922_hertz
 
 RPM = math.pi / 30.0
 
 
 def two_degrees_of_freedom(**cut):
-    mode = {"frequency": "922 Hz", "damping": 0.011, "mass": "0.03993 kg"}
-    return Case.from_dict(
-        {
-            "title": "922 Hz",
-            "tool": {"teeth": 2, "diameter": "16 mm"},
-            "material": {"Ktc": "600 MPa", "Krc": "200 MPa"},
-            "cut": {
-                "mode": "up",
-                "spindle_speed": "20000 rpm",
-                "feed_per_tooth": "0.1 mm",
-                "axial_depth": "2.5 mm",
-                "radial_depth": "0.8 mm",
-                **cut,
-            },
-            "structure": {
-                "mode": [{**mode, "direction": [1, 0, 0]}, {**mode, "direction": [0, 1, 0]}]
-            },
-            "lobes": {
-                "speeds": {"from": "15000 rpm", "to": "20000 rpm", "count": 5},
-                "depths": {"to": "10 mm", "count": 60},
-            },
-        }
+    """Cut of a tool that is alike along the feed and across it."""
+    small = {"mode": "up", "spindle_speed": "20000 rpm", "axial_depth": "2.5 mm"}
+    return tool_of_922_hertz(
+        ((1, 0, 0), (0, 1, 0)),
+        cut={**small, "radial_depth": "0.8 mm", **cut},
+        lobes={
+            "speeds": {"from": "15000 rpm", "to": "20000 rpm", "count": 5},
+            "depths": {"to": "10 mm", "count": 60},
+        },
     )
 
 
