@@ -1,4 +1,4 @@
-"""Measured parameters against 85 real cutting tests (Hajdu et al. 2020; BENCHMARKS.md 6.1)."""
+"""Measured parameters against 85 real cutting tests (Hajdu et al. 2020; validation 6.1)."""
 
 import csv
 import math

@@ -16,7 +16,7 @@ RPM = math.pi / 30.0
 
 
 def island_case(helix_deg=45.0, **lobes):
-    """BENCHMARKS 3.1: 922 Hz, one direction, two flutes of 8 mm, up-milling of 5 % immersion."""
+    """validation 3.1: 922 Hz, one direction, two flutes of 8 mm, up-milling of 5 % immersion."""
     diameter = 8e-3
     return tool_of_922_hertz(
         tool={"diameter": diameter, "helix": math.radians(helix_deg)},

@@ -54,7 +54,7 @@ def test_limits_at_ten_speeds_within_two_percent(name):
     assert {"hopf", "flip"} >= set(found.bifurcation)
 
 
-# BENCHMARKS.md 2.3: first limit, mm, and its kind
+# validation 2.3: first limit, mm, and its kind
 PUBLISHED = [
     (X, "up", 0.05, "5 mm", {10000: (1.657701, "hopf"), 20000: (3.774048, "flip")}),
     (X, "down", 0.5, "5 mm", {10000: (2.104690, "flip"), 20000: (0.719643, "hopf")}),
@@ -73,7 +73,7 @@ def test_published_limits(directions, mode, immersion, deepest, limits):
     assert found.bifurcation == kinds
 
 
-# BENCHMARKS.md 3.1: closed island of period doubling below the Hopf limit, mm
+# validation 3.1: closed island of period doubling below the Hopf limit, mm
 ISLANDS = {18800: [1.14676, 1.98935, 4.62804], 19000: [1.60997, 2.50485, 5.17385]}
 
 

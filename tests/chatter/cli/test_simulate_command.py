@@ -79,7 +79,7 @@ def test_numbers_of_a_run(case_file, tmp_path):
     assert simulate(case_file).exit_code == 0
     summary = strict((tmp_path / "out/summary.json").read_text())
     table = table_of(tmp_path / "out/signals.csv")
-    # BENCHMARKS.md 2.3: stable below 2.104690 mm
+    # validation 2.3: stable below 2.104690 mm
     assert summary["verdict"] == "stable"
     assert summary["chatter_frequency_Hz"] is None
     for column, name in enumerate(("Fx", "Fy", "Fz"), start=2):
@@ -107,7 +107,7 @@ def test_numbers_of_a_run(case_file, tmp_path):
 
 
 def test_chatter_is_told_with_its_frequency(case_file, tmp_path):
-    # BENCHMARKS.md 2.3: limit of 3.774048 mm at 20000 rpm, a flip
+    # validation 2.3: limit of 3.774048 mm at 20000 rpm, a flip
     result = simulate(
         case_file,
         "cut.mode=up",

@@ -39,7 +39,7 @@ def test_the_good_case_is_good(tmp_path):
     result = run("check", write(tmp_path, GOOD))
     assert result.exit_code == 0, result.output
     summary = json.loads(result.stdout)
-    # BENCHMARKS.md 2.3: first limit 2.104690 mm, a flip
+    # validation 2.3: first limit 2.104690 mm, a flip
     assert summary["critical_depth_mm"] == pytest.approx(2.104690, rel=2e-4)
     assert summary["stable"] is True
 

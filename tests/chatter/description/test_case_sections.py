@@ -285,7 +285,7 @@ def test_oblique_law():
         '[material]\nlaw = "oblique"\nshear_stress = "613 MPa"\nfriction_angle = "19.1 deg"\n'
         'shear_angle = "33.067 deg"\nrake_angle = "0 deg"'
     )
-    # BENCHMARKS.md 8: orthogonal, rake 0, h = 0.05 mm: 1730.9 and 599.4 MPa
+    # validation 8: orthogonal, rake 0, h = 0.05 mm: 1730.9 and 599.4 MPa
     tangential, radial, axial = loads(text).material.cutting_coefficients(0.0)
     assert (tangential, radial) == pytest.approx((1730.9e6, 599.4e6), rel=1e-4)
     assert axial == pytest.approx(0.0, abs=1.0)

@@ -28,7 +28,7 @@ def branches(values, tolerance):
 
 
 def test_flip_opens_two_branches():
-    # BENCHMARKS.md 2.3: period doubling at 3.774048 mm
+    # validation 2.3: period doubling at 3.774048 mm
     depths = np.array([3.5e-3, 3.65e-3, 3.9e-3, 4.1e-3])
     diagram = chatter.bifurcation(cut_of(20000, "3 mm"), "cut.axial_depth", depths)
     assert [point.value for point in diagram.points] == pytest.approx(depths)
@@ -53,7 +53,7 @@ def test_flip_opens_two_branches():
 
 
 def test_hopf_opens_a_band():
-    # BENCHMARKS.md 2.3: Hopf at 1.657701 mm
+    # validation 2.3: Hopf at 1.657701 mm
     depths = [1.2e-3, 1.9e-3]
     diagram = chatter.bifurcation(cut_of(10000, "1 mm"), "cut.axial_depth", depths)
     stable, chattering = diagram.points
@@ -68,7 +68,7 @@ def test_hopf_opens_a_band():
 
 
 def test_speed_may_vary_as_text():
-    # BENCHMARKS.md 2.3: limits of 2.2 mm or more at 10000 rpm, of 0.72 mm at 20000 rpm
+    # validation 2.3: limits of 2.2 mm or more at 10000 rpm, of 0.72 mm at 20000 rpm
     case = cut_of(10000, "1 mm", "down", "8 mm")
     diagram = chatter.bifurcation(case, "cut.spindle_speed", ["10000 rpm", "20000 rpm"])
     assert [point.value for point in diagram.points] == pytest.approx([10000 * RPM, 20000 * RPM])

@@ -43,7 +43,7 @@ def test_limits_over_radial_depth_are_those_of_checks(over_radial_depth):
         assert found.limits.critical_depth[place] == pytest.approx(checked.critical_depth, rel=1e-9)
         assert found.limits.bifurcation[place] == checked.limit.bifurcation[0]
         assert found.limits.crossings[place] == pytest.approx(checked.limit.crossings[0], rel=1e-9)
-    # BENCHMARKS.md 2.3: 3.250386 mm by flip at 20 000 rpm; a flip is heard at half the tooth
+    # validation 2.3: 3.250386 mm by flip at 20 000 rpm; a flip is heard at half the tooth
     # frequency, or an odd multiple of it
     assert found.limits.critical_depth[0] == pytest.approx(3.250386e-3, rel=2e-4)
     assert found.limits.bifurcation[0] == "flip"

@@ -20,7 +20,7 @@ RPM = math.pi / 30.0
 
 
 def tool_of_1999(**changes):
-    """Altintas, Engin and Budak 1999, as in BENCHMARKS.md 4."""
+    """Altintas, Engin and Budak 1999, as in validation 4."""
     case = chatter.load(example("pitch-design").folder / "case.toml")
     return case.patch(changes)
 
@@ -50,7 +50,7 @@ def test_the_rule_leaves_no_regeneration(teeth):
 
 
 def test_limits_of_the_published_cutter():
-    # BENCHMARKS.md 4: exact limits without helix, mm
+    # validation 4: exact limits without helix, mm
     pitch = ["70 deg", "110 deg", "70 deg", "110 deg"]
     case = tool_of_1999(**{"tool.pitch": pitch, "tool.helix": "0 deg"})
     speeds = np.array([3000.0, 4000.0, 5000.0, 6000.0, 8000.0]) * RPM
