@@ -96,20 +96,6 @@ def test_both_halves_agree_on_dry_and_viscous_friction(halves):
         assert min(e[name].lower for e in found) > 0.0
 
 
-def test_a_stribeck_peak_is_not_supported_by_both_halves(halves):
-    """The hump of the start does not come back when braking: with it, the other half is worse."""
-    free = ("bristle_stiffness", "coulomb", "static", "stribeck_velocity", "viscous")
-    half = halves["accelerating"]
-    peaked = AxisModel(LuGre(1e6, 0.0, 50.0, 12.0, 20.0, 0.02), MASS)
-    flat = AxisModel(LuGre(1e8, 0.0, 50.0, 12.0, 12.0, 0.02), MASS)
-    fit = fit_axis([half], peaked,
-                   free, low_pass=LOW_PASS)  # fmt: skip
-    assert "static" in fit.unsupported or "stribeck_velocity" in fit.unsupported
-    plain = fit_axis([half], flat,
-                     ("coulomb", "viscous"), low_pass=LOW_PASS)  # fmt: skip
-    assert errors(fit.model, halves["braking"])[0] > errors(plain.model, halves["braking"])[0]
-
-
 def test_mass_and_dry_friction_cannot_both_be_told_from_one_half(halves):
     known = fit_linear([halves["accelerating"]], ("inertia", "viscous", "coulomb"),
                        low_pass=LOW_PASS, minimum_speed=0.01)  # fmt: skip
