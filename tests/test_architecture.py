@@ -199,8 +199,9 @@ def test_an_edited_leaf_is_compiled_anew(sources):
 
 def test_other_values_and_counts_compile_nothing_new():
     from chatter import Case
-    from chatter.stability.methods.collocation.drivers import multipliers_at
-    from chatter.stability.methods.semi_discretization.method import multipliers
+    from chatter.stability.methods.semi_discretization.arrays import milling_arrays
+    from chatter.stability.methods.semi_discretization.drivers import multipliers_at
+    from chatter.stability.methods.semi_discretization.multipliers import multipliers
     from chatter.stability.model import milling_model
 
     case = Case.from_dict(CASE)
@@ -221,7 +222,7 @@ def test_other_values_and_counts_compile_nothing_new():
         point = (
             np.array([value]) for value in (patched.cut.spindle_speed, patched.cut.axial_depth)
         )
-        value = multipliers(milling_model(patched).arrays, *point, 24)
+        value = multipliers(milling_arrays(milling_model(patched)), *point, 24)
         assert abs(value[0]) > 0.0
     assert len(multipliers_at.signatures) == 1
 
@@ -231,11 +232,13 @@ import json, sys
 import numpy as np
 from chatter import Case
 from chatter.stability.model import milling_model
-from chatter.stability.methods.collocation.drivers import multipliers_at
+from chatter.stability.methods.semi_discretization.arrays import milling_arrays
+from chatter.stability.methods.semi_discretization.drivers import multipliers_at
+from chatter.stability.methods.semi_discretization.step_schemes import FIRST_ORDER
 case = Case.from_dict(json.loads({case!r}))
-arrays = milling_model(case).arrays
+arrays = milling_arrays(milling_model(case))
 point = [np.array([float(v)]) for v in (case.cut.spindle_speed, case.cut.axial_depth)]
-value = multipliers_at(arrays, *point, np.array([16]), 1)[0]
+value = multipliers_at(FIRST_ORDER, arrays, *point, np.array([16]), 1)[0]
 print(json.dumps([value.real, value.imag]))
 """
 

@@ -85,6 +85,11 @@ class Cutter:
         return 0.5 * self.diameter
 
     @property
+    def is_cylindrical(self) -> bool:
+        """Whether the edge lies on a cylinder down to the tip: no corner, no cone."""
+        return self.corner_radius == 0.0 and self.edge_angle >= 0.5 * math.pi - 1e-9
+
+    @property
     def tooth_angles(self) -> NDArray[np.float64]:
         """Angle (N,) of each tooth on the tool, rad; zero for the first."""
         return np.concatenate([[0.0], np.cumsum(self.pitch)[:-1]])

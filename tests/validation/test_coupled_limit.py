@@ -10,7 +10,8 @@ from chatter.engine.machine_cut_loop import run_coupled
 from chatter.engine.machine_loop import advance
 from chatter.simulation.on_machine.setup import set_up_machine, tool_side
 from chatter.simulation.on_machine.simulate import _record
-from chatter.stability.methods.semi_discretization.method import multipliers
+from chatter.stability.methods.semi_discretization.arrays import milling_arrays
+from chatter.stability.methods.semi_discretization.multipliers import multipliers
 from chatter.stability.model import milling_model
 from cutting.chip.tool_point import tool_point
 from dynamics.machine.loop import Loads
@@ -107,7 +108,9 @@ def growth(case):
 def rate_by_multiplier(case, depth):
     """Rate of the dominant multiplier of semi-discretization, 1/s."""
     speed = case.cut.spindle_speed
-    multiplier = multipliers(milling_model(case).arrays, np.array([speed]), np.array([depth]))[0]
+    multiplier = multipliers(
+        milling_arrays(milling_model(case)), np.array([speed]), np.array([depth])
+    )[0]
     return np.log(abs(multiplier)) * speed * case.tool.teeth / (2.0 * np.pi)
 
 

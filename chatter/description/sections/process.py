@@ -5,11 +5,19 @@ from __future__ import annotations
 import itertools
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Field,
+    WithJsonSchema,
+    field_validator,
+    model_validator,
+)
 
 from chatter.description.formatting import shown
 from chatter.description.quantities import PositiveLength, QuantityField, quantity, whole_number
 from chatter.description.section import Section, raise_if_any
+from chatter.description.stability_methods import known_method, with_methods
 from chatter.description.units import rpm
 
 #: most points a side of a diagram, and in all
@@ -223,13 +231,15 @@ class Lobes(Section):
 
     speeds: SpeedRange | None = None
     depths: DepthRange | None = None
-    method: str | None = Field(None, description="stability method; by default it is chosen")
+    method: Annotated[str, AfterValidator(known_method)] | None = Field(
+        None, description="that finds the limits", json_schema_extra=with_methods
+    )
     steps: whole_number(4, 20_000, "steps a tooth period") | None = Field(
         None, description="fixes the steps a tooth period; by default they are chosen"
     )
     tolerance: quantity("number", at_least=1e-6, at_most=0.05) = Field(
         1e-3,
-        description="largest estimated error of the limit depths, relative; the resolution follows",
+        description="largest estimated error of critical depths, relative; the resolution follows",
     )
 
     @model_validator(mode="after")

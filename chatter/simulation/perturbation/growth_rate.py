@@ -19,13 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
-from chatter.detection.bifurcation_type import bifurcation_of
+from chatter.detection.bifurcation_type import bifurcation_of, bifurcation_of_multiplier
 from chatter.detection.chatter_frequency import strongest_line
 from chatter.engine.loop import COLUMNS, Record, run
 from chatter.simulation.perturbation.divergence import LARGE_SWING, divergence
 from chatter.simulation.setup import Setup, delayed, set_up
 from chatter.simulation.spindle import prescribed
-from chatter.stability.floquet_multiplier import bifurcation_kind
 from cutting.chip.tool_point import tool_point
 from cutting.edge_segments.segments import period_angle
 from dynamics.modal.modal_steps import modal_steps
@@ -245,7 +244,7 @@ def _fitted(difference: NDArray[np.float64], period: float) -> Growth:
     if len(difference) == 0:
         return Growth(0j, period, math.nan, "hopf")
     multiplier = _dominant(difference)
-    kind = bifurcation_kind(multiplier)
+    kind = bifurcation_of_multiplier(multiplier)
     return Growth(multiplier, period, _frequency(difference, multiplier, period), kind)
 
 

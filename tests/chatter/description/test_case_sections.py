@@ -7,10 +7,10 @@ import pickle
 import pytest
 
 from chatter.description.case import Case, load, loads
+from chatter.description.case_schema import schema
 from chatter.description.errors import InputError
 from chatter.description.laws import FRICTION_LAWS
 from chatter.description.sections.friction import Friction
-from chatter.stability.case_schema import schema
 from chatter.stability.registry import AUTO, METHODS
 from cutting.material.table import MATERIALS
 from tests.places import ROOT, SHARED

@@ -12,6 +12,7 @@ from chatter import InputError
 from chatter.cli import app
 from chatter.io.shipped_examples import example
 from chatter.stability.methods.collocation import multipliers as collocation
+from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import milling_model
 from chatter.studies.optimisation.steady_cut import SteadyModel
 from tests.chatter.studies.optimisation.cuts import end_mill
@@ -26,7 +27,7 @@ SMALL = {"speeds": NARROW, "depths": {"to": "4 mm", "count": 20}}
 
 
 def stable(case, speed, depth):
-    cut = milling_model(case).cut(depth * 1.01)
+    cut = element_cut(milling_model(case), depth * 1.01)
     return abs(collocation.multipliers(cut, np.array([speed]), np.array([depth]))[0]) < 1.0
 
 

@@ -11,6 +11,7 @@ import chatter
 from chatter import InputError
 from chatter.cli import app
 from chatter.io.shipped_examples import example
+from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import milling_model
 from chatter.studies.optimisation.stable_depths import first_limits
 from chatter.studies.pitch_design.families import alternating, families, linear, regeneration
@@ -55,7 +56,7 @@ def test_limits_of_the_published_cutter():
     case = tool_of_1999(**{"tool.pitch": pitch, "tool.helix": "0 deg"})
     speeds = np.array([3000.0, 4000.0, 5000.0, 6000.0, 8000.0]) * RPM
     depths = np.linspace(0.0, 8e-3, 41)[1:]
-    found = first_limits(milling_model(case).cut(8e-3), speeds, depths)
+    found = first_limits(element_cut(milling_model(case), 8e-3), speeds, depths)
     assert found * 1e3 == pytest.approx([3.9037, 1.7965, 6.1649, 3.0954, 4.9829], rel=1e-3)
 
 

@@ -1,4 +1,4 @@
-"""The grid of a stability diagram in blocks of speeds, here or on a cluster, kept as they end."""
+"""Spectral radius on the grid of a stability diagram, in blocks of speeds on a cluster."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from chatter.description.case import Case
 from chatter.description.progress import Progress, no_progress
 from chatter.engine.parallel import Executor
 from chatter.stability.model import MillingModel, milling_model
-from chatter.stability.registry import GRIDS, radius_by_collocation, resolution
+from chatter.stability.registry import METHODS, fixed_steps, with_radius
 from chatter.studies.model import fingerprint
 from chatter.studies.result_cache import ResultCache
 
-_SPEEDS_A_BLOCK = 4
+_SPEEDS_PER_BLOCK = 4
 
 
 def radius_in_blocks(
@@ -36,7 +36,7 @@ def radius_in_blocks(
     speeds, depths : array of float
         rad/s, m.
     method : str
-        Key of `chatter.stability.registry.METHODS`.
+        Name in `chatter.stability.registry.METHODS`.
     cluster : str or Executor, optional
         As for `chatter.studies.executor.open_executor`.
     folder : path, optional
@@ -50,8 +50,8 @@ def radius_in_blocks(
         If it is interrupted; finished blocks are in the folder.
     """
     blocks = [
-        np.arange(first, min(first + _SPEEDS_A_BLOCK, len(speeds)))
-        for first in range(0, len(speeds), _SPEEDS_A_BLOCK)
+        np.arange(first, min(first + _SPEEDS_PER_BLOCK, len(speeds)))
+        for first in range(0, len(speeds), _SPEEDS_PER_BLOCK)
     ]
     radius_at = partial(_radius_of_speeds, case, depths, method)
     wanted = [speeds[block] for block in blocks]
@@ -71,6 +71,6 @@ def _radius_of_speeds(
 ) -> list[list[float]]:
     """Spectral radius of a block, as JSON knows it."""
     speed, depth = (part.ravel() for part in np.meshgrid(speeds, depths))
-    radius_at = GRIDS.get(method, radius_by_collocation)
-    radius = radius_at(_model_of(case), speed, depth, resolution(case), no_progress)
+    chosen = with_radius(METHODS[method])
+    radius = chosen.radius(_model_of(case), speed, depth, fixed_steps(case), no_progress)
     return radius.reshape(len(depths), len(speeds)).tolist()
