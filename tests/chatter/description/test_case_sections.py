@@ -302,4 +302,4 @@ def test_friction_laws_name_their_keys():
 
 def test_methods_of_the_case_file_are_those_there_are():
     method = schema()["$defs"]["Lobes"]["properties"]["method"]
-    assert set(method["enum"]) == {AUTO, *METHODS}
+    assert set(method["enum"]) == {AUTO, *METHODS.names()}
