@@ -6,7 +6,6 @@ import itertools
 from typing import Annotated, Any, Literal
 
 from pydantic import (
-    AfterValidator,
     BeforeValidator,
     Field,
     WithJsonSchema,
@@ -17,7 +16,6 @@ from pydantic import (
 from chatter.description.formatting import shown
 from chatter.description.quantities import PositiveLength, QuantityField, quantity, whole_number
 from chatter.description.section import Section, raise_if_any
-from chatter.description.stability_methods import known_method, with_methods
 from chatter.description.units import rpm
 
 #: most points a side of a diagram, and in all
@@ -231,9 +229,7 @@ class Lobes(Section):
 
     speeds: SpeedRange | None = None
     depths: DepthRange | None = None
-    method: Annotated[str, AfterValidator(known_method)] | None = Field(
-        None, description="that finds the limits", json_schema_extra=with_methods
-    )
+    method: str | None = Field(None, description="stability method; by default it is chosen")
     steps: whole_number(4, 20_000, "steps a tooth period") | None = Field(
         None, description="fixes the steps a tooth period; by default they are chosen"
     )
