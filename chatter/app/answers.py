@@ -158,7 +158,7 @@ class LiveCase:
         }
         from chatter.simulation.simulate import simulate
 
-        result = simulate(case.patch(wanted), progress)
+        result = simulate(case, wanted, progress)
         summary = result.summary()
         turned = result.spindle_angle / (2.0 * math.pi)
         axis = int(np.argmax(np.ptp(result.displacement, axis=0)))

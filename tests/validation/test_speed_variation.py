@@ -12,8 +12,9 @@ import pytest
 from chatter.description.case import Case
 from chatter.description.progress import no_progress
 from chatter.simulation.perturbation.divergence import divergence
-from chatter.simulation.perturbation.growth_rate import delayed, motion_of
-from chatter.simulation.setup import modes_of, set_up
+from chatter.simulation.perturbation.growth_rate import motion_of
+from chatter.simulation.setup import delayed, set_up
+from chatter.simulation.structure_in_time import modes_of
 from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.methods.collocation.multipliers import converged_multiplier, multipliers
 from chatter.stability.model import milling_model
@@ -21,7 +22,7 @@ from chatter.stability.registry import COLLOCATION
 from cutting.edge_segments.segments import period_angle
 from tests.validation.reference.turning import delay_of_a_spindle, spectral_radius
 
-# --- BENCHMARKS.md 1.4: turning -------------------------------------------------------------------
+# --- validation 1.4: turning -------------------------------------------------------------------
 
 #: x'' + z x' + (1 + kw) x = kw x(t - tau); ten delays are a period of the variation
 CUT, DAMPING, DELAYS = 0.2, 0.1, 10

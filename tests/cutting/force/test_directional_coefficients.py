@@ -13,7 +13,8 @@ from cutting.force.directional_coefficients import (
     mean_coupling,
     mean_over_turn,
 )
-from cutting.force.force_law import ExponentialLaw, LinearLaw
+from cutting.force.exponential import ExponentialLaw
+from cutting.force.linear import LinearLaw
 from cutting.process_damping.viscous import ViscousProcessDamping
 
 KT, KR, KA = 600e6, 200e6, 80e6
@@ -119,7 +120,7 @@ def test_small_and_tiny_lags_meet():
 
 
 def test_full_turn_of_helix_has_constant_mean():
-    # lag = k tooth pitches: every rotation sees the mean matrix (BENCHMARKS.md 1.7)
+    # lag = k tooth pitches: every rotation sees the mean matrix (validation 1.7)
     table = table_of("up", 0.05)
     teeth = 2
     lag = 2 * math.pi / teeth
