@@ -33,7 +33,7 @@ from cutting.force.directional_coefficients import (
     mean_over_turn,
 )
 from cutting.force.law import ForceLaw
-from cutting.process_damping.law import ProcessDampingLaw
+from cutting.process_damping.flank import ProcessDampingLaw
 from cutting.process_damping.viscous import ViscousProcessDamping
 from cutting.tool.cutter import Cutter
 

@@ -6,14 +6,36 @@ three calls: the force at a place of the edge, the surface left by a step, and t
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
+import numpy as np
 from numba.extending import register_jitable
+from numpy.typing import NDArray
 
 from cutting.compiled import INLINED, by_table
-from cutting.process_damping.law import FlankLeaves
+from cutting.process_damping.leaves import FlankLeaves
 from cutting.process_damping.ploughing import PLOUGHING
-from cutting.process_damping.viscous import VISCOUS, no_clear, no_store
+from cutting.process_damping.viscous import VISCOUS, ViscousProcessDamping, no_clear, no_store
+
+
+class ProcessDampingLaw(Protocol):
+    """Parameters of the force on the flank, SI."""
+
+    @property
+    def small_vibration(self) -> ViscousProcessDamping:
+        """Dashpot that the flank is for small vibration, for the linear analysis."""
+
+    def table(self, radius: NDArray[np.float64], teeth: int, step_angle: float) -> NamedTuple:
+        """Table for the kernels.
+
+        Parameters
+        ----------
+        radius : (L,) array of float
+            Of the edge slices, m.
+        teeth : int
+        step_angle : float
+            Rotation in a time step, rad.
+        """
 
 
 class BareFlank(NamedTuple):

@@ -17,7 +17,7 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from cutting.compiled import INLINED
-from cutting.process_damping.law import FlankLeaves
+from cutting.process_damping.leaves import FlankLeaves
 from cutting.process_damping.viscous import ViscousProcessDamping
 
 #: material parts at this angle before the lowest point of a rounded edge (Basuray et al. 1977)

@@ -15,7 +15,7 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from cutting.compiled import INLINED
-from cutting.process_damping.law import FlankLeaves
+from cutting.process_damping.leaves import FlankLeaves
 
 
 @dataclass(frozen=True)
