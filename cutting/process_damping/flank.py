@@ -1,7 +1,7 @@
 """Forces on the flank behind the edge: none, viscous process damping, or ploughing.
 
 A law is added by its module, which ends in `FlankLeaves`, and by its line here. Every table answers
-three calls: the force at a place of the edge, the surface left by a step, and the end of contact.
+three calls: the force on a segment of the edge, the surface left by a step, the end of contact.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class BareFlank(NamedTuple):
 
 
 @register_jitable(**INLINED)
-def bare_force(flank, tooth, piece, place, rate, speed):  # noqa: ARG001
+def bare_force(flank, tooth, segment, position, rate, speed):  # noqa: ARG001
     """No force."""
     return 0.0, 0.0
 
