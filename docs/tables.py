@@ -34,6 +34,13 @@ def _laws(laws: Iterable) -> str:
     return _table(["law", "what it is", "keys"], rows)
 
 
+def force_laws() -> str:
+    """Force laws of `[material]`."""
+    from chatter.description.laws import FORCE_LAWS
+
+    return _laws(FORCE_LAWS)
+
+
 def friction_laws() -> str:
     """Friction laws of `[friction.NAME]`."""
     from chatter.description.laws import FRICTION_LAWS
@@ -117,6 +124,7 @@ def sections() -> str:
 TABLES: dict[str, Callable[[], str]] = {
     "commands": commands,
     "sections": sections,
+    "force laws": force_laws,
     "friction laws": friction_laws,
     "methods": methods,
     "effects": effects,

@@ -10,7 +10,7 @@ from typing import Any
 from chatter.compile.cutter import force_law
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.description.formatting import shown
+from chatter.description.formatting import formatted
 from chatter.description.units import rpm, unit_factor
 
 #: modes with sliders of their own
@@ -245,7 +245,7 @@ def checked_values(given: Any, parameters: Mapping[str, Parameter]) -> dict[str,
     for path, value in given.items():
         parameter = parameters.get(path)
         if parameter is None:
-            problems.append(f"{shown(path)} is no slider of this page")
+            problems.append(f"{formatted(path)} is no slider of this page")
             continue
         problem = _problem(parameter, value)
         if problem:
@@ -260,7 +260,7 @@ def checked_values(given: Any, parameters: Mapping[str, Parameter]) -> dict[str,
 def _problem(parameter: Parameter, value: Any) -> str:
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
     if not number or not abs(value) < 1e300:
-        return f"{parameter.path}: {shown(value)} is no number"
+        return f"{parameter.path}: {formatted(value)} is no number"
     slack = 1e-6 * max(abs(parameter.low), abs(parameter.high))
     if not parameter.low - slack <= value <= parameter.high + slack:
         unit = f" {parameter.unit}" if parameter.unit else ""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.description.formatting import shown
+from chatter.description.formatting import formatted
 from chatter.description.registry import Registry
 from chatter.stability.method import StabilityMethod
 from chatter.stability.methods.collocation.method import COLLOCATION
@@ -49,7 +49,7 @@ def chosen_method(case: Case, name: str | None = None) -> StabilityMethod:
         name = "collocation" if case.contact is None else "matrix-free"
         name = name if fixed_steps(case) is None else "semi-discretization"
     if name not in METHODS:
-        raise InputError(f"{METHODS.unknown(name)}; {shown(AUTO)} chooses")
+        raise InputError(f"{METHODS.unknown(name)}; {formatted(AUTO)} chooses")
     return METHODS[name]
 
 
