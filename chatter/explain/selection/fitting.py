@@ -29,8 +29,8 @@ _SMALLEST_GAIN, _SMALLEST_STEP = 1e-7, 1e-7
 _FIRST_REGION = 100.0
 #: share of what the Jacobian promised below which a step asks for new differences
 _LEAST_OF_PROMISE = 0.5
-#: bounds as active sets: many effects start at a bound, zero
-_METHOD = "dogbox"
+#: steps tried at the most, without those of finite differences
+_MOST_STEPS = 30
 #: groups from which a scatter between them can be told
 _LEAST_GROUPS = 4
 
@@ -184,7 +184,6 @@ def fit(
     parameters: Sequence[Parameter],
     residuals: Residuals,
     start: Vector,
-    most: int,
     jacobian: Matrix | None = None,
 ) -> Fit:
     """Fit parameters to residuals that are scaled to a standard deviation of one.
@@ -196,20 +195,20 @@ def fit(
         (p,) values in SI -> (n,) residuals.
     start : (p,) array of float
         SI.
-    most : int
-        Steps tried at the most, without those of finite differences.
     jacobian : (n, p) array of float, optional
         Near the start, per size of a parameter, where it is known.
     """
     problem = _Scaled(parameters, residuals, jacobian)
     scaled = np.clip(problem.scaled(start), problem.lower, problem.upper)
+    most = _MOST_STEPS
     while parameters and most > 0:
         found = scipy.optimize.least_squares(
             problem.rows,
             scaled,
             problem.jacobian,
             bounds=(problem.lower, problem.upper),
-            method=_METHOD,
+            # bounds as active sets: many effects start at a bound, zero
+            method="dogbox",
             ftol=_SMALLEST_GAIN,
             xtol=_SMALLEST_STEP,
             gtol=None,

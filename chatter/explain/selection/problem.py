@@ -115,7 +115,6 @@ class Problem:
         self,
         runs: Sequence[Run],
         start: Mapping[str, float],
-        most: int,
         jacobian: NDArray[np.float64] | None = None,
     ) -> Fit:
         """Fit everything to runs.
@@ -125,8 +124,6 @@ class Problem:
         runs : sequence of Run
         start : mapping of str to float
             Values to start from, by name; declared ones where they are not named.
-        most : int
-            Steps tried at the most.
         jacobian : (n, p) array of float, optional
             Near the start, where it is known.
         """
@@ -137,4 +134,4 @@ class Problem:
         def residuals(values: NDArray[np.float64]) -> NDArray[np.float64]:
             return self.residuals(dict(zip(names, values, strict=True)), runs)
 
-        return fit(parameters, residuals, begin, most, jacobian)
+        return fit(parameters, residuals, begin, jacobian)
