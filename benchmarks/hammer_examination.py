@@ -16,7 +16,7 @@ from collections import Counter, defaultdict
 
 import numpy as np
 
-from dynamics.frf.hammer import examine_records
+from dynamics.frf.hammer.examine import examine_records
 from tests.dynamics.frf.hammer.hammer_records import random_set
 
 CONDITIONS = {

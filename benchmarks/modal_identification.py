@@ -14,7 +14,7 @@ import os
 import sys
 import time
 
-from dynamics.identification import identify_modes
+from dynamics.identification.fit import identify_modes
 from tests.dynamics.identification import made_up_frfs as made_up
 
 

@@ -1,25 +1,21 @@
-"""The machine: structure, modes, frequency responses; knows nothing of cutting.
+"""The machine: structure, drives, friction, control, frequency responses; knows nothing of cutting.
 
 ============== =====================================================================
-module         responsibility
+package        responsibility
 ============== =====================================================================
-frf            container of frequency response functions, conversion of quantities
-formats        UFF-58, CSV and CutPro files into the container
-hammer         hammer time records: reading, examination, H1/H2 with coherence
-modal          real modes at the tool point and their receptance
-modal_steps    exact discrete step of a modal model, energy
-identification modal parameters from measured FRFs
-structure      mass, damping and stiffness with named points: where all mechanics ends
-bodies         rigid bodies, connectors and points into a structure
-beam           shafts of Timoshenko elements (`beam_element`), discs, bearings
-imported       M, C, K from files (`matrix_file`), points tied to surfaces (`constraint`)
-reduction      modal truncation with residual compliance, state space
-craig_bampton  super-elements, joined at points
+structure      parts assembled to mass, damping and stiffness with named points
+beam           shafts of Timoshenko elements, discs, bearings
+reduction      modal truncation with residual compliance, Craig-Bampton
 receptance     coupling and decoupling of tool, holder and spindle receptances
-mode_tracking  modes followed and interpolated between axis positions
-free_motion    parts that nothing holds
-friction       LuGre, tanh hysteresis, Coulomb-Stribeck; implicit steps
-control        sampled cascade: position, velocity, current; filters, dead times
+modal          modal model at named points, exact discrete step, mode tracking
+frf            container of frequency response functions; excitation; hammer tests
+identification modal parameters from measured FRFs
+friction       friction laws, their implicit solution, their identification
+drive          ball screws, belts, racks, linear motors, rotary drives
+control        sampled cascade of position, velocity and current; filters, dead times
 trajectory     jerk-limited moves, paths with fillets, set points, contour error
+machine        all of it together, stepped in time or linearised
 ============== =====================================================================
+
+`least_squares` is the nonlinear least squares of modal fits, `compiled` the presets of kernels.
 """

@@ -42,9 +42,9 @@ class LiveCase:
 
     def __init__(self, case: Case, method: str | None) -> None:
         self.method, self._limits_of = chosen_method(case, method)
-        if self.method == "time":
+        if self.method == "time-domain":
             raise InputError(
-                'method "time" cannot follow a slider; with --live, give another --method'
+                'method "time-domain" cannot follow a slider; with --live, give another --method'
             )
         self.case = case
         model = milling_model(case)

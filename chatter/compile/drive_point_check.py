@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from dynamics.frf.container import Frf
-from dynamics.identification import IdentifiedMode, ModalFit
+from dynamics.identification.result import IdentifiedMode, ModalFit
 from dynamics.modal.modes import Mode
 
 NOT_PASSIVE = (

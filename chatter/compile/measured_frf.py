@@ -15,8 +15,9 @@ from chatter.description.errors import InputError
 from chatter.io.formats.registry import read_frfs
 from chatter.stability.methods.zeroth_order.method import frequency_lines
 from dynamics.frf.container import Frf, MeasurementError, Point, on_common_lines
-from dynamics.identification import ModalFit, identify_modes
+from dynamics.identification.fit import identify_modes
 from dynamics.identification.prepare import prepare
+from dynamics.identification.result import ModalFit
 from dynamics.modal.modes import Mode, Side, receptance_matrix
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from chatter.description.errors import InputError
 from chatter.description.units import rpm
 from chatter.stability.methods.zeroth_order.method import frequency_lines
 from dynamics.frf.container import MeasurementError
-from dynamics.identification import ModalFit
+from dynamics.identification.result import ModalFit
 from dynamics.modal.modes import Mode, receptance_matrix
 
 if TYPE_CHECKING:

@@ -91,7 +91,7 @@ _METHOD_LABEL = {
     "matrix-free": "limit, matrix-free",
     "multi-frequency": "limit, multi-frequency",
     "zero-order": "limit, zeroth-order",
-    "time": "limit, time domain",
+    "time-domain": "limit, time domain",
 }
 
 

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from chatter.plots import style
 from dynamics.frf.container import Frf
-from dynamics.identification import FrfModel, ModalFit
+from dynamics.identification.result import FrfModel, ModalFit
 
 #: FRFs side by side in one picture
 _MOST_COLUMNS = 4

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import scipy.linalg
 import scipy.signal
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
+from dynamics.matrix_exponential import exact_step
 
 _FORCES = slice(0, 3)
 
@@ -58,15 +58,12 @@ def through_resonance(
 
     Notes
     -----
-    Exact for a force that varies linearly from row to row (Van Loan 1978).
+    Exact for a force that varies linearly from row to row.
     """
-    turn = 2.0 * math.pi * frequency * step
-    block = np.zeros((4, 4))
-    block[0, 1] = turn
-    block[1, :3] = [-turn, -2.0 * damping * turn, turn]
-    block[2, 3] = 1.0
-    over = scipy.linalg.expm(block)
-    transition, held, ramp = over[:2, :2], over[:2, 2], over[:2, 3]
+    omega = 2.0 * math.pi * frequency
+    matrix = omega * np.array([[0.0, 1.0], [-1.0, -2.0 * damping]])
+    transition, held, ramp = exact_step(matrix, np.array([[0.0], [omega]]), step)
+    held, ramp = held[:, 0], ramp[:, 0]
     # z transfer from the force at the beginning and at the end of a step
     trace, determinant = np.trace(transition), np.linalg.det(transition)
     ahead, behind = ramp, held - ramp

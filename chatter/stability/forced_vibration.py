@@ -120,7 +120,7 @@ def notes_on_steady_cut(model: MillingModel, method: str) -> tuple[str, ...]:
         Key of `chatter.stability.registry.METHODS`.
     """
     speed, depth = model.case.cut.spindle_speed, model.case.cut.axial_depth
-    found = None if method == "time" else forced_vibration(model, speed, depth)
+    found = None if method == "time-domain" else forced_vibration(model, speed, depth)
     if found is None:
         return ()
     if found.missed < _WORTH_TELLING and found.chip_change < _LARGE_CHANGE * found.chip:
@@ -130,7 +130,7 @@ def notes_on_steady_cut(model: MillingModel, method: str) -> tuple[str, ...]:
         f"the tool vibrate by {found.amplitude * 1e6:.3g} um, which changes the chip of "
         f"{found.chip * 1e6:.3g} um by up to {found.chip_change * 1e6:.3g} um: teeth miss "
         f"{found.missed:.0%} of their arc or meet an older surface, which linear methods leave "
-        "out; the limit in the time domain may differ (--method time)",
+        "out; the limit in the time domain may differ (--method time-domain)",
     )
 
 

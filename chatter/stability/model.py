@@ -222,7 +222,7 @@ class MillingModel:
         contact, cut = self.case.contact, self.cut(deepest, waves=fineness)
         if contact is None:
             return stepped_cut(cut)
-        return stepped_cut(cut, (contact.stiffness, contact.damping, contact.full_at))
+        return stepped_cut(cut, (contact.stiffness, contact.damping, contact.full_engagement_share))
 
     @cached_property
     def receptance(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:

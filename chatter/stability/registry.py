@@ -175,7 +175,7 @@ METHODS: dict[str, LimitMethod] = {
     "matrix-free": by_matrix_free,
     "multi-frequency": by_multi_frequency,
     "zero-order": by_zero_order,
-    "time": by_time,
+    "time-domain": by_time,
 }
 #: chooses among them
 AUTO = "auto"
@@ -240,7 +240,7 @@ def radius_by_time(
 
 #: methods that give the spectral radius on a grid; the others leave it to collocation
 GRIDS = {
-    "time": radius_by_time,
+    "time-domain": radius_by_time,
     "semi-discretization": radius_by_semi_discretization,
     "matrix-free": radius_by_matrix_free,
 }

@@ -15,8 +15,9 @@ from chatter.io.hammer_records import read_hammer_folder
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, write_results
 from dynamics.frf.container import Frf, MeasurementError
-from dynamics.frf.hammer import HammerTest, hammer_test
-from dynamics.identification import IdentifiedMode, ModalFit, identify_modes
+from dynamics.frf.hammer.averaging import HammerTest, hammer_test
+from dynamics.identification.fit import identify_modes
+from dynamics.identification.result import IdentifiedMode, ModalFit
 from dynamics.modal.modes import Side
 
 if TYPE_CHECKING:

@@ -1,1 +1,10 @@
-"""Dexel."""
+"""Workpiece of lines of material (dexels) that the edges carve.
+
+======= ============================================================================
+module  responsibility
+======= ============================================================================
+stock   layout in memory, shaping before the cut, measurement after it
+window  the part of the workpiece near the tool, moving along with it
+carving kernels: material that an edge takes away, chip thickness that it meets
+======= ============================================================================
+"""

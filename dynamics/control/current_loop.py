@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import ArrayLike, NDArray
 
 from dynamics.control.sampling import require_limit, require_not_negative, require_positive
+from dynamics.matrix_exponential import exact_step
 
 
 class CurrentPlant(NamedTuple):
@@ -30,10 +30,8 @@ class CurrentPlant(NamedTuple):
 
     def sampled(self, step: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return transition (2, 2) and entry (2,) over a step, s, of held input."""
-        block = np.zeros((3, 3))
-        block[:2, :2], block[:2, 2] = self.matrix, self.entry
-        over = scipy.linalg.expm(block * step)
-        return over[:2, :2], over[:2, 2]
+        over = exact_step(self.matrix, self.entry[:, None], step)
+        return over.transition, over.held[:, 0]
 
     def response(self, frequencies: ArrayLike, step: float) -> NDArray[np.complex128]:
         """Return both states per input in the z-domain of a step, s: (..., 2); Hz."""

@@ -20,30 +20,3 @@ Each drive is a specification whose `parts(axis)` are joined with the machine by
 Each axis keeps one free motion, which its controller or brake holds. `dynamics.control` has the
 controllers and how torque follows current.
 """
-
-from dynamics.drive.ball_screw import BallScrew
-from dynamics.drive.belt import Belt
-from dynamics.drive.linear_motor import LinearMotor
-from dynamics.drive.parts import DrivenAxis, DriveParts, Motor
-from dynamics.drive.rack_and_pinion import RackAndPinion, RackMotor
-from dynamics.drive.rotary import DirectRotary, SpindleRotor
-from dynamics.drive.screw_on_beam import ScrewOnBeam
-from dynamics.drive.screw_shaft import ScrewShaft
-
-Drive = BallScrew | ScrewOnBeam | RackAndPinion | LinearMotor | DirectRotary | SpindleRotor
-
-__all__ = [
-    "BallScrew",
-    "Belt",
-    "DirectRotary",
-    "Drive",
-    "DriveParts",
-    "DrivenAxis",
-    "LinearMotor",
-    "Motor",
-    "RackAndPinion",
-    "RackMotor",
-    "ScrewOnBeam",
-    "ScrewShaft",
-    "SpindleRotor",
-]

@@ -111,16 +111,6 @@ class ScrewShaft:
         )
         return (first, second) if self.support == "fixed-fixed" else (first,)
 
-    def bearing_station(self, where: str, position: float) -> float:
-        """Place of the fixed bearing along the axis from the nut, m.
-
-        Raises
-        ------
-        StructureError
-            If the nut would lie off the shaft.
-        """
-        return -self._nut(where, position)
-
     def axial_stiffness(self, where: str, position: float, bearings: tuple[float, float]) -> float:
         """Stiffness of bearings and shaft at the nut, without the nut's own, N/m."""
         return sum(one.stiffness for one in self.supports(where, position, bearings))

@@ -8,26 +8,10 @@
 | stabilisation | diagram and poles that stay put | |
 | residues | residues and residual terms of known poles | Heylen, Lammens and Sas 1998 |
 | refinement | maximum-likelihood poles by variable projection | Golub and Pereyra 1973 |
-| judgement, selection | number of modes | Schwarz 1978 |
+| mode_quality, selection | number of modes | Schwarz 1978 |
 | residual_terms | which residual terms the data support | Schwarz 1978 |
-| marquardt | nonlinear least squares on normal equations | Marquardt 1963 |
 | tall | products and factors of tall matrices on one thread | Demmel et al. 2012 |
 | prepare | sets with common poles, common lines | |
 | real_modes, tool_point | real modes, mass and direction at the tool point | |
 | fit, result, report | the call, its result, uncertainty and warnings | |
 """
-
-from dynamics.identification.band import Band
-from dynamics.identification.fit import identify_modes
-from dynamics.identification.result import FrfModel, IdentifiedMode, ModalFit, SynthesisError
-from dynamics.identification.stabilisation import StabilisationDiagram
-
-__all__ = [
-    "Band",
-    "FrfModel",
-    "IdentifiedMode",
-    "ModalFit",
-    "StabilisationDiagram",
-    "SynthesisError",
-    "identify_modes",
-]

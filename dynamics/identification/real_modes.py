@@ -8,21 +8,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.identification.marquardt import levenberg_marquardt
 from dynamics.identification.refinement import (
     ModalModel,
     bounded_poles,
-    limited_pole_step,
+    pole_reach,
     solve_linear,
 )
 from dynamics.identification.residues import (
-    QUADRATURE,
     Records,
     as_real,
     mode_shapes_in_frequency,
     residual_columns,
 )
 from dynamics.identification.tall import gram, product
+from dynamics.least_squares import least_squares
 
 
 @dataclass(frozen=True)
@@ -84,16 +83,7 @@ class RealModel:
 
     def synthesis(self, tool: ToolPointRecords) -> NDArray[np.complex128]:
         """Fitted values with delay and residual terms, (n, k)."""
-        columns = [
-            self._of_one(tool, k, self.delay or 0.0, self.terms) for k in range(len(tool.pairs))
-        ]
-        return np.stack(columns, axis=1)
-
-    def synthesis_of_modes(self, tool: ToolPointRecords) -> NDArray[np.complex128]:
-        """What modes, mass line and residual compliance give without delay or quadrature."""
-        terms = tuple(p for p in self.terms if p != QUADRATURE)
-        columns = [self._of_one(tool, k, 0.0, terms) for k in range(len(tool.pairs))]
-        return np.stack(columns, axis=1)
+        return np.stack([self._of_one(tool, k) for k in range(len(tool.pairs))], axis=1)
 
     def residues(self, pairs: Sequence[tuple[int, int] | None]) -> NDArray[np.float64]:
         """Real residues of all modes in all FRFs, 1/kg, (m, k)."""
@@ -105,20 +95,17 @@ class RealModel:
                 columns.append(self.vectors[:, pair[0]] * self.vectors[:, pair[1]])
         return np.stack(columns, axis=1)
 
-    def _of_one(
-        self, tool: ToolPointRecords, k: int, delay: float, terms: tuple[int, ...]
-    ) -> NDArray[np.complex128]:
+    def _of_one(self, tool: ToolPointRecords, k: int) -> NDArray[np.complex128]:
         records = tool.records
         s = records.laplace
         shapes = mode_shapes_in_frequency(
             s, self.natural_frequency, self.damping, records.derivative
         )
         values = np.sum(shapes.unit * self.residues(tool.pairs)[:, k], axis=1)
-        values = values * np.exp(-s * delay)
+        values = values * np.exp(-s * (self.delay or 0.0))
         offset = self.free[k].size - len(self.terms)
         for i, power in enumerate(self.terms):
-            if power in terms:
-                values = values + self.free[k][offset + i] * s ** (records.derivative + power)
+            values = values + self.free[k][offset + i] * s ** (records.derivative + power)
         return values
 
 
@@ -218,14 +205,12 @@ def refine_real_modes(
     def evaluate(parameters: NDArray[np.float64]) -> RealModel:
         return _evaluate(tool, parameters, modes, axes, terms)
 
-    def limit(parameters: NDArray[np.float64], step: NDArray[np.float64]) -> NDArray[np.float64]:
-        return limited_pole_step(parameters, step, modes)
-
     lag = [] if delay is None else [delay / DELAY_UNIT]
     start = np.concatenate(
         [np.log(natural_frequency), np.log(damping), vectors.ravel(), np.array(lag)]
     )
-    return levenberg_marquardt(evaluate, start, limit)[1]
+    others = np.maximum(np.abs(start[2 * modes :]), 1e-3)
+    return least_squares(evaluate, start, np.concatenate([pole_reach(damping), others]))
 
 
 def _evaluate(

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.identification.marquardt import PRECISE, levenberg_marquardt
 from dynamics.identification.residues import (
     Records,
     as_real,
@@ -15,6 +14,7 @@ from dynamics.identification.residues import (
     mode_shapes_in_frequency,
 )
 from dynamics.identification.tall import factorise, gram, product
+from dynamics.least_squares import PRECISE, least_squares
 
 #: damping ratios outside these bounds are not followed
 DAMPING_BOUNDS = (1e-6, 0.9)
@@ -127,7 +127,7 @@ def refine(records: Records, start: ModalModel, least_gain: float = PRECISE) -> 
 
     The residues are linear and are eliminated at every step (variable projection, Golub and
     Pereyra 1973, with the Jacobian of Kaufman 1975); what is left is a small problem in
-    [ln w, ln zeta], solved by the Levenberg-Marquardt method.
+    [ln w, ln zeta].
 
     Parameters
     ----------
@@ -147,11 +147,8 @@ def refine(records: Records, start: ModalModel, least_gain: float = PRECISE) -> 
     def evaluate(parameters: NDArray[np.float64]) -> ModalModel:
         return fit_residues(records, *bounded_poles(records, parameters, modes), start.terms)
 
-    def limit(parameters: NDArray[np.float64], step: NDArray[np.float64]) -> NDArray[np.float64]:
-        return limited_pole_step(parameters, step, modes)
-
     poles = np.concatenate([np.log(start.natural_frequency), np.log(start.damping)])
-    return levenberg_marquardt(evaluate, poles, limit, least_gain)[1]
+    return least_squares(evaluate, poles, pole_reach(start.damping), least_gain)
 
 
 def pole_range(records: Records) -> tuple[float, float]:
@@ -181,26 +178,9 @@ def bounded_poles(
     return natural_frequency, damping
 
 
-def limited_pole_step(
-    parameters: NDArray[np.float64], step: NDArray[np.float64], modes: int
-) -> NDArray[np.float64]:
-    """Cut a step so that no pole leaves its half-power band or halves its damping at once.
-
-    Parameters
-    ----------
-    parameters, step : (p,) array of float
-        ln w of all modes, ln zeta of all modes, then others.
-    modes : int
-
-    Returns
-    -------
-    (p,) array of float
-    """
-    step = step.copy()
-    reach = np.maximum(np.exp(parameters[modes : 2 * modes]), 1e-5)
-    step[:modes] = np.clip(step[:modes], -reach, reach)
-    step[modes : 2 * modes] = np.clip(step[modes : 2 * modes], -0.7, 0.7)
-    return step
+def pole_reach(damping: NDArray[np.float64]) -> NDArray[np.float64]:
+    """First steps of [ln w, ln zeta], (2m,): within a half-power band, to half the damping."""
+    return np.concatenate([np.maximum(damping, 1e-5), np.full(damping.size, 0.7)])
 
 
 def solve_linear(

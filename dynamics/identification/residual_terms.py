@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.identification.marquardt import ROUGH
 from dynamics.identification.mode_quality import LEAST_MISFIT
 from dynamics.identification.refinement import ModalModel, fit_residues, refine
 from dynamics.identification.residues import CURVATURE_TERMS, Records
+from dynamics.least_squares import ROUGH
 
 
 def add_curvature(records: Records, model: ModalModel) -> ModalModel:

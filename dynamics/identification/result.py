@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from dynamics.frf.container import DERIVATIVE_ORDER, Frf
 from dynamics.identification.band import Band
-from dynamics.identification.residues import COMPLIANCE, MASS, QUADRATURE
+from dynamics.identification.residues import COMPLIANCE, QUADRATURE
 from dynamics.identification.stabilisation import StabilisationDiagram
-from dynamics.modal.modes import Mode, Side
+from dynamics.modal.modes import Mode
 
 #: noise over peak above which an FRF, such as a cross term of nothing, says little
 MOSTLY_NOISE = 0.1
@@ -114,11 +114,6 @@ class FrfModel:
     residual: tuple[tuple[int, float], ...]
 
     @property
-    def residual_mass(self) -> float:
-        """Coefficient of 1/s^2 in receptance, 1/kg."""
-        return dict(self.residual).get(MASS, 0.0)
-
-    @property
     def residual_compliance(self) -> float:
         """Constant in receptance, m/N."""
         return dict(self.residual).get(COMPLIANCE, 0.0)
@@ -204,37 +199,6 @@ class ModalFit:
             One column an FRF.
         """
         return np.stack([model.values(frequency) for model in self.models], axis=1)
-
-    def modes_by_magnitude(
-        self,
-        index: int,
-        direction: tuple[float, float, float] = (1.0, 0.0, 0.0),
-        side: Side = "tool",
-    ) -> tuple[Mode, ...]:
-        """Modes with the magnitude of the residues of one FRF for that of a drive point.
-
-        Right only where force and response points move alike but for the sign, as the two ends
-        of a symmetric beam do; a stand-in where no drive point was measured.
-
-        Parameters
-        ----------
-        index : int
-            Position of the FRF in `frfs`.
-        direction : tuple of float
-            Unit vector of the motion.
-        side : str
-            ``"tool"`` or ``"workpiece"``.
-
-        Returns
-        -------
-        tuple of Mode
-            Those that the FRF has a part of.
-        """
-        return tuple(
-            Mode(m.frequency, m.damping, 1.0 / abs(m.residues[index].real), direction, side)
-            for m in self.identified
-            if np.isfinite(m.residues[index]) and m.residues[index].real != 0.0
-        )
 
     @property
     def worst_error(self) -> float:

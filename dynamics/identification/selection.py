@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
-from dynamics.identification.marquardt import ROUGH
 from dynamics.identification.mode_quality import inside, judge, without_mode
 from dynamics.identification.refinement import ModalModel, fit_residues, pole_range, refine
 from dynamics.identification.residues import Records
 from dynamics.identification.stabilisation import HIGHEST_DAMPING
+from dynamics.least_squares import ROUGH
 
 #: gain from which a mode that stands alone needs no second look
 CLEAR_GAIN = 10.0

@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from dynamics.control import DriveController
+from dynamics.control.cascade import DriveController
 from dynamics.drive.parts import DrivenAxis, DriveParts, Motor
 from dynamics.friction.laws import FrictionLaw
 from dynamics.reduction.modal_truncation import undamped_modes, with_static_shapes

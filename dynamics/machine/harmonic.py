@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
 
-from dynamics.control import controller_response
+from dynamics.control.response import controller_response
 from dynamics.control.sampling import zero_order_hold_response
 from dynamics.friction.laws import FrictionLaw
 from dynamics.machine.description import Friction, Machine
@@ -21,7 +21,7 @@ Linearised = Callable[[FrictionLaw, NDArray[np.float64]], NDArray[np.complex128]
 
 
 def at_rest(law: FrictionLaw, frequency: NDArray[np.float64]) -> NDArray[np.complex128]:
-    """Friction under vanishing motion: its presliding stiffness."""
+    """Friction under vanishing motion: its presliding stiffness; a dry one holds."""
     return np.asarray(law.stiffness_at_rest(frequency), dtype=np.complex128)
 
 

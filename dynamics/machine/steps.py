@@ -9,12 +9,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import scipy.linalg
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from dynamics.compiled import INLINED
 from dynamics.machine.blocks import blocks
+from dynamics.matrix_exponential import exact_step
 from dynamics.structure.linear_structure import LinearStructure
 
 
@@ -104,15 +104,9 @@ def _over_step(
     starts += [(start, 2) for start in range(dense, size, 2)]
     for start, width in starts:
         part = slice(start, start + width)
-        # exp of [A, I, 0; 0, 0, I; 0, 0, 0] holds exp(A), phi_1 and phi_2 (Van Loan 1978,
-        # IEEE Trans. Autom. Control 23:395)
-        block = np.zeros((3 * width, 3 * width))
-        block[:width, :width] = rate[part, part] * step
-        block[:width, width : 2 * width] = np.eye(width) * step
-        block[width : 2 * width, 2 * width :] = np.eye(width)
-        over = scipy.linalg.expm(block)
-        for result, column in zip(results, range(3), strict=True):
-            result[part, part] = over[:width, column * width : (column + 1) * width]
+        over = exact_step(rate[part, part], np.eye(width), step)
+        for result, block in zip(results, over, strict=True):
+            result[part, part] = block
     return results
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.control import control_table
+from dynamics.control.drive_table import control_table
 from dynamics.friction.laws import friction_groups
 from dynamics.machine.description import Machine
 from dynamics.machine.groups import ConstantForces, ControlledDrives

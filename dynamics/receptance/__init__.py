@@ -1,1 +1,1 @@
-"""Receptance."""
+"""Receptances of components, coupled and taken apart: RCSA (Schmitz and Duncan 2005)."""

@@ -23,8 +23,10 @@ from chatter.simulation.virtual_tests.frf import FrfResult, linearised_frf, peak
 from chatter.simulation.virtual_tests.move import MovePlan, MoveResult, move_axes
 from dynamics.frf.container import Frf
 from dynamics.structure.assembly import assemble
-from dynamics.trajectory import JerkLimitedMove, Motion, square
+from dynamics.trajectory.jerk_limited import JerkLimitedMove
+from dynamics.trajectory.motion import Motion
 from dynamics.trajectory.path import Path as PlanePath
+from dynamics.trajectory.path import square
 
 HERE = Path(__file__).parent
 #: the head at the left extreme, m; how far it goes is not published

@@ -27,7 +27,9 @@ from chatter.simulation.virtual_tests.loop_response import (
     loop_response,
 )
 from dynamics.frf.container import Frf
-from dynamics.friction.identification import DriveRecord, LinearFriction, LowPass, fit_linear
+from dynamics.friction.identification.filtering import LowPass
+from dynamics.friction.identification.linear_fit import LinearFriction, fit_linear
+from dynamics.friction.identification.record import DriveRecord
 from dynamics.machine.harmonic import receptance
 
 HERE = Path(__file__).parent

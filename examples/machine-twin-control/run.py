@@ -21,7 +21,7 @@ from chatter.report.published_against_obtained import Finding, write_findings
 from chatter.simulation.virtual_tests.frf import FrfCurve, FrfResult, peaks
 from chatter.simulation.virtual_tests.move import MoveResult
 from chatter.simulation.virtual_tests.run import RunInputs, run_machine
-from dynamics.trajectory import SetPoints, set_points
+from dynamics.trajectory.set_points import SetPoints, set_points
 
 HERE = Path(__file__).parent
 GRAVITY = 9.81  # m/s^2 per g, the unit of the published FRFs

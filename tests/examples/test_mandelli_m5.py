@@ -16,7 +16,9 @@ from chatter.simulation.virtual_tests.loop_response import (
     velocity_controlled,
 )
 from dynamics.frf.container import Frf
-from dynamics.friction.identification import DriveRecord, LowPass, fit_linear
+from dynamics.friction.identification.filtering import LowPass
+from dynamics.friction.identification.linear_fit import fit_linear
+from dynamics.friction.identification.record import DriveRecord
 from dynamics.machine.harmonic import receptance
 from tests.places import EXAMPLES
 

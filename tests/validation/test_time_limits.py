@@ -56,7 +56,7 @@ TEN_SPEEDS = {
 @pytest.mark.parametrize("name", list(TEN_SPEEDS))
 def test_limits_at_ten_speeds_within_two_percent(name):
     case = tool_of_922_hertz(*TEN_SPEEDS[name])
-    found = chatter.lobes(case, method="time").limits
+    found = chatter.lobes(case, method="time-domain").limits
     wanted = chatter.lobes(case).limits
     assert np.isfinite(wanted.critical_depth).all()
     assert found.critical_depth == pytest.approx(wanted.critical_depth, rel=0.02)
@@ -77,7 +77,7 @@ PUBLISHED = [
 @pytest.mark.parametrize(("directions", "mode", "immersion", "deepest", "limits"), PUBLISHED)
 def test_published_limits(directions, mode, immersion, deepest, limits):
     case = tool_of_922_hertz(directions, mode, immersion, (10000, 20000), deepest, count=2)
-    found = chatter.lobes(case, method="time").limits
+    found = chatter.lobes(case, method="time-domain").limits
     depths, kinds = zip(*limits.values(), strict=True)
     assert found.spindle_speed == pytest.approx(np.array(list(limits)) * RPM)
     assert found.critical_depth * 1e3 == pytest.approx(depths, rel=0.02)
@@ -96,7 +96,7 @@ def test_islands_of_period_doubling_with_helix(tmp_path):
     case.save(tmp_path / "island.toml")
     result = CliRunner().invoke(
         app,
-        ["lobes", str(tmp_path / "island.toml"), "--method", "time", "--out", str(tmp_path)],
+        ["lobes", str(tmp_path / "island.toml"), "--method", "time-domain", "--out", str(tmp_path)],
     )
     assert result.exit_code == 0, result.output
     with (tmp_path / "lobes.csv").open() as file:
@@ -108,7 +108,7 @@ def test_islands_of_period_doubling_with_helix(tmp_path):
         half = rpm / 60.0
         assert float(row["chatter_frequency [Hz]"]) / half == pytest.approx(3.0, rel=1e-3)
         assert row["bifurcation"] == "flip"
-    found = chatter.lobes(case, method="time").limits
+    found = chatter.lobes(case, method="time-domain").limits
     for crossings, wanted in zip(found.crossings, ISLANDS.values(), strict=True):
         assert crossings * 1e3 == pytest.approx(wanted, rel=0.02)
 

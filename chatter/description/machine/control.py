@@ -6,25 +6,26 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from chatter.description.machine.fields import arguments, fields_of, key_problems
+from chatter.description.keys_of_kind import key_problems
+from chatter.description.machine.fields import arguments, fields_of
 from chatter.description.quantities import either_quantity, quantity, whole_number
 from chatter.description.section import Section, raise_if_any
-from dynamics.control import (
+from dynamics.control.cascade import (
     DriveController,
     Feedforward,
+    LoopTiming,
+    PositionController,
+    VelocityController,
+)
+from dynamics.control.current_loop import (
     FirstOrderCurrentLoop,
     IdealCurrentLoop,
-    LoopTiming,
-    MeasuringSystem,
-    PositionController,
-    ReferenceModel,
     RegulatedMotor,
     SecondOrderCurrentLoop,
-    SecondOrderFilter,
-    VelocityController,
-    low_pass,
-    notch,
 )
+from dynamics.control.filters import SecondOrderFilter, low_pass, notch
+from dynamics.control.measurement import MeasuringSystem
+from dynamics.control.reference_model import ReferenceModel
 
 _Samples = whole_number(0, 10_000, "numbers of samples")
 #: keys of every loop

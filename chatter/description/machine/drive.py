@@ -6,6 +6,7 @@ from typing import Any, Literal
 
 from pydantic import Field, model_validator
 
+from chatter.description.keys_of_kind import key_problems
 from chatter.description.machine.beam import MaterialSection
 from chatter.description.machine.fields import (
     Direction,
@@ -13,22 +14,17 @@ from chatter.description.machine.fields import (
     Places,
     arguments,
     fields_of,
-    key_problems,
     pair,
 )
 from chatter.description.quantities import quantity
 from chatter.description.section import Section, raise_if_any
-from dynamics.drive import (
-    BallScrew,
-    Belt,
-    DirectRotary,
-    LinearMotor,
-    RackAndPinion,
-    RackMotor,
-    ScrewOnBeam,
-    ScrewShaft,
-    SpindleRotor,
-)
+from dynamics.drive.ball_screw import BallScrew
+from dynamics.drive.belt import Belt
+from dynamics.drive.linear_motor import LinearMotor
+from dynamics.drive.rack_and_pinion import RackAndPinion, RackMotor
+from dynamics.drive.rotary import DirectRotary, SpindleRotor
+from dynamics.drive.screw_on_beam import ScrewOnBeam
+from dynamics.drive.screw_shaft import ScrewShaft
 
 #: kind -> specification
 KINDS: dict[str, type] = {

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from chatter.description.errors import InputError
-from dynamics.control import ControlError
+from dynamics.control.sampling import ControlError
 from dynamics.structure.linear_structure import StructureError
-from dynamics.trajectory import TrajectoryError
+from dynamics.trajectory.motion import TrajectoryError
 
 
 def sentence(error: ValueError, key: str = "") -> str:

@@ -8,22 +8,15 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
-from chatter.description.machine.fields import key_problems
+from chatter.description.keys_of_kind import key_problems
 from chatter.description.machine.frequency_response import StateSection
 from chatter.description.quantities import QuantityField, quantity
 from chatter.description.section import raise_if_any
-from dynamics.trajectory import (
-    CircleMotion,
-    ConstantSpeedMove,
-    JerkLimitedMove,
-    Path,
-    PathMotion,
-    SineMotion,
-    Trajectory,
-    circle,
-    polyline,
-    square,
-)
+from dynamics.trajectory.jerk_limited import JerkLimitedMove
+from dynamics.trajectory.motion import Trajectory
+from dynamics.trajectory.path import Path, circle, polyline, square
+from dynamics.trajectory.path_motion import PathMotion
+from dynamics.trajectory.periodic import CircleMotion, ConstantSpeedMove, SineMotion
 
 _LENGTH = QuantityField("length")
 

@@ -17,7 +17,7 @@ from chatter.simulation.resolution import LARGEST_LAG, Resolution, turns_of
 from chatter.simulation.setup import Setup, check_case, compiled, shortest_arc
 from chatter.simulation.virtual_tests.loop_stability import refuse_unstable_control
 from cutting.tool.cutter import Cutter, slice_counts
-from dynamics.control import ControlError
+from dynamics.control.sampling import ControlError
 from dynamics.machine.tables import MachineTables, machine_tables
 from dynamics.structure.linear_structure import StructureError
 from dynamics.trajectory.set_points import SetPoints

@@ -27,7 +27,7 @@ from chatter.simulation.virtual_tests.virtual_tests import FrfTest, frf_by_test
 from dynamics.frf.container import Frf
 from dynamics.machine.description import Machine
 from dynamics.structure.linear_structure import StructureError
-from dynamics.trajectory import TrajectoryError
+from dynamics.trajectory.motion import TrajectoryError
 
 _AXES = ("x", "y", "z", "rx", "ry", "rz")
 #: velocity below which an axis rests, m/s

@@ -15,20 +15,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from chatter.description.errors import InputError
 from chatter.simulation.virtual_tests.run import MachineRun, RunInputs, run_machine
-from dynamics.control import (
-    ControlError,
-    DriveController,
-    Feedforward,
-    LoopTiming,
-    PositionController,
-    controller_response,
-)
-from dynamics.control.response import ControllerResponse
-from dynamics.control.sampling import zero_order_hold_response
-from dynamics.frf.excitation import ExcitationError, linear_chirp
+from dynamics.control.cascade import DriveController, Feedforward, LoopTiming, PositionController
+from dynamics.control.response import ControllerResponse, controller_response
+from dynamics.control.sampling import ControlError, zero_order_hold_response
+from dynamics.frf.excitation.chirp import linear_chirp
+from dynamics.frf.excitation.signal import ExcitationError
 from dynamics.machine.description import Drive, Machine
 from dynamics.machine.harmonic import Linearised, receptance
-from dynamics.trajectory import SetPoints
+from dynamics.trajectory.set_points import SetPoints
 
 #: part of a sweep's first period in which the axis comes to speed
 _RAMP = 0.5

@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 
 from chatter.description.errors import InputError
 from chatter.engine.machine_loop import advance
-from dynamics.control import ControlError, DriveController, RegulatedMotor
+from dynamics.control.cascade import DriveController
+from dynamics.control.current_loop import RegulatedMotor
+from dynamics.control.sampling import ControlError
 from dynamics.machine.description import Machine
 from dynamics.machine.groups import ControlledDrives
 from dynamics.machine.loop import Loads

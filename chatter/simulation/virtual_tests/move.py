@@ -18,14 +18,10 @@ from chatter.io.result_files import as_json, write_results
 from chatter.simulation.virtual_tests.loop_stability import refuse_unstable_control
 from chatter.simulation.virtual_tests.run import MachineRun, RunInputs, run_machine
 from dynamics.machine.description import Drive, Machine
-from dynamics.trajectory import (
-    Path,
-    SetPoints,
-    Trajectory,
-    TrajectoryError,
-    contour_error,
-    set_points,
-)
+from dynamics.trajectory.contour import contour_error
+from dynamics.trajectory.motion import Trajectory, TrajectoryError
+from dynamics.trajectory.path import Path
+from dynamics.trajectory.set_points import SetPoints, set_points
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from chatter.description.errors import InputError, RunError
 from chatter.description.progress import Progress, no_progress
 from chatter.engine.machine_loop import Record, run
-from dynamics.control import ControlError
+from dynamics.control.sampling import ControlError
 from dynamics.machine.description import Machine
 from dynamics.machine.groups import ControlledDrives
 from dynamics.machine.loop import Loads

@@ -17,29 +17,18 @@ from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
 from chatter.simulation.virtual_tests.run import MachineRun, RunInputs, run_machine
 from dynamics.frf.container import Frf, MeasurementError
-from dynamics.frf.excitation import (
-    FIRST_ORDER_HOLD,
-    ZERO_ORDER_HOLD,
-    ExcitationError,
-    Hold,
-    PeriodicRecord,
-    PeriodicSignal,
-    PulseTrain,
-    angle_at_constant_speed,
-    angle_triggered_pulses,
-    cut_at_pulses,
-    frf_of_periods,
-    frf_of_transients,
-    full_lines,
-    half_sine_blow,
-    joint_input_output_frf,
-    linear_chirp,
-    multisine,
-    random_phases,
-    several_blows,
-)
+from dynamics.frf.excitation.angle_triggered import angle_at_constant_speed, angle_triggered_pulses
+from dynamics.frf.excitation.chirp import linear_chirp
+from dynamics.frf.excitation.closed_loop import joint_input_output_frf
+from dynamics.frf.excitation.hammer import half_sine_blow, several_blows
+from dynamics.frf.excitation.holds import FIRST_ORDER_HOLD, ZERO_ORDER_HOLD, Hold
+from dynamics.frf.excitation.multisine import full_lines, multisine, random_phases
+from dynamics.frf.excitation.periodic import PeriodicRecord, frf_of_periods
+from dynamics.frf.excitation.signal import ExcitationError, PeriodicSignal, PulseTrain
+from dynamics.frf.excitation.transient import cut_at_pulses, frf_of_transients
 from dynamics.machine.description import Machine
-from dynamics.trajectory import ConstantSpeedMove, SetPoints, set_points
+from dynamics.trajectory.periodic import ConstantSpeedMove
+from dynamics.trajectory.set_points import SetPoints, set_points
 
 #: a half-sine blow this long over the highest frequency still excites it at a third of its level
 _CONTACT = 0.9

@@ -79,7 +79,7 @@ def _designed(case: Case, cache: ResultCache, progress: Progress) -> PitchResult
     total = len(kinds) * DIFFERENCES + MOST_MOVES + 1
     done = iter(range(1, 10 * total))
     search = PitchSearch(
-        case, wide, _depths(case, section, model), section.goal, section.largest_chip,
+        case, wide, _depths(case, section, model), section.goal, section.max_pitch_ratio,
         lambda: progress(min(next(done), total), total), cache,
     )  # fmt: skip
     standing = search.design("the case", np.degrees(pitch_angles(case)))
@@ -102,7 +102,7 @@ def _designed(case: Case, cache: ResultCache, progress: Progress) -> PitchResult
     return PitchResult(
         case=case,
         goal=section.goal,
-        largest_chip=section.largest_chip,
+        largest_chip=section.max_pitch_ratio,
         deepest=float(search.depths[-1]),
         standing=next(one for one in ranked if one.pitch == standing.pitch),
         designs=ranked,

@@ -10,7 +10,7 @@ from dynamics.frf.container import MeasurementError
 from dynamics.friction.coulomb_stribeck import CoulombStribeck
 from dynamics.friction.identification.dynamic_fit import friction_over_position
 from dynamics.friction.identification.filtering import LowPass
-from dynamics.friction.identification.least_squares import LinearFriction
+from dynamics.friction.identification.linear_fit import LinearFriction
 from dynamics.friction.identification.record import DriveRecord
 from dynamics.friction.lugre import LuGre
 from dynamics.friction.tanh_hysteresis import TanhHysteresis

@@ -5,7 +5,7 @@ import pytest
 
 from chatter.io.hammer_records import read_hammer_folder, read_hammer_record
 from dynamics.frf.container import MeasurementError
-from dynamics.frf.hammer import HammerRecord
+from dynamics.frf.hammer.record import HammerRecord
 
 RATE, COUNT = 25600.0, 400
 

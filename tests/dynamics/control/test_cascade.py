@@ -7,28 +7,24 @@ import numpy as np
 import pytest
 from numba import njit
 
-from dynamics.control import (
-    ControlError,
+from dynamics.control.cascade import (
     DriveController,
     Feedforward,
-    FirstOrderCurrentLoop,
     LoopTiming,
-    MeasuringSystem,
-    MotorBrake,
     PositionController,
-    ReferenceModel,
+    VelocityController,
+)
+from dynamics.control.current_loop import (
+    FirstOrderCurrentLoop,
     RegulatedMotor,
     SecondOrderCurrentLoop,
-    VelocityController,
-    brake_table,
-    brake_torque,
-    control_step,
-    control_table,
-    engage_brake,
-    low_pass,
-    notch,
-    rest_at,
 )
+from dynamics.control.drive_step import control_step
+from dynamics.control.drive_table import control_table, rest_at
+from dynamics.control.filters import low_pass, notch
+from dynamics.control.measurement import MeasuringSystem
+from dynamics.control.reference_model import ReferenceModel
+from dynamics.control.sampling import ControlError
 
 H = 125e-6
 ONE = LoopTiming(H)
@@ -338,11 +334,3 @@ def test_kernel_compiles_once_for_other_drives_and_counts_no_references():
     count = len(fixed_motor.signatures)
     fixed_motor(control_table([SPEED, SPEED], 2 * H / 2), step_of(1, 5))
     assert len(fixed_motor.signatures) == count
-
-
-def test_brake_is_a_spring_and_a_dashpot_where_it_engaged():
-    brake = MotorBrake(1e5, 20.0)
-    table = brake_table([brake])
-    engage_brake(table, 0, 3.0)
-    assert brake_torque(table, 0, 3.0 + 1e-4, 0.1) == pytest.approx(-12.0)
-    assert brake.response(50.0) == pytest.approx(-1e5 - 2j * math.pi * 50.0 * 20.0)

@@ -6,10 +6,17 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from dynamics.control import ControlError, ReferenceModel, SecondOrderFilter, low_pass, notch
 from dynamics.control.current_loop import FirstOrderCurrentLoop, SecondOrderCurrentLoop
-from dynamics.control.filters import resting_states, sampled_response, second_order_sample
-from dynamics.control.sampling import held_samples_response, zero_order_hold_response
+from dynamics.control.filters import (
+    SecondOrderFilter,
+    low_pass,
+    notch,
+    resting_states,
+    sampled_response,
+    second_order_sample,
+)
+from dynamics.control.reference_model import ReferenceModel
+from dynamics.control.sampling import ControlError, held_samples_response, zero_order_hold_response
 
 T = 62.5e-6
 FILTERS = [

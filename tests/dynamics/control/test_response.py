@@ -7,24 +7,25 @@ import numpy as np
 import pytest
 from numba import njit
 
-from dynamics.control import (
+from dynamics.control.cascade import (
     DriveController,
     Feedforward,
+    LoopTiming,
+    PositionController,
+    VelocityController,
+)
+from dynamics.control.current_loop import (
     FirstOrderCurrentLoop,
     IdealCurrentLoop,
-    LoopTiming,
-    MeasuringSystem,
-    PositionController,
-    ReferenceModel,
     RegulatedMotor,
     SecondOrderCurrentLoop,
-    VelocityController,
-    control_step,
-    control_table,
-    controller_response,
-    low_pass,
-    notch,
 )
+from dynamics.control.drive_step import control_step
+from dynamics.control.drive_table import control_table
+from dynamics.control.filters import low_pass, notch
+from dynamics.control.measurement import MeasuringSystem
+from dynamics.control.reference_model import ReferenceModel
+from dynamics.control.response import controller_response
 
 STEP = 31.25e-6
 LEAD = 0.02 / (2.0 * math.pi)

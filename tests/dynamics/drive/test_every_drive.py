@@ -5,18 +5,14 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from dynamics.beam.shaft import BeamLine, Bearing, Segment
-from dynamics.drive import (
-    BallScrew,
-    Belt,
-    DirectRotary,
-    DrivenAxis,
-    LinearMotor,
-    RackAndPinion,
-    RackMotor,
-    ScrewOnBeam,
-    ScrewShaft,
-)
-from dynamics.drive.screw_shaft import STEEL
+from dynamics.drive.ball_screw import BallScrew
+from dynamics.drive.belt import Belt
+from dynamics.drive.linear_motor import LinearMotor
+from dynamics.drive.parts import DrivenAxis
+from dynamics.drive.rack_and_pinion import RackAndPinion, RackMotor
+from dynamics.drive.rotary import DirectRotary
+from dynamics.drive.screw_on_beam import ScrewOnBeam
+from dynamics.drive.screw_shaft import STEEL, ScrewShaft
 from dynamics.structure.assembly import assembly
 from dynamics.structure.bodies import Body, Connector, rigid_motion
 from dynamics.structure.linear_structure import StructureError

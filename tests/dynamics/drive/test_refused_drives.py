@@ -3,18 +3,14 @@
 import numpy as np
 import pytest
 
-from dynamics.drive import (
-    BallScrew,
-    Belt,
-    DirectRotary,
-    DrivenAxis,
-    LinearMotor,
-    RackAndPinion,
-    RackMotor,
-    ScrewOnBeam,
-    ScrewShaft,
-    SpindleRotor,
-)
+from dynamics.drive.ball_screw import BallScrew
+from dynamics.drive.belt import Belt
+from dynamics.drive.linear_motor import LinearMotor
+from dynamics.drive.parts import DrivenAxis
+from dynamics.drive.rack_and_pinion import RackAndPinion, RackMotor
+from dynamics.drive.rotary import DirectRotary, SpindleRotor
+from dynamics.drive.screw_on_beam import ScrewOnBeam
+from dynamics.drive.screw_shaft import ScrewShaft
 from dynamics.structure.linear_structure import StructureError
 
 UP = (0.0, 0.0, 1.0)

@@ -4,18 +4,14 @@ import numpy as np
 import pytest
 
 from dynamics.beam.shaft import BeamLine, Bearing, Segment
-from dynamics.drive import (
-    BallScrew,
-    Belt,
-    DrivenAxis,
-    RackAndPinion,
-    RackMotor,
-    ScrewOnBeam,
-    ScrewShaft,
-    SpindleRotor,
-)
+from dynamics.drive.ball_screw import BallScrew
+from dynamics.drive.belt import Belt
 from dynamics.drive.gear_train import Spring, in_series
-from dynamics.drive.screw_shaft import STEEL
+from dynamics.drive.parts import DrivenAxis
+from dynamics.drive.rack_and_pinion import RackAndPinion, RackMotor
+from dynamics.drive.rotary import SpindleRotor
+from dynamics.drive.screw_on_beam import ScrewOnBeam
+from dynamics.drive.screw_shaft import STEEL, ScrewShaft
 from dynamics.structure.assembly import assembly
 from dynamics.structure.bodies import Body, Connector
 from dynamics.structure.spring_coupling import screw_nut_matrix

@@ -10,7 +10,7 @@ import pytest
 import tomlkit
 
 from dynamics.frf.container import Frf, MeasurementError, Point
-from dynamics.identification import identify_modes
+from dynamics.identification.fit import identify_modes
 from dynamics.modal.modes import Mode, receptance_matrix
 from tests.dynamics.identification import made_up_frfs as made_up
 from tests.places import SHARED
@@ -142,16 +142,6 @@ def test_function_with_residues_of_both_signs_is_refused_as_drive_point():
     assert fit.modes == ()
     assert "not a drive point" in fit.no_mass_reason
     assert fit.errors[0].maximum < 1e-6
-
-
-def test_symmetric_ends_give_masses_by_magnitude():
-    first, second, third = THREE
-    values = drive_point((first, third)).values - drive_point((second,)).values
-    ends = Point("left", "z"), Point("right", "z")
-    fit = identify_modes([Frf(LINES, values, "receptance", *ends)])
-    modes = fit.modes_by_magnitude(0, (0.0, 0.0, 1.0), "workpiece")
-    assert_modes(modes, THREE)
-    assert {(mode.direction, mode.side) for mode in modes} == {((0.0, 0.0, 1.0), "workpiece")}
 
 
 def matrix_frfs(modes, pairs, noise=0.0, seed=0):

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from dynamics.trajectory import JerkLimitedMove, TrajectoryError
-from dynamics.trajectory.jerk_limited import reachable_speed, speed_change_length
+from dynamics.trajectory.jerk_limited import JerkLimitedMove, reachable_speed, speed_change_length
+from dynamics.trajectory.motion import TrajectoryError
 
 positive = st.floats(1e-3, 1e3)
 

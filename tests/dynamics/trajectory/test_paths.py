@@ -8,24 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numba import njit
 
-from dynamics.trajectory import (
-    Arc,
-    CircleMotion,
-    ConstantSpeedMove,
-    JerkLimitedMove,
-    Line,
-    Path,
-    PathMotion,
-    SineMotion,
-    TrajectoryError,
-    circle,
-    contour_error,
-    polyline,
-    set_point_at,
-    set_points,
-    square,
-    tracking_error,
-)
+from dynamics.trajectory.contour import contour_error, tracking_error
+from dynamics.trajectory.jerk_limited import JerkLimitedMove
+from dynamics.trajectory.motion import TrajectoryError
+from dynamics.trajectory.path import Arc, Line, Path, circle, polyline, square
+from dynamics.trajectory.path_motion import PathMotion
+from dynamics.trajectory.periodic import CircleMotion, ConstantSpeedMove, SineMotion
+from dynamics.trajectory.set_points import set_point_at, set_points
 
 SIDE, RADIUS = 0.1, 0.008
 FEED, ACCELERATION, JERK = 0.25, 4.0, 80.0

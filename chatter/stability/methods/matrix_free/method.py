@@ -75,11 +75,11 @@ def stepped_cut(
         Stiffness (N/m) and damping (N s/m) of the contact of tool and work, and the engaged share
         of the depth from which on it acts whole; see `cutting.process_damping.contact`.
     """
-    stiffness, _, full_at = contact
+    stiffness, _, full_engagement_share = contact
     reach = np.linalg.norm(cut.shape, axis=1) * np.linalg.norm(cut.force_gain, axis=1)
     # the stiffest that the contact can make a mode
     fastest = math.hypot(cut.resolution.fastest, math.sqrt(stiffness * float(reach.max())))
-    return SteppedCut(cut, fastest, np.array([*contact[:2], max(full_at, 1e-12)]))
+    return SteppedCut(cut, fastest, np.array([*contact[:2], max(full_engagement_share, 1e-12)]))
 
 
 def _dominant(plan: StepPlan) -> _Dominant:

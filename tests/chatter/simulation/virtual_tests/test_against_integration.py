@@ -5,12 +5,13 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from chatter.simulation.virtual_tests.run import RunInputs, run_machine
-from dynamics.control import Feedforward
+from dynamics.control.cascade import Feedforward
 from dynamics.friction.lugre import LuGre
 from dynamics.friction.tanh_hysteresis import TanhHysteresis
 from dynamics.machine.description import Friction, Machine
 from dynamics.structure.linear_structure import LinearStructure
-from dynamics.trajectory import JerkLimitedMove, set_points
+from dynamics.trajectory.jerk_limited import JerkLimitedMove
+from dynamics.trajectory.set_points import set_points
 
 LEAD = 10e-3 / (2.0 * np.pi)
 J, M, B = 6e-3, 300.0, 1500.0

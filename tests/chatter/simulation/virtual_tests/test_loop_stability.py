@@ -11,7 +11,7 @@ from chatter.simulation.virtual_tests.loop_stability import (
     refuse_unstable_control,
 )
 from chatter.simulation.virtual_tests.run import RunInputs, run_machine
-from dynamics.trajectory import SetPoints
+from dynamics.trajectory.set_points import SetPoints
 from tests.places import EXAMPLES
 
 STEP = 1e-4

@@ -7,10 +7,13 @@ from chatter.compile.rigid_motion import rigid_motion
 from chatter.description.errors import InputError
 from chatter.simulation.virtual_tests.move import MovePlan, move_axes
 from chatter.simulation.virtual_tests.run import RunInputs, run_machine
-from dynamics.control import Feedforward
+from dynamics.control.cascade import Feedforward
 from dynamics.machine.description import Drive, Machine
 from dynamics.structure.linear_structure import LinearStructure
-from dynamics.trajectory import CircleMotion, JerkLimitedMove, SineMotion, circle, set_points
+from dynamics.trajectory.jerk_limited import JerkLimitedMove
+from dynamics.trajectory.path import circle
+from dynamics.trajectory.periodic import CircleMotion, SineMotion
+from dynamics.trajectory.set_points import set_points
 
 STEP = 1e-4
 LEAD = 10e-3 / (2.0 * np.pi)

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from dynamics.frf.excitation import (
-    ExcitationError,
+from dynamics.frf.excitation.angle_triggered import (
     angle_at_constant_speed,
     angle_triggered_pulses,
     passages,
 )
+from dynamics.frf.excitation.signal import ExcitationError
 
 TURN = 2.0 * np.pi
 

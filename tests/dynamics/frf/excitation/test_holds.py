@@ -3,16 +3,14 @@
 import numpy as np
 import pytest
 
-from dynamics.frf.excitation import (
+from dynamics.frf.excitation.holds import (
     BAND_LIMITED,
     FIRST_ORDER_HOLD,
     ZERO_ORDER_HOLD,
-    full_lines,
-    multisine,
-    schroeder_phases,
+    image_share,
     without_images,
 )
-from dynamics.frf.excitation.holds import image_share
+from dynamics.frf.excitation.multisine import full_lines, multisine, schroeder_phases
 from dynamics.frf.excitation.periodic import PeriodicRecord, frf_of_periods
 
 T = 1e-3

@@ -4,19 +4,14 @@ import numpy as np
 import pytest
 
 from dynamics.frf.container import MeasurementError
-from dynamics.frf.excitation import (
-    BAND_LIMITED,
-    FIRST_ORDER_HOLD,
-    ZERO_ORDER_HOLD,
+from dynamics.frf.excitation.chirp import linear_chirp
+from dynamics.frf.excitation.closed_loop import joint_input_output_frf
+from dynamics.frf.excitation.holds import BAND_LIMITED, FIRST_ORDER_HOLD, ZERO_ORDER_HOLD
+from dynamics.frf.excitation.multisine import full_lines, multisine, odd_lines, random_phases
+from dynamics.frf.excitation.periodic import (
     PeriodicRecord,
     direct_frf,
     frf_of_periods,
-    full_lines,
-    joint_input_output_frf,
-    linear_chirp,
-    multisine,
-    odd_lines,
-    random_phases,
     without_drift,
 )
 

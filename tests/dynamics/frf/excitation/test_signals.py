@@ -3,21 +3,21 @@
 import numpy as np
 import pytest
 
-from dynamics.frf.excitation import (
-    ExcitationError,
+from dynamics.frf.excitation.chirp import linear_chirp, logarithmic_chirp
+from dynamics.frf.excitation.hammer import (
     constant_blow,
-    full_lines,
     half_sine_blow,
     half_sine_blow_of_impulse,
-    linear_chirp,
-    logarithmic_chirp,
-    multisine,
-    odd_lines,
-    pulses_at,
-    random_phases,
-    schroeder_phases,
     several_blows,
 )
+from dynamics.frf.excitation.multisine import (
+    full_lines,
+    multisine,
+    odd_lines,
+    random_phases,
+    schroeder_phases,
+)
+from dynamics.frf.excitation.signal import ExcitationError, pulses_at
 
 STEP = 5e-5
 

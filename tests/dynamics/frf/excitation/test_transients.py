@@ -4,22 +4,19 @@ import numpy as np
 import pytest
 
 from dynamics.frf.container import MeasurementError
-from dynamics.frf.excitation import (
+from dynamics.frf.excitation.angle_triggered import angle_at_constant_speed, angle_triggered_pulses
+from dynamics.frf.excitation.chirp import linear_chirp
+from dynamics.frf.excitation.hammer import constant_blow, half_sine_blow, several_blows
+from dynamics.frf.excitation.holds import (
     BAND_LIMITED,
     FIRST_ORDER_HOLD,
     ZERO_ORDER_HOLD,
-    angle_at_constant_speed,
-    angle_triggered_pulses,
-    constant_blow,
-    cut_at_pulses,
-    frf_of_transients,
-    half_sine_blow,
-    linear_chirp,
-    pulses_at,
-    several_blows,
     without_images,
 )
-from dynamics.frf.hammer import HammerRecord, h1, h2
+from dynamics.frf.excitation.signal import pulses_at
+from dynamics.frf.excitation.transient import cut_at_pulses, frf_of_transients
+from dynamics.frf.hammer.record import HammerRecord
+from dynamics.frf.hammer.spectra import h1, h2
 
 BAND = (1.0, 200.0)  # to a tenth of the sampling frequency
 WITHIN = 1e-3

@@ -6,9 +6,16 @@ import numpy as np
 import pytest
 
 from dynamics.frf.container import MeasurementError, Point, without_added_decay
-from dynamics.frf.hammer import averaged_spectra, coherence, frf_from_records, h1, h2, usable_band
 from dynamics.frf.hammer.hit import locate_hit
-from dynamics.frf.hammer.spectra import Spectra
+from dynamics.frf.hammer.spectra import (
+    Spectra,
+    averaged_spectra,
+    coherence,
+    frf_from_records,
+    h1,
+    h2,
+    usable_band,
+)
 from dynamics.frf.hammer.windows import choose_windows, force_window
 from tests.dynamics.frf.hammer import hammer_records as made
 

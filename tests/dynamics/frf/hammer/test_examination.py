@@ -10,7 +10,7 @@ import pytest
 import tomlkit
 
 from chatter.io.hammer_records import read_hammer_folder
-from dynamics.frf.hammer import examine_records
+from dynamics.frf.hammer.examine import examine_records
 from tests.dynamics.frf.hammer import hammer_records as made
 from tests.places import SHARED
 

@@ -7,7 +7,8 @@ import pytest
 
 from chatter.io.hammer_records import read_hammer_folder
 from dynamics.frf.container import MeasurementError
-from dynamics.frf.hammer import h2, hammer_test
+from dynamics.frf.hammer.averaging import hammer_test
+from dynamics.frf.hammer.spectra import h2
 from tests.dynamics.frf.hammer import hammer_records as made
 
 CLOSE = made.Structure(((660.0, 0.018, 0.57), (700.0, 0.029, 1.03), (1479.0, 0.021, 0.21)))

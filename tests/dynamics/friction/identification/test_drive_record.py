@@ -6,12 +6,8 @@ import numpy as np
 import pytest
 
 from dynamics.frf.container import MeasurementError
-from dynamics.friction.identification import (
-    DriveRecord,
-    LowPass,
-    record_from_current,
-    smoothed_derivative,
-)
+from dynamics.friction.identification.filtering import LowPass, smoothed_derivative
+from dynamics.friction.identification.record import DriveRecord, record_from_current
 
 T = 1e-3 * np.arange(1000)
 X = 0.01 * np.sin(2 * np.pi * T)

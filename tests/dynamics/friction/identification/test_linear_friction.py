@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from dynamics.frf.container import MeasurementError
-from dynamics.friction.identification import LowPass, fit_linear
+from dynamics.friction.identification.filtering import LowPass
+from dynamics.friction.identification.linear_fit import fit_linear
 from tests.dynamics.friction.identification.made_up_records import back_and_forth, noisy
 
 #: "Towards digital twins through object-oriented modelling: a machine tool case study", Table 1:

@@ -11,7 +11,10 @@ import numpy as np
 import pytest
 
 from dynamics.friction.coulomb_stribeck import CoulombStribeck
-from dynamics.friction.identification import AxisModel, DriveRecord, LowPass, fit_axis, fit_linear
+from dynamics.friction.identification.dynamic_fit import AxisModel, fit_axis
+from dynamics.friction.identification.filtering import LowPass
+from dynamics.friction.identification.linear_fit import fit_linear
+from dynamics.friction.identification.record import DriveRecord
 from dynamics.friction.lugre import LuGre
 from tests.places import SHARED
 
@@ -93,7 +96,7 @@ def test_both_halves_agree_on_dry_and_viscous_friction(halves):
 
 def test_a_stribeck_peak_is_not_supported_by_both_halves(halves):
     """The hump of the start does not come back when braking: with it, the other half is worse."""
-    free = ("stiffness", "coulomb", "static", "stribeck_velocity", "viscous")
+    free = ("bristle_stiffness", "coulomb", "static", "stribeck_velocity", "viscous")
     half = halves["accelerating"]
     peaked = AxisModel(LuGre(1e6, 0.0, 50.0, 12.0, 20.0, 0.02), MASS)
     flat = AxisModel(LuGre(1e8, 0.0, 50.0, 12.0, 12.0, 0.02), MASS)
