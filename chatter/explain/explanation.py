@@ -172,15 +172,15 @@ class Explanation:
 
     def _errors(self) -> dict[str, Any]:
         runs, holdout = self.measurement.runs, self.found.split.holdout
-        noise, kind = self.found.problem.noise, self.predictions.kind
+        signature = self.refitted_signature
+        if self.verdict == EXPLAINED:
+            signature = self.repaired_signature
+        floor = self.predictions.kind.noise_floor(signature.residual.parts)
         fitted = list(self._of_fitted.values())
 
         def error(case: Case, some=runs) -> float | None:
             return finite_or_none(overall(errors_of(case, self.predictions, some)))
 
-        floor = kind.noise_floor(
-            self.measurement, lambda run: self.predictions.of(self.case, run), noise
-        )
         return {
             "metric": "nrmse",
             "noise_floor": finite_or_none(floor),

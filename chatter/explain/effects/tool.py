@@ -73,6 +73,7 @@ class Wear(Effect):
     label = "tool wear"
     help = "forces grow with the time that the tool has cut"
     kinds = ("milling",)
+    section = "wear"
 
     def applies(self, measurement: Measurement) -> bool:
         """Of runs at several cut times."""
@@ -86,8 +87,3 @@ class Wear(Effect):
             free("edge_radial", 0.0, 3e3 / longest, "N/m/s"),
             free("cutting", 0.0, 0.02 / longest, "1/s"),
         ]
-
-    def patch(self, case: Case, values: Values) -> Patch:
-        """Wear of the tool."""
-        keys = ("edge_tangential", "edge_radial", "cutting")
-        return {"wear": {key: float(values[key]) for key in keys}}

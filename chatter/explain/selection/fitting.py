@@ -27,8 +27,9 @@ _STEP = 1e-3
 _SMALLEST_GAIN, _SMALLEST_STEP = 1e-7, 1e-7
 #: scipy's first trust region is as large as the start is far from zero, which starts are moved to
 _FIRST_REGION = 100.0
-#: share of what the Jacobian promised below which a step asks for new differences
-_LEAST_OF_PROMISE = 0.5
+#: share of what the Jacobian promised below which a step asks for new differences, where it is
+#: a fall of the sum of squares that matters
+_LEAST_OF_PROMISE, _LEAST_HOPED = 0.8, 1.0
 #: steps tried at the most, without those of finite differences
 _MOST_STEPS = 30
 #: groups from which a scatter between them can be told
@@ -108,7 +109,7 @@ class _Scaled:
 
     Between finite differences the Jacobian is brought up to date by Broyden's (1965) rank-one
     formula: one simulation a step in place of one a parameter. Differences are taken anew where a
-    step gained less than half of what the Jacobian promised.
+    step gained less than most of what the Jacobian promised.
     """
 
     def __init__(
@@ -151,7 +152,8 @@ class _Scaled:
             moved = scaled - self.at
             promised = self.then + np.vstack([self.known, self.priors]) @ moved
             before = self.then @ self.then
-            if before - now @ now < _LEAST_OF_PROMISE * (before - promised @ promised):
+            hoped = before - promised @ promised
+            if hoped > _LEAST_HOPED and before - now @ now < _LEAST_OF_PROMISE * hoped:
                 self.known = None
             else:
                 change = (now - promised)[: len(self.known)]

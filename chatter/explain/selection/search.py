@@ -116,7 +116,7 @@ def search(measurement: Measurement, predictions: Predictions, progress: Progres
     first = stage_of(problem, now, split, progress, 0)
     path = _best_path(Path([], problem, now), first, split, progress)
     if len(path.stages) > 1:
-        progress("trying again what was added first", 0.85)
+        progress("trying again the effects added first", 0.85)
         path = _tried_again(path, split)
     stages, problem, now = path
     progress("fitting all runs", 0.95)
