@@ -17,7 +17,8 @@ import numpy as np
 from chatter.description.case import Case
 from chatter.stability.methods.collocation import drivers
 from chatter.stability.methods.collocation import multipliers as collocation
-from chatter.stability.methods.collocation.element_assembly import map_arrays
+from chatter.stability.methods.collocation.element_assembly import operator_arrays
+from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import milling_model
 
 RPM = math.pi / 30.0
@@ -57,14 +58,14 @@ def case_of(modes, helix_deg=0.0, teeth=2):
 def cost(cut, rpm_from, rpm_to, depth, points=POINTS):
     """Processor time of a point, s, and how many collocation points a period has on average."""
     speeds, depths = np.linspace(rpm_from, rpm_to, points) * RPM, np.full(points, depth)
-    silent, arrays = np.zeros(points, dtype=np.bool_), map_arrays(cut)
+    silent, arrays = np.zeros(points, dtype=np.bool_), operator_arrays(cut)
     collocation.multipliers(cut, speeds[:8], depths[:8])
     best = math.inf
     for _ in range(3):
         start = time.process_time()
         for first in range(0, points, 64):
             part = slice(first, first + 64)
-            plans = drivers.cut_plans(cut, speeds[part], depths[part])
+            plans = drivers.coupling_assemblies(cut, speeds[part], depths[part])
             drivers.element_multipliers(arrays, plans, speeds[part], silent[part])
         best = min(best, time.process_time() - start)
     nodes = drivers.points_of_periods(cut, speeds, depth).mean()
@@ -88,7 +89,7 @@ def against_modes():
     show(
         "modes",
         sizes,
-        [cost(milling_model(case_of(n)).cut(1e-3), 8e3, 1e4, 1e-3)[0] for n in sizes],
+        [cost(element_cut(milling_model(case_of(n)), 1e-3), 8e3, 1e4, 1e-3)[0] for n in sizes],
     )
 
 
@@ -96,14 +97,15 @@ def against_resolution():
     """Cost against the collocation points in a period, by shorter elements."""
     model = milling_model(case_of(4))
     pairs = [
-        cost(model.cut(1e-3, 8, waves), 8e3, 1e4, 1e-3) for waves in (1.0, 0.5, 0.25, 0.12, 0.06)
+        cost(element_cut(model, 1e-3, 8, waves), 8e3, 1e4, 1e-3)
+        for waves in (1.0, 0.5, 0.25, 0.12, 0.06)
     ]
     show("points in a period", [nodes for _, nodes in pairs], [seconds for seconds, _ in pairs])
 
 
 def against_speed():
     """Cost against the speed: slow cuts hold more waves."""
-    cut = milling_model(case_of(4)).cut(1e-3)
+    cut = element_cut(milling_model(case_of(4)), 1e-3)
     sizes = [16000.0, 8000.0, 4000.0, 2000.0, 1000.0, 500.0]
     seconds = [cost(cut, 0.98 * rpm, rpm, 1e-3)[0] for rpm in sizes]
     show("speed in rpm", sizes, seconds)
@@ -111,7 +113,7 @@ def against_speed():
 
 def against_points():
     """Cost of a point against the number of points of a diagram."""
-    cut = milling_model(case_of(4)).cut(1e-3)
+    cut = element_cut(milling_model(case_of(4)), 1e-3)
     sizes = [100, 400, 1600, 6400]
     show("points of a diagram", sizes, [cost(cut, 8e3, 1e4, 1e-3, n)[0] for n in sizes])
 
@@ -154,7 +156,7 @@ def share_of_peak():
     """Operations a second reached, beside the peak."""
     top = peak()
     for modes, krylov in ((2, 7), (8, 19), (40, 83)):
-        cut = milling_model(case_of(modes)).cut(1e-3)
+        cut = element_cut(milling_model(case_of(modes)), 1e-3)
         seconds, nodes = cost(cut, 8e3, 1e4, 1e-3)
         rate = operations(cut, nodes, krylov) / seconds
         print(

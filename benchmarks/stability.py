@@ -14,9 +14,11 @@ from scipy.linalg import expm
 
 from chatter.description.case import Case
 from chatter.engine.parallel import kept_threads, worker_count
-from chatter.stability.boundary_continuation import followed_crossings
+from chatter.stability.boundary_continuation import continued_crossings
 from chatter.stability.methods.collocation import multipliers as collocation
-from chatter.stability.methods.semi_discretization.method import limit_curve, multipliers
+from chatter.stability.methods.collocation.element_cut import element_cut
+from chatter.stability.methods.semi_discretization.arrays import milling_arrays
+from chatter.stability.methods.semi_discretization.multipliers import limit_curve, multipliers
 from chatter.stability.model import milling_model
 
 RPM = math.pi / 30.0
@@ -143,9 +145,11 @@ def collocation_grids():
         depths = np.linspace(0.0, deepest, rows + 1)[1:]
         s, d = (part.ravel() for part in np.meshgrid(speeds, depths))
         picked = np.random.default_rng(2).choice(s.size, 300, replace=False)
-        exact = np.abs(collocation.multipliers(model.cut(deepest, 12, 0.6), s[picked], d[picked]))
+        exact = np.abs(
+            collocation.multipliers(element_cut(model, deepest, 12, 0.6), s[picked], d[picked])
+        )
         for points in (6, 8):
-            cut = model.cut(deepest, points, 1.0)
+            cut = element_cut(model, deepest, points, 1.0)
             found, wall, processor = timed(partial(collocation.multipliers, cut, s, d))
             error = np.abs(np.abs(found[picked]) - exact) / np.maximum(1.0, exact)
             print(
@@ -194,7 +198,7 @@ def other_tools():
     for name, (case, deepest) in cases.items():
         model = milling_model(case)
         s, d = np.meshgrid(np.linspace(8000, 12000, 60) * RPM, np.linspace(0.1, 1.0, 10) * deepest)
-        solve = partial(collocation.multipliers, model.cut(deepest), s.ravel(), d.ravel())
+        solve = partial(collocation.multipliers, element_cut(model, deepest), s.ravel(), d.ravel())
         _, _, processor = timed(solve)
         rate = s.size / processor
         print(f"{name}: {1e6 / rate:7.1f} us, {rate:8.0f} points/s and core")
@@ -205,12 +209,12 @@ def limit_curves():
     model = milling_model(two_degrees_of_freedom(0.5))
     speeds = np.linspace(5000, 25000, 400) * RPM
     depths = np.linspace(0.0, 2e-3, 41)[1:]
-    cut = model.cut(2e-3)
+    cut = element_cut(model, 2e-3)
     full, wall, processor = timed(lambda: collocation.limit_curve(cut, speeds, depths, stride=1))
     print(f"limits at 400 speeds, full net: {wall:6.3f} s wall, {processor:6.3f} s processor")
     followed, wall, processor = timed(lambda: collocation.limit_curve(cut, speeds, depths))
     print(f"the same as lobes does it: {wall:6.3f} s wall, {processor:6.3f} s processor")
-    quick = model.cut(2e-3, 6, 1.0)
+    quick = element_cut(model, 2e-3, 6, 1.0)
     coarse = depths[1::2]
     fast = partial(collocation.limit_curve, quick, speeds, coarse, tolerance=5e-3, stride=8)
     found, wall, processor = timed(fast)
@@ -220,7 +224,7 @@ def limit_curves():
         return np.log(np.abs(collocation.multipliers(quick, speeds[points], depth)))
 
     with kept_threads():
-        _, alone, _ = timed(partial(followed_crossings, len(speeds), coarse, growth_at, 5e-3, 8))
+        _, alone, _ = timed(partial(continued_crossings, len(speeds), coarse, growth_at, 5e-3, 8))
     off = np.abs(found.critical_depth[both] / full.critical_depth[both] - 1.0)
     missed = [
         sum(len(a) != len(b) for a, b in zip(some.crossings, full.crossings, strict=True))
@@ -262,7 +266,7 @@ def missed():
     total = np.zeros(4, dtype=int)
     for case, low, high, count, deepest in diagrams:
         model, speeds = milling_model(case), np.linspace(low, high, count) * RPM
-        cut, depths = model.cut(deepest), np.linspace(0.0, deepest, 61)[1:]
+        cut, depths = element_cut(model, deepest), np.linspace(0.0, deepest, 61)[1:]
         fine = np.linspace(0.0, deepest, 8 * 60 + 1)[1:]
         found = collocation.limit_curve(cut, speeds, depths).crossings
         wanted = collocation.limit_curve(cut, speeds, fine, stride=1).crossings
@@ -296,7 +300,7 @@ def semi_discretization_grids():
     print(f"{worker_count()} threads; {SPEEDS} x {DEPTHS} points, {STEPS} steps a tooth period")
     speeds = np.linspace(5000, 25000, SPEEDS) * RPM
     for immersion in (0.05, 0.1, 0.5):
-        arrays = milling_model(two_degrees_of_freedom(immersion)).arrays
+        arrays = milling_arrays(milling_model(two_degrees_of_freedom(immersion)))
         depths = np.linspace(0, 10e-3, DEPTHS + 1)[1:]
         s, d = (part.ravel() for part in np.meshgrid(speeds, depths))
         multipliers(arrays, s[:4], d[:4], STEPS)

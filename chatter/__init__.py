@@ -45,8 +45,8 @@ if TYPE_CHECKING:
     from chatter.simulation.virtual_tests.from_file import move as move
     from chatter.stability.case_schema import schema as schema
     from chatter.stability.check import check as check
-    from chatter.stability.diagram import lobes as lobes
     from chatter.studies.bifurcation import bifurcation as bifurcation
+    from chatter.studies.diagram_over_axes import lobes as lobes
     from chatter.studies.diagram_over_axes import lobes_over as lobes_over
     from chatter.studies.modal_test import modes as modes
     from chatter.studies.optimisation.study import optimum as optimum
@@ -68,7 +68,7 @@ _PUBLIC = {
     "frf": "chatter.simulation.virtual_tests.from_file",
     "load": "chatter.description.case",
     "load_machine": "chatter.description.machine.machine_file",
-    "lobes": "chatter.stability.diagram",
+    "lobes": "chatter.studies.diagram_over_axes",
     "lobes_over": "chatter.studies.diagram_over_axes",
     "modes": "chatter.studies.modal_test",
     "optimum": "chatter.studies.optimisation.study",

@@ -10,26 +10,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import tomlkit
 
+from tests.cases import TOOL_OF_922_HERTZ
 from tests.places import ROOT
 
 #: what kernels and physics know nothing of
 FOREIGN = {"chatter", "matplotlib", "pint", "pydantic", "typer", "rich", "tomlkit"}
 HEAVY = ["numba", "scipy", "numpy", "matplotlib", "pint", "pydantic", "tomlkit", "typer", "rich"]
 
-CASE = {
-    "tool": {"teeth": 2, "diameter": "16 mm"},
-    "material": {"Ktc": "600 MPa", "Krc": "200 MPa"},
-    "cut": {
-        "mode": "down", "spindle_speed": "10000 rpm", "feed_per_tooth": "0.1 mm",
-        "axial_depth": "1 mm", "radial_depth": "8 mm",
-    },
-    "structure": {
-        "mode": [
-            {"frequency": "922 Hz", "damping": 0.011, "mass": "0.03993 kg", "direction": [1, 0, 0]}
-        ]
-    },
-}  # fmt: skip
+CASE = tomlkit.parse(TOOL_OF_922_HERTZ).unwrap()
 
 
 def modules(package):
@@ -199,8 +189,9 @@ def test_an_edited_leaf_is_compiled_anew(sources):
 
 def test_other_values_and_counts_compile_nothing_new():
     from chatter import Case
-    from chatter.stability.methods.collocation.drivers import multipliers_at
-    from chatter.stability.methods.semi_discretization.method import multipliers
+    from chatter.stability.methods.semi_discretization.arrays import milling_arrays
+    from chatter.stability.methods.semi_discretization.drivers import multipliers_at
+    from chatter.stability.methods.semi_discretization.multipliers import multipliers
     from chatter.stability.model import milling_model
 
     case = Case.from_dict(CASE)
@@ -221,7 +212,7 @@ def test_other_values_and_counts_compile_nothing_new():
         point = (
             np.array([value]) for value in (patched.cut.spindle_speed, patched.cut.axial_depth)
         )
-        value = multipliers(milling_model(patched).arrays, *point, 24)
+        value = multipliers(milling_arrays(milling_model(patched)), *point, 24)
         assert abs(value[0]) > 0.0
     assert len(multipliers_at.signatures) == 1
 
@@ -231,11 +222,13 @@ import json, sys
 import numpy as np
 from chatter import Case
 from chatter.stability.model import milling_model
-from chatter.stability.methods.collocation.drivers import multipliers_at
+from chatter.stability.methods.semi_discretization.arrays import milling_arrays
+from chatter.stability.methods.semi_discretization.drivers import multipliers_at
+from chatter.stability.methods.semi_discretization.step_schemes import FIRST_ORDER
 case = Case.from_dict(json.loads({case!r}))
-arrays = milling_model(case).arrays
+arrays = milling_arrays(milling_model(case))
 point = [np.array([float(v)]) for v in (case.cut.spindle_speed, case.cut.axial_depth)]
-value = multipliers_at(arrays, *point, np.array([16]), 1)[0]
+value = multipliers_at(FIRST_ORDER, arrays, *point, np.array([16]), 1)[0]
 print(json.dumps([value.real, value.imag]))
 """
 

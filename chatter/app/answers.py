@@ -16,9 +16,10 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress
 from chatter.description.units import from_rpm, rpm
+from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import milling_model
-from chatter.stability.registry import chosen_method, resolution, zero_order_of
-from chatter.stability.search_range import deepest_depth, spindle_speeds
+from chatter.stability.registry import chosen_method, fixed_steps
+from chatter.stability.search_range import maximum_depth, spindle_speeds
 
 #: stage -> speeds, depths of the net
 STAGES = {"coarse": (120, 24), "fine": (200, 50)}
@@ -41,15 +42,16 @@ class LiveCase:
     """
 
     def __init__(self, case: Case, method: str | None) -> None:
-        self.method, self._limits_of = chosen_method(case, method)
-        if self.method == "time-domain":
+        self._method = chosen_method(case, method)
+        self.method = self._method.name
+        if not self._method.is_fast:
             raise InputError(
-                'method "time-domain" cannot follow a slider; with --live, give another --method'
+                f'method "{self.method}" cannot follow a slider; with --live, give another --method'
             )
         self.case = case
         model = milling_model(case)
         speeds = spindle_speeds(case)
-        deepest = deepest_depth(case, zero_order_of(model, speeds))
+        deepest = maximum_depth(case, zero_order_of(model, speeds))
         self.view = view_parameters((float(speeds[0]), float(speeds[-1])), deepest)
         self.sliders = (*self.view, *case_parameters(case))
         self.by_path: dict[str, Parameter] = {one.path: one for one in self.sliders}
@@ -100,11 +102,11 @@ class LiveCase:
         span = (from_rpm(view["lobes.speeds.from"]), from_rpm(view["lobes.speeds.to"]))
         deepest = view["lobes.depths.to"] * 1e-3
         model = milling_model(case)
-        steps = resolution(case)
+        steps = fixed_steps(case)
         speeds = np.linspace(*span, speed_count)
         depths = np.linspace(0.0, deepest, depth_count + 1)[1:]
         follows = stage == "coarse" and self.method == "collocation" and not model.depends_on_speed
-        limits_of = followed_limits if follows else self._limits_of
+        limits_of = followed_limits if follows else self._method.limits
         curve = limits_of(model, speeds, depths, steps, progress)
         cut = case.cut
         to_operating = np.linspace(0.0, 1.02 * max(cut.axial_depth, deepest), depth_count + 1)[1:]
@@ -156,7 +158,7 @@ class LiveCase:
         }
         from chatter.simulation.simulate import simulate
 
-        result = simulate(case.patch(wanted), progress)
+        result = simulate(case, wanted, progress)
         summary = result.summary()
         turned = result.spindle_angle / (2.0 * math.pi)
         axis = int(np.argmax(np.ptp(result.displacement, axis=0)))

@@ -8,11 +8,12 @@ from numpy.typing import NDArray
 from chatter.description.progress import Progress
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.methods.collocation import multipliers as collocation
-from chatter.stability.methods.collocation.varying_speed import LOOSE_TUNING, tuned
+from chatter.stability.methods.collocation.element_cut import element_cut
+from chatter.stability.methods.collocation.varying_speed import LOOSE_FIT
 from chatter.stability.model import MillingModel
 
-#: points an element and waves of the highest mode in one, enough for a picture
-_POINTS, _WAVES = 6, 1.0
+#: points per element and wavelengths of the highest mode in one, enough for a picture
+_POINTS, _WAVELENGTHS = 6, 1.0
 _TOLERANCE = 5e-3
 _STRIDE = 8
 
@@ -34,6 +35,5 @@ def followed_limits(
     progress : callable
         May raise to give up.
     """
-    cut = model.cut(float(depths[-1]), _POINTS, _WAVES)
-    cut = tuned(cut, LOOSE_TUNING)
+    cut = element_cut(model, float(depths[-1]), _POINTS, _WAVELENGTHS).with_fit(LOOSE_FIT)
     return collocation.limit_curve(cut, speeds, depths, progress, _TOLERANCE, _STRIDE)

@@ -24,7 +24,7 @@ from chatter.description.errors import InputError
 from chatter.report.console import print_table
 
 if TYPE_CHECKING:
-    from chatter.stability.diagram import LobeDiagram
+    from chatter.stability.diagram import StabilityDiagram
 
 
 def lobes(
@@ -79,7 +79,7 @@ def lobes(
         raise InputError(
             "--cluster computes the grid of a diagram, or one over --x and --y; give one of them"
         )
-    from chatter.stability.diagram import lobes as run_lobes
+    from chatter.studies.diagram_over_axes import lobes as run_lobes
 
     announce_compilation()
     folder = output_folder(out, case.stem)
@@ -129,7 +129,7 @@ def _serve(description: Case, method: str | None, port: int, no_browser: bool) -
         server.end()
 
 
-def _print_diagram(diagram: LobeDiagram) -> None:
+def _print_diagram(diagram: StabilityDiagram) -> None:
     _print_pockets(diagram.summary())
     _print_method(diagram.summary())
 
@@ -141,7 +141,7 @@ def _print_pockets(summary: dict) -> None:
         [
             f"{pocket['spindle_speed_rpm']:.0f}",
             f"{pocket['axial_depth_mm']:.3f}",
-            _millimetres(pocket["limit_depth_mm"], summary["searched_to_mm"]),
+            _millimetres(pocket["critical_depth_mm"], summary["max_axial_depth_mm"]),
             f"{pocket['removal_rate_cm3_per_min']:.3g}",
         ]
         for pocket in summary["pockets"]
@@ -162,15 +162,15 @@ def _print_pockets(summary: dict) -> None:
         f"operating point {operating['spindle_speed_rpm']:.0f} rpm, "
         f"{operating['axial_depth_mm']:.4g} mm: "
         f"{'stable' if operating['stable'] else 'chatter'}; "
-        f"limit there {_millimetres(limit, summary['searched_to_mm'])} mm"
+        f"limit there {_millimetres(limit, summary['max_depth_mm'])} mm"
     )
 
 
 def _print_method(summary: dict) -> None:
     error = summary["resolution"]["estimated_error"]
-    good_to = "" if error is None else f"; limits good to {max(error, 1e-6):.1g} of their depth"
-    typer.echo(f"method: {summary['method']}{good_to}")
+    accuracy = "" if error is None else f"; limits accurate to {max(error, 1e-6):.1g}"
+    typer.echo(f"method: {summary['method']}{accuracy}")
 
 
-def _millimetres(depth: float | None, searched_to: float) -> str:
-    return f"> {searched_to:.4g}" if depth is None else f"{depth:.4g}"
+def _millimetres(depth: float | None, max_depth: float) -> str:
+    return f"> {max_depth:.4g}" if depth is None else f"{depth:.4g}"

@@ -11,6 +11,7 @@ from chatter.description.assignments import parse_assignments
 from chatter.description.case import Case, load
 from chatter.description.patchable import Description
 from chatter.report.console import print_notes
+from chatter.stability.registry import AUTO, METHODS
 
 if TYPE_CHECKING:
     from chatter.description.machine.machine_file import MachineFile
@@ -43,8 +44,7 @@ Method = Annotated[
     str | None,
     typer.Option(
         "--method",
-        help="auto (default), collocation, semi-discretization (also -0 and -2), "
-        "full-discretization, matrix-free, multi-frequency, zero-order or time-domain.",
+        help=f"{AUTO} (default), {', '.join(METHODS.names())}.",
     ),
 ]
 

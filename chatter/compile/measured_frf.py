@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from chatter.compile.drive_point_check import NOT_PASSIVE, is_passive, with_magnitudes
 from chatter.description.errors import InputError
 from chatter.io.formats.registry import read_frfs
-from chatter.stability.methods.zeroth_order.method import frequency_lines
 from dynamics.frf.container import Frf, MeasurementError, Point, on_common_lines
 from dynamics.identification.fit import identify_modes
 from dynamics.identification.prepare import prepare
 from dynamics.identification.result import ModalFit
+from dynamics.modal.frequency_lines import frequency_lines
 from dynamics.modal.modes import Mode, Side, receptance_matrix
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from chatter.compile.measured_frf import MeasuredSide, measured_sides
 from chatter.description.errors import InputError
 from chatter.description.units import rpm
-from chatter.stability.methods.zeroth_order.method import frequency_lines
 from dynamics.frf.container import MeasurementError
 from dynamics.identification.result import ModalFit
+from dynamics.modal.frequency_lines import frequency_lines
 from dynamics.modal.modes import Mode, receptance_matrix
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def depends_on_speed(case: Case) -> bool:
     )
 
 
-def standing_speeds(case: Case, speeds: NDArray[np.float64]) -> NDArray[np.float64]:
+def reference_speeds(case: Case, speeds: NDArray[np.float64]) -> NDArray[np.float64]:
     """Spindle speed whose structure stands for each speed (rad/s): alike means the same structure.
 
     Of measured FRFs those of the nearest speed stand for all around it; modes change with every

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from chatter.detection.chatter_frequency import ChatterLine
 from chatter.detection.deviations import directions_of
 
+#: |Im| below this share of |mu| is a real multiplier
+_REAL_SHARE = 1e-6
 #: periods of an orbit that are looked for
 _LONGEST = 12
 #: share of the variance from period to period that an orbit of n periods may leave unexplained
@@ -20,6 +22,12 @@ _DRIFT = 0.5
 _ONE_SHAPE = 0.97
 #: steady enough for an orbit to close, growth over the window
 _STEADY = 0.3
+
+
+def bifurcation_of_multiplier(multiplier: complex) -> str:
+    """``"flip"`` where a dominant Floquet multiplier is real and negative, else ``"hopf"``."""
+    is_real = abs(multiplier.imag) <= _REAL_SHARE * abs(multiplier)
+    return "flip" if is_real and multiplier.real < 0.0 else "hopf"
 
 
 def bifurcation_of(

@@ -17,7 +17,8 @@ from chatter.description.units import rpm
 from chatter.explain.kinds.kind import Cuts
 from chatter.explain.kinds.registry import KINDS
 from chatter.explain.measurement import Measurement
-from chatter.stability.diagram import LobeDiagram, lobes
+from chatter.stability.diagram import StabilityDiagram
+from chatter.stability.lobes import lobes
 
 Array = NDArray[np.float64]
 
@@ -40,7 +41,7 @@ class LobesBeforeAfter:
 
     Parameters
     ----------
-    diagrams : dict of str to LobeDiagram
+    diagrams : dict of str to StabilityDiagram
         By model: declared, refitted, repaired.
     cuts : Cuts
         Measured.
@@ -48,7 +49,7 @@ class LobesBeforeAfter:
         Sentences.
     """
 
-    diagrams: dict[str, LobeDiagram]
+    diagrams: dict[str, StabilityDiagram]
     cuts: Cuts
     description: tuple[str, ...]
 
@@ -123,13 +124,13 @@ def _ranged(cuts: Cuts, lowest: float, count: int) -> dict[str, dict[str, str | 
     }
 
 
-def _finite(before: LobeDiagram, after: LobeDiagram) -> tuple[Array, Array, Array]:
+def _finite(before: StabilityDiagram, after: StabilityDiagram) -> tuple[Array, Array, Array]:
     old, new = before.limits.critical_depth, after.limits.critical_depth
     both = np.isfinite(old) & np.isfinite(new)
     return rpm(before.limits.spindle_speed[both]), old[both], new[both]
 
 
-def _largest_change(before: LobeDiagram, after: LobeDiagram) -> float:
+def _largest_change(before: StabilityDiagram, after: StabilityDiagram) -> float:
     _, old, new = _finite(before, after)
     appeared = np.isfinite(before.limits.critical_depth) != np.isfinite(after.limits.critical_depth)
     if appeared.any() or old.size == 0:
@@ -137,7 +138,7 @@ def _largest_change(before: LobeDiagram, after: LobeDiagram) -> float:
     return float(np.max(np.abs(new / old - 1.0)))
 
 
-def _change(before: LobeDiagram, after: LobeDiagram) -> str:
+def _change(before: StabilityDiagram, after: StabilityDiagram) -> str:
     speed, old, new = _finite(before, after)
     if old.size == 0:
         return "no limit lies within the depths searched in both."

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from chatter.compile.structure import depends_on_speed
 from chatter.description.case import Case
+from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.methods.collocation.multipliers import multipliers
 from chatter.stability.model import milling_model
 
@@ -31,7 +32,7 @@ def stability_margins(
     for speed in groups:
         chosen = slice(None) if speed is None else speeds == speed
         own = case if speed is None else case.patch({"cut.spindle_speed": float(speed)})
-        cut = milling_model(own).cut((1.0 + _STEP) * float(depths[chosen].max()))
+        cut = element_cut(milling_model(own), (1.0 + _STEP) * float(depths[chosen].max()))
         at = multipliers(cut, speeds[chosen], depths[chosen])
         above = multipliers(cut, speeds[chosen], depths[chosen] * (1.0 + _STEP))
         rate[chosen] = np.log(np.maximum(np.abs(at), 1e-12))

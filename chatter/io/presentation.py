@@ -11,5 +11,5 @@ from types import ModuleType
 
 
 def presentation(module: str) -> ModuleType:
-    """Return a module of pictures or pages, such as ``"plots.lobes"``."""
+    """Return a module of pictures or pages, such as ``"plots.stability_diagram"``."""
     return import_module(f"chatter.{module}")

@@ -238,7 +238,7 @@ def plot_lobes_before_after(found: LobesBeforeAfter) -> Figure:
             lw=1.6,
             label=f"limit, {model}",
         )
-        top = max(top, 1e3 * diagram.deepest)
+        top = max(top, 1e3 * float(diagram.max_depth[0]))
     _draw_cuts(axes, found.cuts)
     depths = 1e3 * found.cuts.depth
     if depths.max() > _WIDE * depths.min():

@@ -1,79 +1,112 @@
-"""Dominant Floquet multiplier of a period map, by Arnoldi iteration without forming its matrix."""
+"""Dominant eigenpair of a monodromy operator by Arnoldi iteration, without forming its matrix.
+
+Arnoldi 1951. The vectors that the operator makes one of the other span the space in which the
+eigenvalue of largest magnitude is searched. An operator is a NamedTuple whose application is
+registered here; compiled code finds it by its type. Collocation iterates on a SIMD batch of eight
+operators whose members converge one by one: `batch_multipliers` holds that loop.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+from numba.extending import overload
 
-from chatter.engine.presets import KERNEL, SUMMING_KERNEL
+from chatter.engine.presets import SUMMING_KERNEL
 from chatter.stability.hessenberg import dominant_pair
-from chatter.stability.methods.semi_discretization.monodromy import apply_period_map, period_scratch
 
-#: residual of the dominant eigenpair, relative to its magnitude, at which the iteration stops
-_TOLERANCE = 1e-8
-#: dimension of the Krylov space beyond the state at the first look, and how it grows
-_FIRST_LOOK = 5
+#: growth of the space from one check of convergence to the next
 _GROWTH = 1.3
-_LARGEST_SPACE = 240
 
 
-@njit(**KERNEL)
-def _start_vector(period, out, scratch):
-    """A fixed pseudo-random vector, smoothed by one pass through the map."""
-    start = np.empty(out.shape[0])
-    seed = 12345
-    for i in range(start.shape[0]):
-        seed = (1103515245 * seed + 12345) % 2147483648
-        start[i] = seed / 1073741824.0 - 1.0
-    scale = 0.0
-    size = period.output.shape[1]
-    for i in range(size):
-        scale += abs(period.output[0, i])
-    # motion is smaller than the state by the size of the output matrix
-    start[size:] *= scale / size
-    apply_period_map(period, start, out, scratch)
+class _Operator(NamedTuple):
+    scratch: Callable  # operator -> scratch arrays
+    apply: Callable  # operator, vector, out, scratch
 
 
-@njit(**SUMMING_KERNEL)
-def dominant_multiplier(period):
-    """Multiplier of largest magnitude and its vector.
+_OPERATORS: dict[type, _Operator] = {}
+
+
+def register_operator(kind: type, scratch: Callable, apply: Callable) -> None:
+    """Make compiled code apply operators of a NamedTuple class.
 
     Parameters
     ----------
-    period : PeriodMap
+    kind : type
+    scratch, apply : callable
+        Compiled: scratch(operator), and apply(operator, vector, out, scratch).
+    """
+    _OPERATORS[kind] = _Operator(scratch, apply)
+
+
+def scratch_of(operator):
+    """Scratch arrays for `apply_operator`."""
+    return _OPERATORS[type(operator)].scratch(operator)
+
+
+def apply_operator(operator, vector, out, scratch):
+    """Set out to the image of a vector after one period."""
+    _OPERATORS[type(operator)].apply(operator, vector, out, scratch)
+
+
+@overload(scratch_of)
+def _scratch_of(operator):
+    scratch = _OPERATORS[operator.instance_class].scratch
+    return lambda operator: scratch(operator)
+
+
+@overload(apply_operator)
+def _apply_operator(operator, vector, out, scratch):  # noqa: ARG001
+    apply = _OPERATORS[operator.instance_class].apply
+    return lambda operator, vector, out, scratch: apply(operator, vector, out, scratch)
+
+
+@njit(**SUMMING_KERNEL)
+def dominant_eigenpair(operator, start, check_at, tolerance, largest):
+    """Eigenvalue of largest magnitude and its vector.
+
+    Parameters
+    ----------
+    operator : NamedTuple
+        Of a registered class.
+    start : (d,) array of float
+        Smoothed by one application.
+    check_at : int
+        Dimension of the space at the first check of convergence.
+    tolerance : float
+        Residual of the eigenpair, relative to its magnitude, at which the iteration stops.
+    largest : int
+        Dimension of the largest space.
 
     Returns
     -------
-    multiplier : complex
+    value : complex
         Imaginary part >= 0.
-    vector : array of complex
-        State and earlier motion.
+    vector : (d,) array of complex
     residual : float
-        Norm of the eigenpair's residual over the multiplier's magnitude.
+        Norm of the residual of the eigenpair over the magnitude of the value.
     """
-    size = period.output.shape[1]
-    _, _, rank = period.from_left.shape
-    dimension = size + period.nodes * rank
-    scratch = period_scratch(period)
-    largest = min(dimension, _LARGEST_SPACE)
+    dimension = start.shape[0]
+    scratch = scratch_of(operator)
+    largest = min(dimension, largest)
+    check_at = min(check_at, largest)
     basis = np.empty((largest + 1, dimension))
     hessenberg = np.zeros((largest + 1, largest))
-    _start_vector(period, basis[0], scratch)
-    # delayed motion enters the inner product with the weight of the state
+    apply_operator(operator, start, basis[0], scratch)
     norm = math.sqrt((basis[0] ** 2).sum())
-    multiplier = complex(0.0, 0.0)
+    value, residual = complex(0.0, 0.0), 0.0
+    vector = np.zeros(dimension, dtype=np.complex128)
     if norm == 0.0:
-        return multiplier, np.zeros(dimension, dtype=np.complex128), 0.0
+        return value, vector, residual
     basis[0] /= norm
-    # weakly damped modes keep as many multipliers near the unit circle as there are states
-    look = min(_FIRST_LOOK + size, largest)
-    residual = np.inf
     coordinates = np.ones(1, dtype=np.complex128)
     used = 0
     for k in range(largest):
-        apply_period_map(period, basis[k], basis[k + 1], scratch)
+        apply_operator(operator, basis[k], basis[k + 1], scratch)
         before = math.sqrt((basis[k + 1] ** 2).sum())
         for _ in range(2):
             for j in range(k + 1):
@@ -87,15 +120,14 @@ def dominant_multiplier(period):
         used = k + 1
         invariant = norm <= 1e-14 * before
         hessenberg[k + 1, k] = norm
-        if used in (look, largest) or invariant:
-            multiplier, coordinates = dominant_pair(hessenberg[:used, :used].copy())
-            residual = norm * abs(coordinates[used - 1]) / max(abs(multiplier), 1e-300)
-            look = min(largest, math.ceil(look * _GROWTH))
-            if residual < _TOLERANCE or invariant:
+        if used in (check_at, largest) or invariant:
+            value, coordinates = dominant_pair(hessenberg[:used, :used].copy())
+            residual = norm * abs(coordinates[used - 1]) / max(abs(value), 1e-300)
+            check_at = min(largest, math.ceil(check_at * _GROWTH))
+            if residual < tolerance or invariant:
                 break
         basis[k + 1] /= norm
-    vector = np.zeros(dimension, dtype=np.complex128)
     for j in range(used):
         for i in range(dimension):
             vector[i] += coordinates[j] * basis[j, i]
-    return multiplier, vector, residual
+    return value, vector, residual

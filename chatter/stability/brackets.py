@@ -1,4 +1,4 @@
-"""The depth at which growth is zero, in brackets between two depths, all at once."""
+"""The depth at which growth rate is zero, in brackets between two depths, all at once."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-#: growth at points: (indices of speeds, depths) -> (n,)
-Growth = Callable[[NDArray[np.int64], NDArray[np.float64]], NDArray[np.float64]]
+#: growth rate at points: (indices of speeds, depths) -> (n,)
+GrowthRate = Callable[[NDArray[np.int64], NDArray[np.float64]], NDArray[np.float64]]
 
-#: growth that is none
+#: growth rate that is none
 _GROWTH_TOLERANCE = 1e-9
-#: a root is found when the growth left, over its slope, is this share of the tolerance
+#: a root is found when the growth rate left, over its slope, is this share of the tolerance
 _ROOT_SHARE = 0.2
 _MOST_ITERATIONS = 60
 #: steps after which straight lines alone are trusted
@@ -21,7 +21,7 @@ _MOST_CURVED = 8
 #: every so many steps keep off the ends, where one is far steeper than the other, by a share of the
 #: bracket while curves are trusted, later by another
 _KEEP_OFF, _SMALL_SHARE, _LARGE_SHARE = 3, 0.02, 0.5
-#: a root is taken without another look when it has moved by this share of the tolerance
+#: a root is taken without another evaluation when it has moved by this share of the tolerance
 _UNSEEN = 0.5
 
 
@@ -31,7 +31,7 @@ class Brackets(NamedTuple):
     speed: NDArray[np.int64]
     low: NDArray[np.float64]
     high: NDArray[np.float64]
-    at_low: NDArray[np.float64]  # growth
+    at_low: NDArray[np.float64]  # growth_rate
     at_high: NDArray[np.float64]
     beside: NDArray[np.float64]  # depths next to the two, nan where there is none (2, n)
     at_beside: NDArray[np.float64]  # (2, n)
@@ -58,7 +58,7 @@ def bracket(
 
 
 class _Narrowing:
-    """Brackets that get smaller with every depth that is looked at."""
+    """Brackets that get smaller with every depth that is evaluated."""
 
     def __init__(self, brackets: Brackets) -> None:
         self.low, self.high = brackets.low.copy(), brackets.high.copy()
@@ -71,8 +71,8 @@ class _Narrowing:
         # roots by inverse interpolation through up to four points
         self.interpolated = _inverse_interpolation(self.x, self.y, self.low)
 
-    def next_look(self, k: NDArray[np.int64], iteration: int) -> NDArray[np.float64]:
-        """Depth to look at in brackets k."""
+    def next_depth(self, k: NDArray[np.int64], iteration: int) -> NDArray[np.float64]:
+        """Next depth to evaluate in brackets k."""
         low, high, at_high = self.low[k], self.high[k], self.scaled_high[k]
         width = high - low
         straight = high - at_high * width / (at_high - self.scaled_low[k])
@@ -87,7 +87,7 @@ class _Narrowing:
     def slope(
         self, k: NDArray[np.int64], depth: NDArray[np.float64], value: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Slope of growth at a depth within brackets k, on the flatter side: a jump is none."""
+        """Slope of the growth rate in brackets k, on the flatter side: a jump has none."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.fmin(
                 np.abs(value - self.at_low[k]) / (depth - self.low[k]),
@@ -115,24 +115,24 @@ class _Narrowing:
         self.interpolated[k] = _inverse_interpolation(self.x[:, k], self.y[:, k], self.low[k])
 
 
-def roots_in(brackets: Brackets, growth: Growth, tolerance: float) -> NDArray[np.float64]:
+def roots_in(brackets: Brackets, growth_rate: GrowthRate, tolerance: float) -> NDArray[np.float64]:
     """Root in each bracket by inverse interpolation through up to four points, all at once.
 
     Where that leaves the bracket, the Illinois method. Interpolation through a point that has just
-    been looked at is far closer to the root than that point: it is taken unseen when it has moved
-    by half a tolerance.
+    been evaluated is far closer to the root than that point: it is taken without it when it has
+    moved by half a tolerance.
 
     Parameters
     ----------
     brackets : Brackets
-    growth : callable
+    growth_rate : callable
     tolerance : float
         Of a root, relative to its depth.
 
     Returns
     -------
     (n,) array of float
-        m; where growth does not change its sign, the end at which it is closer to zero.
+        m; where growth rate does not change its sign, the end at which it is closer to zero.
     """
     narrowing = _Narrowing(brackets)
     at_low, at_high = brackets.at_low, brackets.at_high
@@ -141,8 +141,8 @@ def roots_in(brackets: Brackets, growth: Growth, tolerance: float) -> NDArray[np
     for iteration in range(_MOST_ITERATIONS):
         if k.size == 0:
             break
-        depth = narrowing.next_look(k, iteration)
-        value = growth(brackets.speed[k], depth)
+        depth = narrowing.next_depth(k, iteration)
+        value = growth_rate(brackets.speed[k], depth)
         close = tolerance * depth * narrowing.slope(k, depth, value)
         narrowing.take(k, depth, value)
         low, high = narrowing.low[k], narrowing.high[k]
@@ -163,15 +163,15 @@ def _with_point(
     y: NDArray[np.float64],
     low: NDArray[np.float64],
     high: NDArray[np.float64],
-    place: NDArray[np.float64],
+    point: NDArray[np.float64],
     value: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Four points a column with a new one in the place of the furthest that is no end."""
-    distance = np.abs(x - place)
+    """Four points a column with a new one in the point of the furthest that is no end."""
+    distance = np.abs(x - point)
     distance = np.where(np.isfinite(distance), distance, np.inf)
     distance = np.where((x == low) | (x == high), -1.0, distance)
     furthest = np.arange(4)[:, None] == np.argmax(distance, axis=0)
-    return np.where(furthest, place, x), np.where(furthest, value, y)
+    return np.where(furthest, point, x), np.where(furthest, value, y)
 
 
 def _inverse_interpolation(
@@ -194,8 +194,8 @@ def _inverse_interpolation(
     sense = np.sign(y[first + 1, n] - y[first, n])
     with np.errstate(invalid="ignore"):
         goes_on = sense * np.diff(y, axis=0) > 0.0
-    place = np.arange(4)[:, None]
-    kept = (place == first) | (place == first + 1)
+    point = np.arange(4)[:, None]
+    kept = (point == first) | (point == first + 1)
     for step in (1, 2):
         for end, further in ((first + step, first + step + 1), (first + 1 - step, first - step)):
             there = (further >= 0) & (further <= 3)

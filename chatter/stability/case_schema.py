@@ -10,4 +10,4 @@ from chatter.stability.registry import AUTO, METHODS
 
 def schema() -> dict[str, Any]:
     """Return the JSON schema (draft 2020-12) of the case file."""
-    return case_schema.schema((AUTO, *METHODS))
+    return case_schema.schema((AUTO, *METHODS.names()))

@@ -10,17 +10,18 @@ import numpy as np
 from chatter.description.case import Case
 from chatter.description.progress import no_progress
 from chatter.description.units import rpm
+from chatter.detection.bifurcation_type import bifurcation_of_multiplier
 from chatter.io.result_files import as_json, finite_or_none, write_results
-from chatter.stability.floquet_multiplier import Multiplier, bifurcation_kind
 from chatter.stability.forced_vibration import notes_on_steady_cut
 from chatter.stability.limit_curve import LimitCurve
+from chatter.stability.method import Multiplier
+from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import milling_model
 from chatter.stability.registry import (
     chosen_method,
-    operating_frequency,
-    operating_multiplier,
-    resolution,
-    zero_order_of,
+    fixed_steps,
+    with_chatter_frequency,
+    with_multiplier,
 )
 from chatter.stability.search_range import depths_at_one_speed
 
@@ -33,15 +34,15 @@ class StabilityCheck:
     ----------
     case : Case
     method : str
-        That gave the limit depth.
+        Name of the one that gave the critical depth.
     multiplier : Multiplier
         Dominant multiplier at the operating point.
     chatter_frequency : float
         Hz, of the motion that grows; nan where the cut is stable.
     limit : LimitCurve
         At the operating speed alone.
-    searched_to : float
-        m.
+    max_depth : float
+        Maximum axial depth searched, m.
     zero_order_depth : float
         Limit by the zeroth-order solution, m.
     notes : tuple of str
@@ -52,7 +53,7 @@ class StabilityCheck:
     multiplier: Multiplier
     chatter_frequency: float
     limit: LimitCurve
-    searched_to: float
+    max_depth: float
     zero_order_depth: float
     notes: tuple[str, ...] = ()
 
@@ -69,7 +70,7 @@ class StabilityCheck:
     @property
     def bifurcation(self) -> str:
         """Kind of the instability at the operating point; ``"none"`` where it is stable."""
-        return "none" if self.stable else bifurcation_kind(self.multiplier.value)
+        return "none" if self.stable else bifurcation_of_multiplier(self.multiplier.value)
 
     @property
     def critical_depth(self) -> float:
@@ -92,7 +93,7 @@ class StabilityCheck:
                 "bifurcation": self.limit.bifurcation[0],
                 "crossings_mm": [float(depth * 1e3) for depth in self.limit.crossings[0]],
                 "estimated_error": finite_or_none(self.limit.error),
-                "searched_to_mm": self.searched_to * 1e3,
+                "max_axial_depth_mm": self.max_depth * 1e3,
                 "zero_order_depth_mm": finite_or_none(self.zero_order_depth * 1e3),
             },
             "method": self.method,
@@ -107,15 +108,14 @@ class StabilityCheck:
 
 
 def check(case: Case, method: str | None = None) -> StabilityCheck:
-    """Judge the operating point of a case and find the limit depth at its speed.
+    """Judge the operating point of a case and find the critical depth at its speed.
 
     Parameters
     ----------
     case : Case
     method : str, optional
-        Gives the limit depth: one of `chatter.stability.registry.METHODS`, or "auto". The
-        spectral radius is that of semi-discretization or the matrix-free method where that is
-        the method, else of collocation.
+        Gives the critical depth: name in `chatter.stability.registry.METHODS`, or "auto". The
+        spectral radius is that of the method where it gives one, else of collocation.
 
     Returns
     -------
@@ -126,22 +126,24 @@ def check(case: Case, method: str | None = None) -> StabilityCheck:
     InputError
         If the case lacks something or asks for what cannot be computed.
     """
-    name, limits_of = chosen_method(case, method)
+    chosen = chosen_method(case, method)
     model = milling_model(case)
-    point = operating_multiplier(model, name, resolution(case))
-    heard = np.nan
-    if abs(point.value) >= 1.0:
-        heard = operating_frequency(model, name)
+    chosen.check(model)
+    steps = fixed_steps(case)
+    multiplier = with_multiplier(chosen).multiplier(model, steps)
+    frequency = np.nan
+    if abs(multiplier.value) >= 1.0:
+        frequency = with_chatter_frequency(chosen).chatter_frequency(model)
     speeds = np.array([case.cut.spindle_speed])
     zero_order = zero_order_of(model, speeds)
     depths = depths_at_one_speed(case, zero_order)
     return StabilityCheck(
         case=case,
-        method=name,
-        multiplier=point,
-        chatter_frequency=heard,
-        limit=limits_of(model, speeds, depths, resolution(case), no_progress),
-        searched_to=float(depths[-1]),
+        method=chosen.name,
+        multiplier=multiplier,
+        chatter_frequency=frequency,
+        limit=chosen.limits(model, speeds, depths, steps, no_progress),
+        max_depth=float(depths[-1]),
         zero_order_depth=float(zero_order.critical_depth[0]),
-        notes=(*model.notes, *notes_on_steady_cut(model, name)),
+        notes=(*model.notes, *notes_on_steady_cut(model, chosen)),
     )

@@ -1,10 +1,10 @@
-"""Where stability is lost or regained along depth: net, then the root in every bracket.
+"""Where stability is lost or regained along depth: grid, then the root in every bracket.
 
-A stretch that fits between two depths of the net is not passed over where the growth beside it
-nearly reaches zero: the top of such a peak, or the floor of such a valley, is looked for.
+A interval that fits between two depths of the grid is not passed over where the growth rate beside
+it nearly reaches zero: the top of such a peak, or the floor of such a valley, is searched.
 
-The search knows nothing of the method: it asks for the growth (logarithm of the spectral radius)
-at batches of points, which the sweep spreads over the threads.
+The search knows nothing of the method: it asks for the growth_rate (logarithm of the spectral
+radius) at batches of points, which the sweep spreads over the threads.
 """
 
 from __future__ import annotations
@@ -14,88 +14,91 @@ import itertools
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.stability.brackets import Brackets, Growth, bracket, roots_in
+from chatter.stability.brackets import Brackets, GrowthRate, bracket, roots_in
 
 #: of a limit, relative to its depth
 _DEPTH_TOLERANCE = 1e-7
-#: growth on the net may be off by this much
+#: growth_rate on the grid may be off by this much
 _DOUBTFUL_GROWTH = 0.05
-#: a peak may rise above the net by this share of its height over the depths beside it
+#: a peak may rise above the grid by this share of its height over the depths beside it
 _PEAK_REACH = 1.5
 _PEAK_STEPS = 4
 
 
-def growth_on_net(
-    speed_count: int, depths: NDArray[np.float64], plain: Growth, refined: Growth
+def growth_rate_on_grid(
+    speed_count: int, depths: NDArray[np.float64], plain: GrowthRate, refined: GrowthRate
 ) -> NDArray[np.float64]:
-    """Growth (speeds, depths) on the net, refined where its sign matters and is in doubt."""
+    """Growth rate (speeds, depths) on the grid, refined where its sign matters and is in doubt."""
     speed, depth = (
         part.ravel() for part in np.meshgrid(np.arange(speed_count), depths, indexing="ij")
     )
-    growth = plain(speed, depth).reshape(speed_count, depths.size)
-    settled = np.zeros(growth.shape, dtype=bool)
+    growth_rate = plain(speed, depth).reshape(speed_count, depths.size)
+    settled = np.zeros(growth_rate.shape, dtype=bool)
     # a refined value may change its sign and so put its neighbour in doubt
     while refined is not plain:
-        row, column = np.nonzero(_in_doubt(growth) & ~settled)
+        row, column = np.nonzero(_in_doubt(growth_rate) & ~settled)
         if row.size == 0:
             break
-        growth[row, column] = refined(row, depths[column])
+        growth_rate[row, column] = refined(row, depths[column])
         settled[row, column] = True
-    return growth
+    return growth_rate
 
 
-def _in_doubt(growth: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _in_doubt(growth_rate: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Points beside a change of sign, and peaks and valleys that nearly reach zero."""
-    before = np.concatenate([np.full((growth.shape[0], 1), -1e-12), growth[:, :-1]], axis=1)
-    after = np.concatenate([growth[:, 1:], growth[:, -1:]], axis=1)
-    changes = ((before > 0.0) != (growth > 0.0)) | ((after > 0.0) != (growth > 0.0))
-    near = np.abs(growth) < _DOUBTFUL_GROWTH
-    peak = (growth <= 0.0) & (growth >= before) & (growth >= after)
-    valley = (growth > 0.0) & (growth <= before) & (growth <= after)
+    before = np.concatenate(
+        [np.full((growth_rate.shape[0], 1), -1e-12), growth_rate[:, :-1]], axis=1
+    )
+    after = np.concatenate([growth_rate[:, 1:], growth_rate[:, -1:]], axis=1)
+    changes = ((before > 0.0) != (growth_rate > 0.0)) | ((after > 0.0) != (growth_rate > 0.0))
+    near = np.abs(growth_rate) < _DOUBTFUL_GROWTH
+    peak = (growth_rate <= 0.0) & (growth_rate >= before) & (growth_rate >= after)
+    valley = (growth_rate > 0.0) & (growth_rate <= before) & (growth_rate <= after)
     return changes | (near & (peak | valley))
 
 
 def find_crossings(
-    net: NDArray[np.float64],
+    grid: NDArray[np.float64],
     depths: NDArray[np.float64],
-    growth: Growth,
+    growth_rate: GrowthRate,
     tolerance: float = _DEPTH_TOLERANCE,
-    looked_at: NDArray[np.bool_] | None = None,
-    refined: Growth | None = None,
+    evaluated: NDArray[np.bool_] | None = None,
+    refined: GrowthRate | None = None,
 ) -> list[NDArray[np.float64]]:
     """Depths of all changes of stability at each speed.
 
     Parameters
     ----------
-    net : (n, m) array of float
-        Growth at n speeds and m depths.
+    grid : (n, m) array of float
+        Growth rate at n speeds and m depths.
     depths : (m,) array of float
         m, ascending, > 0. At zero depth the damped structure is stable.
-    growth : callable
+    growth_rate : callable
         Where a peak may be hidden, and at the end of a bracket.
     tolerance : float
         Of a limit, relative to its depth.
-    looked_at : (n, m) array of bool, optional
-        Where the growth of the net has the right sign alone, it is False; beside changes it is not.
+    evaluated : (n, m) array of bool, optional
+        Where the growth rate of the grid has the right sign alone, it is False; beside changes it
+        is not.
     refined : callable, optional
-        Growth for the refinement of brackets; `growth` by default.
+        Growth rate for the refinement of brackets; `growth_rate` by default.
 
     Returns
     -------
     list of n arrays
-        m, ascending; stability is lost at even places and regained at odd ones.
+        m, ascending; stability is lost at even indices and regained at odd ones.
     """
     edges = np.concatenate([[0.0], depths])
-    at_zero = np.full((net.shape[0], 1), -np.inf)
-    values = np.concatenate([at_zero, net], axis=1)
-    seen = values if looked_at is None else values.copy()
-    if looked_at is not None:
-        seen[:, 1:][~looked_at] = np.nan
-    parts = [_on_the_net(values, seen, edges, growth), *_between(seen, edges, growth)]
+    at_zero = np.full((grid.shape[0], 1), -np.inf)
+    values = np.concatenate([at_zero, grid], axis=1)
+    seen = values if evaluated is None else values.copy()
+    if evaluated is not None:
+        seen[:, 1:][~evaluated] = np.nan
+    parts = [_on_the_grid(values, seen, edges, growth_rate), *_between(seen, edges, growth_rate)]
     brackets = Brackets(*(np.concatenate(field, axis=-1) for field in zip(*parts, strict=True)))
-    limit = roots_in(brackets, refined or growth, tolerance)
+    limit = roots_in(brackets, refined or growth_rate, tolerance)
     order = np.lexsort((limit, brackets.speed))
-    first = np.searchsorted(brackets.speed[order], np.arange(net.shape[0] + 1))
+    first = np.searchsorted(brackets.speed[order], np.arange(grid.shape[0] + 1))
     return [limit[order[low:high]] for low, high in itertools.pairwise(first.tolist())]
 
 
@@ -103,7 +106,7 @@ def moved_crossings(
     speed: NDArray[np.int64],
     depth: NDArray[np.float64],
     reach: float,
-    growth: Growth,
+    growth_rate: GrowthRate,
     tolerance: float,
 ) -> NDArray[np.float64]:
     """Changes of stability next to those of a like problem.
@@ -114,7 +117,7 @@ def moved_crossings(
         Those of the like problem; depths in m.
     reach : float
         How far they may have moved, relative to their depth.
-    growth : callable
+    growth_rate : callable
     tolerance : float
         Relative to the depth.
 
@@ -124,38 +127,38 @@ def moved_crossings(
         m, nan where stability does not change within reach.
     """
     low, high = (1.0 - reach) * depth, (1.0 + reach) * depth
-    brackets = bracket(speed, low, growth(speed, low), high, growth(speed, high))
+    brackets = bracket(speed, low, growth_rate(speed, low), high, growth_rate(speed, high))
     changes = (brackets.at_low > 0.0) != (brackets.at_high > 0.0)
-    return np.where(changes, roots_in(brackets, growth, tolerance), np.nan)
+    return np.where(changes, roots_in(brackets, growth_rate, tolerance), np.nan)
 
 
-def _on_the_net(
+def _on_the_grid(
     values: NDArray[np.float64],
     seen: NDArray[np.float64],
     edges: NDArray[np.float64],
-    growth: Growth,
+    growth_rate: GrowthRate,
 ) -> Brackets:
     """Changes of sign between neighbouring depths."""
     unstable = values > 0.0
-    speed, place = np.nonzero(unstable[:, 1:] != unstable[:, :-1])
-    at_low = values[speed, place]
+    speed, column = np.nonzero(unstable[:, 1:] != unstable[:, :-1])
+    at_low = values[speed, column]
     unknown = np.flatnonzero(~np.isfinite(at_low))
-    at_low[unknown] = growth(speed[unknown], edges[place[unknown]])
+    at_low[unknown] = growth_rate(speed[unknown], edges[column[unknown]])
     # at zero depth there is no cut to make it unstable, whatever rounding says
     at_low[unknown] = np.minimum(at_low[unknown], -1e-12)
-    beside = np.stack([place - 1, place + 2])
+    beside = np.stack([column - 1, column + 2])
     there = (beside >= 0) & (beside < edges.size)
     beside = np.clip(beside, 0, edges.size - 1)
     at_beside = seen[speed, beside]
     there &= np.isfinite(at_beside)
     return Brackets(
-        speed, edges[place], edges[place + 1], at_low, values[speed, place + 1],
+        speed, edges[column], edges[column + 1], at_low, values[speed, column + 1],
         np.where(there, edges[beside], np.nan), np.where(there, at_beside, np.nan),
     )  # fmt: skip
 
 
 def _between(
-    values: NDArray[np.float64], edges: NDArray[np.float64], growth: Growth
+    values: NDArray[np.float64], edges: NDArray[np.float64], growth_rate: GrowthRate
 ) -> list[Brackets]:
     """Changes of sign about peaks and valleys that only reach across zero between the depths."""
     middle, before, after = values[:, 1:-1], values[:, :-2], values[:, 2:]
@@ -166,24 +169,24 @@ def _between(
             np.where(np.isfinite(before), np.abs(middle - before), 0.0), np.abs(middle - after)
         )
         same = ((before > 0.0) == (middle > 0.0)) & ((after > 0.0) == (middle > 0.0))
-        speed, place = np.nonzero(peak & same & (np.abs(middle) < _PEAK_REACH * step))
-    x = np.stack([edges[place], edges[place + 1], edges[place + 2]])
-    y = np.stack([before[speed, place], middle[speed, place], after[speed, place]])
+        speed, column = np.nonzero(peak & same & (np.abs(middle) < _PEAK_REACH * step))
+    x = np.stack([edges[column], edges[column + 1], edges[column + 2]])
+    y = np.stack([before[speed, column], middle[speed, column], after[speed, column]])
     found: list[Brackets] = []
     for _ in range(_PEAK_STEPS):
         known = np.all(np.isfinite(y), axis=0)
         speed, x, y = speed[known], x[:, known], y[:, known]
         if speed.size == 0:
             break
-        place = _vertex(x, y)
-        value = growth(speed, place)
+        depth = _vertex(x, y)
+        value = growth_rate(speed, depth)
         across = (value > 0.0) != (y[1] > 0.0)
         k = np.flatnonzero(across)
-        # of the two old middles and ends, those next to the new place
-        left = np.where(place < x[1], 0, 1)
+        # of the two old middles and ends, those next to the new depth
+        left = np.where(depth < x[1], 0, 1)
         for end in (left[k], left[k] + 1):
-            found.append(bracket(speed[k], place[k], value[k], x[end, k], y[end, k]))
-        speed, x, y = _narrowed(speed, x, y, place, value, ~across)
+            found.append(bracket(speed[k], depth[k], value[k], x[end, k], y[end, k]))
+        speed, x, y = _narrowed(speed, x, y, depth, value, ~across)
     return found
 
 
@@ -206,17 +209,17 @@ def _narrowed(
     speed: NDArray[np.int64],
     x: NDArray[np.float64],
     y: NDArray[np.float64],
-    place: NDArray[np.float64],
+    depth: NDArray[np.float64],
     value: NDArray[np.float64],
     kept: NDArray[np.bool_],
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
     """Triples about the extremum that the new values leave."""
-    speed, x, y, place, value = speed[kept], x[:, kept], y[:, kept], place[kept], value[kept]
+    speed, x, y, depth, value = speed[kept], x[:, kept], y[:, kept], depth[kept], value[kept]
     side = np.where(y[1] > 0.0, -1.0, 1.0)
-    further, beyond = side * value > side * y[1], place > x[1]
+    further, beyond = side * value > side * y[1], depth > x[1]
     low = np.where(further, np.where(beyond, 1, 0), np.where(beyond, 0, 3))
     middle = np.where(further, 3, 1)
     high = np.where(further, np.where(beyond, 2, 1), np.where(beyond, 3, 2))
-    all_x, all_y = np.vstack([x, place]), np.vstack([y, value])
+    all_x, all_y = np.vstack([x, depth]), np.vstack([y, value])
     picked, column = np.stack([low, middle, high]), np.arange(speed.size)
     return speed, all_x[picked, column], all_y[picked, column]

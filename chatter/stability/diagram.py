@@ -1,9 +1,16 @@
-"""Stability lobe diagram of a case: limits over spindle speed by two independent methods."""
+"""Stability diagrams: the critical depth over an axis, and the spectral radius over two.
+
+The spindle speed is one axis: `chatter.stability.lobes` draws over it, `chatter.studies` over any
+path of a case.
+"""
 
 from __future__ import annotations
 
+import csv
+import io
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,123 +18,245 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
-from chatter.description.progress import Progress, no_progress
 from chatter.description.units import rpm
-from chatter.engine.parallel import Executor
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, write_results
-from chatter.stability.forced_vibration import notes_on_steady_cut
-from chatter.stability.grid_blocks import radius_in_blocks
 from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.methods.collocation.converged_limits import LIMIT_ERROR
-from chatter.stability.methods.zeroth_order.method import ZeroOrderLimit
-from chatter.stability.model import MillingModel, milling_model
-from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN, Pocket, find_pockets
-from chatter.stability.reference_speeds import natural_frequencies
-from chatter.stability.registry import (
-    GRIDS,
-    LimitMethod,
-    chosen_method,
-    radius_by_collocation,
-    resolution,
-    zero_order_of,
-)
-from chatter.stability.search_range import axial_depths, deepest_depth, spindle_speeds
+from chatter.stability.methods.zeroth_order.uniform_pitch import ZeroOrderLimit
+from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN, Pocket
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+#: values excluded that are reported on the terminal
+_MOST_REPORTED = 3
+
 
 @dataclass(frozen=True)
-class StabilityGrid:
-    """Spectral radius on a grid of speeds and depths.
+class DiagramAxis:
+    """A value of a case along an axis of a diagram.
 
     Parameters
     ----------
-    spindle_speed : (n,) array of float
-        rad/s.
-    axial_depth : (m,) array of float
-        m.
-    spectral_radius : (m, n) array of float
-        Over one period of the cut: from tooth to tooth where they are alike, else a turn or what
-        part of it repeats, or that of the speed variation; above 1 is chatter.
+    name : str
+        Path in the case, as in headings.
+    unit : str
+    values : (n,) array of float
+        In the unit.
+    labels : tuple of n str
+        The values as people read them.
+    case_value : float
+        What the case itself has, in the unit; nan where it has none.
     """
 
-    spindle_speed: NDArray[np.float64]
-    axial_depth: NDArray[np.float64]
-    spectral_radius: NDArray[np.float64]
+    name: str
+    unit: str
+    values: NDArray[np.float64]
+    labels: tuple[str, ...] = ()
+    case_value: float = math.nan
 
-    def save(self, path: Path) -> None:
-        """Write grid.npz: spindle_speed [rpm], axial_depth [mm], spectral_radius."""
-        np.savez_compressed(
-            path,
-            spindle_speed=rpm(self.spindle_speed),
-            axial_depth=self.axial_depth * 1e3,
-            spectral_radius=self.spectral_radius,
-        )
+    @property
+    def heading(self) -> str:
+        """Name with the unit."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+    def summary(self) -> dict:
+        """Return the axis as JSON knows it."""
+        return {
+            "path": self.name,
+            "unit": self.unit,
+            "values": self.values.tolist(),
+            "value_of_the_case": finite_or_none(self.case_value),
+        }
 
 
 @dataclass(frozen=True)
-class LobeDiagram:
-    """Stability limits of a case over spindle speed.
+class StabilityMap:
+    """Spectral radius over two axes.
 
     Parameters
     ----------
     case : Case
     method : str
-        Key of `chatter.stability.registry.METHODS` that gave the limits.
-    limits : LimitCurve
-        Limit depth (m), chatter frequency (Hz), bifurcation at every speed (rad/s).
-    zero_order : ZeroOrderLimit
-        The zeroth-order solution, for comparison.
-    deepest : float
-        Depth to which limits were looked for, m.
-    pockets : tuple of Pocket
-        Places worth using, highest removal rate first.
-    operating : LimitCurve
-        Limits at the speed of the case alone.
-    natural_frequencies : (k, n) array of float
-        Of the k modes at every speed, Hz.
-    grid : StabilityGrid or None
+    x_axis, y_axis : DiagramAxis
+        Of n and m values.
+    spectral_radius : (m, n) array of float
+        Over one period of the cut: the tooth period of a uniform pitch, else a revolution or what
+        part of it repeats, or that of the speed variation; above 1 is chatter.
     notes : tuple of str
-        Assumptions and limits of the result.
+    excluded : mapping
+        Values that describe no cut, and why; their points of the map are nan.
     """
 
     case: Case
     method: str
-    limits: LimitCurve
-    zero_order: ZeroOrderLimit
-    deepest: float
-    pockets: tuple[Pocket, ...]
-    operating: LimitCurve
-    natural_frequencies: NDArray[np.float64]
-    grid: StabilityGrid | None = None
+    x_axis: DiagramAxis
+    y_axis: DiagramAxis
+    spectral_radius: NDArray[np.float64]
     notes: tuple[str, ...] = ()
+    excluded: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def boundary(self) -> tuple[NDArray[np.float64], ...]:
+        """Values of y where the spectral radius passes 1, at each x (n arrays).
+
+        Between points of the map the logarithm of the spectral radius is taken as linear.
+        """
+        growth_rate = np.log(np.maximum(self.spectral_radius, 1e-300))
+        return tuple(_zeros(self.y_axis.values, column) for column in growth_rate.T)
+
+    def summary(self) -> dict:
+        """Return the content of summary.json."""
+        return {
+            "title": self.case.title,
+            "method": self.method,
+            "x": self.x_axis.summary(),
+            "y": self.y_axis.summary(),
+            "stable_share": self._stable_share,
+            "lowest_spectral_radius": float(np.nanmin(self.spectral_radius)),
+            "highest_spectral_radius": float(np.nanmax(self.spectral_radius)),
+            "boundary": [found.tolist() for found in self.boundary],
+            "excluded": dict(self.excluded),
+            "notes": list(self.notes),
+        }
+
+    def told(self) -> list[str]:
+        """Return sentences for the terminal."""
+        radius = self.spectral_radius
+        return [
+            *_report_of(self.excluded),
+            f"{self._stable_share:.0%} of the map is stable; spectral radius from "
+            f"{np.nanmin(radius):.4g} to {np.nanmax(radius):.4g}",
+        ]
+
+    @property
+    def _stable_share(self) -> float:
+        known = self.spectral_radius[np.isfinite(self.spectral_radius)]
+        return float((known < 1.0).mean())
+
+    def plot(self) -> Figure:
+        """Return the map as a matplotlib figure."""
+        return presentation("plots.stability_diagram").plot_map(self)
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write lobes.csv, lobes.png and summary.json; return what was written."""
+        rows = [
+            [f"{x:.9g}", f"{y:.9g}", f"{radius:.9g}" if math.isfinite(radius) else ""]
+            for y, row in zip(self.y_axis.values, self.spectral_radius, strict=True)
+            for x, radius in zip(self.x_axis.values, row, strict=True)
+        ]
+        heading = [self.x_axis.heading, self.y_axis.heading, "spectral_radius"]
+        return _save(self, folder, heading, rows)
+
+    def save_grid(self, path: Path) -> Path:
+        """Write grid.npz of a map over spindle speed [rpm] and axial depth [mm]."""
+        np.savez_compressed(
+            path,
+            spindle_speed=self.x_axis.values,
+            axial_depth=self.y_axis.values,
+            spectral_radius=self.spectral_radius,
+        )
+        return path
+
+
+@dataclass(frozen=True)
+class StabilityDiagram:
+    """Critical depth over an axis.
+
+    Parameters
+    ----------
+    case : Case
+    method : str
+        Name in `chatter.stability.registry.METHODS`.
+    axis : DiagramAxis
+        Of n values.
+    limits : LimitCurve
+        Limits at each value; a critical depth is nan where there is none at all.
+    max_depth : (n,) array of float
+        Maximum axial depth searched, m.
+    notes : tuple of str
+        Assumptions and limits of the result.
+    reasons : tuple of n str
+        Why a value has no limit at all, as where the tool does not reach the work; empty where it
+        was searched.
+    zero_order : ZeroOrderLimit, optional
+        Over spindle speed: the zeroth-order approximation, for comparison.
+    pockets : tuple of Pocket
+        Over spindle speed: cuts worth using, highest removal rate first.
+    operating : LimitCurve, optional
+        Over spindle speed: limits at the speed of the case alone.
+    natural_frequencies : (k, n) array of float
+        Over spindle speed: of the k modes, Hz.
+    depth_step : float
+        Of the grid on which limits were searched, m.
+    grid : StabilityMap or None
+        Spectral radius over spindle speed and depth.
+    """
+
+    case: Case
+    method: str
+    axis: DiagramAxis
+    limits: LimitCurve
+    max_depth: NDArray[np.float64]
+    notes: tuple[str, ...] = ()
+    reasons: tuple[str, ...] = ()
+    zero_order: ZeroOrderLimit | None = None
+    pockets: tuple[Pocket, ...] = ()
+    operating: LimitCurve | None = None
+    natural_frequencies: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 0)))
+    depth_step: float = math.nan
+    grid: StabilityMap | None = None
+
+    @property
+    def is_over_speed(self) -> bool:
+        """True where the axis is the spindle speed of a lobe diagram."""
+        return self.zero_order is not None
+
+    @property
+    def excluded(self) -> dict[str, str]:
+        """Values that have no limit at all, and why."""
+        pairs = zip(self.axis.labels, self.reasons, strict=True) if self.reasons else ()
+        return {f"{self.axis.name} = {label}": why for label, why in pairs if why}
 
     @property
     def operating_is_stable(self) -> bool:
-        """True where the operating depth lies in a stable stretch at its speed."""
+        """True where the operating depth lies in a stable interval at the speed of the case."""
         below = self.operating.crossings[0] < self.case.cut.axial_depth
         return int(below.sum()) % 2 == 0
 
     def summary(self) -> dict:
         """Return the content of summary.json."""
-        cut = self.case.cut
         depth = self.limits.critical_depth
+        ends = {
+            "lowest_limit": self._end(int(np.nanargmin(depth))),
+            "highest_limit": self._end(int(np.nanargmax(depth))),
+        }
+        head = {"title": self.case.title, "method": self.method}
+        if self.is_over_speed:
+            return {**head, **self._summary_over_speed(), "notes": list(self.notes)}
+        return {
+            **head,
+            "x": self.axis.summary(),
+            **ends,
+            "values_with_several_stable_intervals": sum(len(c) > 1 for c in self.limits.crossings),
+            "excluded": self.excluded,
+            "notes": list(self.notes),
+        }
+
+    def _summary_over_speed(self) -> dict:
+        """Part of summary.json of a diagram over spindle speed."""
+        cut, limits = self.case.cut, self.limits
+        depth = limits.critical_depth
         lowest = int(np.argmin(depth))
         found = bool(np.isfinite(depth[lowest]))
+        speeds = self.axis.values
         return {
-            "title": self.case.title,
-            "method": self.method,
-            "spindle_speeds_rpm": [
-                float(rpm(self.limits.spindle_speed[0])),
-                float(rpm(self.limits.spindle_speed[-1])),
-            ],
-            "searched_to_mm": self.deepest * 1e3,
+            "spindle_speeds_rpm": [float(speeds[0]), float(speeds[-1])],
+            "max_axial_depth_mm": float(self.max_depth[0]) * 1e3,
             "lowest_limit": {
                 "critical_depth_mm": depth[lowest] * 1e3 if found else None,
-                "spindle_speed_rpm": rpm(self.limits.spindle_speed[lowest]) if found else None,
-                "chatter_frequency_Hz": self.limits.chatter_frequency[lowest] if found else None,
+                "spindle_speed_rpm": speeds[lowest] if found else None,
+                "chatter_frequency_Hz": limits.chatter_frequency[lowest] if found else None,
             },
             "operating_point": {
                 "spindle_speed_rpm": rpm(cut.spindle_speed),
@@ -140,22 +269,37 @@ class LobeDiagram:
             "zero_order": {
                 "lowest_limit_mm": finite_or_none(self.zero_order.lowest_depth * 1e3),
                 "chatter_frequency_Hz": self.zero_order.lowest_frequency,
-                **_comparison(self.limits.critical_depth, self.zero_order.critical_depth),
+                **_comparison(depth, self.zero_order.critical_depth),
             },
             "resolution": {
-                "steps_per_tooth_period": [
-                    int(self.limits.steps.min()),
-                    int(self.limits.steps.max()),
-                ],
-                "estimated_error": finite_or_none(self.limits.error),
-                "depth_step_mm": self.deepest * 1e3 / len(axial_depths(self.case, self.deepest)),
+                "steps_per_tooth_period": [int(limits.steps.min()), int(limits.steps.max())],
+                "estimated_error": finite_or_none(limits.error),
+                "depth_step_mm": self.depth_step * 1e3,
             },
-            "notes": list(self.notes),
         }
+
+    def _end(self, index: int) -> dict:
+        return {
+            "value": float(self.axis.values[index]),
+            "critical_depth_mm": finite_or_none(float(self.limits.critical_depth[index]) * 1e3),
+            "max_axial_depth_mm": float(self.max_depth[index]) * 1e3,
+            "chatter_frequency_Hz": finite_or_none(float(self.limits.chatter_frequency[index])),
+        }
+
+    def told(self) -> list[str]:
+        """Return sentences for the terminal."""
+        lines, summary = _report_of(self.excluded), self.summary()
+        for name in ("lowest_limit", "highest_limit"):
+            end = summary[name]
+            depth = end["critical_depth_mm"]
+            limit = f"> {end['max_axial_depth_mm']:.4g}" if depth is None else f"{depth:.4g}"
+            value = f"{end['value']:.4g} {self.axis.unit}".strip()
+            lines.append(f"{name.replace('_', ' ')} {limit} mm, at {self.axis.name} = {value}")
+        return lines
 
     def plot(self) -> Figure:
         """Return the diagram as a matplotlib figure."""
-        return presentation("plots.lobes").plot_lobes(self)
+        return presentation("plots.stability_diagram").plot_limits(self)
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write lobes.csv, lobes.png, summary.json and, with a grid, grid.npz.
@@ -165,36 +309,41 @@ class LobeDiagram:
         list of Path
             What was written.
         """
-        written = write_results(
-            folder,
-            {"lobes.csv": self._table(), "summary.json": as_json(self.summary())},
-            {"lobes.png": self.plot()},
-        )
+        heading = [
+            self.axis.heading, "critical_depth [mm]", "chatter_frequency [Hz]", "bifurcation",
+        ]  # fmt: skip
+        if not self.is_over_speed:
+            heading += ["all_crossings [mm]", "max_axial_depth [mm]", "excluded"]
+        rows = [self._row(index) for index in range(self.axis.values.size)]
+        written = _save(self, folder, heading, rows)
         if self.grid is not None:
-            written.append(Path(folder) / "grid.npz")
-            self.grid.save(written[-1])
+            written.append(self.grid.save_grid(Path(folder) / "grid.npz"))
         return written
 
-    def _table(self) -> str:
-        lines = ["spindle_speed [rpm],critical_depth [mm],chatter_frequency [Hz],bifurcation"]
-        rows = zip(
-            rpm(self.limits.spindle_speed),
-            self.limits.critical_depth * 1e3,
-            self.limits.chatter_frequency,
-            self.limits.bifurcation,
-            strict=True,
-        )
-        for speed, depth, frequency, kind in rows:
-            heard = f"{frequency:.3f}" if np.isfinite(frequency) else ""
-            lines.append(f"{speed:.4f},{depth:.7g},{heard},{kind}")
-        return "\n".join(lines) + "\n"
+    def _row(self, index: int) -> list[str]:
+        value = self.axis.values[index]
+        first = f"{value:.4f}" if self.is_over_speed else f"{value:.9g}"
+        if self.reasons and self.reasons[index]:
+            return [first, "", "", "none", "", "", self.reasons[index]]
+        limits = self.limits
+        frequency = limits.chatter_frequency[index]
+        row = [
+            first,
+            f"{limits.critical_depth[index] * 1e3:.7g}",
+            f"{frequency:.3f}" if math.isfinite(frequency) else "",
+            limits.bifurcation[index],
+        ]
+        if not self.is_over_speed:
+            crossings = " ".join(f"{depth * 1e3:.7g}" for depth in limits.crossings[index])
+            row += [crossings, f"{self.max_depth[index] * 1e3:.7g}", ""]
+        return row
 
 
 def _pocket_summary(pocket: Pocket) -> dict:
     return {
         "spindle_speed_rpm": rpm(pocket.spindle_speed),
         "axial_depth_mm": pocket.axial_depth * 1e3,
-        "limit_depth_mm": finite_or_none(pocket.limit_depth * 1e3),
+        "critical_depth_mm": finite_or_none(pocket.critical_depth * 1e3),
         "removal_rate_cm3_per_min": pocket.removal_rate * 1e6 * 60.0,
     }
 
@@ -212,104 +361,26 @@ def _comparison(limits: NDArray[np.float64], other: NDArray[np.float64]) -> dict
     }
 
 
-def lobes(
-    case: Case,
-    method: str | None = None,
-    grid: bool = False,
-    progress: Progress = no_progress,
-    cluster: str | Executor | None = None,
-    folder: str | Path | None = None,
-) -> LobeDiagram:
-    """Compute the stability lobe diagram of a case.
-
-    Parameters
-    ----------
-    case : Case
-    method : str, optional
-        One of `chatter.stability.registry.METHODS`, or "auto"; by default what the case says,
-        else "auto".
-    grid : bool
-        Also the spectral radius on the whole grid of speeds and depths.
-    progress : callable, optional
-        Called with (done, total) speeds.
-    cluster : str or Executor, optional
-        Where the grid is computed, as for `chatter.studies.executor.open_executor`; None: here.
-    folder : path, optional
-        On a cluster, keeps finished blocks of the grid in the result cache there.
-
-    Returns
-    -------
-    LobeDiagram
-
-    Raises
-    ------
-    InputError
-        If the case lacks something or asks for what cannot be computed.
-    """
-    name, limits_of = chosen_method(case, method)
-    model = milling_model(case)
-    speeds = spindle_speeds(case)
-    zero_order = zero_order_of(model, speeds)
-    deepest = deepest_depth(case, zero_order)
-    depths = axial_depths(case, deepest)
-    limits = limits_of(model, speeds, depths, resolution(case), progress)
-    computed = None
-    if grid and cluster is not None:
-        radius = radius_in_blocks(case, speeds, depths, name, cluster, folder, progress)
-        computed = StabilityGrid(speeds, depths, radius)
-    elif grid:
-        computed = stability_grid(case, model, speeds, depths, name, progress)
-    return LobeDiagram(
-        case=case,
-        method=name,
-        limits=limits,
-        zero_order=zero_order,
-        deepest=deepest,
-        pockets=find_pockets(speeds, limits.critical_depth, deepest, removal_area(case)),
-        operating=operating_limit(case, model, limits_of, deepest),
-        natural_frequencies=natural_frequencies(model, speeds),
-        grid=computed,
-        notes=(
-            *model.notes, *notes_on_steady_cut(model, name), *notes_on_tolerance(case, limits)
-        ),
-    )  # fmt: skip
+def _zeros(y: NDArray[np.float64], growth_rate: NDArray[np.float64]) -> NDArray[np.float64]:
+    low, high = growth_rate[:-1], growth_rate[1:]
+    k = np.flatnonzero(np.isfinite(low) & np.isfinite(high) & ((low >= 0.0) != (high >= 0.0)))
+    return y[k] - low[k] * (y[k + 1] - y[k]) / (high[k] - low[k])
 
 
-def notes_on_tolerance(case: Case, limits: LimitCurve) -> tuple[str, ...]:
-    """Say where the tolerance on the depths of the limits is not met."""
-    asked = case.lobes.tolerance if case.lobes else LIMIT_ERROR
-    if not limits.error > asked:
-        return ()
-    return (
-        f"the limits are good to {limits.error:.1%} of their depth, not to the {asked:.2%} asked "
-        "for; a lower lobes.tolerance takes finer elements, and longer",
-    )
+def _report_of(excluded: Mapping[str, str]) -> list[str]:
+    """Sentences about values that were excluded; not all where they are many."""
+    lines = [f"excluded, {label}: {why}" for label, why in list(excluded.items())[:_MOST_REPORTED]]
+    more = len(excluded) - len(lines)
+    return [*lines, f"and {more} more values excluded"] if more else lines
 
 
-def operating_limit(
-    case: Case, model: MillingModel, limits_of: LimitMethod, deepest: float
-) -> LimitCurve:
-    """Limits at the operating speed, looked for at least to the operating depth."""
-    depths = axial_depths(case, max(deepest, 1.02 * case.cut.axial_depth))
-    speeds = np.array([case.cut.spindle_speed])
-    return limits_of(model, speeds, depths, resolution(case), no_progress)
-
-
-def removal_area(case: Case) -> float:
-    """Removal rate over axial depth and spindle speed, m^2."""
-    return case.width_of_cut * case.cut.feed_per_tooth * case.tool.teeth / (2.0 * math.pi)
-
-
-def stability_grid(
-    case: Case,
-    model: MillingModel,
-    speeds: NDArray[np.float64],
-    depths: NDArray[np.float64],
-    method: str,
-    progress: Progress = no_progress,
-) -> StabilityGrid:
-    """Spectral radius on every pair of speed and depth."""
-    speed, depth = (part.ravel() for part in np.meshgrid(speeds, depths))
-    radius_at = GRIDS.get(method, radius_by_collocation)
-    radius = radius_at(model, speed, depth, resolution(case), progress)
-    return StabilityGrid(speeds, depths, radius.reshape(len(depths), len(speeds)))
+def _save(
+    diagram: StabilityDiagram | StabilityMap,
+    folder: str | Path,
+    heading: Sequence[str],
+    rows: Sequence[Sequence[str]],
+) -> list[Path]:
+    table = io.StringIO()
+    csv.writer(table, lineterminator="\n").writerows([heading, *rows])
+    texts = {"lobes.csv": table.getvalue(), "summary.json": as_json(diagram.summary())}
+    return write_results(folder, texts, {"lobes.png": diagram.plot()})

@@ -1,10 +1,9 @@
-"""Forced vibration in the steady cut, and the share of the cut that teeth miss because of it.
+"""Forced vibration in the steady cut, and the loss of contact that it causes.
 
-The linear methods take it that every tooth cuts what the tooth before it has left. In the steady
-cut the tool vibrates in step with its own turning. Where all teeth are alike every one of them
-meets the wave of the last in phase and cuts the chip that it would cut on a rigid tool; where they
-are not, the chip changes by the vibration now less that when the earlier tooth passed, and where
-this takes away the whole chip the tooth is out of the cut.
+The linear methods assume that every tooth cuts what the tooth before it has left. In the steady cut
+the tool vibrates at the harmonics of its rotation. With a uniform pitch every tooth meets the wave
+of the last in phase and cuts the chip of a rigid tool; else the chip changes by the vibration now
+less that when the earlier tooth passed, and where this exceeds the chip the tooth loses contact.
 """
 
 from __future__ import annotations
@@ -16,40 +15,41 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.units import rpm
+from chatter.stability.method import StabilityMethod
 from chatter.stability.model import MillingModel
-from cutting.edge_segments.coupling import part_below, share_of_height
-from cutting.edge_segments.segments import EdgePieces
+from cutting.edge_segments.coupling import arc_at, delay_at, part_below, share_of_height
+from cutting.edge_segments.segments import EdgeSegments
 
-_TURN = 2.0 * math.pi
+_REVOLUTION = 2.0 * math.pi
 #: delays and the period that differ by less are the same, rad
 _SAME_DELAY = 1e-9
 #: angle along an edge between two of its points, rad; and the most points of all edges
 _BETWEEN = 0.06
 _MOST_POINTS = 1500
 #: samples of a period: of its fastest vibration, at the least, and at the most
-_SAMPLES_A_WAVE, _FEWEST_SAMPLES, _MOST_SAMPLES = 16.0, 512, 8192
+_SAMPLES_PER_WAVELENGTH, _FEWEST_SAMPLES, _MOST_SAMPLES = 16.0, 512, 8192
 #: harmonics reach this far beyond the highest mode; up to this many unknowns the cut answers to
 #: the vibration, beyond only the machine does
 _REACH = 2.0
 _MOST_UNKNOWNS = 700
 #: delays are taken together within this phase of the highest harmonic, rad
 _PHASE = 0.2
-#: share of the arc missed, or of the chip changed, from which it is told: the multipliers of
-#: random cuts in simulations are off by 25 % in the middle beyond these, below them by 0.7 %
-_WORTH_TELLING, _LARGE_CHANGE = 0.08, 0.6
+#: share of the arc lost, or of the chip changed, from which on it is reported: the multipliers of
+#: random cuts in simulations are off by 25 % in the median beyond these, below them by 0.7 %
+_REPORTED_LOSS, _LARGE_CHANGE = 0.08, 0.6
 
 
 class EdgePoints(NamedTuple):
     """Points of all edges down to a depth, each for a length of edge."""
 
-    place: NDArray[np.float64]  # angle on the tool, rad (P,)
+    angle: NDArray[np.float64]  # on the tool, rad (P,)
     entry: NDArray[np.float64]  # rad (P,)
     exit: NDArray[np.float64]  # rad (P,)
     delay: NDArray[np.float64]  # angle since the pass that left the surface, rad (P,)
     immersion: NDArray[np.float64]  # axial immersion angle, rad (P,)
     length: NDArray[np.float64]  # m (P,)
-    feed: NDArray[np.float64]  # chip = feed sin(phi) - inset, m (P,)
-    inset: NDArray[np.float64]  # m (P,)
+    feed: NDArray[np.float64]  # chip = feed sin(phi) - offset, m (P,)
+    offset: NDArray[np.float64]  # m (P,)
     slope: NDArray[np.float64]  # at the reference chip: tangential, radial, axial, N/m^2 (P, 3)
 
 
@@ -64,14 +64,14 @@ class RigidCut(NamedTuple):
 class ForcedVibration(NamedTuple):
     """Steady vibration of a linear cut at one speed and depth."""
 
-    amplitude: float  # largest distance from the mean place, m
+    amplitude: float  # largest distance from the mean position, m
     chip_change: float  # largest, m
     chip: float  # largest of a rigid tool, m
-    missed: float  # share of the cut of a rigid tool that has no chip left
+    loss_of_contact: float  # share of the cut of a rigid tool that has no chip left
 
 
 def forced_vibration(model: MillingModel, speed: float, depth: float) -> ForcedVibration | None:
-    """Steady vibration of a cut and what it does to the chip; None where all teeth are alike.
+    """Steady vibration of a cut and what it does to the chip; None with a uniform pitch.
 
     Parameters
     ----------
@@ -89,75 +89,75 @@ def forced_vibration(model: MillingModel, speed: float, depth: float) -> ForcedV
     if model.case.cut.speed_variation is not None:
         return None
     cut = model.cut(depth)
-    points = _edge_points(cut.pieces, depth)
+    points = _edge_points(cut.segments, depth)
     period = cut.period_angle
-    if not points.place.size or np.all(np.abs(points.delay - period) < _SAME_DELAY):
+    if not points.angle.size or np.all(np.abs(points.delay - period) < _SAME_DELAY):
         return None
     highest = max(mode.natural_frequency for mode in model.structure.modes)
-    orders = max(8, math.ceil(_REACH * highest * period / (_TURN * speed)))
-    samples = int(np.clip(_SAMPLES_A_WAVE * orders / _REACH, _FEWEST_SAMPLES, _MOST_SAMPLES))
+    orders = max(8, math.ceil(_REACH * highest * period / (_REVOLUTION * speed)))
+    samples = int(
+        np.clip(_SAMPLES_PER_WAVELENGTH * orders / _REACH, _FEWEST_SAMPLES, _MOST_SAMPLES)
+    )
     orders = min(orders, samples // 2 - 1)
-    turn = np.arange(-orders, orders + 1) * _TURN / period
+    turn = np.arange(-orders, orders + 1) * _REVOLUTION / period
     spindle = period * (np.arange(samples) + 0.5) / samples
     receptance = _receptance(model, turn * speed)
     edge = np.array(getattr(model.laws[0], "edge", (0.0, 0.0, 0.0)))
-    rigid = _rigid_cut(points, cut.pieces, spindle, edge, model.basis, _PHASE / turn[-1])
+    rigid = _rigid_cut(points, cut.segments, spindle, edge, model.basis, _PHASE / turn[-1])
     wave = np.exp(-1j * np.outer(turn, spindle)) / samples
     driven = np.einsum("kij,kj->ki", receptance, wave @ rigid.force)
     if driven.size <= _MOST_UNKNOWNS:
         driven = _with_regeneration(driven, receptance, rigid, turn)
     driven[orders] = 0.0
-    return _told(points, driven, turn, spindle, model.basis)
+    return _vibration_of(points, driven, turn, spindle, model.basis)
 
 
-def notes_on_steady_cut(model: MillingModel, method: str) -> tuple[str, ...]:
+def notes_on_steady_cut(model: MillingModel, method: StabilityMethod) -> tuple[str, ...]:
     """Say where the steady cut of a case is another than linear methods take it for.
 
     Parameters
     ----------
     model : MillingModel
-    method : str
-        Key of `chatter.stability.registry.METHODS`.
+    method : StabilityMethod
     """
     speed, depth = model.case.cut.spindle_speed, model.case.cut.axial_depth
-    found = None if method == "time-domain" else forced_vibration(model, speed, depth)
+    found = forced_vibration(model, speed, depth) if method.is_linear else None
     if found is None:
         return ()
-    if found.missed < _WORTH_TELLING and found.chip_change < _LARGE_CHANGE * found.chip:
+    if found.loss_of_contact < _REPORTED_LOSS and found.chip_change < _LARGE_CHANGE * found.chip:
         return ()
     return (
-        f"at {rpm(speed):.0f} rpm and {depth * 1e3:.3g} mm the steady cut itself makes "
-        f"the tool vibrate by {found.amplitude * 1e6:.3g} um, which changes the chip of "
-        f"{found.chip * 1e6:.3g} um by up to {found.chip_change * 1e6:.3g} um: teeth miss "
-        f"{found.missed:.0%} of their arc or meet an older surface, which linear methods leave "
-        "out; the limit in the time domain may differ (--method time-domain)",
+        f"at {rpm(speed):.0f} rpm and {depth * 1e3:.3g} mm the forced vibration of "
+        f"{found.amplitude * 1e6:.3g} um changes the chip of {found.chip * 1e6:.3g} um by up to "
+        f"{found.chip_change * 1e6:.3g} um: teeth lose contact over {found.loss_of_contact:.0%} of "
+        "their arc, which linear methods leave out; the limit in the time domain may differ "
+        "(--method time-domain)",
     )
 
 
-def _edge_points(pieces: EdgePieces, depth: float) -> EdgePoints:
+def _edge_points(segments: EdgeSegments, depth: float) -> EdgePoints:
     columns: list[tuple] = []
-    count = pieces.bottom.size
-    for piece in range(count):
-        top = part_below(pieces, piece, depth)
+    count = segments.bottom.size
+    for segment in range(count):
+        top = part_below(segments, segment, depth)
         if top <= 0.0:
             continue
-        lag = abs(pieces.angle[piece, 1] - pieces.angle[piece, 0]) * top
+        lag = abs(segments.angle[segment, 1] - segments.angle[segment, 0]) * top
         parts = min(1 + int(lag / _BETWEEN), max(1, _MOST_POINTS // count))
         for part in range(parts):
             along = top * (part + 0.5) / parts
-            up = share_of_height(pieces, piece, along)
-            first, last = pieces.delay[piece]
-            delay = first + up * (last - first)
-            kappa = _between(pieces.immersion[piece], along)
+            height = share_of_height(segments, segment, along)
+            entry, leave, angle = arc_at(segments, segment, along)
+            delay = delay_at(segments, segment, along)
+            kappa = _between(segments.immersion[segment], along)
             sine = math.sin(kappa)
-            inset = sine * _between(pieces.inset[piece], up)
-            inset += math.cos(kappa) * pieces.axial_inset[piece]
+            offset = sine * _between(segments.radial_offset[segment], height)
+            offset += math.cos(kappa) * segments.axial_offset[segment]
+            length = segments.length[segment] * top / parts
             columns.append(
                 (
-                    _between(pieces.angle[piece], up), _between(pieces.entry[piece], along),
-                    _between(pieces.exit[piece], along), delay,
-                    kappa, pieces.length[piece] * top / parts, sine * pieces.feed * delay, inset,
-                    pieces.cutting[piece],
+                    angle, entry, leave, delay, kappa, length, sine * segments.feed * delay,
+                    offset, segments.cutting[segment],
                 )
             )  # fmt: skip
     table = [np.array(column) for column in zip(*columns, strict=True)]
@@ -188,14 +188,14 @@ def _directions(
 
 def _in_cut(points: EdgePoints, p: int, spindle: NDArray[np.float64]) -> tuple:
     """Places among the samples at which a point may cut, and its angles there."""
-    phi = points.entry[p] + np.mod(spindle + points.place[p] - points.entry[p], _TURN)
+    phi = points.entry[p] + np.mod(spindle + points.angle[p] - points.entry[p], _REVOLUTION)
     inside = np.flatnonzero(phi < points.exit[p])
     return inside, phi[inside]
 
 
 def _rigid_cut(
     points: EdgePoints,
-    pieces: EdgePieces,
+    segments: EdgeSegments,
     spindle: NDArray[np.float64],
     edge: NDArray[np.float64],
     basis: NDArray[np.float64],
@@ -209,16 +209,16 @@ def _rigid_cut(
     delays = points.delay[first]
     force = np.zeros((samples, rank))
     coupling = np.zeros((delays.size, samples, rank, rank))
-    for p in range(points.place.size):
+    for p in range(points.angle.size):
         inside, phi = _in_cut(points, p, spindle)
-        chip = points.feed[p] * np.sin(phi) - points.inset[p]
+        chip = points.feed[p] * np.sin(phi) - points.offset[p]
         inside, phi, chip = inside[chip > 0.0], phi[chip > 0.0], chip[chip > 0.0]
         if not inside.size:
             continue
-        size = np.maximum(chip / pieces.reference, 1e-9) ** pieces.exponent
+        size = np.maximum(chip / segments.reference, 1e-9) ** segments.exponent
         push, chip_of = _directions(points, p, phi, basis)
         slope = np.einsum("l,lni->ni", points.slope[p], push) * size[:, None]
-        whole = slope * (chip / (1.0 + pieces.exponent))[:, None]
+        whole = slope * (chip / (1.0 + segments.exponent))[:, None]
         force[inside] += points.length[p] * (whole + np.einsum("l,lni->ni", edge, push))
         coupling[group[p], inside] += points.length[p] * slope[:, :, None] * -chip_of[:, None, :]
     return RigidCut(force, coupling, delays)
@@ -227,7 +227,7 @@ def _rigid_cut(
 def _receptance(model: MillingModel, omega: NDArray[np.float64]) -> NDArray[np.complex128]:
     """Receptance (k, r, r) at angular frequencies, negative ones too."""
     lines, values = model.receptance
-    at = np.abs(omega) / _TURN
+    at = np.abs(omega) / _REVOLUTION
     flat = values.reshape(lines.size, -1).T
     found = np.stack(
         [np.interp(at, lines, v.real) + 1j * np.interp(at, lines, v.imag) for v in flat]
@@ -259,7 +259,7 @@ def _with_regeneration(
     return np.linalg.solve(matrix, driven.ravel()).reshape(count, rank)
 
 
-def _told(
+def _vibration_of(
     points: EdgePoints,
     driven: NDArray[np.complex128],
     turn: NDArray[np.float64],
@@ -268,10 +268,10 @@ def _told(
 ) -> ForcedVibration:
     wave = np.exp(1j * np.outer(spindle, turn))
     motion = (wave @ driven).real
-    cut, missed, largest, change = 0.0, 0.0, 0.0, 0.0
-    for p in range(points.place.size):
+    cut, loss_of_contact, largest, change = 0.0, 0.0, 0.0, 0.0
+    for p in range(points.angle.size):
         inside, phi = _in_cut(points, p, spindle)
-        chip = points.feed[p] * np.sin(phi) - points.inset[p]
+        chip = points.feed[p] * np.sin(phi) - points.offset[p]
         inside, phi, chip = inside[chip > 0.0], phi[chip > 0.0], chip[chip > 0.0]
         if not inside.size:
             continue
@@ -279,8 +279,8 @@ def _told(
         _, chip_of = _directions(points, p, phi, basis)
         vibrating = np.einsum("ni,ni->n", chip_of, motion[inside] - earlier)
         cut += points.length[p] * chip.size
-        missed += points.length[p] * np.count_nonzero(chip + vibrating <= 0.0)
+        loss_of_contact += points.length[p] * np.count_nonzero(chip + vibrating <= 0.0)
         largest = max(largest, float(chip.max()))
         change = max(change, float(np.abs(vibrating).max()))
     amplitude = float(np.linalg.norm(motion - motion.mean(axis=0), axis=1).max())
-    return ForcedVibration(amplitude, change, largest, float(missed / max(cut, 1e-300)))
+    return ForcedVibration(amplitude, change, largest, float(loss_of_contact / max(cut, 1e-300)))

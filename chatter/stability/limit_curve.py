@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+#: bifurcations and chatter frequencies (Hz) at limits: (indices of speeds, depths)
+AtLimits = Callable[
+    [NDArray[np.int64], NDArray[np.float64]], tuple[Sequence[str], NDArray[np.float64]]
+]
 
 
 class LimitCurve(NamedTuple):
@@ -15,10 +21,57 @@ class LimitCurve(NamedTuple):
     critical_depth: NDArray[np.float64]  # m (n,), the first limit; inf where none was found
     chatter_frequency: NDArray[np.float64]  # Hz (n,), nan where none was found
     bifurcation: tuple[str, ...]  # "hopf", "flip" or "none" (n,)
-    crossings: tuple[NDArray[np.float64], ...]  # m, all: lost at even places, regained at odd
-    steps: NDArray[np.int64]  # steps a tooth period (n,), 0 where the method has none
-    error: float = np.nan  # estimated, of the limit depths, relative; nan where it was not
+    crossings: tuple[NDArray[np.float64], ...]  # m, all: lost at even indices, regained at odd
+    steps: NDArray[np.int64]  # steps per tooth period (n,), 0 where the method has none
+    error: float = np.nan  # estimated, of the critical depths, relative; nan where it was not
 
-    def up_to(self, count: int) -> LimitCurve:
-        """Return the curve of the first `count` speeds."""
-        return LimitCurve(*(column[:count] for column in self[:-1]), self.error)
+
+def first_crossings(crossings: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """First change of stability (n,) of each list, m; inf where there is none."""
+    return np.array([found[0] if found.size else np.inf for found in crossings])
+
+
+def limits_at(
+    at_limits: AtLimits,
+    speeds: NDArray[np.float64],
+    crossings: Sequence[NDArray[np.float64]],
+    steps: NDArray[np.int64],
+) -> LimitCurve:
+    """First limit at every speed, with its chatter frequency and bifurcation.
+
+    Parameters
+    ----------
+    at_limits : callable
+    speeds : (n,) array of float
+        rad/s.
+    crossings : sequence of n arrays
+        m, all changes of stability at every speed.
+    steps : (n,) array of int
+        Resolution, as it is reported.
+    """
+    first = first_crossings(crossings)
+    found = np.flatnonzero(np.isfinite(first))
+    frequency, kind = np.full(len(speeds), np.nan), np.full(len(speeds), "none")
+    if found.size:
+        kind[found], frequency[found] = at_limits(found, first[found])
+    return LimitCurve(speeds, first, frequency, tuple(kind.tolist()), tuple(crossings), steps)
+
+
+def joined_limits(
+    speeds: NDArray[np.float64], parts: Sequence[tuple[NDArray[np.int64], LimitCurve]]
+) -> LimitCurve:
+    """Join curves of some of the speeds each, given by their indices."""
+    if len(parts) == 1:
+        return parts[0][1]
+    order = np.argsort(np.concatenate([index for index, _ in parts]))
+    curves = [curve for _, curve in parts]
+    kinds = [kind for curve in curves for kind in curve.bifurcation]
+    crossings = [found for curve in curves for found in curve.crossings]
+    return LimitCurve(
+        speeds,
+        *(np.concatenate([curve[column] for curve in curves])[order] for column in (1, 2)),
+        tuple(kinds[i] for i in order),
+        tuple(crossings[i] for i in order),
+        np.concatenate([curve.steps for curve in curves])[order],
+        max(curve.error for curve in curves),
+    )

@@ -1,4 +1,4 @@
-"""Compile a Case into what the stability methods see: flat arrays, receptances, mean matrices."""
+"""Compile a case into what all stability methods see: flat arrays, receptances, averages."""
 
 from __future__ import annotations
 
@@ -15,17 +15,15 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.plausibility import check_plausible
 from chatter.description.units import rpm
+from chatter.engine.loop_stability import refuse_unstable_structure
 from chatter.simulation.setup import refuse_teeth_off_the_tool
-from chatter.stability.methods.collocation.cut_arrays import RESOLUTION, CutArrays, cut_arrays
-from chatter.stability.methods.matrix_free.method import stepped_cut
-from chatter.stability.methods.matrix_free.steps import SteppedCut
-from chatter.stability.methods.semi_discretization.arrays import MillingArrays
-from chatter.stability.methods.zeroth_order.averaged_coefficients import mean_couplings
-from chatter.stability.spindle_rotation import SpeedVariation
+from chatter.stability.averaged_coefficients import AveragedCoefficients, averaged_coefficients
+from chatter.stability.cut_arrays import CutArrays, cut_arrays
+from chatter.stability.spindle_rotation import CONSTANT_SPEED, SpeedVariation
 from cutting.edge_segments.edge_profile import crossing_heights
 from cutting.edge_segments.segments import (
-    EdgePieces,
-    edge_pieces,
+    EdgeSegments,
+    edge_segments,
     period_angle,
     small_vibration_coefficient,
 )
@@ -42,10 +40,10 @@ from cutting.tool.cutter import Cutter
 
 #: directions of motion weaker than this, relative to the strongest, do not count
 _RANK_TOLERANCE = 1e-9
-#: share by which the frequency of a varying speed may be moved, to fit into a period
-_TUNING = 1e-3
-#: tools and cuts whose edges are kept in pieces
-_KEPT_PIECES = 64
+#: cuts whose edge segments are kept
+_KEPT_SEGMENTS = 64
+#: largest estimated error of critical depths, relative, where the case gives none
+LIMIT_ERROR = 1e-3
 
 
 @dataclass(frozen=True)
@@ -103,7 +101,7 @@ class MillingModel:
             )
         own = replace(self, structure=structure)
         # what the structure has no part in is computed once
-        shared = ("table", "mean_couplings")
+        shared = ("table", "averaged_coefficients")
         own.__dict__.update({key: self.__dict__[key] for key in shared if key in self.__dict__})
         return own
 
@@ -114,7 +112,7 @@ class MillingModel:
 
     @cached_property
     def table(self) -> DirectionalTable:
-        """Directional matrix of an upright edge over the engaged arc."""
+        """Directional matrix of a straight cylindrical edge over the engaged arc."""
         case = self.case
         arc = engagement(case.cut.mode, case.width_of_cut, case.tool.diameter)
         return directional_table(
@@ -122,38 +120,49 @@ class MillingModel:
         )
 
     @cached_property
-    def mean_couplings(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Delays (g,), rad, and mean directional matrices (g, r, r), N/m^2, over a turn."""
+    def averaged_coefficients(self) -> AveragedCoefficients:
+        """Directional coefficients of every delay averaged over a revolution, per axial depth."""
         if self.is_uniform:
-            return np.array([2.0 * np.pi / self.teeth]), mean_over_turn(self.table, self.teeth)[:1]
-        return self.mean_couplings_at(self.case.cut.axial_depth)
+            mean = mean_over_turn(self.table, self.teeth)[:1]
+            return AveragedCoefficients(np.array([2.0 * np.pi / self.teeth]), mean)
+        return self.averaged_coefficients_at(self.case.cut.axial_depth)
 
-    def mean_couplings_at(self, depth: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """The same where it is not in proportion to the depth (m): an average over that depth."""
-        delays, means = mean_couplings(self.cut(depth), depth)
-        return delays, means / depth
+    def averaged_coefficients_at(self, depth: float) -> AveragedCoefficients:
+        """The same where they are not in proportion to the depth (m): the average to that depth."""
+        found = averaged_coefficients(self.cut(depth), depth)
+        return found._replace(mean=found.mean / depth)
 
     @property
-    def mean_directional(self) -> NDArray[np.float64]:
-        """Mean directional matrix over a turn (r, r), N/m^2, of all delays together."""
-        return self.mean_couplings[1].sum(axis=0)
+    def averaged_directional(self) -> NDArray[np.float64]:
+        """Mean directional matrix over a revolution (r, r), N/m^2, of all delays together."""
+        return self.averaged_coefficients.mean.sum(axis=0)
 
     @property
     def is_uniform(self) -> bool:
-        """True where all teeth are alike, evenly spaced, upright, and the speed is constant."""
+        """True for a uniform-pitch cylindrical end mill of one helix at a constant speed."""
         cutter = self.cutter
         return (
             np.allclose(cutter.pitch, 2.0 * np.pi / cutter.teeth, rtol=0.0, atol=1e-9)
             and len(set(cutter.helix)) == 1
-            and cutter.corner_radius == 0.0
-            and cutter.edge_angle >= 0.5 * math.pi - 1e-9
+            and cutter.is_cylindrical
             and np.ptp(cutter.radial_offsets) == 0.0
             and cutter.serration is None
             and self.case.cut.speed_variation is None
         )
 
+    @property
+    def operating_point(self) -> tuple[float, float]:
+        """Spindle speed (rad/s) and axial depth (m) of the cut of the case."""
+        return self.case.cut.spindle_speed, self.case.cut.axial_depth
+
+    @property
+    def tolerance(self) -> float:
+        """Largest estimated error of critical depths that the case allows, relative."""
+        return self.case.lobes.tolerance if self.case.lobes else LIMIT_ERROR
+
     @cached_property
-    def _modes(self) -> tuple[NDArray[np.float64], ...]:
+    def modal_arrays(self) -> tuple[NDArray[np.float64], ...]:
+        """Natural frequency (n,), rad/s, damping ratio (n,), shape (n, r), force gain (n, r)."""
         modes = self.structure.modes
         shape = np.ascontiguousarray(np.array([mode.direction for mode in modes]) @ self.basis)
         mass = np.array([mode.mass for mode in modes])
@@ -164,65 +173,30 @@ class MillingModel:
             np.ascontiguousarray(shape / mass[:, None]),
         )
 
-    @cached_property
-    def arrays(self) -> MillingArrays:
-        """What semi-discretization sees; fits modes where the structure is measured.
+    def cut(self, max_depth: float, relative_length: float = 1.0) -> CutArrays:
+        """The cut down to a depth (m), speed and depth left open.
 
-        Raises
-        ------
-        InputError
-            If the teeth are not all alike.
+        `relative_length` is a factor on the length of the edge segments.
         """
-        if not self.is_uniform:
-            raise InputError(
-                f"{self.case.name}: tool: this method takes teeth that are all alike, evenly "
-                'spaced and upright, at a constant speed; "collocation" takes any tool'
-            )
-        frequency, damping, shape, gain = self._modes
-        return MillingArrays(
-            natural_frequency=frequency,
-            damping=damping,
-            shape=shape,
-            force_gain=gain,
-            table=self.table,
-            tooth_pitch=2.0 * np.pi / self.teeth,
-            lag_per_depth=self.lag_per_depth,
-            radius=self.cutter.radius,
-        )
-
-    def cut(
-        self, deepest: float, points: int = RESOLUTION[0], waves: float = RESOLUTION[1]
-    ) -> CutArrays:
-        """What collocation sees of it, down to a depth (m), at a resolution of the elements."""
         case = self.case
-        pieces = _pieces_of(
+        segments = _segments_of(
             self.cutter,
             self.laws,
             case.cut.mode,
             case.width_of_cut,
             case.cut.feed_per_tooth * self.teeth,
-            deepest,
+            max_depth,
             self.flank,
-            waves,
+            relative_length,
         )
         varied = case.cut.speed_variation
-        variation = SpeedVariation(0.0, 1.0, 0, 0.0, 0, 0)
+        variation = CONSTANT_SPEED
         if varied is not None:
             variation = SpeedVariation(
-                varied.amplitude, varied.frequency, int(varied.shape == "triangle"), _TUNING, 0, 0
+                varied.amplitude, varied.frequency, int(varied.shape == "triangle")
             )
         period = period_angle(self.cutter)
-        return cut_arrays(self._modes, self.basis, pieces, period, variation, points, waves)
-
-    def stepped_cut(self, deepest: float, fineness: float = 1.0) -> SteppedCut:
-        """What the matrix-free method sees of it, down to a depth (m), with the contact.
-
-        The pieces of the edges are shorter by the factor `fineness`.
-        """
-        contact, cut = self.case.contact, self.cut(deepest, waves=fineness)
-        if contact is None:
-            return stepped_cut(cut)
-        return stepped_cut(cut, (contact.stiffness, contact.damping, contact.full_engagement_share))
+        return cut_arrays(self.modal_arrays, self.basis, segments, period, variation)
 
     @cached_property
     def receptance(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
@@ -234,10 +208,10 @@ class MillingModel:
         return lines, np.ascontiguousarray(self.basis.T @ full @ self.basis)
 
 
-@lru_cache(maxsize=_KEPT_PIECES)
-def _pieces_of(cutter: Cutter, laws: tuple[ForceLaw, ...], *cut: object) -> EdgePieces:
-    """Pieces of the edges, kept: structures and resolutions change where a tool stays the same."""
-    return edge_pieces(cutter, list(laws), *cut)
+@lru_cache(maxsize=_KEPT_SEGMENTS)
+def _segments_of(cutter: Cutter, laws: tuple[ForceLaw, ...], *cut: object) -> EdgeSegments:
+    """Edge segments, kept: structures and resolutions change where a tool stays the same."""
+    return edge_segments(cutter, list(laws), *cut)
 
 
 def viscous(flank: ViscousProcessDamping | Ploughing | None) -> ViscousProcessDamping | None:
@@ -264,22 +238,25 @@ def milling_model(case: Case, structure: Structure | None = None) -> MillingMode
     case.require("tool", "material", "cut", "structure")
     check_plausible(case)
     refuse_teeth_off_the_tool(case)
-    structure = structure_of(case) if structure is None else structure
+    if structure is None:
+        structure = structure_of(case)
+        refuse_unstable_structure(structure)
     cutter = cutter_of(case)
     notes = list(structure.notes)
     flank = _flank(case)
     if flank is not None:
-        notes.append("the zeroth-order solution leaves process damping out")
+        notes.append("the zeroth-order solution leaves out process damping")
     if isinstance(flank, Ploughing):
         notes.append(
-            "ploughing is taken for small vibration, as a dashpot; chatter simulate has it in full"
+            "ploughing is linearised as a dashpot for small vibration; chatter simulate includes "
+            "it in full"
         )
     if case.contact is not None:
         notes.append(
-            "the contact of tool and work is part of the matrix-free and time methods alone"
+            "only the matrix-free and time-domain methods include the contact of tool and work"
         )
     if case.structure is not None and any(mode.friction for mode in case.structure.mode):
-        notes.append("the friction of modes acts in the time domain alone")
+        notes.append("friction of modes is included in the time domain only")
     model = MillingModel(
         case=case,
         structure=structure,
@@ -290,13 +267,13 @@ def milling_model(case: Case, structure: Structure | None = None) -> MillingMode
         notes=tuple(notes),
     )
     _refuse_crossing_flutes(case, cutter)
-    if not np.any(np.abs(model.mean_couplings[1]) > 0.0):
+    if not np.any(np.abs(model.averaged_coefficients.mean) > 0.0):
         raise InputError(_no_limit(case, cutter))
     return model
 
 
 def _no_limit(case: Case, cutter: Cutter) -> str:
-    if cutter.corner_radius > 0.0 or cutter.edge_angle < 0.5 * math.pi - 1e-9:
+    if not cutter.is_cylindrical:
         return (
             f"{case.name}: cut.radial_depth: down to an axial depth of "
             f"{case.cut.axial_depth * 1e3:g} mm the edge does not reach the work, or the modes "

@@ -7,28 +7,28 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-#: part of the limit depth that is kept in hand
+#: part of the critical depth that is kept in hand
 DEPTH_MARGIN = 0.15
 #: spindle speed and natural frequency may be off by this much
 SPEED_MARGIN = 0.015
 
 
 class Pocket(NamedTuple):
-    """A place worth using.
+    """A index worth using.
 
     The depth is the lowest limit within the speed margin on either side, less the depth margin.
     """
 
     spindle_speed: float  # rad/s
     axial_depth: float  # m
-    limit_depth: float  # m, at the speed itself
+    critical_depth: float  # m, at the speed itself
     removal_rate: float  # m^3/s
 
 
 def find_pockets(
     speeds: NDArray[np.float64],
     limits: NDArray[np.float64],
-    deepest: float,
+    max_depth: float,
     removal_rate_per_depth_and_speed: float,
     most: int = 5,
 ) -> tuple[Pocket, ...]:
@@ -39,8 +39,8 @@ def find_pockets(
     speeds : (n,) array of float
         rad/s, ascending.
     limits : (n,) array of float
-        Limit depth, m; inf where none was found.
-    deepest : float
+        Critical depth, m; inf where none was found.
+    max_depth : float
         Depth to which was searched, m; no pocket is deeper.
     removal_rate_per_depth_and_speed : float
         Removal rate over depth and speed, m^2 (radial depth, teeth and feed per tooth in it).
@@ -52,14 +52,14 @@ def find_pockets(
     tuple of Pocket
         Highest removal rate first.
     """
-    bounded = np.minimum(limits, deepest)
+    bounded = np.minimum(limits, max_depth)
     robust = np.array(
         [
             bounded[np.abs(speeds / speed - 1.0) <= SPEED_MARGIN * (1.0 + 1e-9)].min()
             for speed in speeds
         ]
     )
-    places = _local_maxima(robust)
+    indices = _local_maxima(robust)
     pockets = [
         Pocket(
             float(speeds[i]),
@@ -67,7 +67,7 @@ def find_pockets(
             float(limits[i]),
             float((1.0 - DEPTH_MARGIN) * robust[i] * speeds[i] * removal_rate_per_depth_and_speed),
         )
-        for i in places
+        for i in indices
     ]
     return tuple(sorted(pockets, key=lambda pocket: -pocket.removal_rate)[:most])
 
@@ -77,7 +77,7 @@ def _local_maxima(values: NDArray[np.float64]) -> list[int]:
 
     At an end of the range a lone point does not count: what lies beyond is not known.
     """
-    places = []
+    indices = []
     first = 0
     for i in range(1, len(values) + 1):
         if i < len(values) and np.isclose(values[i], values[first], rtol=1e-9, atol=0.0):
@@ -86,6 +86,6 @@ def _local_maxima(values: NDArray[np.float64]) -> list[int]:
         rises = values[first - 1] < values[first] if first > 0 else is_plateau
         falls = values[i] < values[first] if i < len(values) else is_plateau
         if rises and falls:
-            places.append((first + i - 1) // 2)
+            indices.append((first + i - 1) // 2)
         first = i
-    return places
+    return indices

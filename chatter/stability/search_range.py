@@ -8,19 +8,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
-from chatter.stability.methods.zeroth_order.method import ZeroOrderLimit
+from chatter.stability.methods.zeroth_order.uniform_pitch import ZeroOrderLimit
 
 _SPEED_COUNT = 400
-#: depths looked at for the limit at one speed, and the share of the lowest zeroth-order limit
+#: depths evaluated for the limit at one speed, and the share of the lowest zeroth-order limit
 #: between them
 _DEPTHS_AT_ONE_SPEED = 200
 _SHARE_OF_LOWEST_LIMIT = 0.25
 _MOST_DEPTHS = 1000
 _DEPTH_COUNT = 100
-#: depths looked at, in units of the lowest zeroth-order limit
-_DEEPEST_IN_LOWEST_LIMITS = 6.0
-#: without a limit to scale by, depths are looked at up to this multiple of the operating depth
-_DEEPEST_IN_OPERATING_DEPTHS = 4.0
+#: depths evaluated, in units of the lowest zeroth-order limit
+_MAX_DEPTH_IN_LOWEST_LIMITS = 6.0
+#: without a limit to scale by, depths are evaluated up to this multiple of the operating depth
+_MAX_DEPTH_IN_OPERATING_DEPTHS = 4.0
 
 
 def spindle_speeds(case: Case) -> NDArray[np.float64]:
@@ -32,30 +32,32 @@ def spindle_speeds(case: Case) -> NDArray[np.float64]:
     return np.linspace(0.5 * operating, 1.5 * operating, _SPEED_COUNT)
 
 
-def deepest_depth(case: Case, zero_order: ZeroOrderLimit) -> float:
-    """Depth to which limits are looked for, m."""
+def maximum_depth(case: Case, zero_order: ZeroOrderLimit) -> float:
+    """Depth to which limits are searched, m."""
     wanted = case.lobes.depths if case.lobes else None
     if wanted is not None:
         return wanted.to
-    candidates = [_DEEPEST_IN_OPERATING_DEPTHS * case.cut.axial_depth]
+    candidates = [_MAX_DEPTH_IN_OPERATING_DEPTHS * case.cut.axial_depth]
     if math.isfinite(zero_order.lowest_depth):
-        candidates.append(_DEEPEST_IN_LOWEST_LIMITS * zero_order.lowest_depth)
+        candidates.append(_MAX_DEPTH_IN_LOWEST_LIMITS * zero_order.lowest_depth)
         finite = zero_order.critical_depth[np.isfinite(zero_order.critical_depth)]
         if finite.size:
             candidates.append(min(float(finite.max()), 4.0 * candidates[-1]))
     return max(candidates)
 
 
-def axial_depths(case: Case, deepest: float) -> NDArray[np.float64]:
-    """Depths of the net and the grid, m, ascending, > 0."""
+def axial_depths(case: Case, max_depth: float) -> NDArray[np.float64]:
+    """Depths of the grid and the grid, m, ascending, > 0."""
     wanted = case.lobes.depths if case.lobes else None
     count = wanted.count if wanted is not None else _DEPTH_COUNT
-    return np.linspace(0.0, deepest, count + 1)[1:]
+    return np.linspace(0.0, max_depth, count + 1)[1:]
 
 
 def depths_at_one_speed(case: Case, zero_order: ZeroOrderLimit) -> NDArray[np.float64]:
-    """Depths of the net for the limit at the operating speed, m, beyond the operating depth."""
-    deepest = max(deepest_depth(case, zero_order), 1.02 * case.cut.axial_depth)
-    spacing = min(deepest / _DEPTHS_AT_ONE_SPEED, _SHARE_OF_LOWEST_LIMIT * zero_order.lowest_depth)
-    count = min(_MOST_DEPTHS, math.ceil(deepest / spacing))
-    return np.linspace(0.0, deepest, count + 1)[1:]
+    """Depths of the grid for the limit at the operating speed, m, beyond the operating depth."""
+    max_depth = max(maximum_depth(case, zero_order), 1.02 * case.cut.axial_depth)
+    spacing = min(
+        max_depth / _DEPTHS_AT_ONE_SPEED, _SHARE_OF_LOWEST_LIMIT * zero_order.lowest_depth
+    )
+    count = min(_MOST_DEPTHS, math.ceil(max_depth / spacing))
+    return np.linspace(0.0, max_depth, count + 1)[1:]

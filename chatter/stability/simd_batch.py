@@ -1,8 +1,8 @@
-"""Eight points at once: numbers of eight lanes for compiled code.
+"""Eight points at once: SIMD batches for compiled code.
 
 Kernels over many small systems of one shape keep the systems in the last axis of their arrays and
-calculate with lanes as with plain numbers; an operation is one vector instruction where the
-processor has such. What happens in a lane never depends on the other lanes.
+calculate with batches as with plain numbers; an operation is one vector instruction where the
+processor has such. What happens in a member never depends on the other batch.
 """
 
 from __future__ import annotations
@@ -17,25 +17,25 @@ from numba.extending import intrinsic, lower_builtin, models, register_model
 from numba.np.arrayobj import make_array
 
 #: points that are treated together
-LANES = 8
+BATCH_SIZE = 8
 
-_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+_VECTOR = ir.VectorType(ir.DoubleType(), BATCH_SIZE)
 #: a product and a sum may be one instruction
 _FLAGS = ("contract", "nsz")
 
 
-class LanesType(types.Type):
-    """Type of a number of eight lanes in compiled code."""
+class BatchType(types.Type):
+    """Type of a number of eight batch in compiled code."""
 
     def __init__(self) -> None:
-        super().__init__(name="Lanes")
+        super().__init__(name="Batch")
 
 
-_LANES = LanesType()
+_BATCH = BatchType()
 
 
-@register_model(LanesType)
-class _LanesModel(models.PrimitiveModel):
+@register_model(BatchType)
+class _BatchModel(models.PrimitiveModel):
     def __init__(self, manager, kind):
         super().__init__(manager, kind, _VECTOR)
 
@@ -43,17 +43,17 @@ class _LanesModel(models.PrimitiveModel):
 def _spread(builder, value):
     undefined = ir.Constant(_VECTOR, ir.Undefined)
     first = builder.insert_element(undefined, value, ir.Constant(ir.IntType(32), 0))
-    everywhere = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
+    everywhere = ir.Constant(ir.VectorType(ir.IntType(32), BATCH_SIZE), [0] * BATCH_SIZE)
     return builder.shuffle_vector(first, undefined, everywhere)
 
 
 class _Arithmetic(AbstractTemplate):
-    """Lanes with lanes, or lanes with a plain number."""
+    """Batches with batches, or with a plain number."""
 
     def generic(self, args, kws):  # noqa: ARG002
-        known = all(kind == _LANES or isinstance(kind, types.Float) for kind in args)
-        if len(args) == 2 and known and _LANES in args:
-            return signature(_LANES, *args)
+        known = all(kind == _BATCH or isinstance(kind, types.Float) for kind in args)
+        if len(args) == 2 and known and _BATCH in args:
+            return signature(_BATCH, *args)
         return None
 
 
@@ -61,7 +61,7 @@ def _provide(instruction, *operators):
     def lower(context, builder, sig, args):
         values = [
             value
-            if kind == _LANES
+            if kind == _BATCH
             else _spread(builder, context.cast(builder, value, kind, types.float64))
             for value, kind in zip(args, sig.args, strict=True)
         ]
@@ -69,9 +69,9 @@ def _provide(instruction, *operators):
 
     for known in operators:
         infer_global(known)(type("_Operator", (_Arithmetic,), {"key": known}))
-        lower_builtin(known, LanesType, LanesType)(lower)
-        lower_builtin(known, LanesType, types.Float)(lower)
-        lower_builtin(known, types.Float, LanesType)(lower)
+        lower_builtin(known, BatchType, BatchType)(lower)
+        lower_builtin(known, BatchType, types.Float)(lower)
+        lower_builtin(known, types.Float, BatchType)(lower)
 
 
 _provide("fadd", operator.add, operator.iadd)
@@ -81,38 +81,38 @@ _provide("fdiv", operator.truediv, operator.itruediv)
 
 
 def _pointer(context, builder, kinds, values):
-    """Address of the lanes at an index of all axes but the last."""
+    """Address of the batch at an index of all axes but the last."""
     array_kind, index_kind = kinds
     array, index = values
     if isinstance(index_kind, types.BaseTuple):
         parts, part_kinds = cgutils.unpack_tuple(builder, index), list(index_kind)
     else:
         parts, part_kinds = [index], [index_kind]
-    places = [
+    positions = [
         context.cast(builder, part, kind, types.intp)
         for part, kind in zip(parts, part_kinds, strict=True)
     ]
-    places.append(context.get_constant(types.intp, 0))
+    positions.append(context.get_constant(types.intp, 0))
     whole = make_array(array_kind)(context, builder, array)
     address = cgutils.get_item_pointer(
-        context, builder, array_kind, whole, places, wraparound=False
+        context, builder, array_kind, whole, positions, wraparound=False
     )
     return builder.bitcast(address, _VECTOR.as_pointer())
 
 
 @intrinsic
 def load(typingctx, array, index):  # noqa: ARG001
-    """Lanes of an array (..., 8) at an index of the axes before the last."""
+    """Batches of an array (..., 8) at an index of the axes before the last."""
 
     def code(context, builder, sig, args):
         return builder.load(_pointer(context, builder, sig.args, args), align=8)
 
-    return _LANES(array, index), code
+    return _BATCH(array, index), code
 
 
 @intrinsic
 def store(typingctx, array, index, value):  # noqa: ARG001
-    """Set the lanes of an array (..., 8) at an index of the axes before the last."""
+    """Set the batch of an array (..., 8) at an index of the axes before the last."""
 
     def code(context, builder, sig, args):
         builder.store(args[2], _pointer(context, builder, sig.args[:2], args[:2]), align=8)
@@ -123,9 +123,9 @@ def store(typingctx, array, index, value):  # noqa: ARG001
 
 @intrinsic
 def spread(typingctx, value):  # noqa: ARG001
-    """Return lanes that all hold the same plain number."""
+    """Return a batch that holds everywhere the same plain number."""
 
     def code(context, builder, sig, args):  # noqa: ARG001
         return _spread(builder, args[0])
 
-    return _LANES(types.float64), code
+    return _BATCH(types.float64), code

@@ -1,4 +1,4 @@
-"""How the spindle turns over a period of the cut: evenly, or with a varying speed."""
+"""Rotation of the spindle over a period of the cut, at a constant or a varying speed."""
 
 from __future__ import annotations
 
@@ -26,14 +26,19 @@ class SpeedVariation(NamedTuple):
     amplitude: float  # share of the mean; 0 for none
     frequency: float  # Hz
     triangle: int  # 1 for a triangle, 0 for a sine
-    tuning: float  # by that share it may be taken faster or slower to fit into a period
-    least_periods: int  # 0, or periods of the tool that a period holds at least, where it is one of
-    # two between which the true ratio lies
-    beyond: int  # 1 for the one of the two with more of them
 
 
-class SpindleTurn(NamedTuple):
-    """Turn of the spindle at one mean speed."""
+class PeriodFit(NamedTuple):
+    """How a whole number of variations is fitted into a whole number of tool periods."""
+
+    tuning: float = 1e-3  # share by which the frequency may be moved
+    least_periods: int = 0  # tool periods in a period at least, where it is one of the two between
+    # which the true ratio lies; 0 for the nearest ratio within the tuning
+    beyond: int = 0  # 1 for the one of the two with more of them
+
+
+class SpindleRotation(NamedTuple):
+    """Rotation of the spindle at one mean speed."""
 
     speed: float  # mean, rad/s
     amplitude: float
@@ -43,8 +48,9 @@ class SpindleTurn(NamedTuple):
     cycles: int  # of the variation in a period of the cut
 
 
+CONSTANT_SPEED = SpeedVariation(0.0, 1.0, 0)
 #: at a constant speed, in mean angle
-STEADY_TURN = SpindleTurn(1.0, 0.0, 1.0, 0, 1, 1)
+STEADY_ROTATION = SpindleRotation(1.0, 0.0, 1.0, 0, 1, 1)
 
 
 @njit(**KERNEL)
@@ -56,18 +62,18 @@ def _common_divisor(a, b):
 
 
 @njit(**KERNEL)
-def _beside_true_ratio(variation, speed, pattern, a_cycle):
-    """Turn with fewer or more tool periods in a period than the true ratio asks for.
+def _beside_true_ratio(variation, fit, speed, pattern, per_cycle):
+    """Rotation with fewer or more tool periods in a period than the true ratio asks for.
 
     Their number has no divisor in common with that of the variations: the teeth then meet the
     variation at as many phases as there are variations. At a few phases alone, as with a whole
     number of tool periods in a variation, growth is not that of a ratio next to it.
     """
-    least = variation.least_periods
-    cycles = math.ceil(least / a_cycle)
-    if a_cycle < _FEW_SHARES * least:
+    least = fit.least_periods
+    cycles = math.ceil(least / per_cycle)
+    if per_cycle < _FEW_SHARES * least:
         cycles = max(2, cycles)
-    true = cycles * a_cycle
+    true = cycles * per_cycle
     patterns = int(max(1.0, np.round(true)))
     if abs(true - patterns) < _SAME_RATIO * true:
         # it fits as it is
@@ -78,66 +84,76 @@ def _beside_true_ratio(variation, speed, pattern, a_cycle):
         step = max(1, math.floor(true / least))
         while _common_divisor(step, cycles) > 1:
             step -= 1
-        patterns = step * (math.floor(true / step) + variation.beyond)
+        patterns = step * (math.floor(true / step) + fit.beyond)
         while _common_divisor(patterns, cycles) > 1 and patterns > 1:
-            patterns += step if variation.beyond == 1 else -step
+            patterns += step if fit.beyond == 1 else -step
         patterns = max(1, patterns)
     frequency = cycles * speed / (patterns * pattern)
-    return SpindleTurn(speed, variation.amplitude, frequency, variation.triangle, patterns, cycles)
+    return SpindleRotation(
+        speed, variation.amplitude, frequency, variation.triangle, patterns, cycles
+    )
 
 
 @njit(**KERNEL)
-def spindle_turn(variation, speed, pattern):
+def spindle_rotation_at(variation, fit, speed, pattern):
     """Fit a whole number of variations into a whole number of tool periods.
 
     Parameters
     ----------
     variation : SpeedVariation
+    fit : PeriodFit
     speed : float
         rad/s.
     pattern : float
-        Angle after which the tool looks the same again, rad.
+        Angle after which the tool repeats itself, rad.
 
     Returns
     -------
-    SpindleTurn
+    SpindleRotation
     """
     if variation.amplitude == 0.0:
-        return SpindleTurn(speed, 0.0, 1.0, 0, 1, 1)
-    a_cycle = speed / (variation.frequency * pattern)
-    if variation.least_periods > 0:
-        return _beside_true_ratio(variation, speed, pattern, a_cycle)
+        return SpindleRotation(speed, 0.0, 1.0, 0, 1, 1)
+    per_cycle = speed / (variation.frequency * pattern)
+    if fit.least_periods > 0:
+        return _beside_true_ratio(variation, fit, speed, pattern, per_cycle)
     best, best_error = 1, np.inf
     for cycles in range(1, _MOST_CYCLES + 1):
-        whole = max(1.0, np.round(cycles * a_cycle))
-        error = abs(whole / (cycles * a_cycle) - 1.0)
+        whole = max(1.0, np.round(cycles * per_cycle))
+        error = abs(whole / (cycles * per_cycle) - 1.0)
         if error < 0.5 * best_error:
             best, best_error = cycles, error
-        if best_error < variation.tuning:
+        if best_error < fit.tuning:
             break
     # in steps, so that many speeds have like periods
-    step = max(1.0, np.floor(variation.tuning * best * a_cycle))
-    patterns = int(max(1.0, step * np.round(best * a_cycle / step)))
+    step = max(1.0, np.floor(fit.tuning * best * per_cycle))
+    patterns = int(max(1.0, step * np.round(best * per_cycle / step)))
     frequency = best * speed / (patterns * pattern)
-    return SpindleTurn(speed, variation.amplitude, frequency, variation.triangle, patterns, best)
+    return SpindleRotation(
+        speed, variation.amplitude, frequency, variation.triangle, patterns, best
+    )
 
 
 @njit(**KERNEL)
-def in_mean_angle(turn):
-    """The same turn with the mean angle in place of time: the mean speed is 1."""
-    return SpindleTurn(
-        1.0, turn.amplitude, turn.frequency / turn.speed, turn.triangle, turn.patterns, turn.cycles
+def in_mean_angle(rotation):
+    """The same rotation with the mean angle in place of time: the mean speed is 1."""
+    return SpindleRotation(
+        1.0,
+        rotation.amplitude,
+        rotation.frequency / rotation.speed,
+        rotation.triangle,
+        rotation.patterns,
+        rotation.cycles,
     )
 
 
 @njit(**INLINED_KERNEL)
-def angle_at(turn, time):
+def angle_at(rotation, time):
     """Angle turned since time zero, rad."""
-    if turn.amplitude == 0.0:
-        return turn.speed * time
-    cycle = turn.frequency * time
+    if rotation.amplitude == 0.0:
+        return rotation.speed * time
+    cycle = rotation.frequency * time
     cycle -= math.floor(cycle)
-    if turn.triangle == 0:
+    if rotation.triangle == 0:
         swing = (1.0 - math.cos(2.0 * math.pi * cycle)) / (2.0 * math.pi)
     elif cycle < 0.25:
         swing = 2.0 * cycle * cycle
@@ -145,17 +161,17 @@ def angle_at(turn, time):
         swing = 0.25 - 2.0 * (cycle - 0.5) ** 2
     else:
         swing = 2.0 * (1.0 - cycle) ** 2
-    return turn.speed * (time + turn.amplitude / turn.frequency * swing)
+    return rotation.speed * (time + rotation.amplitude / rotation.frequency * swing)
 
 
 @njit(**INLINED_KERNEL)
-def speed_at(turn, time):
+def speed_at(rotation, time):
     """Spindle speed, rad/s."""
-    if turn.amplitude == 0.0:
-        return turn.speed
-    cycle = turn.frequency * time
+    if rotation.amplitude == 0.0:
+        return rotation.speed
+    cycle = rotation.frequency * time
     cycle -= math.floor(cycle)
-    if turn.triangle == 0:
+    if rotation.triangle == 0:
         wave = math.sin(2.0 * math.pi * cycle)
     elif cycle < 0.25:
         wave = 4.0 * cycle
@@ -163,20 +179,20 @@ def speed_at(turn, time):
         wave = 2.0 - 4.0 * cycle
     else:
         wave = 4.0 * cycle - 4.0
-    return turn.speed * (1.0 + turn.amplitude * wave)
+    return rotation.speed * (1.0 + rotation.amplitude * wave)
 
 
 @njit(**KERNEL)
-def time_at(turn, angle):
+def time_at(rotation, angle):
     """Time at which the spindle has turned by an angle, s."""
-    time = angle / turn.speed
-    if turn.amplitude == 0.0:
+    time = angle / rotation.speed
+    if rotation.amplitude == 0.0:
         return time
-    time -= (angle_at(turn, time) - angle) / turn.speed
+    time -= (angle_at(rotation, time) - angle) / rotation.speed
     for _ in range(60):
-        step = (angle_at(turn, time) - angle) / speed_at(turn, time)
+        step = (angle_at(rotation, time) - angle) / speed_at(rotation, time)
         time -= step
         # the error of the next is as the square of that of the last
-        if abs(step) * turn.speed < _SMALL_STEP * max(1.0, abs(angle)):
+        if abs(step) * rotation.speed < _SMALL_STEP * max(1.0, abs(angle)):
             break
     return time

@@ -1,8 +1,9 @@
-"""Lobe diagrams over any path of a case: the limit depth over one, a map over two."""
+"""Stability diagrams over any path of a case: the critical depth over one, a map over two."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -15,31 +16,35 @@ from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
 from chatter.engine.parallel import Executor, one_thread, sweep
 from chatter.io.result_files import finite_or_none
+from chatter.stability.diagram import DiagramAxis, StabilityDiagram, StabilityMap
+from chatter.stability.limit_curve import LimitCurve, first_crossings
+from chatter.stability.lobes import lobes as lobes_of
+from chatter.stability.lobes import map_over_speed
+from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import milling_model
-from chatter.stability.registry import (
-    GRIDS,
-    chosen_method,
-    radius_by_collocation,
-    resolution,
-    zero_order_of,
+from chatter.stability.registry import METHODS, chosen_method, fixed_steps, with_radius
+from chatter.stability.search_range import (
+    axial_depths,
+    depths_at_one_speed,
+    maximum_depth,
+    spindle_speeds,
 )
-from chatter.stability.search_range import depths_at_one_speed
+from chatter.studies.grid_blocks import radius_in_blocks
 from chatter.studies.model import fingerprint, patched
 from chatter.studies.parameter_axis import (
     DEPTH_PATH,
     SPEED_PATH,
     AxisGiven,
     axis_of,
+    case_value,
     speed_axis,
-    standing_number,
 )
 from chatter.studies.result_cache import ResultCache
-from chatter.studies.results_over_axes import PathLimits, StabilityMap
 from chatter.studies.whatif.variation import Value, Variation
 
 #: values of a range that gives no count: of a curve, and of each side of a map
 _CURVE_COUNT, _MAP_COUNT = 60, 40
-#: notes of single points that are told
+#: notes of single points that are reported
 _MOST_NOTES = 3
 
 #: records of points: (function, points, what they are) -> list
@@ -55,6 +60,41 @@ class _Point(NamedTuple):
     depths: tuple[float, ...] = ()
 
 
+def lobes(
+    case: Case,
+    method: str | None = None,
+    grid: bool = False,
+    progress: Progress = no_progress,
+    cluster: str | Executor | None = None,
+    folder: str | Path | None = None,
+) -> StabilityDiagram:
+    """Compute the stability lobe diagram of a case.
+
+    Parameters
+    ----------
+    case, method, grid, progress
+        As of `chatter.stability.lobes.lobes`.
+    cluster : str or Executor, optional
+        Where the grid is computed, as for `chatter.studies.executor.open_executor`; here by
+        default.
+    folder : path, optional
+        On a cluster, keeps finished blocks of the grid in points.jsonl there.
+
+    Returns
+    -------
+    StabilityDiagram
+    """
+    if not grid or cluster is None:
+        return lobes_of(case, method, grid, progress)
+    diagram = lobes_of(case, method, progress=progress)
+    chosen = METHODS[diagram.method]
+    speeds = spindle_speeds(case)
+    depths = axial_depths(case, maximum_depth(case, diagram.zero_order))
+    radius = radius_in_blocks(case, speeds, depths, chosen.name, cluster, folder, progress)
+    computed = map_over_speed(case, chosen, speeds, depths, radius)
+    return replace(diagram, grid=computed)
+
+
 def lobes_over(
     case: Case,
     x: AxisGiven | None = None,
@@ -63,8 +103,8 @@ def lobes_over(
     progress: Progress = no_progress,
     cluster: str | Executor | None = None,
     folder: str | Path | None = None,
-) -> PathLimits | StabilityMap:
-    """Limit depth over a path of a case; with `y`, the spectral radius over two.
+) -> StabilityDiagram | StabilityMap:
+    """Critical depth over a path of a case; with `y`, the spectral radius over two.
 
     Parameters
     ----------
@@ -85,7 +125,7 @@ def lobes_over(
 
     Returns
     -------
-    PathLimits or StabilityMap
+    StabilityDiagram or StabilityMap
 
     Raises
     ------
@@ -94,7 +134,7 @@ def lobes_over(
     RunError
         If it is interrupted.
     """
-    name, _ = chosen_method(case, method)
+    name = chosen_method(case, method).name
     each = _each if cluster is None else partial(_kept, cluster, folder)
     if y is None:
         if x is None:
@@ -112,7 +152,13 @@ def lobes_over(
     return _map_over(case, across, upwards, name, partial(each, progress))
 
 
-def _limits_over(case: Case, axis: Variation, method: str, each: Each) -> PathLimits:
+def _diagram_axis(case: Case, axis: Variation) -> DiagramAxis:
+    labels = tuple(value.label for value in axis.values)
+    values = np.array(axis.numbers)
+    return DiagramAxis(axis.path, axis.unit, values, labels, case_value(case, axis))
+
+
+def _limits_over(case: Case, axis: Variation, method: str, each: Each) -> StabilityDiagram:
     labels = [f"{axis.path} = {value.label}" for value in axis.values]
     points = [
         _Point(_patched(case, [(axis, value)], label), method)
@@ -120,41 +166,50 @@ def _limits_over(case: Case, axis: Variation, method: str, each: Each) -> PathLi
     ]
     found = each(_limit_at, points, "values")
     reasons = _reasons(found, case.name, labels)
-    frequencies = [np.nan if one["frequency"] is None else one["frequency"] for one in found]
-    searched = [np.nan if one["searched_to"] is None else one["searched_to"] for one in found]
-    return PathLimits(
+    crossings = tuple(np.array(one["crossings"], dtype=np.float64) for one in found)
+    max_depth = _column(found, "max_depth")
+    limits = LimitCurve(
+        spindle_speed=np.array([point.case.cut.spindle_speed for point in points]),
+        critical_depth=np.where(np.isnan(max_depth), np.nan, first_crossings(crossings)),
+        chatter_frequency=_column(found, "frequency"),
+        bifurcation=tuple(one["bifurcation"] for one in found),
+        crossings=crossings,
+        steps=np.zeros(len(points), dtype=np.int64),
+    )
+    return StabilityDiagram(
         case=case,
         method=method,
-        axis=axis,
-        crossings=tuple(np.array(one["crossings"], dtype=np.float64) for one in found),
-        chatter_frequency=np.array(frequencies),
-        bifurcation=tuple(one["bifurcation"] for one in found),
-        searched_to=np.array(searched),
-        standing=standing_number(case, axis),
+        axis=_diagram_axis(case, axis),
+        limits=limits,
+        max_depth=max_depth,
+        notes=_notes(_notes_of(found, reasons)),
         reasons=reasons,
-        notes=_notes(_told(found, reasons)),
     )
+
+
+def _column(found: Sequence[dict[str, Any]], key: str) -> NDArray[np.float64]:
+    return np.array([np.nan if one[key] is None else one[key] for one in found])
 
 
 def _limit_at(point: _Point) -> dict[str, Any]:
     """Limits of a case at its speed, as JSON knows it, or why there is none."""
     case = point.case
     try:
-        limits_of = chosen_method(case, point.method)[1]
+        chosen = chosen_method(case, point.method)
         model = milling_model(case)
         speeds = np.array([case.cut.spindle_speed])
         depths = depths_at_one_speed(case, zero_order_of(model, speeds))
-        limit = limits_of(model, speeds, depths, resolution(case), no_progress)
+        limit = chosen.limits(model, speeds, depths, fixed_steps(case), no_progress)
     except InputError as error:
         return {
-            "crossings": [], "frequency": None, "bifurcation": "none", "searched_to": None,
+            "crossings": [], "frequency": None, "bifurcation": "none", "max_depth": None,
             "notes": [], "refused": list(error.messages),
         }  # fmt: skip
     return {
         "crossings": limit.crossings[0].tolist(),
         "frequency": finite_or_none(float(limit.chatter_frequency[0])),
         "bifurcation": limit.bifurcation[0],
-        "searched_to": float(depths[-1]),
+        "max_depth": float(depths[-1]),
         "notes": list(model.notes),
         "refused": [],
     }
@@ -174,8 +229,8 @@ def _map_over(case: Case, x: Variation, y: Variation, method: str, each: Each) -
     own = [patched(case, value.patch).cut for value in along.values] if along else []
     others = {"x": y, "y": x}.get(inner)
     lines, labels = [], []
-    for _, places in groups:
-        row, column = places[0]
+    for _, indices in groups:
+        row, column = indices[0]
         chosen = [(x, x.values[column]), (y, y.values[row])]
         if others is not None:
             chosen = [(axis, value) for axis, value in chosen if axis is others]
@@ -184,15 +239,15 @@ def _map_over(case: Case, x: Variation, y: Variation, method: str, each: Each) -
     found = each(_radius_along, lines, "columns")
     reasons = _reasons(found, case.name, labels)
     radius = np.full((len(rows), len(columns)), np.nan)
-    for (_, places), line, why in zip(groups, found, reasons, strict=True):
-        for (j, i), value in zip(places, line["radius"], strict=not why):
+    for (_, indices), line, why in zip(groups, found, reasons, strict=True):
+        for (j, i), value in zip(indices, line["radius"], strict=not why):
             radius[j, i] = value
-    left_out = {label: why for label, why in zip(labels, reasons, strict=True) if why}
-    notes = _notes(_told(found, reasons))
-    if method not in ("collocation", *GRIDS):
+    excluded = {label: why for label, why in zip(labels, reasons, strict=True) if why}
+    notes = _notes(_notes_of(found, reasons))
+    if not METHODS[method].gives_radius:
         notes = (*notes, f"the map is by collocation; {method} gives no spectral radius")
-    standing = (standing_number(case, x), standing_number(case, y))
-    return StabilityMap(case, method, x, y, radius, standing, notes, left_out)
+    axes = _diagram_axis(case, x), _diagram_axis(case, y)
+    return StabilityMap(case, method, *axes, radius, notes, excluded)
 
 
 def _line_along(case: Case, method: str, along: Variation | None, own: list) -> _Point:
@@ -209,11 +264,11 @@ def _line_along(case: Case, method: str, along: Variation | None, own: list) -> 
 
 def _radius_along(line: _Point) -> dict[str, Any]:
     """Spectral radius of a case at some speeds and depths, as JSON knows it, or why none."""
-    radius_at = GRIDS.get(line.method, radius_by_collocation)
+    chosen = with_radius(METHODS[line.method])
     points = np.array(line.speeds), np.array(line.depths)
     try:
         model = milling_model(line.case)
-        radius = radius_at(model, *points, resolution(line.case), no_progress)
+        radius = chosen.radius(model, *points, fixed_steps(line.case), no_progress)
     except InputError as error:
         return {"radius": [], "notes": [], "refused": list(error.messages)}
     return {"radius": radius.tolist(), "notes": list(model.notes), "refused": []}
@@ -247,9 +302,9 @@ def _each(
 ) -> list[dict[str, Any]]:
     """Records of all points, in threads; each is computed in one."""
 
-    def at(places: NDArray[np.int64]) -> list[dict[str, Any]]:
+    def at(indices: NDArray[np.int64]) -> list[dict[str, Any]]:
         with one_thread():
-            return [function(points[place]) for place in places]
+            return [function(points[index]) for index in indices]
 
     return [record for chunk in sweep(at, len(points), progress, 1) for record in chunk]
 
@@ -279,13 +334,13 @@ def _reasons(found: Sequence[dict[str, Any]], name: str, labels: Sequence[str]) 
     return reasons
 
 
-def _told(found: Sequence[dict[str, Any]], reasons: Sequence[str]) -> list[tuple[str, ...]]:
+def _notes_of(found: Sequence[dict[str, Any]], reasons: Sequence[str]) -> list[tuple[str, ...]]:
     return [tuple(one["notes"]) for one, why in zip(found, reasons, strict=True) if not why]
 
 
-def _notes(told: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
+def _notes(of_points: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
     """Notes of all points first, then some of those that hold at single ones."""
-    distinct = list(dict.fromkeys(note for notes in told for note in notes))
-    everywhere = [note for note in distinct if all(note in notes for notes in told)]
+    distinct = list(dict.fromkeys(note for notes in of_points for note in notes))
+    everywhere = [note for note in distinct if all(note in notes for notes in of_points)]
     single = [f"at some values: {note}" for note in distinct if note not in everywhere]
     return (*everywhere, *single[:_MOST_NOTES])

@@ -94,7 +94,7 @@ def speed_axis(case: Case) -> Variation:
     return Variation(SPEED_PATH, values, "rpm")
 
 
-def standing_number(case: Case, axis: Variation) -> float:
+def case_value(case: Case, axis: Variation) -> float:
     """What the case itself has at the path of an axis, in its unit; nan where that is no number."""
     value = value_of(case, axis.path)
     kind = field_of(case, axis.path)

@@ -14,31 +14,9 @@ from cutting.process_damping.ploughing import PloughingFlank
 from cutting.process_damping.viscous import ViscousFlank
 from cutting.tool.cutter import EdgeSlices
 from cutting.tool.edge_table import edge_table
+from cutting.tool.tooth_passes import earlier_passes
 
 _TURN = 2.0 * math.pi
-
-
-def earlier_passes(
-    angle: NDArray[np.float64],
-) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Teeth that passed a place within the turn before each tooth, and how far ahead they are.
-
-    Parameters
-    ----------
-    angle : (N, L) array of float
-        Of the edges on the tool, rad.
-
-    Returns
-    -------
-    (N, L, N) array of int, (N, L, N) array of float
-        The teeth, latest pass first, and the angle to them, rad, > 0; the last is the tooth
-        itself, a turn ago.
-    """
-    ahead = np.mod(angle[None, :, :] - angle[:, None, :], _TURN)
-    ahead = np.where(ahead < 1e-9, _TURN, ahead)
-    ahead = np.moveaxis(ahead, 1, 2)
-    order = np.argsort(ahead, axis=2)
-    return order, np.take_along_axis(ahead, order, axis=2)
 
 
 def delayed_cut(

@@ -1,10 +1,10 @@
 """Which earlier pass has left the surface, all along the edges of a tool.
 
-At a place of an edge the chip against the pass k is rise[k] sin(phi) - inset[k]: the thinnest
-counts, and below zero there is no cut. So every place has a list of arcs, each of them cut out of
-the surface of one pass. Along the edge the arcs move smoothly as long as their list stays the same
-one; where a stretch of arc comes or goes it opens or closes like a root, so that an edge is cut
-into pieces there, and into ever smaller ones towards that place.
+At a position of an edge the chip against the pass k is rise[k] sin(phi) - radial_offset[k]: the
+thinnest counts, and below zero there is no cut. So every position has a list of arcs, each of them
+cut out of the surface of one pass. Along the edge the arcs move smoothly as long as their list
+stays the same one; where a interval of arc comes or goes it opens or closes like a root, so that an
+edge is cut into segments there, and into ever smaller ones towards that position.
 """
 
 from __future__ import annotations
@@ -21,32 +21,32 @@ from cutting.tool.cutter import Cutter
 
 Array = NDArray[np.float64]
 
-_TURN = 2.0 * math.pi
+_REVOLUTION = 2.0 * math.pi
 #: arcs shorter than this are none, rad
 _SHORTEST_ARC = 1e-9
-#: places closer than this share of the edge are one
-_SAME_PLACE = 1e-9
-#: a change is looked for to this power of two of the distance of the places looked at
+#: positions closer than this share of the edge are one
+_SAME_POSITION = 1e-9
+#: a change is searched to this power of two of the distance of the positions looked at
 _HALVINGS = 36
-#: changes between two places that are looked at
+#: changes between two positions that are evaluated
 _MOST_CHANGES = 12
-#: places looked at within a wave of a serrated edge, and between two borders
-_LOOKS_A_WAVE = 64
-_LOOKS = 4
+#: positions looked at within a wave of a serrated edge, and between two borders
+_SAMPLES_PER_WAVELENGTH = 64
+_SAMPLES = 4
 #: share of the distance of two borders by which the first look is beside one
 _BESIDE = 1e-6
-#: pieces between two changes at the fineness 1
-_PIECES = 10
+#: segments between two changes at the relative_length 1
+_SEGMENTS = 10
 #: fewer by this where nothing changes
 _SMOOTHER = 5
-#: of a wave, between two changes: shorter ones take fewer pieces
+#: of a wave, between two changes: shorter ones take fewer segments
 _LONG = 0.2
 #: Gauss points of two on [-1, 1] lie at these
 GAUSS = 1.0 / math.sqrt(3.0)
 
 
 class Profile(NamedTuple):
-    """Nominal edge at places along it (P,)."""
+    """Nominal edge at positions along it (P,)."""
 
     height: Array  # above the tip, m
     radius: Array  # m
@@ -54,7 +54,7 @@ class Profile(NamedTuple):
 
 
 class Arcs(NamedTuple):
-    """Arcs at places along edges: (P, W) each, in order, the rest of a row empty.
+    """Arcs at positions along edges: (P, W) each, in order, the rest of a row empty.
 
     An arc goes from its angle to the next one in the row, which ends it.
     """
@@ -71,34 +71,34 @@ class Edges:
     ----------
     cutter : Cutter
     mode : {"up", "down", "slot"}
-    radial_depth, feed_per_turn : float
+    radial_depth, feed_per_revolution : float
         m.
     """
 
     def __init__(
-        self, cutter: Cutter, mode: MillingMode, radial_depth: float, feed_per_turn: float
+        self, cutter: Cutter, mode: MillingMode, radial_depth: float, feed_per_revolution: float
     ) -> None:
         self.cutter, self.mode = cutter, mode
-        self.radial_depth, self.feed_per_turn = radial_depth, feed_per_turn
+        self.radial_depth, self.feed_per_revolution = radial_depth, feed_per_revolution
         self.on_corner = cutter.corner_radius * cutter.edge_angle
         self.lag = np.tan(np.asarray(cutter.helix)) / cutter.radius
         self.start = cutter.tooth_angles
         self._radial, self._axial = cutter.radial_offsets, cutter.axial_offsets
 
-    def profile(self, place: Array) -> Profile:
+    def profile(self, position: Array) -> Profile:
         """Nominal edge at lengths of edge beyond the tip, m."""
         cutter = self.cutter
         corner, angle = cutter.corner_radius, cutter.edge_angle
-        kappa = np.full_like(place, angle)
+        kappa = np.full_like(position, angle)
         if corner > 0.0:
-            kappa = np.minimum(place / corner, angle)
-        beyond = np.maximum(place - self.on_corner, 0.0)
+            kappa = np.minimum(position / corner, angle)
+        beyond = np.maximum(position - self.on_corner, 0.0)
         height = corner * (1.0 - np.cos(kappa)) + beyond * math.sin(angle)
         across = math.cos(angle) if angle < 0.5 * math.pi else 0.0
         radius = cutter.radius - corner + corner * np.sin(np.where(corner, kappa, 0.0))
         return Profile(height, radius + beyond * across, kappa)
 
-    def place(self, height: float) -> float:
+    def position(self, height: float) -> float:
         """Length of edge from the tip to a height, m."""
         corner, angle = self.cutter.corner_radius, self.cutter.edge_angle
         top = corner * (1.0 - math.cos(angle))
@@ -123,31 +123,32 @@ class Edges:
         """Angle to the last pass of every tooth (P, N), rad, in (0, 2 pi]."""
         angle = self.angle(height)
         own = np.take_along_axis(angle, tooth[:, None], axis=1)
-        ahead = np.mod(angle - own, _TURN)
-        return np.where(ahead < 1e-9, _TURN, ahead)
+        ahead = np.mod(angle - own, _REVOLUTION)
+        return np.where(ahead < 1e-9, _REVOLUTION, ahead)
 
-    def arcs(self, tooth: NDArray[np.int64], place: Array) -> Arcs:
-        """Arcs of teeth (P,) at places (P,)."""
-        profile = self.profile(place)
+    def arcs(self, tooth: NDArray[np.int64], position: Array) -> Arcs:
+        """Arcs of teeth (P,) at positions (P,)."""
+        profile = self.profile(position)
         sine, cosine = np.sin(profile.immersion)[:, None], np.cos(profile.immersion)[:, None]
         out = sine * self.radial(profile.height) + cosine * self._axial
-        inset = out - np.take_along_axis(out, tooth[:, None], axis=1)
-        rise = sine * self.feed_per_turn / _TURN * self.ahead(tooth, profile.height)
+        radial_offset = out - np.take_along_axis(out, tooth[:, None], axis=1)
+        rise = sine * self.feed_per_revolution / _REVOLUTION * self.ahead(tooth, profile.height)
         entry, leave = slice_engagement(
             self.mode, self.radial_depth, self.cutter.radius, np.maximum(profile.radius, 1e-12)
         )
         stock = entry < leave
-        return _arcs(rise, inset, np.where(stock, entry, 0.0), np.where(stock, leave, 0.0))
+        return _arcs(rise, radial_offset, np.where(stock, entry, 0.0), np.where(stock, leave, 0.0))
 
 
-def _marks(rise: Array, inset: Array, entry: Array, leave: Array) -> Array:
+def _marks(rise: Array, radial_offset: Array, entry: Array, leave: Array) -> Array:
     """Angles (P, M) in order at which two chips may be alike, or one may vanish."""
     ones, others = np.triu_indices(rise.shape[1], 1)
     with np.errstate(divide="ignore", invalid="ignore"):
         sines = np.concatenate(
             [
-                inset / rise,
-                (inset[:, ones] - inset[:, others]) / (rise[:, ones] - rise[:, others]),
+                radial_offset / rise,
+                (radial_offset[:, ones] - radial_offset[:, others])
+                / (rise[:, ones] - rise[:, others]),
             ],
             axis=1,
         )
@@ -157,15 +158,15 @@ def _marks(rise: Array, inset: Array, entry: Array, leave: Array) -> Array:
     return np.sort(np.clip(marks, entry[:, None], leave[:, None]), axis=1)
 
 
-def _arcs(rise: Array, inset: Array, entry: Array, leave: Array) -> Arcs:
-    """Arcs at P places from the chips (P, K) against the passes and the arc of the stock (P,)."""
-    marks = _marks(rise, inset, entry, leave)
+def _arcs(rise: Array, radial_offset: Array, entry: Array, leave: Array) -> Arcs:
+    """Arcs at P positions from the chips (P, K) against the passes and the arc of stock (P,)."""
+    marks = _marks(rise, radial_offset, entry, leave)
     middle = 0.5 * (marks[:, 1:] + marks[:, :-1])
-    chip = rise[:, None, :] * np.sin(middle)[:, :, None] - inset[:, None, :]
+    chip = rise[:, None, :] * np.sin(middle)[:, :, None] - radial_offset[:, None, :]
     thinnest = np.argmin(chip, axis=2)
     cuts = np.take_along_axis(chip, thinnest[:, :, None], axis=2)[:, :, 0] > 0.0
     met = np.where(cuts, thinnest, -1)
-    # stretches too short to be any go with what comes before them
+    # intervals too short to be any go with what comes before them
     there = np.diff(marks, axis=1) > _SHORTEST_ARC
     last = np.maximum.accumulate(np.where(there, np.arange(there.shape[1]), -1), axis=1)
     met = np.where(last < 0, -1, np.take_along_axis(met, np.maximum(last, 0), axis=1))
@@ -184,28 +185,28 @@ def _arcs(rise: Array, inset: Array, entry: Array, leave: Array) -> Arcs:
     return Arcs(angle, tooth, kind)
 
 
-def _looks(borders: Array, cutter: Cutter) -> Array:
-    """Places along an edge at which its arcs are looked at, none of them on a border, m."""
+def _samples(borders: Array, cutter: Cutter) -> Array:
+    """Places along an edge at which its arcs are evaluated, none of them on a border, m."""
     spacing = math.inf
     if cutter.serration is not None:
-        spacing = cutter.serration.wavelength / _LOOKS_A_WAVE
-    places = []
+        spacing = cutter.serration.wavelength / _SAMPLES_PER_WAVELENGTH
+    positions = []
     for low, high in itertools.pairwise(borders):
-        count = max(_LOOKS, math.ceil((high - low) / spacing))
+        count = max(_SAMPLES, math.ceil((high - low) / spacing))
         shares = np.concatenate([[_BESIDE], np.arange(1, count) / count, [1.0 - _BESIDE]])
-        places.append(low + (high - low) * shares)
-    return np.concatenate(places)
+        positions.append(low + (high - low) * shares)
+    return np.concatenate(positions)
 
 
-def _changes(edges: Edges, tooth: int, places: Array) -> Array:
+def _changes(edges: Edges, tooth: int, positions: Array) -> Array:
     """Places at which the list of arcs of a tooth changes, in order, m."""
 
-    def kinds(place: Array) -> NDArray[np.int64]:
-        return edges.arcs(np.full(place.size, tooth), place).kind
+    def kinds(position: Array) -> NDArray[np.int64]:
+        return edges.arcs(np.full(position.size, tooth), position).kind
 
-    found = kinds(places)
+    found = kinds(positions)
     differ = np.any(found[1:] != found[:-1], axis=1)
-    low, end = places[:-1][differ], places[1:][differ]
+    low, end = positions[:-1][differ], positions[1:][differ]
     before, after = found[:-1][differ], found[1:][differ]
     changes = [np.empty(0)]
     for _ in range(_MOST_CHANGES):
@@ -223,8 +224,8 @@ def _changes(edges: Edges, tooth: int, places: Array) -> Array:
     return np.sort(np.concatenate(changes))
 
 
-def piece_borders(edges: Edges, tooth: int, borders: Array, fineness: float) -> Array:
-    """Borders of the pieces of a tooth, so close that arcs vary nearly linearly between them.
+def segment_borders(edges: Edges, tooth: int, borders: Array, relative_length: float) -> Array:
+    """Borders of the segments of a tooth, so close that arcs vary nearly linearly between them.
 
     Parameters
     ----------
@@ -232,7 +233,7 @@ def piece_borders(edges: Edges, tooth: int, borders: Array, fineness: float) -> 
     tooth : int
     borders : (B,) array of float
         Lengths of edge beyond the tip between which the nominal edge is smooth, m.
-    fineness : float
+    relative_length : float
         1 or less.
 
     Returns
@@ -240,32 +241,32 @@ def piece_borders(edges: Edges, tooth: int, borders: Array, fineness: float) -> 
     (L,) array of float
         m.
     """
-    changes = _changes(edges, tooth, _looks(borders, edges.cutter))
-    same = _SAME_PLACE * borders[-1]
-    places = np.concatenate([changes, borders])
+    changes = _changes(edges, tooth, _samples(borders, edges.cutter))
+    same = _SAME_POSITION * borders[-1]
+    positions = np.concatenate([changes, borders])
     marks = np.concatenate([np.ones(changes.size, dtype=bool), np.zeros(borders.size, dtype=bool)])
-    order = np.argsort(places, kind="stable")
-    places, marks = places[order], marks[order]
-    # of a border and a change at the same place the border stays, and counts as a change
-    group = np.cumsum(np.append(0, np.diff(places) > same))
-    places = np.array([places[group == g][-1] for g in range(group[-1] + 1)])
+    order = np.argsort(positions, kind="stable")
+    positions, marks = positions[order], marks[order]
+    # of a border and a change at the same position the border stays, and counts as a change
+    group = np.cumsum(np.append(0, np.diff(positions) > same))
+    positions = np.array([positions[group == g][-1] for g in range(group[-1] + 1)])
     marks = np.array([marks[group == g].any() for g in range(group[-1] + 1)])
-    count = _PIECES / math.sqrt(fineness)
+    count = _SEGMENTS / math.sqrt(relative_length)
     long = borders[-1]
     if edges.cutter.serration is not None:
         long = min(long, _LONG * edges.cutter.serration.wavelength)
-    pieces = [places[:1]]
-    for i in range(places.size - 1):
-        share = (places[i + 1] - places[i]) / long
+    segments = [positions[:1]]
+    for i in range(positions.size - 1):
+        share = (positions[i + 1] - positions[i]) / long
         # errors of a short one matter less
         share = share**0.25 if share < 1.0 else share**0.75
         part = _graded(math.ceil(count * share), bool(marks[i]), bool(marks[i + 1]))
-        pieces.append(places[i] + (places[i + 1] - places[i]) * part[1:])
-    return np.concatenate(pieces)
+        segments.append(positions[i] + (positions[i + 1] - positions[i]) * part[1:])
+    return np.concatenate(segments)
 
 
 def _graded(count: int, low: bool, high: bool) -> Array:
-    """Borders of pieces on [0, 1], close together at the ends that are changes."""
+    """Borders of segments on [0, 1], close together at the ends that are changes."""
     if not (low or high):
         count = max(1, count // _SMOOTHER)
     part = np.linspace(0.0, 1.0, count + 1)

@@ -1,4 +1,4 @@
-"""Profile of the edge of a tool: where the pieces border on each other along its length."""
+"""Profile of the edge of a tool: where the segments border on each other along its length."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from numpy.typing import NDArray
 from cutting.engagement.immersion import MillingMode
 from cutting.tool.cutter import Cutter, corner_height
 
-_TURN = 2.0 * math.pi
-#: an edge trails by this much within a piece, rad, or a cone widens by this share of its radius
-_PIECE_LAG = 0.03
+_REVOLUTION = 2.0 * math.pi
+#: an edge trails by this much within a segment, rad, or a cone widens by this share of its radius
+_SEGMENT_LAG = 0.03
 
 
 class EdgeLine(NamedTuple):
-    """Profile of the edge at piece borders: heights, radii, immersion angles, lengths between."""
+    """Profile of the edge at segment borders: heights, radii, immersion angles, lengths between."""
 
     height: NDArray[np.float64]  # (L+1,)
     radius: NDArray[np.float64]  # (L+1,)
-    immersion: NDArray[np.float64]  # at both ends of every piece (L, 2)
+    immersion: NDArray[np.float64]  # at both ends of every segment (L, 2)
     length: NDArray[np.float64]  # (L,)
 
 
 def _radii_of_even_arcs(
-    cutter: Cutter, mode: MillingMode, radial_depth: float, turn: float
+    cutter: Cutter, mode: MillingMode, radial_depth: float, arc_step: float
 ) -> NDArray[np.float64]:
-    """Radii at which the arc has grown by even steps, from none to half a turn.
+    """Radii at which the arc has grown by even steps, from none to half a revolution.
 
     Where the edge first meets the stock its arc grows steeply, and again where it is no more cut
     all around.
@@ -37,14 +37,14 @@ def _radii_of_even_arcs(
     reach = cutter.radius - radial_depth
     if mode == "slot" or abs(reach) >= cutter.radius:
         return np.empty(0)
-    arcs = np.linspace(0.0, math.pi, math.ceil(math.pi / turn) + 1)
+    arcs = np.linspace(0.0, math.pi, math.ceil(math.pi / arc_step) + 1)
     with np.errstate(divide="ignore"):
         radius = reach / np.cos(arcs)
     return radius[radius > 0.0]
 
 
 def _cone_heights(
-    cutter: Cutter, mode: MillingMode, radial_depth: float, turn: float
+    cutter: Cutter, mode: MillingMode, radial_depth: float, arc_step: float
 ) -> list[float]:
     """Heights of even arcs on a cone whose edge first meets the stock on it, or nearly so.
 
@@ -52,19 +52,19 @@ def _cone_heights(
     """
     top, slope = corner_height(cutter), math.tan(cutter.edge_angle)
     start = cutter.radius - cutter.corner_radius * (1.0 - math.sin(cutter.edge_angle))
-    if abs(cutter.radius - radial_depth) * (1.0 + _PIECE_LAG) <= start:
+    if abs(cutter.radius - radial_depth) * (1.0 + _SEGMENT_LAG) <= start:
         return []
-    radius = _radii_of_even_arcs(cutter, mode, radial_depth, turn)
+    radius = _radii_of_even_arcs(cutter, mode, radial_depth, arc_step)
     return list(top + (radius[radius > start] - start) * slope)
 
 
 def _corner_angles(
-    cutter: Cutter, mode: MillingMode, radial_depth: float, turn: float
+    cutter: Cutter, mode: MillingMode, radial_depth: float, arc_step: float
 ) -> NDArray[np.float64]:
-    """Immersion angles of the piece borders within the corner, rad."""
-    count = max(1, math.ceil(cutter.edge_angle / turn))
+    """Immersion angles of the segment borders within the corner, rad."""
+    count = max(1, math.ceil(cutter.edge_angle / arc_step))
     angles = np.linspace(0.0, cutter.edge_angle, count + 1)
-    radius = _radii_of_even_arcs(cutter, mode, radial_depth, turn)
+    radius = _radii_of_even_arcs(cutter, mode, radial_depth, arc_step)
     sine = (radius - cutter.radius + cutter.corner_radius) / cutter.corner_radius
     inside = (sine > 0.0) & (sine < math.sin(cutter.edge_angle))
     angles = np.append(angles, np.arcsin(sine[inside]))
@@ -74,24 +74,24 @@ def _corner_angles(
 
 def edge_line(
     cutter: Cutter,
-    deepest: float,
+    max_depth: float,
     mode: MillingMode,
     radial_depth: float,
     heights: list[float],
-    turn: float,
+    arc_step: float,
 ) -> EdgeLine:
     """Profile of the nominal edge from the tip to a height.
 
     Parameters
     ----------
     cutter : Cutter
-    deepest, radial_depth : float
+    max_depth, radial_depth : float
         m.
     mode : {"up", "down", "slot"}
     heights : list of float
-        Borders of pieces above the corner, m.
-    turn : float
-        By which a corner turns within a piece, and its arc changes, rad.
+        Borders of segments above the corner, m.
+    arc_step : float
+        By which a corner turns within a segment, and its arc changes, rad.
 
     Returns
     -------
@@ -102,28 +102,28 @@ def edge_line(
     immersion: list[tuple[float, float]] = []
     length: list[float] = []
     if corner > 0.0:
-        angles = _corner_angles(cutter, mode, radial_depth, turn)
+        angles = _corner_angles(cutter, mode, radial_depth, arc_step)
         height = list(corner * (1.0 - np.cos(angles)))
         radius = list(cutter.radius - corner + corner * np.sin(angles))
         immersion = list(itertools.pairwise(angles))
         length = list(corner * np.diff(angles))
     top = corner_height(cutter)
-    if deepest > top:
+    if max_depth > top:
         slope = 1.0 / math.tan(cutter.edge_angle) if cutter.edge_angle < 0.5 * math.pi else 0.0
         start = radius[-1]
-        for place in sorted({h for h in heights if top < h < deepest} | {deepest}):
-            length.append((place - height[-1]) / math.sin(cutter.edge_angle))
-            height.append(place)
-            radius.append(start + slope * (place - top))
+        for position in sorted({h for h in heights if top < h < max_depth} | {max_depth}):
+            length.append((position - height[-1]) / math.sin(cutter.edge_angle))
+            height.append(position)
+            radius.append(start + slope * (position - top))
             immersion.append((cutter.edge_angle, cutter.edge_angle))
     return EdgeLine(np.array(height), np.array(radius), np.array(immersion), np.array(length))
 
 
-def _even_heights(spacing: float, deepest: float) -> list[float]:
-    return list(spacing * np.arange(1, math.ceil(deepest / spacing)))
+def _even_heights(spacing: float, max_depth: float) -> list[float]:
+    return list(spacing * np.arange(1, math.ceil(max_depth / spacing)))
 
 
-def _cone_borders(cutter: Cutter, deepest: float, share: float, slope: float) -> list[float]:
+def _cone_borders(cutter: Cutter, max_depth: float, share: float, slope: float) -> list[float]:
     """Heights between which a cone widens by no more than a share of its radius.
 
     Nor does the edge trail by more than that, rad; it does so by `slope`, rad/m.
@@ -131,13 +131,13 @@ def _cone_borders(cutter: Cutter, deepest: float, share: float, slope: float) ->
     top, widening = corner_height(cutter), 1.0 / math.tan(cutter.edge_angle)
     start = cutter.radius - cutter.corner_radius * (1.0 - math.sin(cutter.edge_angle))
     heights = [top]
-    while heights[-1] < deepest:
+    while heights[-1] < max_depth:
         radius = max(cutter.radius, start + widening * (heights[-1] - top))
         heights.append(heights[-1] + share / max(widening / radius, slope))
     return heights[1:-1]
 
 
-def crossing_heights(cutter: Cutter, deepest: float) -> list[float]:
+def crossing_heights(cutter: Cutter, max_depth: float) -> list[float]:
     """Heights at which two flutes lie on the same side of the axis: their order changes."""
     slope = np.tan(np.asarray(cutter.helix)) / cutter.radius
     angle = cutter.tooth_angles
@@ -145,37 +145,37 @@ def crossing_heights(cutter: Cutter, deepest: float) -> list[float]:
     for i in range(cutter.teeth):
         for j in range(i):
             rate = slope[i] - slope[j]
-            if abs(rate) * deepest < 1e-9:
+            if abs(rate) * max_depth < 1e-9:
                 continue
             gap = angle[i] - angle[j]
-            for turn in range(-4, 5):
-                height = (gap + _TURN * turn) / rate
-                if 0.0 < height < deepest:
+            for revolution in range(-4, 5):
+                height = (gap + _REVOLUTION * revolution) / rate
+                if 0.0 < height < max_depth:
                     heights.append(height)
     return heights
 
 
 def straight_borders(
     cutter: Cutter,
-    deepest: float,
+    max_depth: float,
     mode: MillingMode,
     radial_depth: float,
     own_passes: bool,
-    turn: float,
-    fineness: float,
+    arc_step: float,
+    relative_length: float,
 ) -> list[float]:
-    """Heights of the piece borders above the corner, m; arguments as of `edge_line`.
+    """Heights of the segment borders above the corner, m; arguments as of `edge_line`.
 
     Where runout or setting errors give flutes of different helix passes of their own, and along a
-    cone, the pieces are short.
+    cone, the segments are short.
     """
-    heights = crossing_heights(cutter, deepest)
+    heights = crossing_heights(cutter, max_depth)
     several = len(set(cutter.helix)) > 1
     slope = max(abs(math.tan(helix)) for helix in cutter.helix) / cutter.radius
     if own_passes and several and cutter.serration is None:
-        heights += _even_heights(fineness * _PIECE_LAG / slope, deepest)
+        heights += _even_heights(relative_length * _SEGMENT_LAG / slope, max_depth)
     if cutter.edge_angle < 0.5 * math.pi - 1e-9:
         # the radius, and with it the arc, changes along a cone
-        heights += _cone_borders(cutter, deepest, fineness * _PIECE_LAG, slope)
-        heights += _cone_heights(cutter, mode, radial_depth, turn)
+        heights += _cone_borders(cutter, max_depth, relative_length * _SEGMENT_LAG, slope)
+        heights += _cone_heights(cutter, mode, radial_depth, arc_step)
     return heights

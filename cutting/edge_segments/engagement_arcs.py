@@ -1,4 +1,4 @@
-"""Pieces of the edges of all teeth with the arcs in which they cut."""
+"""Segments of the edges of all teeth with the arcs in which they cut."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cutting.chip.regeneration import earlier_passes
-from cutting.edge_segments.earlier_passes import GAUSS, Edges, piece_borders
+from cutting.edge_segments.earlier_passes import GAUSS, Edges, segment_borders
 from cutting.edge_segments.edge_profile import EdgeLine
 from cutting.engagement.immersion import MillingMode, slice_engagement
 from cutting.tool.cutter import Cutter
+from cutting.tool.tooth_passes import earlier_passes
 
 Pair = NDArray[np.float64] | tuple[float, float]
 
@@ -20,41 +20,41 @@ Pair = NDArray[np.float64] | tuple[float, float]
 _SHORTEST_ARC = 1e-9
 
 
-class Piece(NamedTuple):
-    """A piece of an edge and one of its arcs; of a pair the value at the low and the high end."""
+class Segment(NamedTuple):
+    """A segment of an edge and one of its arcs; of a pair the value at the low and the high end."""
 
     bottom: float  # height of the low end above the tip, m
     thickness: float  # along the axis, m
     length: float  # of edge, m
-    angle: Pair  # place on the tool, rad
+    angle: Pair  # position on the tool, rad
     entry: Pair  # rad
     exit: Pair  # rad
     delay: Pair  # angle since the pass that left the surface, rad
     immersion: Pair  # axial immersion angle, rad
     radius: Pair  # m
     cutting: NDArray[np.float64]  # slope at the reference chip: tangential .. axial, N/m^2 (3,)
-    inset: Pair  # by which the earlier edge reaches further out, m
-    axial_inset: float  # and further towards the work, m
+    radial_offset: Pair  # by which the earlier edge reaches further out, m
+    axial_offset: float  # and further towards the work, m
     corner: float  # radius of the corner that it lies on, m; 0 for none
     vanishing: int  # 1, 2: there is no chip at the entry, at the exit
 
 
 class Owner(NamedTuple):
-    """Whose piece it is."""
+    """Whose segment it is."""
 
-    piece: int  # number along the edge
+    segment: int  # number along the edge
     tooth: int
     earlier: int  # tooth that left the surface
 
 
-def pieces_of_one_pass(
+def segments_of_one_pass(
     cutter: Cutter,
     line: EdgeLine,
     mode: MillingMode,
     radial_depth: float,
     slopes: list[NDArray[np.float64]],
-) -> tuple[list[Piece], list[Owner]]:
-    """Pieces of teeth that each cut what the one before them has left.
+) -> tuple[list[Segment], list[Owner]]:
+    """Segments of teeth that each cut what the one before them has left.
 
     Parameters
     ----------
@@ -68,19 +68,19 @@ def pieces_of_one_pass(
 
     Returns
     -------
-    pieces : list of Piece
+    segments : list of Segment
     owners : list of Owner
     """
     lag = np.tan(np.asarray(cutter.helix)) / cutter.radius
-    pieces: list[Piece] = []
+    segments: list[Segment] = []
     owners: list[Owner] = []
     entry, leave = _arcs_at_borders(cutter, line, mode, radial_depth)
-    for piece in range(line.length.size):
-        ends = slice(piece, piece + 2)
-        middle = 0.5 * (line.height[piece] + line.height[piece + 1])
+    for segment in range(line.length.size):
+        ends = slice(segment, segment + 2)
+        middle = 0.5 * (line.height[segment] + line.height[segment + 1])
         angle = cutter.tooth_angles[:, None] - np.outer(lag, [*line.height[ends], middle])
-        kappa = line.immersion[piece]
-        arc = _arc_of_piece(entry[ends], leave[ends])
+        kappa = line.immersion[segment]
+        arc = _arc_of_segment(entry[ends], leave[ends])
         if arc is None:
             continue
         earlier, ahead = earlier_passes(angle[:, 2:])
@@ -89,75 +89,75 @@ def pieces_of_one_pass(
             # flutes of different helix are not as far ahead at the ends as in the middle
             apart = angle[other] - angle[tooth]
             gaps = ahead[tooth, 0, 0] + apart - apart[2]
-            owners.append(Owner(piece, tooth, other))
-            pieces.append(
-                Piece(
-                    line.height[piece], line.height[piece + 1] - line.height[piece],
-                    line.length[piece], angle[tooth, :2], arc[0], arc[1], gaps[:2], kappa,
+            owners.append(Owner(segment, tooth, other))
+            segments.append(
+                Segment(
+                    line.height[segment], line.height[segment + 1] - line.height[segment],
+                    line.length[segment], angle[tooth, :2], arc[0], arc[1], gaps[:2], kappa,
                     line.radius[ends], slopes[tooth], (0.0, 0.0), 0.0,
                     cutter.corner_radius if kappa[0] < kappa[1] else 0.0, 0,
                 )
             )  # fmt: skip
-    return pieces, owners
+    return segments, owners
 
 
-def pieces_of_passes(
+def segments_of_passes(
     edges: Edges,
     line: EdgeLine,
-    deepest: float,
+    max_depth: float,
     slopes: list[NDArray[np.float64]],
-    fineness: float,
-) -> tuple[list[Piece], list[Owner]]:
-    """Pieces of teeth for each of which the earlier pass is found that left the surface.
+    relative_length: float,
+) -> tuple[list[Segment], list[Owner]]:
+    """Segments of teeth for each of which the earlier pass is found that left the surface.
 
     Parameters
     ----------
     edges : Edges
     line : EdgeLine
-    deepest : float
+    max_depth : float
         m.
     slopes
-        As of `pieces_of_one_pass`.
-    fineness : float
+        As of `segments_of_one_pass`.
+    relative_length : float
         1 or less.
 
     Returns
     -------
-    pieces : list of Piece
+    segments : list of Segment
     owners : list of Owner
     """
     borders = np.concatenate([[0.0], np.cumsum(line.length)])
     # the line runs on to the end of the corner
-    borders = np.minimum(borders, edges.place(deepest))
+    borders = np.minimum(borders, edges.position(max_depth))
     borders = np.append(borders[borders < borders[-1]], borders[-1])
-    pieces: list[Piece] = []
+    segments: list[Segment] = []
     owners: list[Owner] = []
     for tooth in range(edges.cutter.teeth):
-        found, of_tooth = _pieces_of_tooth(edges, tooth, slopes[tooth], borders, fineness)
-        pieces += found
+        found, of_tooth = _segments_of_tooth(edges, tooth, slopes[tooth], borders, relative_length)
+        segments += found
         owners += of_tooth
-    return pieces, owners
+    return segments, owners
 
 
-def _pieces_of_tooth(
+def _segments_of_tooth(
     edges: Edges, tooth: int, slope: NDArray[np.float64], borders: NDArray[np.float64],
-    fineness: float,
-) -> tuple[list[Piece], list[Owner]]:  # fmt: skip
+    relative_length: float,
+) -> tuple[list[Segment], list[Owner]]:  # fmt: skip
     """The same of one tooth.
 
-    What bends along a piece is the line through its values at two Gauss points: so the area in
+    What bends along a segment is the line through its values at two Gauss points: so the area in
     the cut, and all that is linear along it, is right to the fourth order.
     """
-    places = piece_borders(edges, tooth, borders, fineness)
-    low, high = places[:-1], places[1:]
+    positions = segment_borders(edges, tooth, borders, relative_length)
+    low, high = positions[:-1], positions[1:]
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     own = np.full(middle.size, tooth)
     inner = (middle - GAUSS * half, middle + GAUSS * half)
-    at_ends, at_middle = edges.profile(places), edges.profile(middle)
-    radial = _through(*(edges.radial(edges.profile(place).height) for place in inner))
+    at_ends, at_middle = edges.profile(positions), edges.profile(middle)
+    radial = _through(*(edges.radial(edges.profile(position).height) for position in inner))
     angle, between = edges.angle(at_ends.height), edges.angle(at_middle.height)
     ahead = edges.ahead(own, at_middle.height)
-    one, other, central = (edges.arcs(own, place) for place in (*inner, middle))
+    one, other, central = (edges.arcs(own, position) for position in (*inner, middle))
     alike = np.all(one.kind == other.kind, axis=1)
     ends = np.where(
         alike[:, None, None], _through(one.angle, other.angle), central.angle[..., None]
@@ -165,28 +165,28 @@ def _pieces_of_tooth(
     met = np.where(alike[:, None], one.tooth, central.tooth)
     vanishing = _where_chip_vanishes(np.where(alike[:, None], one.kind, central.kind))
     axial, corner = edges.cutter.axial_offsets, edges.cutter.corner_radius
-    pieces: list[Piece] = []
+    segments: list[Segment] = []
     owners: list[Owner] = []
-    for piece, arc in zip(*np.nonzero(met >= 0), strict=True):
-        k, pair = int(met[piece, arc]), slice(piece, piece + 2)
+    for segment, arc in zip(*np.nonzero(met >= 0), strict=True):
+        k, pair = int(met[segment, arc]), slice(segment, segment + 2)
         apart = angle[pair, k] - angle[pair, tooth]
-        gaps = ahead[piece, k] + apart - (between[piece, k] - between[piece, tooth])
-        owners.append(Owner(int(piece), tooth, k))
-        pieces.append(
-            Piece(
-                at_ends.height[piece], at_ends.height[piece + 1] - at_ends.height[piece],
-                high[piece] - low[piece], angle[pair, tooth],
-                ends[piece, arc], ends[piece, arc + 1], gaps, at_ends.immersion[pair],
-                at_ends.radius[pair], slope, radial[piece, k] - radial[piece, tooth],
-                axial[k] - axial[tooth], corner if middle[piece] < edges.on_corner else 0.0,
-                vanishing[piece, arc],
+        gaps = ahead[segment, k] + apart - (between[segment, k] - between[segment, tooth])
+        owners.append(Owner(int(segment), tooth, k))
+        segments.append(
+            Segment(
+                at_ends.height[segment], at_ends.height[segment + 1] - at_ends.height[segment],
+                high[segment] - low[segment], angle[pair, tooth],
+                ends[segment, arc], ends[segment, arc + 1], gaps, at_ends.immersion[pair],
+                at_ends.radius[pair], slope, radial[segment, k] - radial[segment, tooth],
+                axial[k] - axial[tooth], corner if middle[segment] < edges.on_corner else 0.0,
+                vanishing[segment, arc],
             )
         )  # fmt: skip
-    return pieces, owners
+    return segments, owners
 
 
 def _where_chip_vanishes(kind: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Tell for each arc (P, W) whether its chip is none at its entry (1), at its exit (2), or not.
+    """Where the chip of each arc (P, W) vanishes: at its entry (1), at its exit (2), or not.
 
     For a chip against the surface of one pass it is so where the arc borders on air.
     """
@@ -206,11 +206,11 @@ def _through(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np
 def _arcs_at_borders(
     cutter: Cutter, line: EdgeLine, mode: MillingMode, radial_depth: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Entry and exit (L + 1,) at the borders of the pieces, rad, of which each piece has the mean.
+    """Entry and exit (L + 1,) at the borders of segments, rad, whose mean each segment has.
 
-    Within a piece the arc follows a chord, which all along lies on one side of it. At a border the
-    arc is taken off by the mean distance (Simpson) on both sides of it: what a force is short of
-    falls with the fourth power of the length of the pieces, not the second.
+    Within a segment the arc follows a chord, which all along lies on one side of it. At a border
+    the arc is taken off by the mean distance (Simpson) on both sides of it: what a force is short
+    of falls with the fourth power of the length of the segments, not the second.
     """
 
     def arcs(radius: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -233,7 +233,7 @@ def _arcs_at_borders(
     return ends
 
 
-def _arc_of_piece(
+def _arc_of_segment(
     entry: NDArray[np.float64], leave: NDArray[np.float64]
 ) -> NDArray[np.float64] | None:
     """Entry and exit at both ends (2, 2); where one end is out of the stock its arc is a point."""
@@ -243,6 +243,6 @@ def _arc_of_piece(
     if not cuts.all():
         inside = int(np.argmax(cuts))
         # down-milling ends at pi, up-milling starts at 0: the arc shrinks towards that side
-        place = leave[inside] if leave[inside] > math.pi - 1e-12 else entry[inside]
-        entry, leave = np.where(cuts, entry, place), np.where(cuts, leave, place)
+        position = leave[inside] if leave[inside] > math.pi - 1e-12 else entry[inside]
+        entry, leave = np.where(cuts, entry, position), np.where(cuts, leave, position)
     return np.stack([entry, leave])

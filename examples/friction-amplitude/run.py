@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 import chatter
 from chatter.description.case import Case
 from chatter.plots import style
+from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import milling_model
-from chatter.stability.registry import zero_order_of
 
 HERE = Path(__file__).parent
 DEPTHS = (9.0, 9.5, 10.0, 10.5, 11.0, 11.5, 12.0, 13.0)  # mm

@@ -8,6 +8,7 @@ import pytest
 
 from chatter.description.case import Case
 from chatter.engine import parallel as sweep
+from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.methods.collocation.multipliers import converged_multiplier, multipliers
 from chatter.stability.model import milling_model
 from cutting.edge_segments.segments import period_angle
@@ -47,7 +48,7 @@ def test_the_store_is_what_the_reference_gives():
 @pytest.mark.parametrize(
     ("cut", "periods", "expected"),
     [
-        # BENCHMARKS.md 2.2, 4 and 3.3: even teeth, unequal pitch, flutes of different helix
+        # validation 2.2, 4 and 3.3: even teeth, unequal pitch, flutes of different helix
         (
             GeneralCut(
                 16e-3, (math.pi,) * 2, (0.0,) * 2, "up", 1.6e-3, (6e8, 2e8, 0.0), X,
@@ -126,7 +127,9 @@ def shallow(**changes):
 def product_radius(cut):
     """Spectral radius over a turn by the product."""
     model = milling_model(Case.from_dict(case_dict(cut)))
-    radius = abs(multipliers(model.cut(cut.depth, 12, 0.3), *np.array([[cut.speed], [cut.depth]])))
+    radius = abs(
+        multipliers(element_cut(model, cut.depth, 12, 0.3), *np.array([[cut.speed], [cut.depth]]))
+    )
     return over_the_period_of_the_reference(model, cut, radius[0])
 
 
@@ -169,7 +172,9 @@ def test_spectral_radius_of_random_cases_of_any_tool(cases):
     for cut, expected in cases:
         model = milling_model(Case.from_dict(case_dict(cut)))
         found = converged_multiplier(
-            lambda points, waves, model=model, depth=cut.depth: model.cut(depth, points, waves),
+            lambda points, waves, model=model, depth=cut.depth: element_cut(
+                model, depth, points, waves
+            ),
             cut.speed,
             cut.depth,
         )
@@ -180,7 +185,7 @@ def test_spectral_radius_of_random_cases_of_any_tool(cases):
 
 def test_the_same_bytes_whatever_the_number_of_threads(monkeypatch):
     cut, _ = next((cut, r) for cut, r in CASES if len(set(cut.helix)) > 1 and not cut.variation)
-    arrays = milling_model(Case.from_dict(case_dict(cut))).cut(cut.depth)
+    arrays = element_cut(milling_model(Case.from_dict(case_dict(cut))), cut.depth)
     speeds = np.linspace(0.8, 1.2, 97) * cut.speed
     depths = np.full(speeds.size, cut.depth)
     found = []
@@ -198,7 +203,7 @@ def test_spectral_convergence():
     model = milling_model(Case.from_dict(case_dict(cut)))
     point = np.array([cut.speed]), np.array([cut.depth])
     orders = (4, 6, 8, 10, 12)
-    radii = [abs(multipliers(model.cut(cut.depth, p, 1.0), *point)[0]) for p in orders]
+    radii = [abs(multipliers(element_cut(model, cut.depth, p, 1.0), *point)[0]) for p in orders]
     exact = spectral_radius(cut, nodes=14, waves=0.4) ** 0.5
     errors = np.abs(np.array(radii) - exact)
     # every two points more bring a factor of ten and more, down to rounding

@@ -1,4 +1,4 @@
-"""Measured parameters against 85 real cutting tests (Hajdu et al. 2020; BENCHMARKS.md 6.1)."""
+"""Measured parameters against 85 real cutting tests (Hajdu et al. 2020; validation 6.1)."""
 
 import csv
 import math
@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.stability.methods.semi_discretization.method import limit_curve, multipliers
+from chatter.stability.methods.semi_discretization.arrays import milling_arrays
+from chatter.stability.methods.semi_discretization.multipliers import limit_curve, multipliers
 from chatter.stability.model import milling_model
-from tests.places import SHARED
+from tests.places import DATA
 
-FOLDER = SHARED / "data/stability-hajdu-2020"
-pytestmark = pytest.mark.skipif(not FOLDER.exists(), reason="shared data not at hand")
+FOLDER = DATA / "stability-hajdu-2020"
 RPM = math.pi / 30.0
 
 REFITTED = {
@@ -34,7 +34,7 @@ def judged(case):
     speed = np.array([float(row["spindle_speed [rpm]"]) * RPM for row in rows])
     depth = np.array([float(row["axial_depth [mm]"]) * 1e-3 for row in rows])
     stable = np.array([row["stable"] == "1" for row in rows])
-    radius = np.abs(multipliers(milling_model(case).arrays, speed, depth))
+    radius = np.abs(multipliers(milling_arrays(milling_model(case)), speed, depth))
     return int(np.sum((radius < 1.0) == stable)), len(rows)
 
 
@@ -47,7 +47,7 @@ def test_limits_with_declared_and_refitted_parameters():
     refitted = (0.70722, 0.60371, 1.26777, 1.86858, 0.63279, 0.68226)
     refitted += (1.16564, 1.95751, 2.82364, 0.79817, 0.60553)
     for patched, expected in ((case, declared), (case.patch(REFITTED), refitted)):
-        arrays = milling_model(patched).arrays
+        arrays = milling_arrays(milling_model(patched))
         curve = limit_curve(arrays, np.array(rpms) * RPM, depths)
         assert curve.critical_depth * 1e3 == pytest.approx(expected, rel=2e-4)
 

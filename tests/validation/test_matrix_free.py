@@ -12,17 +12,17 @@ from chatter.description.errors import RunError
 from chatter.description.progress import no_progress
 from chatter.engine import parallel as sweep
 from chatter.stability.methods.collocation import multipliers as collocation
-from chatter.stability.methods.matrix_free import method as matrix_free
-from chatter.stability.methods.matrix_free.modal_response import PLACES, drawn_answer, mode_answer
+from chatter.stability.methods.collocation.element_cut import element_cut
+from chatter.stability.methods.matrix_free import multipliers as matrix_free
+from chatter.stability.methods.matrix_free.modal_response import (
+    POSITIONS,
+    graded_response,
+    mode_response,
+)
+from chatter.stability.methods.matrix_free.stepped_cut import stepped_cut, with_contact
 from chatter.stability.methods.time_domain.critical_depths import growths
 from chatter.stability.model import milling_model
-from chatter.stability.registry import (
-    GRIDS,
-    METHODS,
-    chosen_method,
-    operating_frequency,
-    operating_multiplier,
-)
+from chatter.stability.registry import METHODS, chosen_method
 from cutting.edge_segments.segments import period_angle
 from tests.validation.reference import dense_cases
 from tests.validation.reference.general_cases import case_dict, load
@@ -34,7 +34,7 @@ CASES = load()
 
 def converged(model, speed, depth, *tolerance):
     return matrix_free.converged_multiplier(
-        lambda fineness: model.stepped_cut(depth, fineness), speed, depth, *tolerance
+        lambda fineness: stepped_cut(model, depth, fineness), speed, depth, *tolerance
     )
 
 
@@ -92,8 +92,8 @@ TOOLS = {
 def test_radius_of_every_tool_is_that_of_collocation(name):
     model = TOOLS[name]
     rpm, depth = (part.ravel() for part in np.meshgrid([6100.0, 9700.0], [0.4e-3, 2e-3, 4e-3]))
-    found = np.abs(matrix_free.multipliers(model.stepped_cut(4e-3), rpm * RPM, depth))
-    exact = np.abs(collocation.multipliers(model.cut(4e-3, 12, 0.6), rpm * RPM, depth))
+    found = np.abs(matrix_free.multipliers(stepped_cut(model, 4e-3), rpm * RPM, depth))
+    exact = np.abs(collocation.multipliers(element_cut(model, 4e-3, 12, 0.6), rpm * RPM, depth))
     assert found == pytest.approx(exact, rel=1e-4, abs=1e-5)
 
 
@@ -103,7 +103,7 @@ def test_radius_of_random_cases_of_any_tool():
     for cut, expected in CASES[::2]:
         model = milling_model(Case.from_dict(case_dict(cut)))
         point = np.array([cut.speed]), np.array([cut.depth])
-        radius = abs(matrix_free.multipliers(model.stepped_cut(cut.depth), *point)[0])
+        radius = abs(matrix_free.multipliers(stepped_cut(model, cut.depth), *point)[0])
         # the reference counts from turn to turn
         repeats = 1 if cut.variation else round(2.0 * math.pi / period_angle(model.cutter))
         errors.append(abs(radius**repeats - expected) / max(1.0, expected))
@@ -171,7 +171,7 @@ def test_a_size_effect_where_chips_vanish(exponent, changes):
 @pytest.mark.parametrize(
     ("mode", "rpm", "depth_mm", "immersion", "exact"),
     [
-        # BENCHMARKS.md 2.1 and 2.2
+        # validation 2.1 and 2.2
         ("down", 5000, 0.2, 1.0, 0.81974278427),
         ("down", 5000, 1.0, 1.0, 1.40647352539),
         ("up", 20000, 4.0, 0.05, 1.0543980187),
@@ -188,18 +188,18 @@ def test_published_multipliers(mode, rpm, depth_mm, immersion, exact):
 def test_fourth_order_convergence(name):
     model = TOOLS[name]
     point = np.array([5000 * RPM]), np.array([2e-3])
-    exact = abs(collocation.multipliers(model.cut(2e-3, 12, 0.4), *point)[0])
+    exact = abs(collocation.multipliers(element_cut(model, 2e-3, 12, 0.4), *point)[0])
     errors = np.array(
         [
             abs(
-                abs(matrix_free.multipliers(model.stepped_cut(2e-3), *point, refinements=(r,))[0])
+                abs(matrix_free.multipliers(stepped_cut(model, 2e-3), *point, refinements=(r,))[0])
                 - exact
             )
             for r in (1, 2, 4)
         ]
     )
     assert np.log2(errors[:-1] / errors[1:]) == pytest.approx([4.0, 4.0], abs=0.35)
-    better = abs(matrix_free.multipliers(model.stepped_cut(2e-3), *point)[0])
+    better = abs(matrix_free.multipliers(stepped_cut(model, 2e-3), *point)[0])
     assert abs(better - exact) < 0.2 * errors[1]
 
 
@@ -218,7 +218,7 @@ def test_fourth_order_where_an_edge_leaves_within_its_length_just_before_its_top
     }  # fmt: skip
     law = {"law": "exponential", "Ktc": 6.57e8, "Krc": 5.2e8, "h0": 1e-4, "exponent": 0.515}
     modes = [{"frequency": 9000.0, "damping": 0.05, "stiffness": 8e6, "direction": [0, 0, 1]}]
-    stepped = model_of(tool, cut, modes, material=law).stepped_cut(cut["axial_depth"])
+    stepped = stepped_cut(model_of(tool, cut, modes, material=law), cut["axial_depth"])
     point = np.array([cut["spindle_speed"]]), np.array([cut["axial_depth"]])
     radius = [
         abs(matrix_free.multipliers(stepped, *point, refinements=(refinement,))[0])
@@ -232,8 +232,8 @@ def test_limits_are_those_of_collocation(name):
     model = TOOLS[name]
     speeds = np.array([5200.0, 8000.0, 11000.0]) * RPM
     depths = np.linspace(0.0, 12e-3, 25)[1:]
-    found = METHODS["matrix-free"](model, speeds, depths, None, no_progress)
-    other = METHODS["collocation"](model, speeds, depths, None, no_progress)
+    found = METHODS["matrix-free"].limits(model, speeds, depths, None, no_progress)
+    other = METHODS["collocation"].limits(model, speeds, depths, None, no_progress)
     assert np.isfinite(other.critical_depth).sum() >= 2
     assert found.critical_depth == pytest.approx(other.critical_depth, rel=2e-3)
     assert found.chatter_frequency == pytest.approx(other.chatter_frequency, rel=1e-3, nan_ok=True)
@@ -248,17 +248,17 @@ def test_limits_are_those_of_collocation(name):
 def test_the_grid_and_the_operating_point_of_the_method():
     model = model_of({}, {"spindle_speed": 5000 * RPM, "mode": "slot", "radial_depth": 16e-3})
     point = np.array([5000 * RPM]), np.array([1e-3])
-    radius = GRIDS["matrix-free"](model, *point, None, no_progress)
+    radius = METHODS["matrix-free"].radius(model, *point, None, no_progress)
     assert radius == pytest.approx([1.40647352539], rel=1e-5)
-    own = operating_multiplier(model, "matrix-free", None)
+    own = METHODS["matrix-free"].multiplier(model, None)
     assert abs(own.value) == pytest.approx(1.40647352539, rel=2e-6)
-    assert operating_frequency(model, "matrix-free") == pytest.approx(
-        operating_frequency(model), rel=1e-4
+    assert METHODS["matrix-free"].chatter_frequency(model) == pytest.approx(
+        METHODS["collocation"].chatter_frequency(model), rel=1e-4
     )
 
 
 def test_the_same_bytes_whatever_the_number_of_threads(monkeypatch):
-    cut = TOOLS["variable helix"].stepped_cut(3e-3)
+    cut = stepped_cut(TOOLS["variable helix"], 3e-3)
     speeds, depths = np.linspace(600.0, 1300.0, 40), np.full(40, 3e-3)
     found = []
     for workers in (1, 2, 5):
@@ -268,7 +268,7 @@ def test_the_same_bytes_whatever_the_number_of_threads(monkeypatch):
 
 
 def test_too_many_vibrations_are_refused():
-    cut = TOOLS["uniform"].stepped_cut(1e-3)
+    cut = stepped_cut(TOOLS["uniform"], 1e-3)
     with pytest.raises(RunError, match="raise the lowest spindle speed"):
         matrix_free.multipliers(cut, np.array([0.1]), np.array([1e-3]))
     # few enough for two resolutions, too many for all: what is there is told with its error
@@ -281,15 +281,15 @@ def test_a_mode_answers_exactly_to_a_line(angle):
     """Against the particular and the free motion of x'' + 2 z w x' + w^2 x = a + b t."""
     omega, zeta, length = 50.0, 0.07, angle / 50.0
     out = np.empty((4, 2, 4))
-    mode_answer(omega, zeta, length, out)
+    mode_response(omega, zeta, length, out)
     start, forces = np.array([0.3, -0.2]), np.array([2.0, 5.0])
-    b = (forces[1] - forces[0]) / ((PLACES[1] - PLACES[0]) * length)
-    a = forces[0] - b * PLACES[0] * length
+    b = (forces[1] - forces[0]) / ((POSITIONS[1] - POSITIONS[0]) * length)
+    a = forces[0] - b * POSITIONS[0] * length
     constant = (a - 2.0 * zeta * b / omega) / omega**2
     root = omega * math.sqrt(1.0 - zeta**2)
     first = start[0] - constant
     second = (start[1] * omega - b / omega**2 + zeta * omega * first) / root
-    for place, row in zip(PLACES, out, strict=True):
+    for place, row in zip(POSITIONS, out, strict=True):
         t = place * length
         fade, c, s = math.exp(-zeta * omega * t), math.cos(root * t), math.sin(root * t)
         x = constant + b / omega**2 * t + fade * (first * c + second * s)
@@ -309,8 +309,8 @@ def answer_to_infinite_force(mode, exponent, span, count):
     state, out = np.zeros(2), np.empty((4, 2, 4))
     marks = np.linspace(0.0, 1.0, count + 1)[:: 1 if span > 0.0 else -1]
     for low, high in itertools.pairwise(marks):
-        drawn_answer(*mode, (place, weight), (span, power, low, high), out)
-        times = span * (low + PLACES[:2] * (high - low)) ** power
+        graded_response(*mode, (place, weight), (span, power, low, high), out)
+        times = span * (low + POSITIONS[:2] * (high - low)) ** power
         forces = np.abs(times) ** (exponent - 1.0) * np.exp(times)
         state = out[3] @ np.concatenate([state, forces])
     return state
@@ -368,10 +368,10 @@ def test_a_contact_that_is_always_whole_is_a_stiffer_mode():
         ],
     )  # fmt: skip
     speeds, depths = np.full(3, 8000 * RPM), np.array([0.3e-3, 1e-3, 3e-3])
-    found = np.abs(matrix_free.multipliers(held.stepped_cut(3e-3), speeds, depths))
-    exact = np.abs(collocation.multipliers(stiff.cut(3e-3, 12, 0.6), speeds, depths))
+    found = np.abs(matrix_free.multipliers(stepped_cut(held, 3e-3), speeds, depths))
+    exact = np.abs(collocation.multipliers(element_cut(stiff, 3e-3, 12, 0.6), speeds, depths))
     assert found == pytest.approx(exact, rel=1e-5)
-    free = np.abs(matrix_free.multipliers(model_of({}, SLOT).stepped_cut(3e-3), speeds, depths))
+    free = np.abs(matrix_free.multipliers(stepped_cut(model_of({}, SLOT), 3e-3), speeds, depths))
     assert not np.allclose(found, free, rtol=0.02)
 
 
@@ -385,15 +385,15 @@ def test_a_contact_that_comes_and_goes_grows_as_in_the_simulation(full_engagemen
     }  # fmt: skip
     model = model_of({"helix": math.radians(30.0)}, cut, TWO_MODES, contact=contact)
     point = np.array([7000 * RPM]), np.array([depth])
-    found = abs(matrix_free.multipliers(model.stepped_cut(depth), *point)[0])
+    found = abs(matrix_free.multipliers(stepped_cut(model, depth), *point)[0])
     (simulated,) = growths(model.case, model.structure.modes, *point)
     assert found == pytest.approx(simulated.radius, rel=1e-3)
-    without = abs(matrix_free.multipliers(matrix_free.stepped_cut(model.cut(depth)), *point)[0])
+    without = abs(matrix_free.multipliers(with_contact(model.cut(depth)), *point)[0])
     assert abs(without - found) > 0.1
 
 
 def test_auto_takes_the_contact_along():
     model = model_of({}, SLOT, contact={"stiffness": 4e5})
-    assert chosen_method(model.case, None)[0] == "matrix-free"
-    assert chosen_method(model_of({}, SLOT).case, None)[0] == "collocation"
+    assert chosen_method(model.case).name == "matrix-free"
+    assert chosen_method(model_of({}, SLOT).case).name == "collocation"
     assert any("matrix-free and time methods alone" in note for note in model.notes)

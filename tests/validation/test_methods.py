@@ -9,16 +9,19 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.description.progress import no_progress
 from chatter.stability.methods.collocation import multipliers as collocation
-from chatter.stability.methods.multi_frequency.method import harmonics_at
-from chatter.stability.methods.semi_discretization.method import multipliers
+from chatter.stability.methods.collocation.element_cut import element_cut
+from chatter.stability.methods.multi_frequency.harmonics import harmonics_at
+from chatter.stability.methods.semi_discretization.arrays import milling_arrays
+from chatter.stability.methods.semi_discretization.multipliers import multipliers
 from chatter.stability.methods.semi_discretization.step_schemes import (
     FirstOrder,
     FullDiscretization,
     SecondOrder,
     ZerothOrder,
 )
+from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import milling_model
-from chatter.stability.registry import METHODS, by_multi_frequency, zero_order_of
+from chatter.stability.registry import METHODS
 from dynamics.modal.modes import receptance_matrix
 
 RPM = math.pi / 30.0
@@ -44,7 +47,7 @@ def tool_922(degrees_of_freedom, immersion, cut, **tool):
 
 
 def altintas_engin_budak(helix_deg=0.0, pitch=(70, 110, 70, 110)):
-    """BENCHMARKS.md 4."""
+    """validation 4."""
     modes = [
         mode(441.64, 0.028722, mass=11.125),
         mode(563.6, 0.055801, mass=1.4986),
@@ -61,7 +64,7 @@ def altintas_engin_budak(helix_deg=0.0, pitch=(70, 110, 70, 110)):
     return model_of(modes, tool, cut, 697e6, 255.8e6)
 
 
-# --- BENCHMARKS.md 2.1: what every scheme gives with 40 steps a tooth period ----------------------
+# --- validation 2.1: what every scheme gives with 40 steps a tooth period ----------------------
 
 
 @pytest.mark.parametrize(
@@ -74,7 +77,7 @@ def altintas_engin_budak(helix_deg=0.0, pitch=(70, 110, 70, 110)):
     ],
 )
 def test_forty_steps_of_every_scheme(scheme, published, printed):
-    arrays = tool_922(1, 1.0, "down").arrays
+    arrays = milling_arrays(tool_922(1, 1.0, "down"))
     point = np.array([5000 * RPM]), np.array([1e-3])
     assert abs(multipliers(arrays, *point, 40, scheme=scheme)[0]) == pytest.approx(
         published, abs=printed
@@ -85,7 +88,7 @@ def test_forty_steps_of_every_scheme(scheme, published, printed):
     "scheme", [ZerothOrder(), FirstOrder(), SecondOrder(), FullDiscretization()]
 )
 def test_every_scheme_converges_to_the_exact_multiplier(scheme):
-    arrays = tool_922(1, 0.1, "up").arrays
+    arrays = milling_arrays(tool_922(1, 0.1, "up"))
     point = np.array([10000 * RPM]), np.array([2e-3])
     errors = [
         abs(abs(multipliers(arrays, *point, steps, scheme=scheme)[0]) - 1.1773892490)
@@ -97,7 +100,7 @@ def test_every_scheme_converges_to_the_exact_multiplier(scheme):
 
 
 def test_a_parabola_is_nearer_than_a_line_and_a_line_than_a_constant():
-    arrays = tool_922(1, 1.0, "down").arrays
+    arrays = milling_arrays(tool_922(1, 1.0, "down"))
     point = np.array([5000 * RPM]), np.array([0.5e-3])
     schemes = (SecondOrder(), FirstOrder(), ZerothOrder())
     errors = [
@@ -113,7 +116,7 @@ def test_a_parabola_is_nearer_than_a_line_and_a_line_than_a_constant():
 @pytest.mark.parametrize(
     ("freedom", "immersion", "cut", "rpm", "depth_mm", "exact"),
     [
-        # BENCHMARKS.md 2.1 and 2.2
+        # validation 2.1 and 2.2
         (1, 1.0, "down", 5000, 0.2, 0.81974278427),
         (1, 1.0, "down", 5000, 1.0, 1.40647352539),
         (1, 0.05, "up", 20000, 4.0, 1.0543980187),
@@ -125,26 +128,26 @@ def test_a_parabola_is_nearer_than_a_line_and_a_line_than_a_constant():
 def test_collocation_meets_the_exact_multipliers(freedom, immersion, cut, rpm, depth_mm, exact):
     model = tool_922(freedom, immersion, cut)
     point = np.array([rpm * RPM]), np.array([depth_mm * 1e-3])
-    plain = abs(collocation.multipliers(model.cut(10e-3), *point)[0])
+    plain = abs(collocation.multipliers(element_cut(model, 10e-3), *point)[0])
     assert plain == pytest.approx(exact, rel=3e-5)
-    fine = abs(collocation.multipliers(model.cut(10e-3, 12, 0.7), *point)[0])
+    fine = abs(collocation.multipliers(element_cut(model, 10e-3, 12, 0.7), *point)[0])
     assert fine == pytest.approx(exact, rel=1e-9)
 
 
 def test_limits_of_unequal_pitch():
-    """BENCHMARKS.md 4: 70 and 110 degrees, no helix; and with helix."""
+    """validation 4: 70 and 110 degrees, no helix; and with helix."""
     rpms = np.array([3000, 4000, 5000, 6000, 8000, 10000])
     depths = np.linspace(0.0, 8e-3, 41)[1:]
     model = altintas_engin_budak()
-    found = collocation.limit_curve(model.cut(8e-3), rpms * RPM, depths)
+    found = collocation.limit_curve(element_cut(model, 8e-3), rpms * RPM, depths)
     exact = (3.9037, 1.7965, 6.1649, 3.0954, 4.9829, 2.5674)
     assert found.critical_depth * 1e3 == pytest.approx(exact, rel=1e-4)
     model = altintas_engin_budak(30.0)
-    found = collocation.limit_curve(model.cut(8e-3), np.array([5000, 8000]) * RPM, depths)
+    found = collocation.limit_curve(element_cut(model, 8e-3), np.array([5000, 8000]) * RPM, depths)
     # computed there with a coarser solver
     assert found.critical_depth * 1e3 == pytest.approx((6.09418, 4.95246), rel=5e-4)
     half_turn = collocation.multipliers(
-        altintas_engin_budak().cut(4e-3), np.array([5000 * RPM]), np.array([4e-3])
+        element_cut(altintas_engin_budak(), 4e-3), np.array([5000 * RPM]), np.array([4e-3])
     )
     assert abs(half_turn[0]) == pytest.approx(0.62113485, abs=5e-6)
 
@@ -159,10 +162,10 @@ def test_limits_of_unequal_pitch():
     ],
 )
 def test_islands_of_a_helical_tool(rpm, expected, kinds):
-    """BENCHMARKS.md 3.1: stable again between the island and the next limit."""
+    """validation 3.1: stable again between the island and the next limit."""
     model = tool_922(1, 0.05, "up", diameter=8e-3, helix=math.radians(45.0))
     depths = np.linspace(0.0, 9e-3, 61)[1:]
-    curve = collocation.limit_curve(model.cut(9e-3), np.array([rpm * RPM]), depths)
+    curve = collocation.limit_curve(element_cut(model, 9e-3), np.array([rpm * RPM]), depths)
     assert curve.crossings[0] * 1e3 == pytest.approx(expected, rel=1e-5)
     assert curve.bifurcation == (kinds,)
     if kinds == "flip":
@@ -175,11 +178,11 @@ def test_islands_of_a_helical_tool(rpm, expected, kinds):
     [(15000, 3, 0.4701), (15000, 6, 0.3396), (20000, 2, 0.975), (10000, 3, 0.163)],
 )
 def test_flutes_of_different_helix(rpm, depth_mm, published):
-    """BENCHMARKS.md 3.3, to the tolerance that it states."""
+    """validation 3.3, to the tolerance that it states."""
     angles = [math.radians(30.0), math.radians(45.0)]
     model = tool_922(1, 0.05, "down", helix=angles)
     point = np.array([rpm * RPM]), np.array([depth_mm * 1e-3])
-    found = abs(collocation.multipliers(model.cut(6e-3), *point)[0])
+    found = abs(collocation.multipliers(element_cut(model, 6e-3), *point)[0])
     assert found == pytest.approx(published, rel=0.015)
 
 
@@ -188,24 +191,28 @@ def test_runout_without_effect_and_with():
     speed, depth = np.array([12000 * RPM]), np.array([0.5e-3])
     even = tool_922(1, 0.1, "up")
     small = tool_922(1, 0.1, "up", runout={"offset": 1e-10, "angle": 0.0})
-    a, b = (abs(collocation.multipliers(m.cut(1e-3), speed, depth)[0]) for m in (even, small))
+    a, b = (
+        abs(collocation.multipliers(element_cut(m, 1e-3), speed, depth)[0]) for m in (even, small)
+    )
     # at the entry the chip vanishes, so that some of the arc is another tooth's
     assert b == pytest.approx(a**2, rel=1e-4)
     one = tool_922(1, 0.1, "up", runout={"offset": 1e-3, "angle": 0.0})
     # one tooth left: a cut with a single tooth, whose period is a turn
     single = tool_922(1, 0.1, "up", teeth=1)
-    a, b = (abs(collocation.multipliers(m.cut(1e-3), speed, depth)[0]) for m in (single, one))
+    a, b = (
+        abs(collocation.multipliers(element_cut(m, 1e-3), speed, depth)[0]) for m in (single, one)
+    )
     assert b == pytest.approx(a, rel=1e-9)
 
 
 def test_a_slow_variation_of_the_speed_stabilizes():
-    """BENCHMARKS.md 1.4: less growth over the same time with the variation than without."""
+    """validation 1.4: less growth over the same time with the variation than without."""
     modes = [mode(922.0, 0.011, mass=0.03993)]
     cut = {"mode": "slot", "spindle_speed": 6000 * RPM, "axial_depth": 0.5e-3}
     varied = cut | {"speed_variation": {"amplitude": 0.1, "frequency": 10.0}}
     speed, depth = np.array([6000 * RPM]), np.array([0.5e-3])
-    still = model_of(modes, {}, cut, 6e8, 2e8).cut(1e-3)
-    moving = model_of(modes, {}, varied, 6e8, 2e8).cut(1e-3)
+    still = element_cut(model_of(modes, {}, cut, 6e8, 2e8), 1e-3)
+    moving = element_cut(model_of(modes, {}, varied, 6e8, 2e8), 1e-3)
     tooth_periods = 100.0 / 10.0 * 2.0
     growth = math.log(abs(collocation.multipliers(still, speed, depth)[0])) * tooth_periods
     assert growth > 0.0
@@ -216,21 +223,27 @@ def test_a_slow_variation_of_the_speed_stabilizes():
 
 
 def test_multi_frequency_finds_flip_lobes_and_islands():
-    """BENCHMARKS.md 2.4 and 3.1, straight from the FRFs."""
+    """validation 2.4 and 3.1, straight from the FRFs."""
     depths = np.linspace(0.0, 5e-3, 26)[1:]
     model = tool_922(2, 0.05, "up")
-    curve = by_multi_frequency(model, np.array([15000, 20000]) * RPM, depths, None, no_progress)
+    curve = METHODS["multi-frequency"].limits(
+        model, np.array([15000, 20000]) * RPM, depths, None, no_progress
+    )
     assert curve.critical_depth * 1e3 == pytest.approx((1.651214, 3.250386), rel=1e-3)
     assert curve.bifurcation == ("hopf", "flip")
     model = tool_922(1, 0.05, "up", diameter=8e-3, helix=math.radians(45.0))
-    curve = by_multi_frequency(model, np.array([19000]) * RPM, depths, None, no_progress)
+    curve = METHODS["multi-frequency"].limits(
+        model, np.array([19000]) * RPM, depths, None, no_progress
+    )
     assert curve.crossings[0] * 1e3 == pytest.approx((1.60997, 2.50485), rel=1e-3)
 
 
 def test_multi_frequency_takes_unequal_pitch():
     depths = np.linspace(0.0, 6e-3, 13)[1:]
     model = altintas_engin_budak(30.0)
-    curve = by_multi_frequency(model, np.array([8000.0]) * RPM, depths, None, no_progress)
+    curve = METHODS["multi-frequency"].limits(
+        model, np.array([8000.0]) * RPM, depths, None, no_progress
+    )
     assert curve.critical_depth * 1e3 == pytest.approx([4.95246], rel=1e-3)
 
 
@@ -241,12 +254,13 @@ def test_multi_frequency_refuses_what_its_harmonics_do_not_reach(pitch):
     model, depths = tool_922(1, 0.25, "down", **tool), np.linspace(0.0, 4e-3, 41)[1:]
     repeats = 2 if pitch is None else 1
     with pytest.raises(RunError, match="harmonics"):
-        by_multi_frequency(model, np.array([922.0 / repeats / 80.0]) * RPM * 60, depths, None,
+        METHODS["multi-frequency"].limits(
+            model, np.array([922.0 / repeats / 80.0]) * RPM * 60, depths, None,
                            no_progress)  # fmt: skip
     # sixty of them reach the highest mode just so
     speed = np.array([922.0 / repeats / 48.0]) * RPM * 60
     curves = [
-        METHODS[name](model, speed, depths, None, no_progress)
+        METHODS[name].limits(model, speed, depths, None, no_progress)
         for name in ("multi-frequency", "collocation")
     ]
     assert curves[0].critical_depth == pytest.approx(curves[1].critical_depth, rel=4e-3)
@@ -261,7 +275,7 @@ def test_multi_frequency_does_not_step_over_a_narrow_resonance():
     model = model_of(modes, tool, cut, 1.5e9, 0.4e9)
     speed, depths = np.array([1676.8 * 1.501 / 3.0 * 2.0 * math.pi]), np.linspace(0, 4e-3, 17)[1:]
     curves = [
-        METHODS[name](model, speed, depths, None, no_progress)
+        METHODS[name].limits(model, speed, depths, None, no_progress)
         for name in ("multi-frequency", "collocation")
     ]
     assert np.isfinite(curves[1].critical_depth).all()
@@ -285,7 +299,7 @@ def test_multi_frequency_with_a_size_effect(exponent):
     model = milling_model(Case.from_dict(case))
     speeds, depths = np.array([1300.0, 2400.0]), np.linspace(0.0, 10e-3, 21)[1:]
     curves = [
-        METHODS[name](model, speeds, depths, None, no_progress)
+        METHODS[name].limits(model, speeds, depths, None, no_progress)
         for name in ("multi-frequency", "collocation")
     ]
     assert np.isfinite(curves[1].critical_depth).all()
@@ -298,7 +312,7 @@ def test_multi_frequency_of_a_serrated_edge():
     model = tool_922(2, 0.3, "up", teeth=3, serration=wave)
     speed, depths = np.array([12000.0]) * RPM, np.linspace(0.0, 4e-3, 9)[1:]
     curves = [
-        METHODS[name](model, speed, depths, None, no_progress)
+        METHODS[name].limits(model, speed, depths, None, no_progress)
         for name in ("multi-frequency", "collocation")
     ]
     assert np.isfinite(curves[0].critical_depth).all()
@@ -310,7 +324,7 @@ def test_zero_order_of_unequal_pitch_makes_the_determinant_vanish():
     model = altintas_engin_budak()
     speeds = np.array([3000, 5000, 8000]) * RPM
     limit = zero_order_of(model, speeds)
-    delays, means = model.mean_couplings
+    delays, means = model.averaged_coefficients
     for speed, depth, frequency in zip(
         speeds, limit.critical_depth, limit.chatter_frequency, strict=True
     ):
@@ -324,4 +338,6 @@ def test_methods_for_like_teeth_say_so():
     model = altintas_engin_budak()
     for name in ("semi-discretization", "semi-discretization-0", "full-discretization"):
         with pytest.raises(InputError, match="evenly"):
-            METHODS[name](model, np.array([500.0]), np.array([1e-3, 2e-3]), None, no_progress)
+            METHODS[name].limits(
+                model, np.array([500.0]), np.array([1e-3, 2e-3]), None, no_progress
+            )

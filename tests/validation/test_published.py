@@ -1,4 +1,4 @@
-"""Published and independently computed limits (BENCHMARKS.md), with the tolerance each bears."""
+"""Published and independently computed limits (docs/validation.md), each with its tolerance."""
 
 import math
 
@@ -6,14 +6,15 @@ import numpy as np
 import pytest
 
 from chatter.description.case import Case
-from chatter.stability.methods.semi_discretization.method import (
+from chatter.stability.methods.semi_discretization.arrays import milling_arrays
+from chatter.stability.methods.semi_discretization.multipliers import (
     automatic_steps,
     chatter_frequency,
     limit_curve,
     multipliers,
 )
+from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import milling_model
-from chatter.stability.registry import zero_order_of
 from dynamics.modal.modes import receptance_matrix
 
 RPM = math.pi / 30.0
@@ -53,11 +54,11 @@ def tool_922(degrees_of_freedom, immersion, cut, **options):
 
 def limits_mm(model, rpms, deepest_mm, count=200):
     depths = np.linspace(0.0, deepest_mm * 1e-3, count + 1)[1:]
-    curve = limit_curve(model.arrays, np.asarray(rpms) * RPM, depths)
+    curve = limit_curve(milling_arrays(model), np.asarray(rpms) * RPM, depths)
     return curve.critical_depth * 1e3, curve
 
 
-# --- BENCHMARKS.md 2.1: plain semi-discretization has its own, lower, published values -----------
+# --- validation 2.1: plain semi-discretization has its own, lower, published values -----------
 
 
 @pytest.mark.parametrize(
@@ -70,7 +71,7 @@ def limits_mm(model, rpms, deepest_mm, count=200):
     ],
 )
 def test_convergence_points_of_ding_2010(depth_mm, at_40, at_200, exact):
-    arrays = tool_922(1, 1.0, "down").arrays
+    arrays = milling_arrays(tool_922(1, 1.0, "down"))
     point = np.array([5000 * RPM]), np.array([depth_mm * 1e-3])
     plain = [abs(multipliers(arrays, *point, steps)[0]) for steps in (40, 200)]
     # printed to five decimals
@@ -105,7 +106,7 @@ def test_limits_of_the_922_hz_tool(freedom, immersion, cut, expected, kinds):
 
 def test_flip_chatter_is_heard_at_an_odd_multiple_of_half_the_tooth_passing():
     model = tool_922(2, 0.05, "up")
-    heard = chatter_frequency(model.arrays, 20000 * RPM, 3.2504e-3)
+    heard = chatter_frequency(milling_arrays(model), 20000 * RPM, 3.2504e-3)
     # half of 666.67 Hz, folded to the multiple nearest the natural frequency
     assert heard == pytest.approx(1000.0, abs=0.5)
 
@@ -175,7 +176,7 @@ def test_constant_coefficients_against_the_characteristic_equation(rpm, coeffici
     speed = rpm * RPM
     dashpot = depth * share * coefficient * (0.3 * sine_cosine + sine_square) / (4e-3 * speed)
     expected = exact_growth(0.03993, 922.0, 0.011, stiffness, dashpot, 30.0 / rpm)
-    found = abs(multipliers(model.arrays, np.array([speed]), np.array([depth]))[0])
+    found = abs(multipliers(milling_arrays(model), np.array([speed]), np.array([depth]))[0])
     assert found == pytest.approx(expected, rel=1e-4)
     if not coefficient:
         published = {17500: 1.547740, 19000: 1.388371, 20000: 1.230713}
@@ -191,7 +192,7 @@ def test_constant_coefficients_make_both_methods_agree():
     for i in np.flatnonzero(np.diff(np.sign(zeroth.critical_depth - depth))):
         share = (depth - zeroth.critical_depth[i]) / np.diff(zeroth.critical_depth[i : i + 2])[0]
         speed = speeds[i] + share * (speeds[i + 1] - speeds[i])
-        found = abs(multipliers(model.arrays, np.array([speed]), np.array([depth]))[0])
+        found = abs(multipliers(milling_arrays(model), np.array([speed]), np.array([depth]))[0])
         assert found == pytest.approx(1.0, abs=2e-4)
 
 
@@ -233,7 +234,7 @@ def test_zero_order_limit_makes_the_determinant_vanish(build):
         receptance = receptance_matrix(model.structure.modes, [frequency])[0, :2, :2]
         delay = 2.0 * math.pi / (model.teeth * speed)
         regeneration = 1.0 - np.exp(-2j * math.pi * frequency * delay)
-        matrix = np.eye(2) + depth * regeneration * receptance @ model.mean_directional
+        matrix = np.eye(2) + depth * regeneration * receptance @ model.averaged_directional
         assert abs(np.linalg.det(matrix)) < 2e-4
 
 
@@ -328,6 +329,6 @@ def test_tool_of_gradisek():
 
 
 def test_steps_grow_with_the_waves_in_a_tooth_period():
-    arrays = tool_922(1, 0.5, "down").arrays
+    arrays = milling_arrays(tool_922(1, 0.5, "down"))
     slow, fast = automatic_steps(arrays, np.array([500.0, 25000.0]) * RPM)
     assert slow / fast > 10

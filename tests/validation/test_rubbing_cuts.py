@@ -14,10 +14,11 @@ import chatter
 from chatter.description.case import Case
 from chatter.description.progress import no_progress
 from chatter.simulation.perturbation.divergence import divergence
-from chatter.simulation.perturbation.growth_rate import delayed, motion_of
-from chatter.simulation.setup import modes_of, set_up
+from chatter.simulation.perturbation.growth_rate import motion_of
+from chatter.simulation.setup import delayed, set_up
+from chatter.simulation.structure_in_time import modes_of
 from chatter.stability.model import milling_model
-from chatter.stability.registry import by_collocation
+from chatter.stability.registry import COLLOCATION
 
 TURNS = 300
 LAWS = {
@@ -58,7 +59,7 @@ def limit():
     case = rubbing_case("coulomb", 0.0)
     speed = np.array([case.cut.spindle_speed])
     depths = np.linspace(0.0, 4e-3, 41)[1:]
-    found = by_collocation(milling_model(case), speed, depths, None, no_progress)
+    found = COLLOCATION.limits(milling_model(case), speed, depths, None, no_progress)
     return found.critical_depth[0]
 
 

@@ -13,10 +13,10 @@ import chatter
 from chatter.description.case import Case
 from chatter.description.progress import no_progress
 from chatter.simulation.perturbation.growth_rate import growth_of
-from chatter.simulation.setup import modes_of
+from chatter.simulation.structure_in_time import modes_of
 from chatter.stability.methods.time_domain.critical_depths import time_limit_curve
 from chatter.stability.model import milling_model
-from chatter.stability.registry import by_collocation, operating_multiplier
+from chatter.stability.registry import COLLOCATION
 
 SHARES = (0.8, 0.95, 1.05, 1.3, 2.0)
 
@@ -54,11 +54,11 @@ def random_cut(seed, kind):
 def limit_of(case):
     depths = np.linspace(0.0, 60e-3, 121)[1:]
     speed = np.array([case.cut.spindle_speed])
-    return by_collocation(milling_model(case), speed, depths, None, no_progress)
+    return COLLOCATION.limits(milling_model(case), speed, depths, None, no_progress)
 
 
 def multiplier_of(case):
-    return operating_multiplier(milling_model(case), "collocation", None).value
+    return COLLOCATION.multiplier(milling_model(case), None).value
 
 
 def measured(case):

@@ -12,15 +12,17 @@ import pytest
 from chatter.description.case import Case
 from chatter.description.progress import no_progress
 from chatter.simulation.perturbation.divergence import divergence
-from chatter.simulation.perturbation.growth_rate import delayed, motion_of
-from chatter.simulation.setup import modes_of, set_up
+from chatter.simulation.perturbation.growth_rate import motion_of
+from chatter.simulation.setup import delayed, set_up
+from chatter.simulation.structure_in_time import modes_of
+from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.methods.collocation.multipliers import converged_multiplier, multipliers
 from chatter.stability.model import milling_model
-from chatter.stability.registry import by_collocation
+from chatter.stability.registry import COLLOCATION
 from cutting.edge_segments.segments import period_angle
 from tests.validation.reference.turning import delay_of_a_spindle, spectral_radius
 
-# --- BENCHMARKS.md 1.4: turning -------------------------------------------------------------------
+# --- validation 1.4: turning -------------------------------------------------------------------
 
 #: x'' + z x' + (1 + kw) x = kw x(t - tau); ten delays are a period of the variation
 CUT, DAMPING, DELAYS = 0.2, 0.1, 10
@@ -62,7 +64,7 @@ def radius_of(case, depth=None):
     model, cut = milling_model(case), case.cut
     depth = depth or cut.axial_depth
     found = converged_multiplier(
-        lambda points, waves: model.cut(depth, points, waves), cut.spindle_speed, depth
+        lambda points, waves: element_cut(model, depth, points, waves), cut.spindle_speed, depth
     )
     return abs(found.value)
 
@@ -182,7 +184,7 @@ def milling_case(name, varied=True):
 def first_limit(case):
     depths = np.linspace(0.0, 0.49 * case.tool.diameter, 41)[1:]
     speed = np.array([case.cut.spindle_speed])
-    found = by_collocation(milling_model(case), speed, depths, None, no_progress)
+    found = COLLOCATION.limits(milling_model(case), speed, depths, None, no_progress)
     return found.critical_depth[0]
 
 
@@ -322,10 +324,10 @@ def test_slow_variation_is_a_mean_over_the_speeds(depth, turns, difference):
     of = {"amplitude": amplitude, "frequency": mean / (2.0 * math.pi * turns)}
     varied = constant.patch({f"cut.speed_variation.{key}": value for key, value in of.items()})
     point = np.array([mean]), np.array([depth])
-    radius = float(np.abs(multipliers(milling_model(varied).cut(depth), *point))[0])
+    radius = float(np.abs(multipliers(element_cut(milling_model(varied), depth), *point))[0])
     phase = 2.0 * math.pi * (np.arange(64) + 0.5) / 64
     speeds = mean * (1.0 + amplitude * np.sin(phase))
-    cut = milling_model(constant).cut(depth)
+    cut = element_cut(milling_model(constant), depth)
     radii = np.abs(multipliers(cut, speeds, np.full(speeds.size, depth)))
     a_turn = constant.tool.teeth * np.mean(np.log(radii) * speeds / mean)
     assert radius > 0.0

@@ -8,8 +8,9 @@ import pytest
 from chatter.description.case import Case
 from chatter.description.progress import no_progress
 from chatter.stability.methods.collocation import multipliers as collocation
+from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import milling_model
-from chatter.stability.registry import by_collocation
+from chatter.stability.registry import COLLOCATION
 
 RPM = math.pi / 30.0
 
@@ -119,14 +120,14 @@ def limits(name, tolerance):
     speeds, deepest = np.array(CUTS[name][3]) * RPM, CUTS[name][4]
     depths = np.linspace(0.0, deepest, 31)[1:]
     model = milling_model(case_of(name, tolerance))
-    return by_collocation(model, speeds, depths, None, no_progress)
+    return COLLOCATION.limits(model, speeds, depths, None, no_progress)
 
 
 @pytest.mark.parametrize("name", CUTS)
 def test_limits_are_as_good_as_stated(name):
     found = {tolerance: limits(name, tolerance) for tolerance in (1e-3, 1e-4)}
     model, deepest = milling_model(case_of(name, 1e-4)), CUTS[name][4]
-    fine = model.cut(deepest, 12, 0.3)
+    fine = element_cut(model, deepest, 12, 0.3)
     limited = np.flatnonzero(np.isfinite(found[1e-4].critical_depth))
     assert limited.size
     for i in limited:

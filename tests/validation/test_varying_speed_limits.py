@@ -9,11 +9,17 @@ from hypothesis import strategies as st
 
 from chatter.description.case import Case
 from chatter.description.errors import RunError
-from chatter.stability.methods.collocation.multipliers import rates
+from chatter.stability.methods.collocation.element_cut import element_cut
+from chatter.stability.methods.collocation.multipliers import growth_rates
 from chatter.stability.methods.collocation.varying_limits import limits_of_varying_speed
-from chatter.stability.methods.collocation.varying_speed import tuned
 from chatter.stability.model import milling_model
-from chatter.stability.spindle_rotation import SpeedVariation, angle_at, spindle_turn, time_at
+from chatter.stability.spindle_rotation import (
+    PeriodFit,
+    SpeedVariation,
+    angle_at,
+    spindle_rotation_at,
+    time_at,
+)
 
 TOOTH = math.pi / 2.0
 
@@ -28,9 +34,10 @@ def test_the_true_ratio_lies_between_two_that_meet_the_teeth_at_all_phases(ratio
     if near:
         ratio = max(1, round(ratio)) * near
     speed = 300.0
-    variation = SpeedVariation(0.1, speed / (ratio * TOOTH), 0, 1e-3, least, 0)
-    fewer = spindle_turn(variation, speed, TOOTH)
-    more = spindle_turn(variation._replace(beyond=1), speed, TOOTH)
+    variation = SpeedVariation(0.1, speed / (ratio * TOOTH), 0)
+    fit = PeriodFit(least_periods=least)
+    fewer = spindle_rotation_at(variation, fit, speed, TOOTH)
+    more = spindle_rotation_at(variation, fit._replace(beyond=1), speed, TOOTH)
     for turn in (fewer, more):
         assert turn.patterns >= 1
         assert math.gcd(turn.patterns, turn.cycles) == 1
@@ -47,7 +54,7 @@ def test_the_true_ratio_lies_between_two_that_meet_the_teeth_at_all_phases(ratio
 @pytest.mark.parametrize("triangle", [0, 1])
 @pytest.mark.parametrize("amplitude", [0.02, 0.3, 0.9])
 def test_time_and_angle_are_inverse(triangle, amplitude):
-    turn = spindle_turn(SpeedVariation(amplitude, 7.0, triangle, 1e-3, 0, 0), 200.0, TOOTH)
+    turn = spindle_rotation_at(SpeedVariation(amplitude, 7.0, triangle), PeriodFit(), 200.0, TOOTH)
     for angle in np.linspace(-3.0, 40.0, 301):
         assert angle_at(turn, time_at(turn, angle)) == pytest.approx(angle, abs=1e-12)
 
@@ -85,15 +92,18 @@ def off_at(ratio, shape):
     speed = 200.0
     model = milling_model(varied(speed / (ratio * TOOTH), shape))
     found = limits_of_varying_speed(
-        lambda points, waves: model.cut(4e-3, points, waves),
+        lambda points, waves: element_cut(model, 4e-3, points, waves),
         np.array([speed]),
         np.linspace(0.0, 4e-3, 21)[1:],
         lambda done, total: None,
         1e-3,
     )
     limit = found.critical_depth[0]
-    fitting = tuned(model.cut(4e-3, 8, 1.0), 1e-6)
-    at = [rates(fitting, np.array([speed]), np.array([limit * by]))[0] for by in (0.98, 1.0, 1.02)]
+    fitting = element_cut(model, 4e-3, 8, 1.0).with_fit(PeriodFit(tuning=1e-6))
+    at = [
+        growth_rates(fitting, np.array([speed]), np.array([limit * by]))[0]
+        for by in (0.98, 1.0, 1.02)
+    ]
     assert at[0] < 0.0 < at[2]
     return found.error, abs(at[1]) / ((at[2] - at[0]) / 0.04)
 
@@ -115,10 +125,10 @@ def test_a_spindle_that_hardly_turns_is_refused():
     """1212 Hz, an element's wave, at a tooth a second."""
     model = milling_model(varied(2.0, "sine"))
     with pytest.raises(RunError, match=r"15 rpm .* 1.21e\+03 vibrations of 1212 Hz"):
-        rates(model.cut(4e-3), np.array([2.0 * math.pi / 4.0]), np.array([1e-3]))
+        growth_rates(element_cut(model, 4e-3), np.array([2.0 * math.pi / 4.0]), np.array([1e-3]))
 
 
 def test_a_variation_that_hardly_repeats_is_refused():
     model = milling_model(varied(0.05, "sine"))
     with pytest.raises(RunError, match=r"speed_variation.frequency: at 0.05 Hz .* constant speeds"):
-        rates(model.cut(4e-3), np.array([200.0]), np.array([1e-3]))
+        growth_rates(element_cut(model, 4e-3), np.array([200.0]), np.array([1e-3]))

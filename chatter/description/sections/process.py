@@ -5,7 +5,13 @@ from __future__ import annotations
 import itertools
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    WithJsonSchema,
+    field_validator,
+    model_validator,
+)
 
 from chatter.description.formatting import shown
 from chatter.description.quantities import PositiveLength, QuantityField, quantity, whole_number
@@ -229,7 +235,7 @@ class Lobes(Section):
     )
     tolerance: quantity("number", at_least=1e-6, at_most=0.05) = Field(
         1e-3,
-        description="largest estimated error of the limit depths, relative; the resolution follows",
+        description="largest estimated error of critical depths, relative; the resolution follows",
     )
 
     @model_validator(mode="after")

@@ -19,6 +19,7 @@ from chatter.description.progress import Progress, no_progress
 from chatter.simulation.result import SimulationResult
 from chatter.simulation.setup import set_up
 from chatter.simulation.simulate import run_setup
+from chatter.simulation.verdict import with_verdict
 from chatter.stability.model import MillingModel
 from chatter.studies.optimisation.candidate import Candidate, TimeCheck, case_at
 from chatter.studies.optimisation.limits import LIMITED, Limits
@@ -36,7 +37,6 @@ def time_check(
     Parameters
     ----------
     model : MillingModel
-        A machine is taken by its modes at the tool point.
     limits : Limits
     candidate : Candidate
     progress : callable, optional
@@ -49,10 +49,10 @@ def time_check(
     """
     here = case_at(model.case, candidate.place).patch({"simulation": None, "stock": None})
     setup = set_up(here, _modes(model, here))
-    result, done = run_setup(setup, progress)
+    result, _ = run_setup(setup, progress)
     if result.interrupted:
         raise KeyboardInterrupt
-    verdict = "chatter" if done < setup.resolution.steps else _verdict(result)
+    verdict = "chatter" if not result.complete else _verdict(result)
     found = _measured(result)
     within = [
         abs(found[LIMITED[key]]) <= most * (1.0 + TOLERANCE)
@@ -62,14 +62,20 @@ def time_check(
     return TimeCheck(verdict, **found, held=verdict == "stable" and all(within))
 
 
-def _modes(model: MillingModel, here: Case) -> tuple[Mode, ...]:
-    """Modes at the speed of a cut; those of the search where they cannot depend on it."""
+def _modes(model: MillingModel, here: Case) -> tuple[Mode, ...] | None:
+    """Modes at the speed of a cut; those of the search where they cannot depend on it.
+
+    A machine has its own.
+    """
+    if here.structure.machine is not None:
+        return None
     slopes = any(mode.frequency_slope for mode in here.structure.mode)
     return structure_of(here).modes if slopes else model.structure.modes
 
 
 def _verdict(result: SimulationResult) -> str:
-    return "not judged" if result.detection is None else result.detection.verdict
+    detection = with_verdict(result).detection
+    return "not judged" if detection is None else detection.verdict
 
 
 def _measured(result: SimulationResult) -> dict[str, float]:

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.sections.optimisation import Optimum
+from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel
 from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
-from chatter.stability.registry import zero_order_of
-from chatter.stability.search_range import deepest_depth, spindle_speeds
+from chatter.stability.search_range import maximum_depth, spindle_speeds
 from chatter.studies.model import standard_deviations
 from chatter.studies.optimisation.resolution import most_waves, telling
 from chatter.studies.optimisation.steady_cut import SteadyCuts
@@ -147,7 +147,7 @@ def _depths(case: Case, section: Optimum, model: MillingModel) -> Array:
     if section.depths is not None:
         deepest, count = section.depths.to, section.depths.count
     else:
-        deepest, count = deepest_depth(case, zero_order_of(model, spindle_speeds(case))), _DEPTHS
+        deepest, count = maximum_depth(case, zero_order_of(model, spindle_speeds(case))), _DEPTHS
     even = np.linspace(0.0, deepest, count + 1)[1:]
     return np.concatenate([even[0] / 2.0 ** np.arange(_HALVINGS, 0, -1), even])
 

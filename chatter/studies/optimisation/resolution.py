@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.stability.methods.collocation import multipliers as collocation
-from chatter.stability.methods.collocation.cut_arrays import RESOLUTION
+from chatter.stability.methods.collocation.element_cut import RESOLUTION, element_cut
 from chatter.stability.model import MillingModel
 
 Array = NDArray[np.float64]
@@ -44,7 +44,7 @@ def most_waves(model: MillingModel, speeds: Array, depths: Array) -> float:
     )
 
     def growth(waves: float) -> Array:
-        cut = model.cut(float(depths[-1]), waves=waves)
+        cut = element_cut(model, float(depths[-1]), wavelengths=waves)
         found = np.abs(collocation.multipliers(cut, speed, depth))
         return np.log(np.maximum(found, _SMALLEST))
 

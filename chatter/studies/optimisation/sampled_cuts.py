@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from chatter.description.errors import InputError
 from chatter.engine.parallel import one_thread, sweep
 from chatter.stability.methods.collocation import multipliers as collocation
-from chatter.stability.methods.collocation.cut_arrays import CutArrays
+from chatter.stability.methods.collocation.element_cut import ElementCut, element_cut
 from chatter.stability.model import MillingModel, milling_model
 from chatter.studies.model import patched, standard_deviations
 from chatter.studies.optimisation.limits import LIMITED, Limits
@@ -139,9 +139,9 @@ class SampledCuts:
             faster = drawn.ratio(number, "cut.feed_per_tooth")
             return model_at(drawn.models[number], width * wider, feed * faster)
 
-        def compiled(number: int) -> CutArrays:
+        def compiled(number: int) -> ElementCut:
             depth = deepest * drawn.ratio(number, "cut.axial_depth")
-            return self.models[number].cut(depth * 1.001, waves=limits.waves)
+            return element_cut(self.models[number], depth * 1.001, wavelengths=limits.waves)
 
         self.models = [at_this_cut(number) for number in range(len(drawn))]
         self.cuts = each(compiled, np.arange(len(drawn)))

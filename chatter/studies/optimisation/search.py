@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from chatter.description.progress import Progress, no_progress
 from chatter.description.units import from_rpm, rpm
+from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import MillingModel
 from chatter.studies.optimisation.limits import Limits
 from chatter.studies.optimisation.speed_depth_slice import (
@@ -93,7 +94,7 @@ def _feed_matters(model: MillingModel) -> bool:
     Not if every tooth takes the whole of it, at a stiffness that is the same for any chip.
     """
     shallow = float(model.case.cut.axial_depth)
-    return not (model.is_uniform and float(np.max(model.cut(shallow).pieces.exponent)) == 0.0)
+    return not (model.is_uniform and model.cut(shallow).segments.exponent == 0.0)
 
 
 def best_of(sheet: Sheet) -> Place | None:
@@ -166,7 +167,7 @@ def _better(here: MillingModel, limits: Limits, speeds: Array, depths: Array, be
     coarser = np.linspace(worth[0], worth[-1], min(worth.size, _steps_in(worth) + 1))
     net = with_margins(coarser, limits.depth_margin)
     stable = stable_depths(
-        here.cut(float(net[-1]), waves=limits.waves), limits.looked_at(speeds), net
+        element_cut(here, float(net[-1]), wavelengths=limits.waves), limits.looked_at(speeds), net
     )
     found = best_of(sheet_with(here, limits, speeds, worth, stable))
     return found if found is not None and found.removal_rate > best.removal_rate else best

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.progress import Progress, no_progress
+from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import MillingModel
 from chatter.studies.optimisation.limits import Limits
 from chatter.studies.optimisation.stable_depths import StableDepths, is_inside, stable_depths
@@ -105,7 +106,9 @@ def sheet_of(
         Called with (done, total) speeds.
     """
     net = with_margins(depths, limits.depth_margin)
-    stable = stable_depths(model.cut(float(net[-1]), waves=limits.waves), looked_at, net, progress)
+    stable = stable_depths(
+        element_cut(model, float(net[-1]), wavelengths=limits.waves), looked_at, net, progress
+    )
     return sheet_with(model, limits, speeds, depths, stable)
 
 

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.progress import Progress, no_progress
-from chatter.stability.boundary_continuation import followed_crossings
+from chatter.stability.boundary_continuation import continued_crossings
 from chatter.stability.crossings import find_crossings
 from chatter.stability.methods.collocation import multipliers as collocation
-from chatter.stability.methods.collocation.cut_arrays import CutArrays
+from chatter.stability.methods.collocation.element_cut import ElementCut
 
 Array = NDArray[np.float64]
 
@@ -97,13 +97,13 @@ def is_inside(stretches: Array, depths: Array) -> NDArray[np.bool_]:
 
 
 def stable_depths(
-    cut: CutArrays, speeds: Array, depths: Array, progress: Progress = no_progress
+    cut: ElementCut, speeds: Array, depths: Array, progress: Progress = no_progress
 ) -> StableDepths:
     """Stable stretches of depth, by collocation, following the boundary from speed to speed.
 
     Parameters
     ----------
-    cut : CutArrays
+    cut : ElementCut
         Down to the deepest depth at least.
     speeds : (n,) array of float
         rad/s, ascending.
@@ -116,11 +116,11 @@ def stable_depths(
     """
     stride = widest_stride(cut, speeds)
     growth = _growth_at(cut, speeds)
-    crossings = followed_crossings(speeds.size, depths, growth, _TOLERANCE, stride, progress)
+    crossings = continued_crossings(speeds.size, depths, growth, _TOLERANCE, stride, progress)
     return StableDepths(speeds, crossings, float(depths[-1]))
 
 
-def widest_stride(cut: CutArrays, speeds: Array) -> int:
+def widest_stride(cut: ElementCut, speeds: Array) -> int:
     """Speeds (a power of two) that may be stepped over where all depths are looked at.
 
     Where a mode does f/(N n) cycles from one tooth to the next, a lobe is as wide as the speed over
@@ -128,9 +128,10 @@ def widest_stride(cut: CutArrays, speeds: Array) -> int:
     """
     if speeds.size < 2:
         return 1
-    passing = speeds[0] / float(np.max(cut.pieces.group_delay))
-    lasting = cut.damping * cut.natural_frequency < _FORGOTTEN * passing
-    highest = float(cut.natural_frequency[lasting].max(initial=0.0))
+    arrays = cut.arrays
+    passing = speeds[0] / float(np.max(arrays.segments.distinct_delay))
+    lasting = arrays.damping * arrays.natural_frequency < _FORGOTTEN * passing
+    highest = float(arrays.natural_frequency[lasting].max(initial=0.0))
     lobes = max(highest / (2.0 * math.pi * passing), 1.0)
     step = float(np.max(np.diff(speeds) / speeds[:-1]))
     stride = 1
@@ -139,7 +140,7 @@ def widest_stride(cut: CutArrays, speeds: Array) -> int:
     return stride
 
 
-def first_limits(cut: CutArrays, speeds: Array, depths: Array) -> Array:
+def first_limits(cut: ElementCut, speeds: Array, depths: Array) -> Array:
     """First limit (n,) of stability, m; inf where none was found. Deeper ones are not looked for.
 
     Parameters
@@ -163,7 +164,7 @@ def first_limits(cut: CutArrays, speeds: Array, depths: Array) -> Array:
     return np.array([found[0] if len(found) else np.inf for found in crossings])
 
 
-def _growth_at(cut: CutArrays, speeds: Array) -> Callable[[NDArray[np.int64], Array], Array]:
+def _growth_at(cut: ElementCut, speeds: Array) -> Callable[[NDArray[np.int64], Array], Array]:
     """Logarithm of the spectral radius at (indices of speeds, depths)."""
 
     def growth(place: NDArray[np.int64], depth: Array) -> Array:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
+from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import milling_model
 from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
 from chatter.studies.optimisation.stable_depths import first_limits
@@ -135,7 +136,7 @@ class PitchSearch:
         def compute() -> list[float]:
             model = milling_model(self.case.patch({"tool.pitch": angles}))
             deepest = float(self.depths[-1])
-            found = first_limits(model.cut(deepest), speeds, self.depths)
+            found = first_limits(element_cut(model, deepest), speeds, self.depths)
             return np.minimum(found, deepest).tolist()
 
         inputs = (angles, speeds.tolist())

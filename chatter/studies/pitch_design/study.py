@@ -16,9 +16,10 @@ from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
 from chatter.description.sections.optimisation import PitchDesign
 from chatter.stability.methods.collocation import multipliers as collocation
+from chatter.stability.methods.collocation.element_cut import element_cut
+from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel, milling_model
-from chatter.stability.registry import zero_order_of
-from chatter.stability.search_range import deepest_depth, spindle_speeds
+from chatter.stability.search_range import maximum_depth, spindle_speeds
 from chatter.studies.model import fingerprint
 from chatter.studies.pitch_design.families import families
 from chatter.studies.pitch_design.result import FamilyCurve, PitchResult
@@ -136,7 +137,7 @@ def _speeds(case: Case, section: PitchDesign) -> tuple[Array, Array]:
 def _depths(case: Case, section: PitchDesign, model: MillingModel) -> Array:
     if section.depths is not None:
         return np.linspace(0.0, section.depths.to, section.depths.count + 1)[1:]
-    deepest = deepest_depth(case, zero_order_of(model, spindle_speeds(case)))
+    deepest = maximum_depth(case, zero_order_of(model, spindle_speeds(case)))
     return np.linspace(0.0, deepest, _DEPTHS + 1)[1:]
 
 
@@ -144,7 +145,7 @@ def _chatter_frequency(case: Case, search: PitchSearch, even: Design, speed: flo
     """Chatter frequency of the evenly spaced tool where its limit is lowest, rad/s."""
     depth = even.lowest_limit
     model = milling_model(case.patch({"tool.pitch": None}))
-    cut = model.cut(float(search.depths[-1]))
+    cut = element_cut(model, float(search.depths[-1]))
     return 2.0 * math.pi * collocation.chatter_frequency(cut, speed, depth)
 
 

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.progress import no_progress
+from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import milling_model
-from chatter.stability.registry import chosen_method, resolution, zero_order_of
-from chatter.stability.search_range import deepest_depth, spindle_speeds
+from chatter.stability.registry import chosen_method, fixed_steps
+from chatter.stability.search_range import maximum_depth, spindle_speeds
 
 #: depths looked at before limits are refined
 _NET = 32
@@ -80,7 +81,7 @@ def shared_net(case: Case, speed_count: int) -> Net:
     model = milling_model(case)
     wide = spindle_speeds(case)
     speeds = np.linspace(float(wide[0]), float(wide[-1]), speed_count)
-    deepest = deepest_depth(case, zero_order_of(model, wide))
+    deepest = maximum_depth(case, zero_order_of(model, wide))
     return Net(speeds, np.linspace(0.0, deepest, _NET + 1)[1:])
 
 
@@ -99,15 +100,15 @@ def sample_limits(case: Case, net: Net, method: str | None) -> SampleLimits:
     InputError
         If the sample describes no cut.
     """
-    _, limits_of = chosen_method(case, method)
+    chosen = chosen_method(case, method)
     model = milling_model(case)
-    steps = resolution(case)
-    curve = limits_of(model, net.speeds, net.depths, steps, no_progress)
+    steps = fixed_steps(case)
+    curve = chosen.limits(model, net.speeds, net.depths, steps, no_progress)
     cut = case.cut
     depths = net.depths
     if cut.axial_depth > 0.98 * depths[-1]:
         depths = np.linspace(0.0, 1.02 * cut.axial_depth, _NET + 1)[1:]
-    operating = limits_of(model, np.array([cut.spindle_speed]), depths, steps, no_progress)
+    operating = chosen.limits(model, np.array([cut.spindle_speed]), depths, steps, no_progress)
     below = operating.crossings[0] < cut.axial_depth
     return SampleLimits(
         [float(depth) for depth in curve.critical_depth],

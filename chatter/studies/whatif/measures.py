@@ -118,13 +118,13 @@ def _numbers(values: NDArray[np.float64]) -> list[float | None]:
 
 def _lobes(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
     del only
-    from chatter.stability.diagram import lobes
+    from chatter.stability.lobes import lobes
 
     told = lobes(case, method)
     summary = told.summary()
     lowest, operating = summary["lowest_limit"], summary["operating_point"]
     curve = Curve(
-        "limit depth [mm]",
+        "critical depth [mm]",
         "",
         _numbers(rpm(told.limits.spindle_speed)),
         _numbers(told.limits.critical_depth * 1e3),
@@ -135,7 +135,7 @@ def _lobes(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
             "critical_depth_mm": operating["critical_depth_mm"],
             "lowest_limit_mm": lowest["critical_depth_mm"],
             "lowest_limit_speed_rpm": lowest["spindle_speed_rpm"],
-            "searched_to_mm": summary["searched_to_mm"],
+            "max_axial_depth_mm": summary["max_axial_depth_mm"],
         },
         {"verdict": "stable" if operating["stable"] else "chatter"},
         (curve,),
@@ -152,7 +152,7 @@ def _critical_depth(case: Case, method: str | None, only: tuple[str, ...]) -> Ou
             "critical_depth_mm": told["critical_depth_mm"],
             "chatter_frequency_Hz": told["limit"]["chatter_frequency_Hz"],
             "spectral_radius": told["spectral_radius"],
-            "searched_to_mm": told["limit"]["searched_to_mm"],
+            "max_axial_depth_mm": told["limit"]["max_axial_depth_mm"],
         },
         {"verdict": "stable" if told["stable"] else "chatter"},
     )
@@ -250,9 +250,12 @@ def _frf(model: Model, method: str | None, only: tuple[str, ...]) -> Outcome:
 def _case_frfs(case: Case) -> list[tuple[str, str, str, Any, Any]]:
     """FRFs of the tool against the workpiece that are not zero."""
     from chatter.compile.structure import structure_of
+    from chatter.engine.loop_stability import refuse_unstable_structure
 
     case.require("structure")
-    lines, values = structure_of(case).receptance()
+    structure = structure_of(case)
+    refuse_unstable_structure(structure)
+    lines, values = structure.receptance()
     return [
         (f"tool {way}", "receptance", "m/N", lines, values[:, k, k])
         for k, way in enumerate("xyz")
@@ -284,8 +287,8 @@ def _machine_frfs(machine: Any, only: tuple[str, ...]) -> list[tuple[str, str, s
     return found
 
 
-_CRITICAL = Quantity("critical depth at {speed}", "mm", beyond="searched_to_mm")
-_LOWEST = Quantity("lowest limit over speed", "mm", beyond="searched_to_mm")
+_CRITICAL = Quantity("critical depth at {speed}", "mm", beyond="max_axial_depth_mm")
+_LOWEST = Quantity("lowest limit over speed", "mm", beyond="max_axial_depth_mm")
 _HEARD = Quantity("chatter frequency", "Hz")
 
 #: name -> kind of result

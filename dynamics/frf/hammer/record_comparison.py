@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import t as student
 
-from dynamics.frf.hammer.comparison import Comparison, Excess, compare, largest_excess
+from dynamics.frf.hammer.comparison import (
+    Comparison,
+    Limits,
+    RecordAssessment,
+    compare,
+    largest_excess,
+)
 from dynamics.frf.hammer.consensus import AlignedSet, agreeing_group, align, disagreement
 from dynamics.frf.hammer.findings import Finding
 from dynamics.frf.hammer.hit import Hit
@@ -30,44 +34,6 @@ _ENOUGH_FOR_SPREAD = 4
 #: noise over peak, against the median of the set and absolutely, above which nothing is coherent
 _NOISE_OVER_OTHERS = 5.0
 _NOISE_OVER_PEAK = 0.025
-
-
-@dataclass(frozen=True)
-class Limits:
-    """What counts as a deviation, given how far the agreeing records scatter.
-
-    Parameters
-    ----------
-    gain, delay, misfit : float
-        Largest allowed deviation of `Comparison.gain` from 1, of `Comparison.delay` from 0 in
-        samples, and of `Comparison.misfit`.
-    tolerance : float
-        Share of the predicted response by which a residual may exceed its noise.
-    """
-
-    gain: float
-    delay: float
-    misfit: float
-    tolerance: float
-
-
-@dataclass(frozen=True)
-class Judgement:
-    """A record against the others: how far beyond the limits, and in what."""
-
-    comparison: Comparison
-    excess: Excess
-    limits: Limits
-
-    @property
-    def severity(self) -> float:
-        """Largest deviation over its limit; above 1 the record is at fault."""
-        return max(
-            abs(self.comparison.gain - 1.0) / self.limits.gain,
-            abs(self.comparison.delay) / self.limits.delay,
-            self.comparison.misfit / self.limits.misfit,
-            self.excess.ratio,
-        )
 
 
 def findings_against_each_other(sound: list[tuple[HammerRecord, Hit]]) -> list[Finding]:
@@ -96,11 +62,11 @@ def findings_against_each_other(sound: list[tuple[HammerRecord, Hit]]) -> list[F
         return _undecided(records, difference)
     members = _without_offenders(aligned, members, agreement)
     findings = [_noisy(aligned, row, members) for row in range(len(records))]
-    for row, judgement in enumerate(_judged(aligned, members, agreement)):
-        if findings[row] is not None or judgement.severity <= 1.0:
+    for row, assessment in enumerate(_assessed(aligned, members, agreement)):
+        if findings[row] is not None or assessment.severity <= 1.0:
             continue
-        judges = int(members.sum()) - int(members[row])
-        findings[row] = named(records[row], aligned, judgement, judges)
+        others = int(members.sum()) - int(members[row])
+        findings[row] = named(records[row], aligned, assessment, others)
     return [finding for finding in findings if finding is not None]
 
 
@@ -129,16 +95,18 @@ def _undecided(records: list[HammerRecord], difference: NDArray[np.float64]) -> 
     ]
 
 
-def _judged(aligned: AlignedSet, members: NDArray[np.bool_], agreement: float) -> list[Judgement]:
+def _assessed(
+    aligned: AlignedSet, members: NDArray[np.bool_], agreement: float
+) -> list[RecordAssessment]:
     """Judge every record by the members, itself left out, and by how far those scatter."""
     comparisons = [compare(aligned, row, members) for row in range(members.size)]
-    judgements = []
+    assessments = []
     for row, comparison in enumerate(comparisons):
         others = [comparisons[i] for i in np.flatnonzero(members) if i != row]
         limits = _limits(others, agreement)
         excess = largest_excess(comparison, limits.tolerance)
-        judgements.append(Judgement(comparison, excess, limits))
-    return judgements
+        assessments.append(RecordAssessment(comparison, excess, limits))
+    return assessments
 
 
 def _without_offenders(
@@ -147,10 +115,10 @@ def _without_offenders(
     """Members after the worst offenders have left one by one."""
     members = members.copy()
     while members.sum() > 2:
-        judgements = _judged(aligned, members, agreement)
+        assessments = _assessed(aligned, members, agreement)
         severities = [
-            judgement.severity if member else 0.0
-            for judgement, member in zip(judgements, members, strict=True)
+            assessment.severity if member else 0.0
+            for assessment, member in zip(assessments, members, strict=True)
         ]
         worst = int(np.argmax(severities))
         if severities[worst] <= 1.0:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from chatter.stability.boundary_continuation import followed_crossings
+from chatter.stability.boundary_continuation import continued_crossings
 
 SPEEDS = np.linspace(0.0, 1.0, 201)
 DEPTHS = np.linspace(0.0, 1.0, 41)[1:]
@@ -36,7 +36,7 @@ def exact(landscape, speed):
 
 def test_lobes_and_an_island_are_found_at_every_speed():
     landscape = Landscape((0.19, 0.3, 0.06, 0.12))
-    found = followed_crossings(SPEEDS.size, DEPTHS, landscape, 1e-4, 8)
+    found = continued_crossings(SPEEDS.size, DEPTHS, landscape, 1e-4, 8)
     for speed, crossings in zip(SPEEDS, found, strict=True):
         wanted = exact(landscape, speed)
         narrow = wanted.size == 3 and wanted[1] - wanted[0] < 2.0 / 40.0
@@ -46,7 +46,7 @@ def test_lobes_and_an_island_are_found_at_every_speed():
 
 def test_it_asks_for_a_fraction_of_the_net():
     landscape = Landscape((0.19, 0.3, 0.06, 0.12))
-    followed_crossings(SPEEDS.size, DEPTHS, landscape, 5e-3, 8)
+    continued_crossings(SPEEDS.size, DEPTHS, landscape, 5e-3, 8)
     assert landscape.asked < 0.35 * SPEEDS.size * DEPTHS.size
 
 
@@ -57,7 +57,7 @@ def test_miss_rate_of_small_islands():
     for _ in range(100):
         island = (rng.uniform(0.15, 0.25), rng.uniform(0.2, 0.6), 0.03, 0.03)
         landscape = Landscape(island)
-        found = followed_crossings(SPEEDS.size, DEPTHS, landscape, 5e-3, 8)
+        found = continued_crossings(SPEEDS.size, DEPTHS, landscape, 5e-3, 8)
         middle = round(island[0] * (SPEEDS.size - 1))
         missed += found[middle].size < exact(landscape, SPEEDS[middle]).size
     assert missed == 0

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from chatter.stability.crossings import find_crossings, growth_on_net
+from chatter.stability.crossings import find_crossings, growth_rate_on_grid
 
 DEPTHS = np.linspace(0.0, 10e-3, 101)[1:]
 #: of the search: brackets to 1e-7 of the depth, growth to 1e-9
@@ -33,7 +33,7 @@ def with_roots(*roots):
 
 def crossings(*functions, depths=DEPTHS):
     growth = CountedGrowth(*functions)
-    net = growth_on_net(len(functions), depths, growth, growth)
+    net = growth_rate_on_grid(len(functions), depths, growth, growth)
     return find_crossings(net, depths, growth), growth
 
 
@@ -114,7 +114,7 @@ def test_doubtful_values_on_the_net_are_refined():
         return np.array([true(b) + 0.02 for b in depth])
 
     refined = CountedGrowth(true)
-    net = growth_on_net(1, DEPTHS, plain, refined)
+    net = growth_rate_on_grid(1, DEPTHS, plain, refined)
     assert np.array_equal(net[0] > 0.0, DEPTHS > 5e-3 + 1e-12)
     assert 0 < refined.points < DEPTHS.size / 2
     np.testing.assert_allclose(find_crossings(net, DEPTHS, refined)[0], [5e-3], rtol=TOLERANCE)
@@ -129,7 +129,7 @@ def test_a_peak_that_nearly_reaches_zero_is_refined():
         return np.array([true(b) - 0.02 for b in depth])
 
     refined = CountedGrowth(true)
-    found = find_crossings(growth_on_net(1, DEPTHS, plain, refined), DEPTHS, refined)
+    found = find_crossings(growth_rate_on_grid(1, DEPTHS, plain, refined), DEPTHS, refined)
     half = 0.1e-3 * 0.01 / 0.006
     np.testing.assert_allclose(found[0], [4e-3 - half, 4e-3 + half], rtol=TOLERANCE)
 
@@ -143,7 +143,7 @@ def test_a_valley_that_nearly_reaches_zero_is_refined():
         return np.array([true(b) + 0.02 if b > 5e-3 else true(b) for b in depth])
 
     refined = CountedGrowth(true)
-    found = find_crossings(growth_on_net(1, DEPTHS, plain, refined), DEPTHS, refined)
+    found = find_crossings(growth_rate_on_grid(1, DEPTHS, plain, refined), DEPTHS, refined)
     half = 0.1e-3 * 0.01 / 0.006
     np.testing.assert_allclose(found[0], [1e-3, 6e-3 - half, 6e-3 + half], rtol=TOLERANCE)
 
@@ -156,6 +156,6 @@ def test_a_change_that_the_refinement_takes_back():
     def refined(speed, depth):
         return np.full(depth.size, -0.3)
 
-    net = growth_on_net(1, DEPTHS, plain, refined)
+    net = growth_rate_on_grid(1, DEPTHS, plain, refined)
     assert np.all(net < 0.0)
     assert find_crossings(net, DEPTHS, refined)[0].size == 0

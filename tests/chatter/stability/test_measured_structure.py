@@ -105,7 +105,7 @@ def test_zero_order_needs_no_fit(tap_test, monkeypatch):
         raise AssertionError("the zeroth-order solution asked for a modal fit")
 
     monkeypatch.setattr("chatter.compile.measured_frf.identify_modes", refuse)
-    from chatter.stability.registry import zero_order_of
+    from chatter.stability.methods.zeroth_order.limits import zero_order_of
 
     model = milling_model(measured_case(tap_test))
     assert np.isfinite(zero_order_of(model, np.array([900.0])).critical_depth[0])

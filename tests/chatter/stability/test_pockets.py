@@ -16,7 +16,7 @@ def test_one_hill():
     limits = 1e-3 + hill(1000.0, 2e-3, 40.0)
     (pocket,) = find_pockets(SPEEDS, limits, 10e-3, 2e-6)
     assert pocket.spindle_speed == pytest.approx(1000.0, abs=0.5)
-    assert pocket.limit_depth == pytest.approx(3e-3, rel=1e-3)
+    assert pocket.critical_depth == pytest.approx(3e-3, rel=1e-3)
     # the lowest limit within the speed margin, less the depth margin
     edge = 1e-3 + 2e-3 * np.exp(-((SPEED_MARGIN * 1000.0 / 40.0) ** 2))
     assert pocket.axial_depth == pytest.approx((1.0 - DEPTH_MARGIN) * edge, rel=1e-3)
@@ -44,7 +44,7 @@ def test_no_pocket_is_deeper_than_was_searched():
     (pocket,) = find_pockets(SPEEDS, limits, 5e-3, 1e-6)
     assert pocket.spindle_speed == pytest.approx(1000.0, abs=1.0)
     assert pocket.axial_depth == pytest.approx((1.0 - DEPTH_MARGIN) * 5e-3)
-    assert np.isinf(pocket.limit_depth)
+    assert np.isinf(pocket.critical_depth)
 
 
 def test_every_pocket_is_stable_with_the_speed_off_by_the_margin():

@@ -11,9 +11,10 @@ from chatter.compile.structure import structure_of
 from chatter.description.case import Case, loads
 from chatter.description.errors import InputError
 from chatter.description.progress import no_progress
-from chatter.stability.grid_blocks import radius_in_blocks
+from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import milling_model
-from chatter.stability.registry import METHODS, zero_order_of
+from chatter.stability.registry import METHODS
+from chatter.studies.grid_blocks import radius_in_blocks
 from dynamics.modal.modes import Mode, receptance_matrix
 
 RPM = math.pi / 30.0
@@ -102,13 +103,13 @@ def test_a_stiffness_of_the_table_goes_with_the_frequency_at_that_speed():
     assert mode.mass == pytest.approx(1.2e6 / (2.0 * math.pi * 820.0) ** 2)
 
 
-@pytest.mark.parametrize("method", [name for name in METHODS if name != "time"])
+@pytest.mark.parametrize("method", [name for name in METHODS if name != "time-domain"])
 def test_the_limit_at_each_speed_is_that_of_its_modes(method):
     speeds, depths = np.array([9000.0, 12500.0, 15000.0]) * RPM, np.linspace(0.0, 6e-3, 31)[1:]
-    found = METHODS[method](milling_model(GYROSCOPIC), speeds, depths, None, no_progress)
+    found = METHODS[method].limits(milling_model(GYROSCOPIC), speeds, depths, None, no_progress)
     for place, speed in enumerate(speeds):
         own = milling_model(constant_at(speed / RPM))
-        alone = METHODS[method](own, np.array([speed]), depths, None, no_progress)
+        alone = METHODS[method].limits(own, np.array([speed]), depths, None, no_progress)
         assert found.crossings[place].tolist() == pytest.approx(alone.crossings[0].tolist(), 1e-9)
         assert found.chatter_frequency[place] == pytest.approx(alone.chatter_frequency[0], 1e-9)
         assert found.bifurcation[place] == alone.bifurcation[0]
@@ -124,8 +125,8 @@ def test_the_diagram_its_grid_and_the_check_agree():
         case = GYROSCOPIC.patch({"cut.spindle_speed": float(speed), "cut.axial_depth": 2e-3})
         found = chatter.check(case)
         assert diagram.limits.critical_depth[place] == pytest.approx(found.critical_depth, rel=1e-6)
-        row = int(np.argmin(np.abs(diagram.grid.axial_depth - 2e-3)))
-        assert diagram.grid.axial_depth[row] == pytest.approx(2e-3)
+        row = int(np.argmin(np.abs(diagram.grid.y_axis.values - 2.0)))
+        assert diagram.grid.y_axis.values[row] == pytest.approx(2.0)
         assert diagram.grid.spectral_radius[row, place] == pytest.approx(
             found.spectral_radius, rel=1e-4
         )
@@ -136,7 +137,7 @@ def test_the_diagram_its_grid_and_the_check_agree():
     assert any("from 0 to 20000 rpm" in note for note in diagram.notes)
     limits = diagram.limits
     blocks = radius_in_blocks(
-        GYROSCOPIC, limits.spindle_speed, diagram.grid.axial_depth, "collocation"
+        GYROSCOPIC, limits.spindle_speed, diagram.grid.y_axis.values * 1e-3, "collocation"
     )
     assert blocks == pytest.approx(diagram.grid.spectral_radius, rel=1e-6)
 
@@ -145,7 +146,7 @@ def test_the_chatter_frequency_follows_the_falling_mode():
     case = case_of(FALLING)
     depths = np.linspace(0.0, 40e-3, 41)[1:]
     speeds = np.array([3000.0, 19000.0]) * RPM
-    found = METHODS["zero-order"](milling_model(case), speeds, depths, None, no_progress)
+    found = METHODS["zero-order"].limits(milling_model(case), speeds, depths, None, no_progress)
     # down-milling on one mode along the feed: chatter lies a little below the mode it belongs to
     own = np.array([876.0, 712.0])
     assert found.chatter_frequency == pytest.approx(0.97 * own, rel=0.03)
@@ -169,7 +170,7 @@ def test_the_live_page_takes_each_speed_with_its_modes():
     place = len(speeds) // 3
     depths = np.linspace(0.0, 6e-3, 61)[1:]
     own = milling_model(constant_at(speeds[place] / RPM))
-    alone = METHODS["collocation"](own, speeds[[place]], depths, None, no_progress)
+    alone = METHODS["collocation"].limits(own, speeds[[place]], depths, None, no_progress)
     assert shown["crossings_mm"][place][0] == pytest.approx(alone.critical_depth[0] * 1e3, rel=6e-3)
 
 
@@ -239,8 +240,8 @@ def test_frfs_of_the_nearest_speed_stand_for_it(tmp_path):
     assert found[2:] == pytest.approx(zero_order_of(alone["fast.csv"], speeds[2:]).critical_depth)
     assert any("8000, 14000 rpm" in note for note in model.notes)
     depths = np.linspace(0.0, 8e-3, 31)[1:]
-    limit = METHODS["collocation"](model, speeds[[3]], depths, None, no_progress)
-    own = METHODS["collocation"](alone["fast.csv"], speeds[[3]], depths, None, no_progress)
+    limit = METHODS["collocation"].limits(model, speeds[[3]], depths, None, no_progress)
+    own = METHODS["collocation"].limits(alone["fast.csv"], speeds[[3]], depths, None, no_progress)
     assert limit.critical_depth == pytest.approx(own.critical_depth)
 
 

@@ -6,39 +6,26 @@ import math
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import chatter
-from chatter import Case, InputError
-from chatter.cli import app
+from chatter import InputError
+from tests.cases import tool_of_922_hertz
+from tests.command_line import chatter_command
 
 RPM = math.pi / 30.0
 MODE = {"frequency": "922 Hz", "damping": 0.011, "mass": "0.03993 kg"}
 
 
 def two_degrees_of_freedom(**cut):
-    """Tool of Insperger and Stepan (2004), alike along the feed and across it."""
-    return Case.from_dict(
-        {
-            "title": "922 Hz",
-            "tool": {"teeth": 2, "diameter": "16 mm"},
-            "material": {"Ktc": "600 MPa", "Krc": "200 MPa"},
-            "cut": {
-                "mode": "up",
-                "spindle_speed": "20000 rpm",
-                "feed_per_tooth": "0.1 mm",
-                "axial_depth": "2.5 mm",
-                "radial_depth": "0.8 mm",
-                **cut,
-            },
-            "structure": {
-                "mode": [{**MODE, "direction": [1, 0, 0]}, {**MODE, "direction": [0, 1, 0]}]
-            },
-            "lobes": {
-                "speeds": {"from": "15000 rpm", "to": "20000 rpm", "count": 6},
-                "depths": {"to": "10 mm", "count": 60},
-            },
-        }
+    """Cut of a tool that is alike along the feed and across it."""
+    small = {"mode": "up", "spindle_speed": "20000 rpm", "axial_depth": "2.5 mm"}
+    return tool_of_922_hertz(
+        ((1, 0, 0), (0, 1, 0)),
+        cut={**small, "radial_depth": "0.8 mm", **cut},
+        lobes={
+            "speeds": {"from": "15000 rpm", "to": "20000 rpm", "count": 6},
+            "depths": {"to": "10 mm", "count": 60},
+        },
     )
 
 
@@ -49,28 +36,28 @@ def over_radial_depth():
 
 def test_limits_over_radial_depth_are_those_of_checks(over_radial_depth):
     found = over_radial_depth
-    assert found.x == pytest.approx([0.8, 2.4, 4.0])
+    assert found.axis.values == pytest.approx([0.8, 2.4, 4.0])
     assert found.axis.unit == "mm"
     for place, depth in enumerate(("0.8 mm", "2.4 mm", "4 mm")):
         checked = chatter.check(two_degrees_of_freedom(radial_depth=depth))
-        assert found.critical_depth[place] == pytest.approx(checked.critical_depth, rel=1e-9)
-        assert found.bifurcation[place] == checked.limit.bifurcation[0]
-        assert found.crossings[place] == pytest.approx(checked.limit.crossings[0], rel=1e-9)
-    # BENCHMARKS.md 2.3: 3.250386 mm by flip at 20 000 rpm; a flip is heard at half the tooth
+        assert found.limits.critical_depth[place] == pytest.approx(checked.critical_depth, rel=1e-9)
+        assert found.limits.bifurcation[place] == checked.limit.bifurcation[0]
+        assert found.limits.crossings[place] == pytest.approx(checked.limit.crossings[0], rel=1e-9)
+    # validation 2.3: 3.250386 mm by flip at 20 000 rpm; a flip is heard at half the tooth
     # frequency, or an odd multiple of it
-    assert found.critical_depth[0] == pytest.approx(3.250386e-3, rel=2e-4)
-    assert found.bifurcation[0] == "flip"
+    assert found.limits.critical_depth[0] == pytest.approx(3.250386e-3, rel=2e-4)
+    assert found.limits.bifurcation[0] == "flip"
     half = 2 * 20000 / 60.0 / 2.0
-    assert (found.chatter_frequency[0] / half) % 2.0 == pytest.approx(1.0, abs=1e-6)
+    assert (found.limits.chatter_frequency[0] / half) % 2.0 == pytest.approx(1.0, abs=1e-6)
 
 
 def test_limits_over_speed_are_those_of_the_diagram():
     case = two_degrees_of_freedom()
     found = chatter.lobes_over(case, "cut.spindle_speed=15000 rpm..20000 rpm:6")
     diagram = chatter.lobes(case)
-    assert found.x * RPM == pytest.approx(diagram.limits.spindle_speed)
-    assert found.critical_depth == pytest.approx(diagram.limits.critical_depth, rel=1e-6)
-    assert found.bifurcation == diagram.limits.bifurcation
+    assert found.axis.values * RPM == pytest.approx(diagram.limits.spindle_speed)
+    assert found.limits.critical_depth == pytest.approx(diagram.limits.critical_depth, rel=1e-6)
+    assert found.limits.bifurcation == diagram.limits.bifurcation
 
 
 def test_limits_scale_with_the_material_and_the_modes():
@@ -81,7 +68,7 @@ def test_limits_scale_with_the_material_and_the_modes():
     for value in values:
         patched = case.patch({"material.Krc": value / 3.0})
         found = chatter.lobes_over(patched, ("material.Ktc", [value, 2.0 * value]))
-        limits.append(found.critical_depth[0])
+        limits.append(found.limits.critical_depth[0])
     assert np.array(limits) * values == pytest.approx(limits[0] * values[0], rel=1e-5)
     # up and down milling of a full slot are the same cut
     slot = "cut.feed_per_tooth=0.05 mm..0.2 mm:3"
@@ -89,16 +76,18 @@ def test_limits_scale_with_the_material_and_the_modes():
         chatter.lobes_over(two_degrees_of_freedom(mode=mode, radial_depth="16 mm"), slot)
         for mode in ("up", "down")
     ]
-    assert limits[0].critical_depth == pytest.approx(limits[1].critical_depth, rel=1e-6)
+    assert limits[0].limits.critical_depth == pytest.approx(
+        limits[1].limits.critical_depth, rel=1e-6
+    )
     # with a linear force law the feed does not matter
-    assert np.ptp(limits[0].critical_depth) <= 1e-6 * limits[0].critical_depth[0]
+    assert np.ptp(limits[0].limits.critical_depth) <= 1e-6 * limits[0].limits.critical_depth[0]
 
 
 def test_boundary_of_a_map_over_speed_and_depth_is_the_limit():
     case = two_degrees_of_freedom()
     mapped = chatter.lobes_over(case, y="cut.axial_depth=0.5 mm..5 mm:46")
     limits = chatter.lobes(case).limits
-    assert mapped.x * RPM == pytest.approx(limits.spindle_speed)
+    assert mapped.x_axis.values * RPM == pytest.approx(limits.spindle_speed)
     assert mapped.spectral_radius.shape == (46, 6)
     for boundary, crossings in zip(mapped.boundary, limits.crossings, strict=True):
         inside = crossings[(crossings > 0.5e-3) & (crossings < 5e-3)]
@@ -148,7 +137,7 @@ def test_closed_islands_leave_several_stable_intervals():
         }
     )
     found = chatter.lobes_over(case, "cut.spindle_speed=17000 rpm..21000 rpm:9")
-    several = [crossings for crossings in found.crossings if len(crossings) > 1]
+    several = [crossings for crossings in found.limits.crossings if len(crossings) > 1]
     assert several
     assert found.summary()["values_with_several_stable_intervals"] == len(several)
     assert found.plot().axes
@@ -164,29 +153,29 @@ def ball():
 def test_a_value_that_the_tool_does_not_reach_leaves_a_gap(tmp_path):
     found = chatter.lobes_over(ball(), "cut.radial_depth=2 mm..6 mm:5")
     # at a height h the ball reaches sqrt(2 R h - h^2) from its axis, and the work is R - a_e off
-    reached = np.sqrt(2 * 6.0 * 0.5 - 0.25) > 6.0 - found.x
-    assert list(np.isfinite(found.searched_to)) == list(reached)
+    reached = np.sqrt(2 * 6.0 * 0.5 - 0.25) > 6.0 - found.axis.values
+    assert list(np.isfinite(found.max_depth)) == list(reached)
     assert reached.tolist() == [False, False, True, True, True]
     assert all(("not reach" in why) != ok for why, ok in zip(found.reasons, reached, strict=True))
-    assert np.isnan(found.critical_depth[:2]).all()
-    assert list(found.left_out) == ["cut.radial_depth = 2 mm", "cut.radial_depth = 3 mm"]
-    assert found.told()[0].startswith("left out, cut.radial_depth = 2 mm: cut.radial_depth: down")
+    assert np.isnan(found.limits.critical_depth[:2]).all()
+    assert list(found.excluded) == ["cut.radial_depth = 2 mm", "cut.radial_depth = 3 mm"]
+    assert found.told()[0].startswith("excluded, cut.radial_depth = 2 mm: cut.radial_depth: down")
     alone = chatter.lobes_over(ball(), "cut.radial_depth=4 mm..6 mm:3")
-    assert found.critical_depth[2:] == pytest.approx(alone.critical_depth)
+    assert found.limits.critical_depth[2:] == pytest.approx(alone.limits.critical_depth)
     found.save(tmp_path)
     with (tmp_path / "lobes.csv").open() as file:
         rows = list(csv.DictReader(file))
-    assert [bool(row["left_out"]) for row in rows] == [True, True, False, False, False]
+    assert [bool(row["excluded"]) for row in rows] == [True, True, False, False, False]
     assert rows[0]["critical_depth [mm]"] == ""
     summary = json.loads((tmp_path / "summary.json").read_text())
-    assert set(summary["left_out"]) == set(found.left_out)
+    assert set(summary["excluded"]) == set(found.excluded)
 
 
 def test_values_that_the_tool_does_not_reach_leave_a_gap_in_a_map(tmp_path):
     width, speed = "cut.radial_depth=2 mm..6 mm:3", "cut.spindle_speed=9000 rpm..12000 rpm:2"
     found = chatter.lobes_over(ball(), speed, width)
     assert np.isnan(found.spectral_radius).tolist() == [[True] * 2, [False] * 2, [False] * 2]
-    assert list(found.left_out) == ["cut.radial_depth = 2 mm"]
+    assert list(found.excluded) == ["cut.radial_depth = 2 mm"]
     assert np.isfinite(found.summary()["stable_share"])
     assert (found.save(tmp_path)[-1]).stat().st_size > 10_000
 
@@ -199,35 +188,16 @@ def test_nothing_is_drawn_where_no_value_is_reached():
 
 
 def write_case(folder):
+    cut = {"mode": "up", "spindle_speed": "20000 rpm", "axial_depth": "2.5 mm"}
     path = folder / "case.toml"
-    path.write_text(
-        """
-title = "922 Hz"
-tool = { teeth = 2, diameter = "16 mm" }
-material = { Ktc = "600 MPa", Krc = "200 MPa" }
-
-[cut]
-mode = "up"
-spindle_speed = "20000 rpm"
-feed_per_tooth = "0.1 mm"
-axial_depth = "2.5 mm"
-radial_depth = "0.8 mm"
-
-[[structure.mode]]
-frequency = "922 Hz"
-damping = 0.011
-mass = "0.03993 kg"
-direction = [1, 0, 0]
-""",
-        encoding="utf-8",
-    )
+    tool_of_922_hertz(cut={**cut, "radial_depth": "0.8 mm"}).save(path)
     return str(path)
 
 
 def test_files_of_the_command(tmp_path):
     case, out = write_case(tmp_path), tmp_path / "out"
     width = 'cut.radial_depth="0.5 mm".."2 mm":3'
-    done = CliRunner().invoke(app, ["lobes", case, "--x", width, "--out", str(out)])
+    done = chatter_command("lobes", case, "--x", width, "--out", out)
     assert done.exit_code == 0, done.output
     with (out / "lobes.csv").open() as file:
         rows = list(csv.DictReader(file))
@@ -237,9 +207,7 @@ def test_files_of_the_command(tmp_path):
     assert summary["x"]["value_of_the_case"] == pytest.approx(0.8)
     assert (out / "lobes.png").stat().st_size > 10_000
     speed = "cut.spindle_speed=15000 rpm..20000 rpm:3"
-    done = CliRunner().invoke(
-        app, ["lobes", case, "--x", speed, "--y", width, "--out", str(out), "--json"]
-    )
+    done = chatter_command("lobes", case, "--x", speed, "--y", width, "--out", out, "--json")
     assert done.exit_code == 0, done.output
     with (out / "lobes.csv").open() as file:
         rows = list(csv.DictReader(file))
@@ -270,7 +238,7 @@ def test_files_of_the_command(tmp_path):
 )
 def test_refusals(tmp_path, options, told):
     out = tmp_path / "out"
-    done = CliRunner().invoke(app, ["lobes", write_case(tmp_path), *options, "--out", str(out)])
+    done = chatter_command("lobes", write_case(tmp_path), *options, "--out", out)
     assert done.exit_code == 2, done.output
     assert told in done.output
     assert done.output.count("chatter: ") == 1

@@ -19,9 +19,9 @@ def test_limits_over_a_position_are_those_of_the_machine_there():
     found = chatter.lobes_over(case, "structure.position.Z=-200 mm..200 mm:2")
     assert found.axis.unit == "mm"
     moved = chatter.check(case.patch({"structure.position": {"Z": "0.2 m"}}))
-    assert found.crossings[1][0] == pytest.approx(moved.critical_depth, rel=1e-9)
+    assert found.limits.crossings[1][0] == pytest.approx(moved.critical_depth, rel=1e-9)
     # the head stands on a longer column: the tool gives way more
-    assert found.crossings[1][0] < 0.75 * found.crossings[0][0]
+    assert found.limits.crossings[1][0] < 0.75 * found.limits.crossings[0][0]
 
 
 def test_a_path_by_name_that_holds_no_quantity_is_none():

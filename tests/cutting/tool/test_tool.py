@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cutting.chip.regeneration import earlier_passes
 from cutting.tool.cutter import Cutter, Serration, edge_slices, slice_counts
 from cutting.tool.edge_table import edge_table, force_on_tool
+from cutting.tool.tooth_passes import earlier_passes
 
 TURN = 2.0 * math.pi
 END_MILL = Cutter(16e-3, (math.radians(30.0),) * 4, (TURN / 4,) * 4)

@@ -1,7 +1,7 @@
 """Dominant Floquet multipliers of eight points at once, by Arnoldi iteration on their map.
 
-The map is never formed as a matrix. Each lane is looked at by itself and keeps the first value that
-has converged, so that it does not depend on its neighbours.
+The map is never formed as a matrix. Each member is evaluated by itself and keeps the first value
+that has converged, so that it does not depend on its neighbours.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 
 from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 from chatter.stability.hessenberg import dominant_pair
-from chatter.stability.methods.collocation.monodromy import apply_element_map, element_scratch
-from chatter.stability.simd_batch import LANES, load, spread, store
+from chatter.stability.methods.collocation.monodromy import apply_batch_monodromy, batch_scratch
+from chatter.stability.simd_batch import BATCH_SIZE, load, spread, store
 
-#: dimension of the Krylov space beyond the state at the first look, and how it grows
-_FIRST_LOOK = 3
+#: dimension of the Krylov space beyond the state at the first check, and how it grows
+_FIRST_CHECK = 3
 _GROWTH = 1.3
-#: over a period of so many elements a look costs far less than another vector
+#: over a period of so many elements a check costs far less than another vector
 _MANY_ELEMENTS = 60
 _LARGEST_SPACE = 240
 #: norms above this are not the root of a sum of squares
@@ -41,7 +41,7 @@ class DominantPairs(NamedTuple):
 
 @njit(**SINGLE_KERNEL)
 def _start_vectors(period, out, scratch):
-    """A fixed pseudo-random vector in all lanes, smoothed by one pass through the map."""
+    """A fixed pseudo-random vector in all members, smoothed by one pass through the map."""
     start = np.empty(out.shape)
     seed = 12345
     size = period.output.shape[1]
@@ -53,7 +53,7 @@ def _start_vectors(period, out, scratch):
         # motion is smaller than the state by the size of the output matrix
         factor = 1.0 if i < size else scale / size
         store(start, i, spread(factor * (seed / 1073741824.0 - 1.0)))
-    apply_element_map(period, start, out, scratch)
+    apply_batch_monodromy(period, start, out, scratch)
 
 
 @njit(**LEAF_KERNEL)
@@ -63,25 +63,25 @@ def _norms(vector, out):
     for i in range(vector.shape[0]):
         total += load(vector, i) * load(vector, i)
     store(out, 0, total)
-    for lane in range(LANES):
-        out[0, lane] = math.sqrt(out[0, lane])
-        if not out[0, lane] < _SQUARES_BELOW:
+    for member in range(BATCH_SIZE):
+        out[0, member] = math.sqrt(out[0, member])
+        if not out[0, member] < _SQUARES_BELOW:
             # the squares are too large to be summed up
             largest = 0.0
             for i in range(vector.shape[0]):
-                largest = max(largest, abs(vector[i, lane]))
+                largest = max(largest, abs(vector[i, member]))
             squares = 0.0
             for i in range(vector.shape[0]):
-                squares += (vector[i, lane] / largest) ** 2
-            out[0, lane] = largest * math.sqrt(squares)
+                squares += (vector[i, member] / largest) ** 2
+            out[0, member] = largest * math.sqrt(squares)
 
 
 @njit(**INNER_KERNEL)
 def _divide(vector, norm):
     """Divide vectors (D, 8) by their norms (1, 8); nothing stays nothing."""
-    factor = np.empty((1, LANES))
-    for lane in range(LANES):
-        factor[0, lane] = 1.0 / norm[0, lane] if norm[0, lane] > 0.0 else 0.0
+    factor = np.empty((1, BATCH_SIZE))
+    for member in range(BATCH_SIZE):
+        factor[0, member] = 1.0 / norm[0, member] if norm[0, member] > 0.0 else 0.0
     by = load(factor, 0)
     for i in range(vector.shape[0]):
         store(vector, i, load(vector, i) * by)
@@ -103,85 +103,87 @@ def _orthogonalise(basis, k, hessenberg):
 
 @njit(**SINGLE_KERNEL)
 def dominant_pairs(period, tolerance):
-    """Multiplier of largest magnitude of every lane.
+    """Multiplier of largest magnitude of every member.
 
     Parameters
     ----------
-    period : ElementMap
+    period : BatchMonodromy
     tolerance : float
-        Residual of the dominant eigenpair, relative to its magnitude, at which a lane is done.
+        Residual of the dominant eigenpair, relative to its magnitude, at which a member is done.
 
     Returns
     -------
     DominantPairs
     """
     _, values, size, _ = period.couple.shape
-    dimension = size + period.plan.memory * (values + period.output.shape[0])
-    scratch = element_scratch(period)
+    dimension = size + period.assembly.memory * (values + period.output.shape[0])
+    scratch = batch_scratch(period)
     largest = min(dimension, _LARGEST_SPACE)
-    basis = np.empty((largest + 1, dimension, LANES))
-    hessenberg = np.zeros((largest + 1, largest, LANES))
+    basis = np.empty((largest + 1, dimension, BATCH_SIZE))
+    hessenberg = np.zeros((largest + 1, largest, BATCH_SIZE))
     found = DominantPairs(
-        np.zeros(LANES, dtype=np.complex128), basis,
-        np.zeros((LANES, largest), dtype=np.complex128), np.zeros(LANES, dtype=np.int64),
+        np.zeros(BATCH_SIZE, dtype=np.complex128), basis,
+        np.zeros((BATCH_SIZE, largest), dtype=np.complex128), np.zeros(BATCH_SIZE, dtype=np.int64),
     )  # fmt: skip
     _start_vectors(period, basis[0], scratch)
-    norm, before = np.empty((1, LANES)), np.empty((1, LANES))
+    norm, before = np.empty((1, BATCH_SIZE)), np.empty((1, BATCH_SIZE))
     _norms(basis[0], norm)
-    for lane in range(LANES):
-        if not norm[0, lane] < np.inf:
-            found.value[lane], found.used[lane] = _BEYOND_NUMBERS, 1
+    for member in range(BATCH_SIZE):
+        if not norm[0, member] < np.inf:
+            found.value[member], found.used[member] = _BEYOND_NUMBERS, 1
     _divide(basis[0], norm)
     # weakly damped modes keep as many multipliers near the unit circle as there are states
-    look = min(_FIRST_LOOK + size, largest)
-    growth = _GROWTH
-    if period.plan.cut.shape[0] > _MANY_ELEMENTS:
-        look, growth = min(2, largest), 1.0
+    check_at = min(_FIRST_CHECK + size, largest)
+    growth_rate = _GROWTH
+    if period.assembly.cut.shape[0] > _MANY_ELEMENTS:
+        check_at, growth_rate = min(2, largest), 1.0
     for k in range(largest):
-        apply_element_map(period, basis[k], basis[k + 1], scratch)
+        apply_batch_monodromy(period, basis[k], basis[k + 1], scratch)
         _norms(basis[k + 1], before)
         _orthogonalise(basis, k, hessenberg)
         _norms(basis[k + 1], norm)
         store(hessenberg, (k + 1, k), load(norm, 0))
-        regular = k + 1 in (look, largest)
+        regular = k + 1 in (check_at, largest)
         if regular:
-            look = min(largest, max(look + 1, math.ceil(look * growth)))
-        if _look(hessenberg, k + 1, largest, regular, norm[0], before[0], tolerance, found):
+            check_at = min(largest, max(check_at + 1, math.ceil(check_at * growth_rate)))
+        if _check_members(
+            hessenberg, k + 1, largest, regular, norm[0], before[0], tolerance, found
+        ):
             break
         _divide(basis[k + 1], norm)
     return found
 
 
 @njit(**SINGLE_KERNEL)
-def _look(hessenberg, used, largest, regular, norm, before, tolerance, found):
-    """Take down the lanes that have converged; tell whether all have."""
+def _check_members(hessenberg, used, largest, regular, norm, before, tolerance, found):
+    """Keep the members that have converged; return whether all have."""
     done = True
-    for lane in range(LANES):
-        if found.used[lane] > 0:
+    for member in range(BATCH_SIZE):
+        if found.used[member] > 0:
             continue
-        invariant = norm[lane] <= 1e-14 * before[lane]
+        invariant = norm[member] <= 1e-14 * before[member]
         if not (regular or invariant):
             done = False
             continue
-        if before[lane] == 0.0:
-            found.used[lane] = used
+        if before[member] == 0.0:
+            found.used[member] = used
             continue
-        if not before[lane] < np.inf:
-            found.value[lane], found.used[lane] = _BEYOND_NUMBERS, used
+        if not before[member] < np.inf:
+            found.value[member], found.used[member] = _BEYOND_NUMBERS, used
             continue
         small = np.empty((used, used))
         # products of what is that large would leave the range of numbers
-        scale = before[lane] if before[lane] > _SQUARES_BELOW**0.5 else 1.0
+        scale = before[member] if before[member] > _SQUARES_BELOW**0.5 else 1.0
         for i in range(used):
             for j in range(used):
-                small[i, j] = hessenberg[i, j, lane] / scale
+                small[i, j] = hessenberg[i, j, member] / scale
         value, coordinates = dominant_pair(small)
         value *= scale
-        residual = norm[lane] * abs(coordinates[used - 1]) / max(abs(value), 1e-300)
+        residual = norm[member] * abs(coordinates[used - 1]) / max(abs(value), 1e-300)
         if residual < tolerance or invariant or used == largest:
-            found.value[lane], found.used[lane] = value, used
+            found.value[member], found.used[member] = value, used
             for j in range(used):
-                found.coordinates[lane, j] = coordinates[j]
+                found.coordinates[member, j] = coordinates[j]
         else:
             done = False
     return done

@@ -1,4 +1,4 @@
-"""Frequency that is heard of the dominant motion of a cut, eight points at once."""
+"""Frequency evaluated of the dominant motion of a cut, eight points at once."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from numba import njit
 from numpy.typing import NDArray
 
 from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
-from chatter.stability.methods.collocation.monodromy import apply_element_map, element_scratch
-from chatter.stability.simd_batch import LANES, load, spread, store
+from chatter.stability.methods.collocation.monodromy import apply_batch_monodromy, batch_scratch
+from chatter.stability.simd_batch import BATCH_SIZE, load, spread, store
 
-#: harmonics looked at, up to this factor beyond the highest mode
+#: harmonics searched, up to this factor beyond the highest mode
 _HIGHEST = 2.0
 
 
@@ -28,36 +28,38 @@ class _Turning(NamedTuple):
 
 @njit(**INNER_KERNEL)
 def _vectors(found):
-    """Real and imaginary part of the dominant vector of every lane (2, D, 8)."""
-    vectors = np.zeros((2, found.basis.shape[1], LANES))
-    for lane in range(LANES):
-        for j in range(found.used[lane]):
-            c = found.coordinates[lane, j]
+    """Real and imaginary part of the dominant vector of every member (2, D, 8)."""
+    vectors = np.zeros((2, found.basis.shape[1], BATCH_SIZE))
+    for member in range(BATCH_SIZE):
+        for j in range(found.used[member]):
+            c = found.coordinates[member, j]
             for i in range(found.basis.shape[1]):
-                vectors[0, i, lane] += c.real * found.basis[j, i, lane]
-                vectors[1, i, lane] += c.imag * found.basis[j, i, lane]
+                vectors[0, i, member] += c.real * found.basis[j, i, member]
+                vectors[1, i, member] += c.imag * found.basis[j, i, member]
     return vectors
 
 
 @njit(**INNER_KERNEL)
-def _weighted(points, plans, members, speeds, lengths, real, imaginary):
+def _weighted(points, assemblies, batch_points, speeds, lengths, real, imaginary):
     """Times (N, 8) of all points in the cut and forces there times weights (2, N r, 8)."""
     cuts, values, _ = real.shape
     count = points.weight.shape[0]
     rank = values // count
-    time, force = np.empty((cuts * count, LANES)), np.empty((2, cuts * values, LANES))
-    for lane in range(LANES):
-        plan, speed = plans.of_point[members[lane]], speeds[0, lane]
-        of_plan = plans.number[plans.first_number[plan] : plans.first_number[plan + 1]]
+    time, force = np.empty((cuts * count, BATCH_SIZE)), np.empty((2, cuts * values, BATCH_SIZE))
+    for member in range(BATCH_SIZE):
+        assembly, speed = assemblies.of_point[batch_points[member]], speeds[0, member]
+        of_assembly = assemblies.number[
+            assemblies.first_number[assembly] : assemblies.first_number[assembly + 1]
+        ]
         first = 1 + lengths
         for e in range(cuts):
-            start, length = of_plan[first + e] / speed, of_plan[first + cuts + e] / speed
+            start, length = of_assembly[first + e] / speed, of_assembly[first + cuts + e] / speed
             for i in range(count):
-                time[e * count + i, lane] = start + length * points.place[i + 1]
+                time[e * count + i, member] = start + length * points.position[i + 1]
                 weight = length * points.weight[i]
                 for k in range(i * rank, (i + 1) * rank):
-                    force[0, e * values + k, lane] = weight * real[e, k, lane]
-                    force[1, e * values + k, lane] = weight * imaginary[e, k, lane]
+                    force[0, e * values + k, member] = weight * real[e, k, member]
+                    force[1, e * values + k, member] = weight * imaginary[e, k, member]
     return time, force
 
 
@@ -68,12 +70,12 @@ def _turning(time, base, line, lowest):
         np.empty(time.shape), np.empty(time.shape), np.empty(time.shape), np.empty(time.shape)
     )
     for i in range(time.shape[0]):
-        for lane in range(LANES):
-            t = time[i, lane]
-            now = np.exp(-(base[lane] + complex(0.0, lowest * line[lane])) * t)
-            out.real[i, lane], out.imaginary[i, lane] = now.real, now.imag
-            out.real_step[i, lane] = math.cos(line[lane] * t)
-            out.imaginary_step[i, lane] = -math.sin(line[lane] * t)
+        for member in range(BATCH_SIZE):
+            t = time[i, member]
+            now = np.exp(-(base[member] + complex(0.0, lowest * line[member])) * t)
+            out.real[i, member], out.imaginary[i, member] = now.real, now.imag
+            out.real_step[i, member] = math.cos(line[member] * t)
+            out.imaginary_step[i, member] = -math.sin(line[member] * t)
     return out
 
 
@@ -133,58 +135,68 @@ def _loudest(structure, base, line, time, force, out):
     structure at each omega_l.
     """
     rank = structure.shape.shape[1]
-    orders = np.empty(LANES, dtype=np.int64)
+    orders = np.empty(BATCH_SIZE, dtype=np.int64)
     highest = _HIGHEST * structure.natural_frequency.max()
-    for lane in range(LANES):
-        orders[lane] = math.ceil(highest / line[lane]) + 1
+    for member in range(BATCH_SIZE):
+        orders[member] = math.ceil(highest / line[member]) + 1
     order = orders.max()
     turning = _turning(time, base, line, -order)
-    at_harmonic, motion = np.empty((2, rank, LANES)), np.empty((2, rank, LANES))
-    sigma, omega, amplitude = np.empty((1, LANES)), np.empty((1, LANES)), np.empty((1, LANES))
-    best = np.full(LANES, -1.0)
-    for lane in range(LANES):
-        sigma[0, lane] = base[lane].real
+    at_harmonic, motion = np.empty((2, rank, BATCH_SIZE)), np.empty((2, rank, BATCH_SIZE))
+    sigma, omega, amplitude = (
+        np.empty((1, BATCH_SIZE)),
+        np.empty((1, BATCH_SIZE)),
+        np.empty((1, BATCH_SIZE)),
+    )
+    best = np.full(BATCH_SIZE, -1.0)
+    for member in range(BATCH_SIZE):
+        sigma[0, member] = base[member].real
     for harmonic in range(-order, order + 1):
         _force_at_harmonic(turning, force, rank, at_harmonic)
-        for lane in range(LANES):
-            omega[0, lane] = base[lane].imag + harmonic * line[lane]
+        for member in range(BATCH_SIZE):
+            omega[0, member] = base[member].imag + harmonic * line[member]
         _amplitudes(structure, sigma, omega, at_harmonic, motion, amplitude)
-        for lane in range(LANES):
-            # what a lane hears does not depend on its neighbours
-            if abs(harmonic) <= orders[lane] and amplitude[0, lane] > best[lane]:
-                best[lane] = amplitude[0, lane]
-                out[lane] = abs(omega[0, lane]) / (2.0 * math.pi)
+        for member in range(BATCH_SIZE):
+            # the frequency of a member does not depend on its neighbours
+            if abs(harmonic) <= orders[member] and amplitude[0, member] > best[member]:
+                best[member] = amplitude[0, member]
+                out[member] = abs(omega[0, member]) / (2.0 * math.pi)
 
 
 @njit(**SINGLE_KERNEL)
-def heard_frequencies(arrays, plans, members, speeds, period, found, out):
-    """Set out (8,) to the chatter frequency (Hz) of the dominant motion of every lane.
+def chatter_frequencies_of(arrays, assemblies, batch_points, speeds, period, found, out):
+    """Set out (8,) to the chatter frequency (Hz) of the dominant motion of every member.
 
     Parameters
     ----------
-    arrays : MapArrays
-    plans : Plans
-    members : (8,) array of int
-        Point of every lane.
+    arrays : OperatorArrays
+    assemblies : CouplingAssemblies
+    batch_points : (8,) array of int
+        Point of every member.
     speeds : (1, 8) array of float
         rad/s.
-    period : ElementMap
+    period : BatchMonodromy
     found : DominantPairs
     out : (8,) array of float
     """
-    vectors, image = _vectors(found), np.empty((found.basis.shape[1], LANES))
-    real, imaginary = element_scratch(period), element_scratch(period)
-    apply_element_map(period, vectors[0], image, real)
-    apply_element_map(period, vectors[1], image, imaginary)
+    vectors, image = _vectors(found), np.empty((found.basis.shape[1], BATCH_SIZE))
+    real, imaginary = batch_scratch(period), batch_scratch(period)
+    apply_batch_monodromy(period, vectors[0], image, real)
+    apply_batch_monodromy(period, vectors[1], image, imaginary)
     time, force = _weighted(
-        arrays.points, plans, members, speeds, period.free.shape[0], real.force, imaginary.force
+        arrays.points,
+        assemblies,
+        batch_points,
+        speeds,
+        period.free.shape[0],
+        real.force,
+        imaginary.force,
     )
-    base, line = np.empty(LANES, dtype=np.complex128), np.empty(LANES)
-    for lane in range(LANES):
-        plan = plans.of_point[members[lane]]
-        lasting = plans.number[plans.first_number[plan]] / speeds[0, lane]
-        value = found.value[lane]
-        base[lane] = np.log(value if value != 0.0 else complex(1e-300, 0.0)) / lasting
-        line[lane] = 2.0 * math.pi / lasting
-        out[lane] = 0.0
+    base, line = np.empty(BATCH_SIZE, dtype=np.complex128), np.empty(BATCH_SIZE)
+    for member in range(BATCH_SIZE):
+        assembly = assemblies.of_point[batch_points[member]]
+        lasting = assemblies.number[assemblies.first_number[assembly]] / speeds[0, member]
+        value = found.value[member]
+        base[member] = np.log(value if value != 0.0 else complex(1e-300, 0.0)) / lasting
+        line[member] = 2.0 * math.pi / lasting
+        out[member] = 0.0
     _loudest(arrays.structure, base, line, time, force, out)

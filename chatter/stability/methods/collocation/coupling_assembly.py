@@ -1,9 +1,9 @@
 """What the cut couples over one period: elements, stiffness, dashpots, and the earlier motion.
 
-All places are mean angles (time times the mean speed): at a constant speed the plan depends on the
-speed only through the number of elements, so that neighbouring speeds share it. A plan is packed
-into whole numbers that tell its structure and real ones that fill it: plans of the same structure
-go side by side into the lanes of one map.
+All positions are mean angles (time times the mean speed): at a constant speed the assembly depends
+on the speed only through the number of elements, so that neighbouring speeds share it. A assembly
+is packed into whole numbers that give its structure and real ones that fill it: assemblies of the
+same structure go side by side into one SIMD batch.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 from chatter.stability.methods.collocation.coupling_structure import (
-    alike,
+    packed_assemblies,
     packed_numbers,
-    packed_plans,
     packed_structure,
+    same_structure,
 )
 from chatter.stability.methods.collocation.element_borders import empty_borders, period_borders
 from chatter.stability.methods.collocation.element_layout import (
@@ -30,22 +30,22 @@ from chatter.stability.methods.collocation.element_layout import (
     speed_step,
 )
 from chatter.stability.spindle_rotation import (
-    STEADY_TURN,
+    STEADY_ROTATION,
     angle_at,
     in_mean_angle,
     speed_at,
-    spindle_turn,
+    spindle_rotation_at,
     time_at,
 )
-from cutting.edge_segments.coupling import coupling_at, part_below, radius_at, share_of_height
+from cutting.edge_segments.coupling import coupling_at, delay_at, part_below, radius_at
 from cutting.edge_segments.engaged_intervals import (
-    crowd,
-    length_of_run,
-    place_in_run,
+    engaged_interval_from,
+    graded,
+    length_of_interval,
     points_along,
-    reach_of_piece,
-    run_from,
-    turns_of_chain,
+    position_in_interval,
+    reach_of_segment,
+    revolutions_of_group,
 )
 
 #: points closer than this share of an element are the same
@@ -60,16 +60,26 @@ class _Sources(NamedTuple):
     element: NDArray[np.int64]
     point: NDArray[np.int64]
     block: NDArray[np.float64]  # N/m (sources, r, (p + 1) r)
-    share: NDArray[np.float64]  # of each point of an element in a place (p + 1,), scratch
+    share: NDArray[np.float64]  # of each point of an element in a position (p + 1,), scratch
 
 
-class _EdgeRule(NamedTuple):
-    """Quadrature along the edge."""
+class _Edge(NamedTuple):
+    """Edge segments down to a depth, and the quadrature along them."""
 
-    place: NDArray[np.float64]
-    weight: NDArray[np.float64]
-    longest: float  # element, s
-    speed: float  # for which it is made, rad/s
+    tops: NDArray[np.float64]  # part of each segment below the depth (P,)
+    reach: NDArray[np.float64]  # spindle angles, see `reach_of_segment`, rad (P, 4)
+    elements: float  # that pass while the tool turns by a radian at the mean speed
+    speed_factor: float  # one over the radius where there are dashpots, else 0, 1/m
+
+
+class _Couplings(NamedTuple):
+    """Couplings at all points of a period, and scratch for one of them."""
+
+    stiffness: NDArray[np.float64]  # N/m (E p, r, r)
+    dashpot: NDArray[np.float64]  # N s/m times the mean speed (E p, r, r)
+    of_delay: NDArray[np.float64]  # of each distinct delay, last of a single point (G + 1, r, r)
+    part: NDArray[np.float64]  # (r, r)
+    part_dashpot: NDArray[np.float64]  # (r, r)
 
 
 @njit(**INNER_KERNEL)
@@ -105,12 +115,12 @@ def _begin_source(sources, at, element):
 
 
 @njit(**SINGLE_KERNEL)
-def _add_source(points, sources, at, place, couplings, which):
-    """Add a coupling to the motion at a place in an element to a source."""
-    rank, count = couplings.shape[1], points.place.shape[0]
+def _add_source(points, sources, at, position, couplings, which):
+    """Add a coupling to the motion at a position in an element to a source."""
+    rank, count = couplings.shape[1], points.position.shape[0]
     near, total = -1, 0.0
     for q in range(count):
-        distance = place - points.place[q]
+        distance = position - points.position[q]
         if abs(distance) < _SAME_POINT:
             near = q
             distance = _SAME_POINT
@@ -129,9 +139,9 @@ def _add_source(points, sources, at, place, couplings, which):
 
 
 @njit(**LEAF_KERNEL)
-def _note(points, layout, angle, sources, first, count, couplings, which):
+def _add_delayed(points, layout, angle, sources, first, count, couplings, which):
     """Add a coupling to the motion at an earlier mean angle; returns the number of sources."""
-    element, place = element_before(layout, angle)
+    element, position = element_before(layout, angle)
     found = count
     for entry in range(first, count):
         if sources.element[entry] == element:
@@ -139,83 +149,86 @@ def _note(points, layout, angle, sources, first, count, couplings, which):
             break
     if found == count:
         _begin_source(sources, found, element)
-    _add_source(points, sources, found, place, couplings, which)
+    _add_source(points, sources, found, position, couplings, which)
     return max(count, found + 1)
 
 
 @njit(**LEAF_KERNEL)
-def _couple(
-    pieces, tops, reach, rule, basis, points, layout, turn, speed_factor, angle, sources,
-    first_source, row, stiffness, dashpot, groups, part, part_dashpot,
-):  # fmt: skip
+def _couple(cut, edge, layout, rotation, angle, row, first_source, sources, couplings):
     """Enter the couplings at one mean angle; returns the number of sources."""
+    segments, basis, points = cut.arrays.segments, cut.arrays.basis, cut.points
+    stiffness, dashpot, of_delay = couplings.stiffness, couplings.dashpot, couplings.of_delay
+    part, part_dashpot = couplings.part, couplings.part_dashpot
     rank = basis.shape[1]
-    used = groups.shape[0] - 1
-    for group in range(used):
+    used = of_delay.shape[0] - 1
+    for delay in range(used):
         for i in range(rank):
             for j in range(rank):
-                groups[group, i, j] = 0.0
+                of_delay[delay, i, j] = 0.0
     count = first_source
-    spindle, turning = angle_at(turn, angle), speed_at(turn, angle)
-    elements = 1.0 / (rule.speed * turning * rule.longest)
-    for chain in range(pieces.chain.shape[0] - 1):
-        first, last = turns_of_chain(pieces, reach, chain, spindle)
+    spindle, turning = angle_at(rotation, angle), speed_at(rotation, angle)
+    elements = edge.elements / turning
+    for group in range(segments.first_of_group.shape[0] - 1):
+        first, last = revolutions_of_group(segments, edge.reach, group, spindle)
         for back in range(first, last + 1):
-            piece, end = pieces.chain[chain], pieces.chain[chain + 1]
-            while piece < end:
-                final, low, high, change = run_from(
-                    pieces, tops, reach, piece, end, spindle, back, elements
+            segment, end = segments.first_of_group[group], segments.first_of_group[group + 1]
+            while segment < end:
+                final, low, high, change = engaged_interval_from(
+                    segments, edge.tops, edge.reach, segment, end, spindle, back, elements
                 )
-                if final < piece:
-                    piece += 1
+                if final < segment:
+                    segment += 1
                     continue
-                order, ends = points_along(pieces, piece, final, low, high, change, spindle)
-                length = length_of_run(pieces, piece, final, low, high)
-                at, start = piece, -low * pieces.length[piece]
+                order, ends = points_along(segments, segment, final, low, high, change, spindle)
+                length = length_of_interval(segments, segment, final, low, high)
+                at, start = segment, -low * segments.length[segment]
                 for q in range(order):
-                    x, share = crowd(rule.place[order, q], rule.weight[order, q], ends)
-                    at, place, start = place_in_run(pieces, at, final, start, x * length)
+                    x, share = graded(
+                        cut.arrays.edge_position[order, q], cut.arrays.edge_weight[order, q], ends
+                    )
+                    at, position, start = position_in_interval(
+                        segments, at, final, start, x * length
+                    )
                     coupling_at(
-                        pieces, at, place, spindle, share * length, speed_factor / turning, basis,
-                        part, part_dashpot,
+                        segments, at, position, spindle, share * length,
+                        edge.speed_factor / turning, basis, part, part_dashpot,
                     )  # fmt: skip
-                    # the last of the groups is that of the single point
-                    group = pieces.group[at]
-                    into = group if group >= 0 else used
+                    delay = segments.delay_index[at]
+                    into = delay if delay >= 0 else used
                     for i in range(rank):
                         for j in range(rank):
                             stiffness[row, i, j] += part[i, j]
                             dashpot[row, i, j] += part_dashpot[i, j]
-                            groups[into, i, j] = part[i, j] + (
-                                groups[into, i, j] if group >= 0 else 0.0
+                            of_delay[into, i, j] = part[i, j] + (
+                                of_delay[into, i, j] if delay >= 0 else 0.0
                             )
-                    if group < 0:
-                        shift = pieces.delay[at, 1] - pieces.delay[at, 0]
-                        delay = pieces.delay[at, 0] + share_of_height(pieces, at, place) * shift
-                        earlier = time_at(turn, spindle - delay)
-                        count = _note(
-                            points, layout, earlier, sources, first_source, count, groups, used
+                    if delay < 0:
+                        earlier = time_at(rotation, spindle - delay_at(segments, at, position))
+                        count = _add_delayed(
+                            points, layout, earlier, sources, first_source, count, of_delay, used
                         )
-                piece = final + 1
-    for group in range(used):
+                segment = final + 1
+    for delay in range(used):
         filled = False
         for i in range(rank):
             for j in range(rank):
-                filled |= groups[group, i, j] != 0.0
+                filled |= of_delay[delay, i, j] != 0.0
         if filled:
-            earlier = time_at(turn, spindle - pieces.group_delay[group])
-            count = _note(points, layout, earlier, sources, first_source, count, groups, group)
+            earlier = time_at(rotation, spindle - segments.distinct_delay[delay])
+            count = _add_delayed(
+                points, layout, earlier, sources, first_source, count, of_delay, delay
+            )
     return count
 
 
 @njit(**SINGLE_KERNEL)
-def cut_plan(cut, turn, layout, speed, depth):
+def assemble_couplings(cut, rotation, layout, speed, depth):
     """Couplings at the points of all elements of a period, packed.
 
     Parameters
     ----------
-    cut : CutArrays
-    turn : SpindleTurn
+    cut : ElementCut
+    rotation : SpindleRotation
         In mean angle.
     layout : ElementLayout
     speed : float
@@ -226,88 +239,94 @@ def cut_plan(cut, turn, layout, speed, depth):
     Returns
     -------
     structure : (i,) array of int
-        See `plan_structure`.
+        See `packed_structure`.
     numbers : (n,) array of float
         Period, lengths (S,), starts and lengths of the elements in the cut (E,), rad; stiffness
         (E p, r, r), dashpots (E p, r, r) times the mean speed, blocks of the sources, N/m.
     """
-    points, pieces, basis = cut.points, cut.pieces, cut.basis
-    rank, count_a_element = basis.shape[1], points.weight.shape[0]
+    points, segments, rank = cut.points, cut.arrays.segments, cut.arrays.basis.shape[1]
+    per_element = points.weight.shape[0]
     cuts = layout.cut_start.shape[0]
-    rows = cuts * count_a_element
-    tops = np.empty(pieces.bottom.shape[0])
+    rows = cuts * per_element
+    tops, reach = np.empty(segments.bottom.shape[0]), np.empty((segments.bottom.shape[0], 4))
     longest = 0.0
-    for piece in range(tops.shape[0]):
-        tops[piece] = part_below(pieces, piece, depth)
-        if tops[piece] > 0.0 and pieces.group[piece] < 0:
-            longest = max(longest, max(pieces.delay[piece, 0], pieces.delay[piece, 1]))
+    for segment in range(tops.shape[0]):
+        tops[segment] = part_below(segments, segment, depth)
+        reach_of_segment(segments, tops, segment, reach[segment])
+        if tops[segment] > 0.0 and segments.delay_index[segment] < 0:
+            longest = max(longest, max(segments.delay[segment, 0], segments.delay[segment, 1]))
     # a delay that varies along the edge reaches into no more elements than there are that far back
-    most = pieces.group_delay.shape[0]
+    most = segments.distinct_delay.shape[0]
     if longest > 0.0:
         most += cuts * (2 + math.ceil(2.0 * longest / layout.period))
-    reach = np.empty((tops.shape[0], 4))
-    for piece in range(tops.shape[0]):
-        reach_of_piece(pieces, tops, piece, reach[piece])
-    sources = _empty_sources(rows + most, rank, (count_a_element + 1) * rank)
-    stiffness, dashpot = np.zeros((rows, rank, rank)), np.zeros((rows, rank, rank))
-    groups = np.empty((pieces.group_delay.shape[0] + 1, rank, rank))
-    part, part_dashpot = np.empty((rank, rank)), np.zeros((rank, rank))
-    rule = _EdgeRule(cut.edge_place, cut.edge_weight, cut.resolution.longest, speed)
-    damped = pieces.damping[1] > 0.0
-    speed_factor = 1.0 / radius_at(pieces, depth) if damped else 0.0
+    sources = _empty_sources(rows + most, rank, (per_element + 1) * rank)
+    couplings = _Couplings(
+        np.zeros((rows, rank, rank)), np.zeros((rows, rank, rank)),
+        np.empty((segments.distinct_delay.shape[0] + 1, rank, rank)),
+        np.empty((rank, rank)), np.zeros((rank, rank)),
+    )  # fmt: skip
+    damped = segments.damping[1] > 0.0
+    edge = _Edge(
+        tops, reach, 1.0 / (speed * cut.longest),
+        1.0 / radius_at(segments, depth) if damped else 0.0,
+    )  # fmt: skip
     first_source = np.zeros(rows + 1, dtype=np.int64)
     for row in range(rows):
-        e, i = row // count_a_element, row % count_a_element
-        angle = layout.cut_start[e] + points.place[i + 1] * layout.cut_length[e]
+        e, i = row // per_element, row % per_element
+        angle = layout.cut_start[e] + points.position[i + 1] * layout.cut_length[e]
         count = first_source[row]
         if count + most > sources.element.shape[0]:
             sources = _grown(sources)
         first_source[row + 1] = _couple(
-            pieces, tops, reach, rule, basis, points, layout, turn, speed_factor, angle, sources,
-            count, row, stiffness, dashpot, groups, part, part_dashpot,
-        )  # fmt: skip
-    if turn.amplitude > 0.0:
+            cut, edge, layout, rotation, angle, row, count, sources, couplings
+        )
+    if rotation.amplitude > 0.0:
         # what falls on a point by chance would make structures differ
         sources.point[:] = -1
     return (
         packed_structure(layout, first_source, sources.element, sources.point),
-        packed_numbers(layout, stiffness, dashpot, sources.block, first_source[rows]),
+        packed_numbers(
+            layout, couplings.stiffness, couplings.dashpot, sources.block, first_source[rows]
+        ),
     )
 
 
 @njit(**SINGLE_KERNEL)
-def plans_of(cut, speeds, depths):
-    """Plans of n points; neighbours of equal depth and equal elements share one.
+def assemblies_of(cut, speeds, depths):
+    """Coupling assemblies of n points; neighbours of equal depth and equal elements share one.
 
     Parameters
     ----------
-    cut : CutArrays
+    cut : ElementCut
     speeds, depths : (n,) array of float
         rad/s, m.
 
     Returns
     -------
-    Plans
+    CouplingAssemblies
     """
+    arrays = cut.arrays
     of_point = np.empty(speeds.shape[0], dtype=np.int64)
     structures = [np.empty(0, dtype=np.int64) for _ in range(0)]
     numbers = [np.empty(0) for _ in range(0)]
-    constant = cut.variation.amplitude == 0.0
-    turn, period = STEADY_TURN, cut.period_angle
+    constant = arrays.variation.amplitude == 0.0
+    rotation, period = STEADY_ROTATION, arrays.period_angle
     counts, speed, borders = np.empty(0, dtype=np.int64), 0.0, empty_borders()
     for i in range(speeds.shape[0]):
         if not constant:
-            turn = in_mean_angle(spindle_turn(cut.variation, speeds[i], period))
+            rotation = in_mean_angle(
+                spindle_rotation_at(arrays.variation, arrays.fit, speeds[i], period)
+            )
         beside = constant and i > 0 and depths[i] == depths[i - 1]
         if not beside:
-            borders = period_borders(cut.pieces, period, depths[i])
-        needed = element_counts(cut.resolution, borders, turn, period, speeds[i], depths[i])
+            borders = period_borders(arrays.segments, period, depths[i])
+        needed = element_counts(cut, borders, rotation, speeds[i], depths[i])
         resolved = speed_step(speeds[i], _SPEED_STEP)
-        if not (beside and speed == resolved and alike(needed, counts)):
+        if not (beside and speed == resolved and same_structure(needed, counts)):
             counts, speed = needed, resolved
-            layout = element_layout(borders, counts, turn, period)
-            structure, filled = cut_plan(cut, turn, layout, speed, depths[i])
+            layout = element_layout(borders, counts, rotation, period)
+            structure, filled = assemble_couplings(cut, rotation, layout, speed, depths[i])
             structures.append(structure)
             numbers.append(filled)
         of_point[i] = len(structures) - 1
-    return packed_plans(structures, numbers, of_point)
+    return packed_assemblies(structures, numbers, of_point)

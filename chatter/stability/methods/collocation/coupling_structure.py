@@ -1,4 +1,4 @@
-"""Plans packed into whole numbers that tell their structure and real ones that fill them."""
+"""Coupling assemblies packed into integers that give their structure and reals that fill it."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 _HEADER = 5
 
 
-class Plans(NamedTuple):
-    """Plans of N points, P distinct ones, one behind the other."""
+class CouplingAssemblies(NamedTuple):
+    """Coupling assemblies of N points, P distinct ones, one behind the other."""
 
     structure: NDArray[np.int64]  # see `packed_structure`
-    first_structure: NDArray[np.int64]  # where that of each plan begins (P + 1,)
+    first_structure: NDArray[np.int64]  # where that of each assembly begins (P + 1,)
     number: NDArray[np.float64]  # see `packed_numbers`
     first_number: NDArray[np.int64]  # (P + 1,)
-    of_point: NDArray[np.int64]  # plan of each point (N,)
+    of_point: NDArray[np.int64]  # assembly of each point (N,)
 
 
-class PlanStructure(NamedTuple):
-    """Structure of a plan: M elements, E of them in the cut, S distinct lengths, p points each."""
+class AssemblyStructure(NamedTuple):
+    """Structure of an assembly: M elements, E in the cut, S distinct lengths, p points each."""
 
     cut: NDArray[np.int64]  # number of each element among those in the cut, or -1 (M,)
     shape: NDArray[np.int64]  # number of the length of each element (M,)
@@ -37,8 +37,8 @@ class PlanStructure(NamedTuple):
 
 
 @njit(**LEAF_KERNEL)
-def _put(part, out, at):
-    """Copy an array of one axis into another from a place on; returns the next place."""
+def _append(part, out, at):
+    """Copy an array of one axis into another from a position on; returns the next position."""
     for i in range(part.shape[0]):
         out[at + i] = part[i]
     return at + part.shape[0]
@@ -46,7 +46,7 @@ def _put(part, out, at):
 
 @njit(**SINGLE_KERNEL)
 def packed_structure(layout, first_source, element, point):
-    """Pack what of a plan is whole numbers."""
+    """Pack what of an assembly is whole numbers."""
     count = first_source[first_source.shape[0] - 1]
     elements, lengths = layout.cut.shape[0], layout.length_cuts.shape[0]
     out = np.empty(
@@ -57,35 +57,35 @@ def packed_structure(layout, first_source, element, point):
     for entry in range(count):
         memory = max(memory, -element[entry])
     out[3], out[4] = count, memory
-    at = _put(layout.cut, out, _HEADER)
-    at = _put(layout.shape, out, at)
-    at = _put(layout.length_cuts, out, at)
-    at = _put(first_source, out, at)
-    at = _put(element[:count], out, at)
-    _put(point[:count], out, at)
+    at = _append(layout.cut, out, _HEADER)
+    at = _append(layout.shape, out, at)
+    at = _append(layout.length_cuts, out, at)
+    at = _append(first_source, out, at)
+    at = _append(element[:count], out, at)
+    _append(point[:count], out, at)
     return out
 
 
 @njit(**SINGLE_KERNEL)
 def packed_numbers(layout, stiffness, dashpot, block, sources):
-    """Pack what of a plan is real: period, lengths, starts, couplings, blocks of the sources."""
+    """Pack the reals of an assembly: period, lengths, starts, couplings, blocks of sources."""
     kept = sources * block.shape[1] * block.shape[2]
     out = np.empty(
         1 + layout.length.shape[0] + 2 * layout.cut_start.shape[0] + 2 * stiffness.size + kept
     )
     out[0] = layout.period
-    at = _put(layout.length, out, 1)
-    at = _put(layout.cut_start, out, at)
-    at = _put(layout.cut_length, out, at)
-    at = _put(stiffness.reshape(stiffness.size), out, at)
-    at = _put(dashpot.reshape(stiffness.size), out, at)
-    _put(block.reshape(block.size)[:kept], out, at)
+    at = _append(layout.length, out, 1)
+    at = _append(layout.cut_start, out, at)
+    at = _append(layout.cut_length, out, at)
+    at = _append(stiffness.reshape(stiffness.size), out, at)
+    at = _append(dashpot.reshape(stiffness.size), out, at)
+    _append(block.reshape(block.size)[:kept], out, at)
     return out
 
 
 @njit(**SINGLE_KERNEL)
-def packed_plans(structures, numbers, of_point):
-    """Lay lists of packed plans one behind the other.
+def packed_assemblies(structures, numbers, of_point):
+    """Lay lists of packed assemblies one behind the other.
 
     Parameters
     ----------
@@ -96,35 +96,37 @@ def packed_plans(structures, numbers, of_point):
 
     Returns
     -------
-    Plans
+    CouplingAssemblies
     """
     count = len(structures)
     first_structure = np.zeros(count + 1, dtype=np.int64)
     first_number = np.zeros(count + 1, dtype=np.int64)
-    for plan in range(count):
-        first_structure[plan + 1] = first_structure[plan] + structures[plan].shape[0]
-        first_number[plan + 1] = first_number[plan] + numbers[plan].shape[0]
+    for assembly in range(count):
+        first_structure[assembly + 1] = first_structure[assembly] + structures[assembly].shape[0]
+        first_number[assembly + 1] = first_number[assembly] + numbers[assembly].shape[0]
     structure, number = np.empty(first_structure[count], np.int64), np.empty(first_number[count])
-    for plan in range(count):
-        _put(structures[plan], structure, first_structure[plan])
-        _put(numbers[plan], number, first_number[plan])
-    return Plans(structure, first_structure, number, first_number, of_point)
+    for assembly in range(count):
+        _append(structures[assembly], structure, first_structure[assembly])
+        _append(numbers[assembly], number, first_number[assembly])
+    return CouplingAssemblies(structure, first_structure, number, first_number, of_point)
 
 
 @njit(**INNER_KERNEL)
-def structure_at(plans, point):
-    """Packed structure of the plan of a point."""
-    plan = plans.of_point[point]
-    return plans.structure[plans.first_structure[plan] : plans.first_structure[plan + 1]]
+def structure_at(assemblies, point):
+    """Packed structure of the assembly of a point."""
+    assembly = assemblies.of_point[point]
+    return assemblies.structure[
+        assemblies.first_structure[assembly] : assemblies.first_structure[assembly + 1]
+    ]
 
 
 @njit(**INNER_KERNEL)
-def structure_of_plan(packed):
-    """Unpack the structure of a plan.
+def unpacked_structure(packed):
+    """Unpack the structure of an assembly.
 
     Returns
     -------
-    PlanStructure
+    AssemblyStructure
     """
     elements, lengths, count = packed[0], packed[1], packed[3]
     points = packed.shape[0] - _HEADER - 2 * elements - lengths - 2 * count
@@ -133,14 +135,14 @@ def structure_of_plan(packed):
     c = b + lengths
     d = c + points
     e = d + count
-    return PlanStructure(
+    return AssemblyStructure(
         packed[_HEADER:a], packed[a:b], packed[b:c], packed[c:d], packed[d:e], packed[e:], packed[4]
     )
 
 
 @njit(**LEAF_KERNEL)
-def alike(one, other):
-    """Tell whether two packed structures are the same: lanes of one map may hold both plans."""
+def same_structure(one, other):
+    """Whether two packed structures are the same: batch of one map may hold both assemblies."""
     if one.shape[0] != other.shape[0]:
         return False
     same = 0

@@ -9,16 +9,19 @@ from numba import njit
 from numpy.typing import NDArray
 
 from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
-from chatter.stability.methods.collocation.coupling_structure import structure_at, structure_of_plan
-from chatter.stability.methods.collocation.cut_arrays import CutArrays
+from chatter.stability.methods.collocation.coupling_structure import (
+    structure_at,
+    unpacked_structure,
+)
+from chatter.stability.methods.collocation.element_cut import ElementCut
 from chatter.stability.methods.collocation.element_response import (
     ElementPoints,
     ResponseTable,
     free_response,
     mode_response,
 )
-from chatter.stability.methods.collocation.monodromy import ElementMap
-from chatter.stability.simd_batch import LANES, load, spread, store
+from chatter.stability.methods.collocation.monodromy import BatchMonodromy
+from chatter.stability.simd_batch import BATCH_SIZE, load, spread, store
 
 
 class Structure(NamedTuple):
@@ -30,8 +33,8 @@ class Structure(NamedTuple):
     force_gain: NDArray[np.float64]  # 1/kg (n, r)
 
 
-class MapArrays(NamedTuple):
-    """What the map over a period needs to know beside the plans of its points."""
+class OperatorArrays(NamedTuple):
+    """What the map over a period needs to know beside the assemblies of its points."""
 
     structure: Structure
     points: ElementPoints
@@ -47,14 +50,15 @@ class _Rates(NamedTuple):
     of_force: NDArray[np.float64]  # (S, q, q, 8)
 
 
-def map_arrays(cut: CutArrays) -> MapArrays:
-    """What the map over a period needs to know of a cut."""
-    return MapArrays(
-        Structure(cut.natural_frequency, cut.damping, cut.shape, cut.force_gain),
+def operator_arrays(cut: ElementCut) -> OperatorArrays:
+    """What the monodromy operator needs to know of a cut."""
+    arrays = cut.arrays
+    return OperatorArrays(
+        Structure(arrays.natural_frequency, arrays.damping, arrays.shape, arrays.force_gain),
         cut.points,
         cut.response,
-        bool(cut.pieces.damping[1] > 0.0),
-        cut.resolution.residual,
+        bool(arrays.segments.damping[1] > 0.0),
+        cut.residual,
     )
 
 
@@ -124,19 +128,19 @@ def _rates_over_length(structure, m, response, of_state, of_force):
 
 
 @njit(**SINGLE_KERNEL)
-def _fill_lengths(structure, table, turns, length_cuts, scale, period, rates):
-    """Enter what all modes do over every distinct length, in lanes turns (S, 8), s."""
+def _fill_lengths(structure, table, durations, length_cuts, scale, period, rates):
+    """Enter what all modes do over every distinct length, in batch durations (S, 8), s."""
     points = table.coefficient.shape[3] - 2
     rows = 2 * points + 2 if rates.of_state.shape[0] > 0 else points + 2
-    response, place = np.empty((rows, points + 2, LANES)), np.empty((1, LANES))
+    response, position = np.empty((rows, points + 2, BATCH_SIZE)), np.empty((1, BATCH_SIZE))
     for s in range(length_cuts.shape[0]):
         for m in range(structure.shape.shape[0]):
             free = period.free[s, m]
-            store(place, 0, structure.natural_frequency[m] * load(turns, s))
+            store(position, 0, structure.natural_frequency[m] * load(durations, s))
             if length_cuts[s] == 0:
-                free_response(structure.damping[m], place, free)
+                free_response(structure.damping[m], position, free)
                 continue
-            mode_response(table.coefficient[m], table.furthest[m], place, response)
+            mode_response(table.coefficient[m], table.furthest[m], position, response)
             for a in range(2):
                 for b in range(2):
                     store(free, (a, b), load(response, (points + a, b)))
@@ -202,70 +206,75 @@ def _factorise(a):
 
 
 @njit(**LEAF_KERNEL)
-def _side_by_side(plans, members, first, count, out):
-    """Set out (count, 8) to a part of the numbers of the plans of all lanes."""
-    for lane in range(LANES):
-        start = plans.first_number[plans.of_point[members[lane]]] + first
+def _side_by_side(assemblies, batch_points, first, count, out):
+    """Set out (count, 8) to a part of the numbers of the assemblies of all batch."""
+    for member in range(BATCH_SIZE):
+        start = assemblies.first_number[assemblies.of_point[batch_points[member]]] + first
         for i in range(count):
-            out[i, lane] = plans.number[start + i]
+            out[i, member] = assemblies.number[start + i]
 
 
 @njit(**LEAF_KERNEL)
 def _multiply_all(a, factor):
-    """Multiply all of a (n, 8) by a plain factor or by lanes."""
+    """Multiply all of a (n, 8) by a plain factor or by a batch."""
     for i in range(a.shape[0]):
         store(a, i, load(a, i) * factor)
 
 
 @njit(**SINGLE_KERNEL)
-def build_element_map(arrays, plans, members, speeds):
+def build_batch_monodromy(arrays, assemblies, batch_points, speeds):
     """Assemble the elements of one period.
 
     Parameters
     ----------
-    arrays : MapArrays
-    plans : Plans
-    members : (8,) array of int
-        Point of every lane; their plans are alike.
+    arrays : OperatorArrays
+    assemblies : CouplingAssemblies
+    batch_points : (8,) array of int
+        Point of every member; their assemblies have the same structure.
     speeds : (1, 8) array of float
-        Mean spindle speed of every lane, rad/s.
+        Mean spindle speed of every member, rad/s.
 
     Returns
     -------
-    ElementMap
+    BatchMonodromy
     """
     structure, table = arrays.structure, arrays.response
-    packed = structure_at(plans, members[0])
-    plan = structure_of_plan(packed)
+    packed = structure_at(assemblies, batch_points[0])
+    assembly = unpacked_structure(packed)
     modes, rank = structure.shape.shape
     points = table.coefficient.shape[3] - 2
     size, values = 2 * modes, points * rank
     lengths, cuts, sources = packed[1], packed[2], packed[3]
     output, scale = motion_of_state(structure)
     slowness = 1.0 / load(speeds, 0)
-    turns = np.empty((lengths, LANES))
-    _side_by_side(plans, members, 1, lengths, turns)
-    _multiply_all(turns, slowness)
+    durations = np.empty((lengths, BATCH_SIZE))
+    _side_by_side(assemblies, batch_points, 1, lengths, durations)
+    _multiply_all(durations, slowness)
     pairs = cuts * points * rank * rank
-    stiffness, dashpot = np.empty((pairs, LANES)), np.empty((pairs, LANES))
+    stiffness, dashpot = np.empty((pairs, BATCH_SIZE)), np.empty((pairs, BATCH_SIZE))
     first = 1 + lengths + 2 * cuts
-    _side_by_side(plans, members, first, pairs, stiffness)
-    _side_by_side(plans, members, first + pairs, pairs, dashpot)
-    block = np.empty((sources * rank * (values + rank), LANES))
-    _side_by_side(plans, members, first + 2 * pairs, block.shape[0], block)
+    _side_by_side(assemblies, batch_points, first, pairs, stiffness)
+    _side_by_side(assemblies, batch_points, first + pairs, pairs, dashpot)
+    block = np.empty((sources * rank * (values + rank), BATCH_SIZE))
+    _side_by_side(assemblies, batch_points, first + 2 * pairs, block.shape[0], block)
     _multiply_all(stiffness, 1.0 / scale)
     _multiply_all(dashpot, slowness)
     _multiply_all(block, 1.0 / scale)
-    period = ElementMap(
-        plan, np.empty((lengths, modes, 2, 2, LANES)), np.empty((lengths, values, size, LANES)),
-        np.zeros((lengths, values, values, LANES)), np.empty((lengths, size, values, LANES)),
-        np.zeros((cuts, values, values, LANES)), np.zeros((cuts, values, size, LANES)),
-        block.reshape((sources, rank, values + rank, LANES)), output,
+    period = BatchMonodromy(
+        assembly,
+        np.empty((lengths, modes, 2, 2, BATCH_SIZE)),
+        np.empty((lengths, values, size, BATCH_SIZE)),
+        np.zeros((lengths, values, values, BATCH_SIZE)),
+        np.empty((lengths, size, values, BATCH_SIZE)),
+        np.zeros((cuts, values, values, BATCH_SIZE)), np.zeros((cuts, values, size, BATCH_SIZE)),
+        block.reshape((sources, rank, values + rank, BATCH_SIZE)), output,
     )  # fmt: skip
     rated = lengths if arrays.damped else 0
-    rates = _Rates(np.empty((rated, values, size, LANES)), np.zeros((rated, values, values, LANES)))
-    _fill_lengths(structure, table, turns, plan.length_cuts, scale, period, rates)
-    couplings = (cuts * points, rank, rank, LANES)
+    rates = _Rates(
+        np.empty((rated, values, size, BATCH_SIZE)), np.zeros((rated, values, values, BATCH_SIZE))
+    )
+    _fill_lengths(structure, table, durations, assembly.length_cuts, scale, period, rates)
+    couplings = (cuts * points, rank, rank, BATCH_SIZE)
     _enter_elements(period, rates, stiffness.reshape(couplings), dashpot.reshape(couplings))
     return period
 
@@ -273,12 +282,12 @@ def build_element_map(arrays, plans, members, speeds):
 @njit(**SINGLE_KERNEL)
 def _enter_elements(period, rates, stiffness, dashpot):
     """Fill in and factorise the matrices of all elements in the cut."""
-    plan, block = period.plan, period.block
+    assembly, block = period.assembly, period.block
     _, values, _, _ = period.couple.shape
     rank = stiffness.shape[1]
     points = values // rank
-    for m in range(plan.cut.shape[0]):
-        e, s = plan.cut[m], plan.shape[m]
+    for m in range(assembly.cut.shape[0]):
+        e, s = assembly.cut[m], assembly.shape[m]
         if e < 0:
             continue
         matrix, couple = period.factors[e], period.couple[e]
@@ -290,7 +299,7 @@ def _enter_elements(period, rates, stiffness, dashpot):
             _enter_cut(stiffness[at], row, of_force, of_state, matrix, couple)
             if rates.of_state.shape[0] > 0:
                 _enter_cut(dashpot[at], row, rates.of_force[s], rates.of_state[s], matrix, couple)
-            for entry in range(plan.first_source[at], plan.first_source[at + 1]):
-                if plan.source[entry] == e:
+            for entry in range(assembly.first_source[at], assembly.first_source[at + 1]):
+                if assembly.source[entry] == e:
                     _enter_own(block[entry], row, of_force, of_state, period.output, matrix, couple)
         _factorise(matrix)

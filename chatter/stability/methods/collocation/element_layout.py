@@ -1,9 +1,9 @@
 """Where the elements of a period begin and end.
 
-Between the borders that the cut sets in every period of the tool, elements turn the spindle by the
-same angle. So the motion of an earlier tooth, seen from a place in an element, lies in one element
-also where the speed varies. Where a triangular variation of the speed has its corners, elements are
-cut in two. Where no tooth cuts, the free motion is one element.
+Between the borders that the cut sets in every period of the tool, elements rotate the spindle by
+the same angle. So the motion of an earlier tooth, seen from a position in an element, lies in one
+element also where the speed varies. Where a triangular variation of the speed has its corners,
+elements are cut in two. Where no tooth cuts, the free motion is one element.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 from chatter.stability.methods.collocation.element_borders import LEVEL_RATIO, SAME_BORDER
 from chatter.stability.spindle_rotation import speed_at, time_at
 
+#: an element turns the spindle by no more than this, rad
+_LONGEST_ANGLE = 0.9
 #: element lengths closer than this share are the same
 _SAME_LENGTH = 1e-9
 #: of more intervals than these, or where the speed varies, elements are counted in steps of the
@@ -30,7 +32,7 @@ _EVEN = 1e-6
 
 
 class ElementLayout(NamedTuple):
-    """M elements of a period, of which E lie in the cut; places and lengths in mean angle turned.
+    """M elements of a period, of which E lie in the cut; starts and lengths in mean angle.
 
     Mean angle is time times the mean spindle speed.
     """
@@ -59,30 +61,33 @@ def speed_step(speed, step):
 
 
 @njit(**LEAF_KERNEL)
-def _longest_span(turn, tool_period, start, end):
+def _longest_span(rotation, tool_period, start, end):
     """Longest mean angle that the spindle needs from one angle to another in any tool period."""
     longest = end - start
-    if turn.amplitude > 0.0:
-        for pattern in range(turn.patterns):
+    if rotation.amplitude > 0.0:
+        for pattern in range(rotation.patterns):
             turned = pattern * tool_period
-            longest = max(longest, time_at(turn, turned + end) - time_at(turn, turned + start))
+            longest = max(
+                longest, time_at(rotation, turned + end) - time_at(rotation, turned + start)
+            )
     return longest
 
 
 @njit(**INNER_KERNEL)
-def element_counts(resolution, borders, turn, tool_period, speed, depth):
+def element_counts(cut, borders, rotation, speed, depth):
     """Elements (I,) that each interval needs at a mean speed (rad/s), in every tool period."""
+    arrays = cut.arrays
     counts = np.empty(borders.engaged.shape[0], dtype=np.int64)
-    if counts.shape[0] > _FEW_INTERVALS or turn.amplitude > 0.0:
+    if counts.shape[0] > _FEW_INTERVALS or rotation.amplitude > 0.0:
         # one of so many would change its number at every speed, and nothing could be shared
         speed = speed_step(speed, _STEP_OF_MANY)
-    waves = math.sqrt(1.0 + resolution.stiffening * depth / resolution.fastest**2)
+    wavelengths = math.sqrt(1.0 + arrays.stiffening * depth / arrays.fastest**2)
     for i in range(counts.shape[0]):
         counts[i] = 1
         if borders.engaged[i] == 1:
             start, end = borders.angle[i], borders.angle[i + 1]
-            span = _longest_span(turn, tool_period, start, end) / speed
-            need = max(span * waves / resolution.longest, (end - start) / resolution.longest_angle)
+            span = _longest_span(rotation, arrays.period_angle, start, end) / speed
+            need = max(span * wavelengths / cut.longest, (end - start) / _LONGEST_ANGLE)
             counts[i] = max(1, math.ceil(need - 1e-9))
     return counts
 
@@ -123,11 +128,11 @@ def _tool_period_spans(borders, counts):
 
 
 @njit(**LEAF_KERNEL)
-def _until_corner(turn, start, length):
+def _until_corner(rotation, start, length):
     """Mean angle to the first corner of a triangular variation within a length, or the length."""
-    if turn.triangle == 0 or turn.amplitude == 0.0:
+    if rotation.triangle == 0 or rotation.amplitude == 0.0:
         return length
-    half = 0.5 / turn.frequency
+    half = 0.5 / rotation.frequency
     ahead = half * (math.ceil(start / half - 0.5) + 0.5) - start
     if ahead <= SAME_BORDER:
         ahead += half
@@ -135,17 +140,17 @@ def _until_corner(turn, start, length):
 
 
 @njit(**LEAF_KERNEL)
-def _lasting(turn, start, angle, length):
+def _lasting(rotation, start, angle, length):
     """Mean angle from one on, at a spindle angle, that the spindle needs for some more."""
-    if turn.amplitude == 0.0:
+    if rotation.amplitude == 0.0:
         return length
     if length < _EVEN:
-        return length / speed_at(turn, start)
-    return time_at(turn, angle + length) - start
+        return length / speed_at(rotation, start)
+    return time_at(rotation, angle + length) - start
 
 
 @njit(**INNER_KERNEL)
-def element_layout(borders, counts, turn, tool_period):
+def element_layout(borders, counts, rotation, tool_period):
     """Cut a period into elements.
 
     Parameters
@@ -153,10 +158,10 @@ def element_layout(borders, counts, turn, tool_period):
     borders : PeriodBorders
     counts : (I,) array of int
         Elements of each interval.
-    turn : SpindleTurn
+    rotation : SpindleRotation
         In mean angle.
     tool_period : float
-        Angle after which the tool looks the same again, rad.
+        Angle after which the tool repeats itself, rad.
 
     Returns
     -------
@@ -164,17 +169,17 @@ def element_layout(borders, counts, turn, tool_period):
     """
     spans = _tool_period_spans(borders, counts)
     # every half of a cycle has a corner
-    room = turn.patterns * spans.start.shape[0] + 2 * turn.cycles * turn.triangle
+    room = rotation.patterns * spans.start.shape[0] + 2 * rotation.cycles * rotation.triangle
     start, length = np.empty(room), np.empty(room)
     number = np.full(room, -1, dtype=np.int64)
     m, cuts = 0, 0
-    for pattern in range(turn.patterns):
+    for pattern in range(rotation.patterns):
         for i in range(spans.start.shape[0]):
             angle = pattern * tool_period + spans.start[i]
-            begin = time_at(turn, angle)
-            left = _lasting(turn, begin, angle, spans.length[i])
+            begin = time_at(rotation, angle)
+            left = _lasting(rotation, begin, angle, spans.length[i])
             while left > 0.0:
-                part = _until_corner(turn, begin, left)
+                part = _until_corner(rotation, begin, left)
                 start[m], length[m] = begin, part
                 if spans.engaged[i] == 1:
                     number[m] = cuts
@@ -184,8 +189,8 @@ def element_layout(borders, counts, turn, tool_period):
     for i in range(m):
         if number[i] >= 0:
             cut_start[number[i]], cut_length[number[i]] = start[i], length[i]
-    distinct, of_cut = _shapes(length, number, m, turn.amplitude == 0.0, shape)
-    period = turn.patterns * tool_period
+    distinct, of_cut = _shapes(length, number, m, rotation.amplitude == 0.0, shape)
+    period = rotation.patterns * tool_period
     return ElementLayout(number[:m], shape, distinct, of_cut, cut_start, cut_length, period)
 
 
@@ -216,14 +221,14 @@ def _shapes(length, number, count, even, shape):
 
 @njit(**LEAF_KERNEL)
 def element_before(layout, angle):
-    """Element in the cut that holds a mean angle, counted on over the periods, and the place in it.
+    """Element in the cut that holds a mean angle, counted over the periods, and the position in it.
 
     Between two elements in the cut, by rounding, the end of the nearer one.
     """
     cuts = layout.cut_start.shape[0]
     first = layout.cut_start[0]
-    turn = math.floor((angle - first) / layout.period + SAME_BORDER)
-    local = angle - turn * layout.period
+    rotation = math.floor((angle - first) / layout.period + SAME_BORDER)
+    local = angle - rotation * layout.period
     low, high = 0, cuts
     while high - low > 1:
         middle = (low + high) // 2
@@ -231,12 +236,12 @@ def element_before(layout, angle):
             low = middle
         else:
             high = middle
-    place = (local - layout.cut_start[low]) / layout.cut_length[low]
-    if place > 1.0:
+    position = (local - layout.cut_start[low]) / layout.cut_length[low]
+    if position > 1.0:
         beyond = local - layout.cut_start[low] - layout.cut_length[low]
         following = (layout.cut_start[low + 1] if low + 1 < cuts else first + layout.period) - local
         if following < beyond:
             if low + 1 < cuts:
-                return low + 1 + turn * cuts, 0.0
-            return (turn + 1) * cuts, 0.0
-    return low + turn * cuts, min(1.0, max(0.0, place))
+                return low + 1 + rotation * cuts, 0.0
+            return (rotation + 1) * cuts, 0.0
+    return low + rotation * cuts, min(1.0, max(0.0, position))

@@ -26,7 +26,7 @@ _LEAST_REACH, _STEP = 1e-3, 0.125
 class ElementPoints(NamedTuple):
     """Points of an element on [0, 1]: its start, then p Gauss points."""
 
-    place: NDArray[np.float64]  # (p+1,)
+    position: NDArray[np.float64]  # (p+1,)
     weight: NDArray[np.float64]  # of the Gauss quadrature (p,)
     barycentric: NDArray[np.float64]  # weights of the polynomial through all points (p+1,)
 
@@ -46,10 +46,10 @@ class ResponseTable(NamedTuple):
 def element_points(count: int) -> ElementPoints:
     """Return the start and `count` Gauss points of an element."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
-    place = np.concatenate([[0.0], 0.5 * (nodes + 1.0)])
-    difference = 4.0 * (place[:, None] - place[None, :])
+    position = np.concatenate([[0.0], 0.5 * (nodes + 1.0)])
+    difference = 4.0 * (position[:, None] - position[None, :])
     np.fill_diagonal(difference, 1.0)
-    return ElementPoints(place, 0.5 * weights, 1.0 / np.prod(difference, axis=1))
+    return ElementPoints(position, 0.5 * weights, 1.0 / np.prod(difference, axis=1))
 
 
 def _through_gauss_points(nodes: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray:
@@ -64,8 +64,8 @@ def _through_gauss_points(nodes: NDArray[np.float64], at: NDArray[np.float64]) -
 
 @lru_cache(maxsize=64)
 def _pushes_before(count: int, order: int) -> list[tuple[float, NDArray, NDArray]]:
-    """Gauss points and the end of an element: place, those before it (n,), force there (n, p)."""
-    nodes = element_points(count).place[1:]
+    """Gauss points and end of an element: position, those before it (n,), force there (n, p)."""
+    nodes = element_points(count).position[1:]
     inside, weight = np.polynomial.legendre.leggauss(order)
     inside, weight = 0.5 * (inside + 1.0), 0.5 * weight
     return [
@@ -88,7 +88,7 @@ def _responses(x: NDArray[np.float64], ratio: float, count: int) -> NDArray[np.f
         out[:, row, 1] = decay * s / damped
         out[:, velocity_row, 0] = -decay * s / damped
         out[:, velocity_row, 1] = decay * (c - ratio / damped * s)
-        # what is left at `end` of a push at each place before it
+        # what is left at `end` of a push at each position before it
         span = x[:, None] * (end - before)[None, :]
         fading = np.exp(-ratio * span)
         sine = fading * np.sin(damped * span) / damped
@@ -170,8 +170,8 @@ def mode_response(coefficient, furthest, x, out):
 def free_response(ratio, x, out):
     """Set out (2, 2, 8) to what a mode without force makes of its state over omega h = x (1, 8)."""
     root = math.sqrt(1.0 - ratio * ratio)
-    for lane in range(x.shape[1]):
-        decay = math.exp(-ratio * x[0, lane])
-        c, s = decay * math.cos(root * x[0, lane]), decay * math.sin(root * x[0, lane])
-        out[0, 0, lane], out[0, 1, lane] = c + ratio / root * s, s / root
-        out[1, 0, lane], out[1, 1, lane] = -s / root, c - ratio / root * s
+    for member in range(x.shape[1]):
+        decay = math.exp(-ratio * x[0, member])
+        c, s = decay * math.cos(root * x[0, member]), decay * math.sin(root * x[0, member])
+        out[0, 0, member], out[0, 1, member] = c + ratio / root * s, s / root
+        out[1, 0, member], out[1, 1, member] = -s / root, c - ratio / root * s

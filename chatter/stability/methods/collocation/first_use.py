@@ -14,23 +14,23 @@ import numpy as np
 from chatter.engine.parallel import worker_count
 from chatter.engine.presets import is_compiled
 from chatter.stability.methods.collocation import drivers
-from chatter.stability.methods.collocation.coupling_structure import Plans
-from chatter.stability.methods.collocation.cut_arrays import RESOLUTION, CutArrays
-from chatter.stability.methods.collocation.element_assembly import MapArrays, Structure
+from chatter.stability.methods.collocation.coupling_structure import CouplingAssemblies
+from chatter.stability.methods.collocation.element_assembly import OperatorArrays, Structure
+from chatter.stability.methods.collocation.element_cut import RESOLUTION, ElementCut
 from chatter.stability.methods.collocation.element_response import element_points, response_table
 
 _compiling = threading.Lock()
 
 
-def compile_side_by_side(cut: CutArrays) -> None:
+def compile_side_by_side(cut: ElementCut) -> None:
     """Compile what collocation needs where the cache does not hold it, in half the time.
 
     A second process compiles the map and its multipliers and leaves them in the cache, while this
-    one compiles the plans. Where it cannot, what is missing is compiled at its first call.
+    one compiles the assemblies. Where it cannot, what is missing is compiled at its first call.
 
     Parameters
     ----------
-    cut : CutArrays
+    cut : ElementCut
         Any one.
     """
     if drivers.element_multipliers.signatures:
@@ -42,7 +42,7 @@ def compile_side_by_side(cut: CutArrays) -> None:
         if other is None:
             return
         try:
-            drivers.cut_plans(cut, np.ones(1), np.zeros(1))
+            drivers.coupling_assemblies(cut, np.ones(1), np.zeros(1))
             drivers.points_of_periods(cut, np.ones(1), 0.0)
             other.wait()
         finally:
@@ -68,19 +68,19 @@ def _start() -> subprocess.Popen | None:
         return None
 
 
-def arguments_of_map() -> tuple[MapArrays, Plans, np.ndarray, np.ndarray]:
+def arguments_of_operator() -> tuple[OperatorArrays, CouplingAssemblies, np.ndarray, np.ndarray]:
     """Arguments of the second driver, of the types that every cut has."""
     one, damping = np.ones(1), np.full(1, 0.1)
     points = element_points(RESOLUTION[0])
     structure = Structure(one, damping, np.ones((1, 1)), np.ones((1, 1)))
     whole = np.zeros(1, dtype=np.int64)
     return (
-        MapArrays(structure, points, response_table(one, damping, points, 1.0), False, 1.0),
-        Plans(whole, whole, one, whole, whole),
+        OperatorArrays(structure, points, response_table(one, damping, points, 1.0), False, 1.0),
+        CouplingAssemblies(whole, whole, one, whole, whole),
         one,
         np.zeros(1, dtype=np.bool_),
     )
 
 
 if __name__ == "__main__":
-    drivers.element_multipliers.compile(tuple(numba.typeof(a) for a in arguments_of_map()))
+    drivers.element_multipliers.compile(tuple(numba.typeof(a) for a in arguments_of_operator()))

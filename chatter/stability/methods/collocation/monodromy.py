@@ -1,13 +1,14 @@
 """The map of state and earlier motion over one period, by collocation on elements.
 
 On every element in the cut the force is a polynomial through its values at Gauss points; the modes
-answer to it exactly (`element_response`), and the cut gives it there from the motion now and the
+response to it exactly (`element_response`), and the cut gives it there from the motion now and the
 motion when the earlier teeth passed. The error falls faster than any power of the number of
 points (spectral elements; Khasawneh and Mann 2011, Int. J. Numer. Meth. Eng. 87, for delays).
 Nothing is assumed of the delays: they may be several, change along an edge, with the speed, be
 longer than the period or shorter than an element.
 
-Eight points of the stability diagram make one map, a point a lane; their plans must be alike.
+Eight points of the stability diagram make one SIMD batch, a point per member; their assemblies must
+have the same structure.
 """
 
 from __future__ import annotations
@@ -19,17 +20,17 @@ from numba import njit
 from numpy.typing import NDArray
 
 from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
-from chatter.stability.methods.collocation.coupling_structure import PlanStructure
-from chatter.stability.simd_batch import LANES, load, spread, store
+from chatter.stability.methods.collocation.coupling_structure import AssemblyStructure
+from chatter.stability.simd_batch import BATCH_SIZE, load, spread, store
 
 
-class ElementMap(NamedTuple):
+class BatchMonodromy(NamedTuple):
     """M elements, E of them in the cut, S distinct lengths; q = p r values at the Gauss points.
 
-    The state holds (omega x, v) of every mode; the last axis of real arrays holds the lanes.
+    The state holds (omega x, v) of every mode; the last axis of real arrays holds the batch.
     """
 
-    plan: PlanStructure
+    assembly: AssemblyStructure
     free: NDArray[np.float64]  # of each mode over a length (S, n, 2, 2, 8)
     motion_of_state: NDArray[np.float64]  # (S, q, 2n, 8)
     motion_of_force: NDArray[np.float64]  # (S, q, q, 8)
@@ -56,8 +57,8 @@ def _solve(factors, x):
         store(x, i, total * load(factors, (i, i)))
 
 
-class ElementScratch(NamedTuple):
-    """Scratch of `apply_element_map`; `force` is left with that at the points of all elements."""
+class BatchScratch(NamedTuple):
+    """Scratch of `apply_batch_monodromy`, which leaves the force at all points in `force`."""
 
     motion: NDArray[np.float64]  # of all elements (memory + E, q + r, 8)
     force: NDArray[np.float64]  # (E, q, 8)
@@ -66,13 +67,15 @@ class ElementScratch(NamedTuple):
 
 
 @njit(**INNER_KERNEL)
-def element_scratch(period):
-    """Return scratch for `apply_element_map`."""
+def batch_scratch(period):
+    """Return scratch for `apply_batch_monodromy`."""
     cuts, values, size, _ = period.couple.shape
-    memory = period.plan.memory
-    return ElementScratch(
-        np.zeros((memory + cuts, values + period.output.shape[0], LANES)),
-        np.empty((cuts, values, LANES)), np.empty((size, LANES)), np.empty((size, LANES)),
+    memory = period.assembly.memory
+    return BatchScratch(
+        np.zeros((memory + cuts, values + period.output.shape[0], BATCH_SIZE)),
+        np.empty((cuts, values, BATCH_SIZE)),
+        np.empty((size, BATCH_SIZE)),
+        np.empty((size, BATCH_SIZE)),
     )  # fmt: skip
 
 
@@ -98,13 +101,13 @@ def _multiply_add(a, x, first, out):
 
 @njit(**LEAF_KERNEL)
 def _copy(source, first, out, start, count):
-    """Copy rows (.., 8) from one place to another."""
+    """Copy rows (.., 8) from one position to another."""
     for i in range(count):
         store(out, start + i, load(source, first + i))
 
 
 @njit(**SINGLE_KERNEL)
-def _delayed_force(plan, block, e, motion, force):
+def _delayed_force(assembly, block, e, motion, force):
     """Set force (q, 8) to what the earlier motion asks for at the points of element e."""
     rank, width = block.shape[1], block.shape[2]
     points = force.shape[0] // rank
@@ -112,12 +115,12 @@ def _delayed_force(plan, block, e, motion, force):
         for k in range(rank):
             store(force, i * rank + k, spread(0.0))
         for entry in range(
-            plan.first_source[e * points + i], plan.first_source[e * points + i + 1]
+            assembly.first_source[e * points + i], assembly.first_source[e * points + i + 1]
         ):
-            if plan.source[entry] == e:
+            if assembly.source[entry] == e:
                 continue
-            earlier = motion[plan.memory + plan.source[entry]]
-            q = plan.point[entry]
+            earlier = motion[assembly.memory + assembly.source[entry]]
+            q = assembly.point[entry]
             low, high = (q * rank, (q + 1) * rank) if q >= 0 else (0, width)
             for k in range(rank):
                 total = load(force, i * rank + k)
@@ -157,33 +160,33 @@ def _in_cut(couple, factors, of_state, of_force, to_state, output, state, own, f
 
 
 @njit(**LEAF_KERNEL)
-def apply_element_map(period, vector, out, scratch):
+def apply_batch_monodromy(period, vector, out, scratch):
     """Set out to the image of the vector after one period.
 
     Parameters
     ----------
-    period : ElementMap
+    period : BatchMonodromy
     vector, out : (2n + memory (p + 1) r, 8) array of float
         State, then the motion at the points of the last elements in the cut, scaled.
-    scratch : ElementScratch
+    scratch : BatchScratch
     """
-    plan, motion, state = period.plan, scratch.motion, scratch.state
+    assembly, motion, state = period.assembly, scratch.motion, scratch.state
     size, width = state.shape[0], motion.shape[1]
     cuts = scratch.force.shape[0]
     _copy(vector, 0, state, 0, size)
-    for e in range(plan.memory):
+    for e in range(assembly.memory):
         _copy(vector, size + e * width, motion[e], 0, width)
-    for m in range(plan.cut.shape[0]):
-        e, s = plan.cut[m], plan.shape[m]
+    for m in range(assembly.cut.shape[0]):
+        e, s = assembly.cut[m], assembly.shape[m]
         _free_motion(period.free[s], state, scratch.following)
         if e >= 0:
-            _delayed_force(plan, period.block, e, motion, scratch.force[e])
+            _delayed_force(assembly, period.block, e, motion, scratch.force[e])
             _in_cut(
                 period.couple[e], period.factors[e], period.motion_of_state[s],
                 period.motion_of_force[s], period.state_of_force[s], period.output, state,
-                motion[plan.memory + e], scratch.force[e], scratch.following,
+                motion[assembly.memory + e], scratch.force[e], scratch.following,
             )  # fmt: skip
         _copy(scratch.following, 0, state, 0, size)
     _copy(state, 0, out, 0, size)
-    for e in range(plan.memory):
+    for e in range(assembly.memory):
         _copy(motion[cuts + e], 0, out, size + e * width, width)

@@ -1,13 +1,12 @@
 """Collocation on elements: multipliers, limits and chatter frequencies of any cut.
 
-See `element_map`. Unlike semi-discretization it takes any pitch, helix, edge, runout and variation
-of the spindle speed, and converges spectrally.
+See `monodromy`. Unlike semi-discretization it takes any pitch, helix, edge, runout and variation of
+the spindle speed, and converges spectrally.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,17 +15,17 @@ from chatter.description.errors import RunError
 from chatter.description.progress import Progress, no_progress
 from chatter.description.units import rpm
 from chatter.engine.parallel import kept_threads, sweep, worker_count
-from chatter.stability.boundary_continuation import followed_crossings
-from chatter.stability.brackets import Growth
-from chatter.stability.floquet_multiplier import Multiplier
-from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.limit_search import HeardPoints, growth, limits_at
+from chatter.stability.boundary_continuation import continued_crossings
+from chatter.stability.brackets import GrowthRate
+from chatter.stability.limit_curve import LimitCurve, limits_at
+from chatter.stability.limit_search import EvaluatedPoints, growth_rate
+from chatter.stability.method import Multiplier
 from chatter.stability.methods.collocation import drivers
-from chatter.stability.methods.collocation.cut_arrays import RESOLUTION, CutArrays
-from chatter.stability.methods.collocation.element_assembly import MapArrays, map_arrays
+from chatter.stability.methods.collocation.element_assembly import OperatorArrays, operator_arrays
+from chatter.stability.methods.collocation.element_cut import RESOLUTION, CutAt, ElementCut
 from chatter.stability.methods.collocation.first_use import compile_side_by_side
-from chatter.stability.methods.collocation.varying_speed import tool_periods, turns, varies
-from chatter.stability.simd_batch import LANES
+from chatter.stability.methods.collocation.varying_speed import rotations, tool_periods, varies
+from chatter.stability.simd_batch import BATCH_SIZE
 
 #: resolutions of a single point, one after the other until two agree
 FINER = ((10, 0.7), (12, 0.5), (12, 0.3), (12, 0.15))
@@ -34,20 +33,17 @@ FINER = ((10, 0.7), (12, 0.5), (12, 0.3), (12, 0.15))
 DEPTH_TOLERANCE = 1e-6
 #: vibrations in a period of the tool, all of which a delay may hold, and in one of a varying speed
 _MOST_VIBRATIONS, _MOST_OF_VARYING = 1_000, 10_000
-#: speeds from one to the next of those at which all depths are looked at
+#: speeds from one to the next of those at which all depths are evaluated
 STRIDE = 4
-#: points handed to a thread at once, about: many enough to fill the lanes of the kernels; so many
-#: that a second thread is worth it
-_POINTS_A_CHUNK, _FEW_POINTS = 128, 64
+#: points handed to a thread at once, about: many enough to fill the SIMD batches of the kernels; so
+#: many that a second thread is worth it
+_CHUNK_SIZE, _FEW_POINTS = 128, 64
 #: the same at a varying speed, where a point takes long: the least, and parts of all for a thread
 _FEWEST_POINTS, _PARTS = 16, 4
 
-#: a cut at a resolution: (points, waves) -> CutArrays
-CutAt = Callable[[int, float], CutArrays]
-
 
 def multipliers(
-    cut: CutArrays,
+    cut: ElementCut,
     speeds: NDArray[np.float64],
     depths: NDArray[np.float64],
     progress: Progress = no_progress,
@@ -56,7 +52,7 @@ def multipliers(
 
     Parameters
     ----------
-    cut : CutArrays
+    cut : ElementCut
     speeds, depths : (n,) array of float
         rad/s and m, point by point.
     progress : callable, optional
@@ -71,25 +67,25 @@ def multipliers(
 
 
 def _solved(
-    cut: CutArrays,
+    cut: ElementCut,
     speeds: NDArray[np.float64],
     depths: NDArray[np.float64],
-    listened: NDArray[np.bool_],
+    frequency_wanted: NDArray[np.bool_],
     progress: Progress = no_progress,
 ) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
-    """Multipliers, and chatter frequencies (Hz) of the points listened to, nan elsewhere."""
+    """Multipliers, and chatter frequencies (Hz) where they are wanted, nan elsewhere."""
     if len(speeds) == 0:
         return np.empty(0, dtype=np.complex128), np.empty(0)
     _refuse_endless(cut, speeds)
     compile_side_by_side(cut)
-    order, arrays = _neighbours_together(cut, speeds, depths), map_arrays(cut)
+    order, arrays = _neighbours_together(cut, speeds, depths), operator_arrays(cut)
     parts = sweep(
         lambda index: _solved_together(
-            cut, arrays, speeds[order[index]], depths[order[index]], listened[order[index]]
+            cut, arrays, speeds[order[index]], depths[order[index]], frequency_wanted[order[index]]
         ),
         len(speeds),
         progress,
-        _points_a_chunk(cut, len(speeds)),
+        _chunk_size(cut, len(speeds)),
     )
     multiplier, frequency = np.empty(len(speeds), dtype=np.complex128), np.empty(len(speeds))
     multiplier[order] = np.concatenate([part[0] for part in parts])
@@ -97,56 +93,58 @@ def _solved(
     return multiplier, frequency
 
 
-def _refuse_endless(cut: CutArrays, speeds: NDArray[np.float64]) -> None:
+def _refuse_endless(cut: ElementCut, speeds: NDArray[np.float64]) -> None:
     """Raise RunError where a period at one of the speeds (rad/s) holds too many vibrations."""
-    hertz = cut.resolution.fastest / (2.0 * math.pi)
-    of_tool = hertz * cut.period_angle / float(np.min(speeds))
+    hertz = cut.arrays.fastest / (2.0 * math.pi)
+    of_tool = hertz * cut.arrays.period_angle / float(np.min(speeds))
     slowest = rpm(float(np.min(speeds)))
     if of_tool > _MOST_VIBRATIONS:
         raise RunError(
             f"at {slowest:.4g} rpm the tool takes {of_tool:.3g} vibrations of {hertz:.4g} Hz to "
-            f"look the same again; at most {_MOST_VIBRATIONS} can be computed: raise the lowest "
-            "spindle speed, or leave out modes that are far too stiff to chatter"
+            f"repeat itself; at most {_MOST_VIBRATIONS} can be computed: raise the lowest spindle "
+            "speed, or leave out modes that are far too stiff to chatter"
         )
     if not varies(cut):
         return
-    longest = float(np.max(hertz * cut.period_angle / speeds * tool_periods(cut, speeds)))
+    longest = float(np.max(hertz * cut.arrays.period_angle / speeds * tool_periods(cut, speeds)))
     if longest > _MOST_OF_VARYING:
         raise RunError(
-            f"cut.speed_variation.frequency: at {cut.variation.frequency:.4g} Hz the cut takes "
-            f"{longest:.3g} vibrations of {hertz:.4g} Hz to repeat itself; at most "
+            f"cut.speed_variation.frequency: at {cut.arrays.variation.frequency:.4g} Hz the cut "
+            f"takes {longest:.3g} vibrations of {hertz:.4g} Hz to repeat itself; at most "
             f"{_MOST_OF_VARYING} can be computed: for so slow a variation take the limits at the "
             "constant speeds that it goes through"
         )
 
 
-def _points_a_chunk(cut: CutArrays, count: int) -> int:
-    """As many for every thread, in full lanes."""
+def _chunk_size(cut: ElementCut, count: int) -> int:
+    """As many for every thread, in full SIMD batches."""
     threads = worker_count()
     if varies(cut):
         return max(_FEWEST_POINTS, math.ceil(count / (_PARTS * threads)))
-    parts = threads * max(1, round(count / (threads * _POINTS_A_CHUNK)))
-    return max(_FEW_POINTS, LANES * math.ceil(count / (parts * LANES)))
+    parts = threads * max(1, round(count / (threads * _CHUNK_SIZE)))
+    return max(_FEW_POINTS, BATCH_SIZE * math.ceil(count / (parts * BATCH_SIZE)))
 
 
 def _solved_together(
-    cut: CutArrays,
-    arrays: MapArrays,
+    cut: ElementCut,
+    arrays: OperatorArrays,
     speeds: NDArray[np.float64],
     depths: NDArray[np.float64],
-    listened: NDArray[np.bool_],
+    frequency_wanted: NDArray[np.bool_],
 ) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
-    plans = drivers.cut_plans(cut, speeds, depths)
-    return drivers.element_multipliers(arrays, plans, speeds, listened)
+    assemblies = drivers.coupling_assemblies(cut, speeds, depths)
+    return drivers.element_multipliers(arrays, assemblies, speeds, frequency_wanted)
 
 
 def _neighbours_together(
-    cut: CutArrays, speeds: NDArray[np.float64], depths: NDArray[np.float64]
+    cut: ElementCut, speeds: NDArray[np.float64], depths: NDArray[np.float64]
 ) -> NDArray[np.int64]:
     """Order of the points in which those follow each other that can share work."""
     if varies(cut):
         # those of like periods go side by side
-        periods = np.array([(turn.patterns, turn.cycles) for turn in turns(cut, speeds)])
+        periods = np.array(
+            [(rotation.patterns, rotation.cycles) for rotation in rotations(cut, speeds)]
+        )
         return np.lexsort((speeds, depths, periods[:, 1], periods[:, 0]))
     # at one depth much is shared, at neighbouring speeds most of it
     _, row, count = np.unique(depths, return_inverse=True, return_counts=True)
@@ -181,93 +179,88 @@ def converged_multiplier(
     return Multiplier(value, steps, float(error))
 
 
-def rates(
-    cut: CutArrays, speeds: NDArray[np.float64], depths: NDArray[np.float64]
+def growth_rates(
+    cut: ElementCut, speeds: NDArray[np.float64], depths: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Growth at n points for each period of the tool, which the period of a cut may hold many of.
+    """Growth rate at n points per period of the tool, many of which the cut's period may hold.
 
     Speeds in rad/s, depths in m.
     """
-    return growth(multipliers(cut, speeds, depths)) / tool_periods(cut, speeds)
+    return growth_rate(multipliers(cut, speeds, depths)) / tool_periods(cut, speeds)
 
 
-def chatter_frequencies(
-    cut: CutArrays, speeds: NDArray[np.float64], depths: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Frequency (Hz) at which the motion of the dominant multiplier is largest, at n points."""
-    return _solved(cut, speeds, depths, np.ones(len(speeds), dtype=np.bool_))[1]
-
-
-def chatter_frequency(cut: CutArrays, speed: float, depth: float) -> float:
-    """The same (Hz) at one point."""
-    return float(chatter_frequencies(cut, np.array([speed]), np.array([depth]))[0])
+def chatter_frequency(cut: ElementCut, speed: float, depth: float) -> float:
+    """Frequency (Hz) at which the motion of the dominant multiplier is largest, at a point."""
+    wanted = np.ones(1, dtype=np.bool_)
+    return float(_solved(cut, np.array([speed]), np.array([depth]), wanted)[1][0])
 
 
 def limit_curve(
-    cut: CutArrays,
+    cut: ElementCut,
     speeds: NDArray[np.float64],
     depths: NDArray[np.float64],
     progress: Progress = no_progress,
     tolerance: float = DEPTH_TOLERANCE,
     stride: int = STRIDE,
 ) -> LimitCurve:
-    """Limits of stability at every spindle speed, by following the boundary.
+    """Limits of stability at every spindle speed, by boundary continuation.
 
     Parameters
     ----------
-    cut : CutArrays
+    cut : ElementCut
     speeds : (n,) array of float
         rad/s, ascending.
     depths : (m,) array of float
-        Net on which changes of stability are looked for, m.
+        Grid on which changes of stability are searched, m.
     progress : callable, optional
         Called with (done, total) speeds.
     tolerance : float
         Of a limit, relative to its depth.
     stride : int
-        All depths are looked at for every so many speeds, a power of two; see `following` for what
-        may be missed between them.
+        All depths are evaluated at every so many speeds, a power of two; see
+        `boundary_continuation` for what may be missed between them.
     """
-    heard = near_limits(cut, speeds)
-    growth_at = rates_at(cut, speeds)
-    # over the long periods of a varying speed listening costs more than a point does
-    refined = growth_at if varies(cut) else heard.growth
+    evaluated = evaluated_points(cut, speeds)
+    growth_at = growth_rates_at(cut, speeds)
+    # over the long periods of a varying speed the frequency costs more than a multiplier
+    refined = growth_at if varies(cut) else evaluated.growth_rate
     with kept_threads():
-        crossings = followed_crossings(
+        crossings = continued_crossings(
             len(speeds), depths, growth_at, tolerance, stride, progress, refined
         )
-        return limits_at(heard.nearest, speeds, crossings, points_of_periods(cut, speeds, depths))
+        steps = points_of_periods(cut, speeds, depths)
+        return limits_at(evaluated.at_limits, speeds, crossings, steps)
 
 
-def rates_at(cut: CutArrays, speeds: NDArray[np.float64]) -> Growth:
-    """Growth for each period of the tool as the search for limits asks for it.
+def growth_rates_at(cut: ElementCut, speeds: NDArray[np.float64]) -> GrowthRate:
+    """Growth rate per period of the tool, as the search for limits asks for it.
 
     Parameters
     ----------
-    cut : CutArrays
+    cut : ElementCut
     speeds : (n,) array of float
         rad/s.
     """
 
     def growth_at(points: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
-        return rates(cut, speeds[points], depth)
+        return growth_rates(cut, speeds[points], depth)
 
     return growth_at
 
 
 def points_of_periods(
-    cut: CutArrays, speeds: NDArray[np.float64], depths: NDArray[np.float64]
+    cut: ElementCut, speeds: NDArray[np.float64], depths: NDArray[np.float64]
 ) -> NDArray[np.int64]:
     """Collocation points (n,) in a period at n speeds (rad/s) and the last of the depths (m)."""
     return drivers.points_of_periods(cut, speeds, float(depths[-1]))
 
 
-def near_limits(cut: CutArrays, speeds: NDArray[np.float64]) -> HeardPoints:
-    """Points near limits at n speeds (rad/s), multipliers and frequencies with them."""
+def evaluated_points(cut: ElementCut, speeds: NDArray[np.float64]) -> EvaluatedPoints:
+    """Points near limits at n speeds (rad/s), with multipliers and frequencies."""
 
-    def heard(
+    def evaluate(
         points: NDArray[np.int64], depth: NDArray[np.float64]
     ) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
         return _solved(cut, speeds[points], depth, np.ones(len(points), dtype=np.bool_))
 
-    return HeardPoints(heard)
+    return EvaluatedPoints(evaluate)

@@ -1,23 +1,23 @@
-"""Limits of a cut that is much like another, next to those of the other."""
+"""Limits of a cut that hardly differs from another, next to those of the other."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.stability.boundary_continuation import followed_crossings
-from chatter.stability.brackets import Growth
+from chatter.stability.boundary_continuation import continued_crossings
+from chatter.stability.brackets import GrowthRate
 from chatter.stability.crossings import moved_crossings
-from chatter.stability.methods.collocation.cut_arrays import CutArrays
-from chatter.stability.methods.collocation.multipliers import rates_at
+from chatter.stability.methods.collocation.element_cut import ElementCut
+from chatter.stability.methods.collocation.multipliers import growth_rates_at
 
 
 def moved_limits(
     crossings: list[NDArray[np.float64]],
-    cut: CutArrays,
+    cut: ElementCut,
     speeds: NDArray[np.float64],
     depths: NDArray[np.float64],
-    growth: Growth,
+    growth_rate: GrowthRate,
     tolerance: float,
     reaches: tuple[float, ...],
 ) -> list[NDArray[np.float64]]:
@@ -27,13 +27,13 @@ def moved_limits(
     ----------
     crossings : list of n arrays
         Those of the other cut, m.
-    cut : CutArrays
+    cut : ElementCut
     speeds : (n,) array of float
         rad/s.
     depths : (m,) array of float
-        Net on which those are looked for that come or go, m.
-    growth : callable
-        Of the cut, where a limit is looked for next to the known one.
+        Grid on which those are searched that come or go, m.
+    growth_rate : callable
+        Of the cut, where a limit is searched next to the known one.
     tolerance : float
         Of a limit, relative to its depth.
     reaches : tuple of float
@@ -45,12 +45,12 @@ def moved_limits(
     for reach in reaches:
         left = np.flatnonzero(np.isnan(moved))
         if left.size:
-            moved[left] = moved_crossings(speed[left], depth[left], reach, growth, tolerance)
+            moved[left] = moved_crossings(speed[left], depth[left], reach, growth_rate, tolerance)
     gone = np.unique(speed[np.isnan(moved) | (moved > depths[-1])])
     found = [moved[speed == i] for i in range(len(speeds))]
     if gone.size:
-        anew = followed_crossings(
-            gone.size, depths, rates_at(cut, speeds[gone]), tolerance, stride=1
+        anew = continued_crossings(
+            gone.size, depths, growth_rates_at(cut, speeds[gone]), tolerance, stride=1
         )
         for i, there in zip(gone.tolist(), anew, strict=True):
             found[i] = there

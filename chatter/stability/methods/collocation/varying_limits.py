@@ -1,8 +1,8 @@
 """Limits under a varying spindle speed, with finer elements until they are good to a tolerance.
 
-They are looked for with coarse elements and periods that many speeds have in common, and taken up
-from there by everyday elements and periods that fit better, between two of those. The error is what
-far finer elements and a far closer fit of the period leave at some of the limits.
+They are found with coarse elements and periods that many speeds have in common, and re-evaluated
+with regular elements and periods that fit better, between two of those. The error is what far finer
+elements and a far closer fit of the period change at some of the limits.
 """
 
 from __future__ import annotations
@@ -11,39 +11,38 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.progress import Progress
-from chatter.stability.boundary_continuation import followed_crossings
-from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.limit_search import limits_at
-from chatter.stability.methods.collocation.cut_arrays import RESOLUTION, CutArrays
+from chatter.stability.boundary_continuation import continued_crossings
+from chatter.stability.limit_curve import LimitCurve, first_crossings, limits_at
+from chatter.stability.methods.collocation.element_cut import RESOLUTION, CutAt
 from chatter.stability.methods.collocation.error_estimate import CheckedLimits, checked_limits
 from chatter.stability.methods.collocation.multipliers import (
     FINER,
-    CutAt,
-    near_limits,
+    evaluated_points,
+    growth_rates,
+    growth_rates_at,
     points_of_periods,
-    rates,
-    rates_at,
 )
 from chatter.stability.methods.collocation.nearby_limits import moved_limits
 from chatter.stability.methods.collocation.varying_speed import (
+    Pair,
     beside,
     interpolated,
-    place_between,
-    tuned,
+    share_between,
 )
+from chatter.stability.spindle_rotation import PeriodFit
 
-#: Gauss points of an element and waves that it holds, one after the other until limits are good
+#: Gauss points of an element and wavelengths that it holds, one after the other until limits are
+#: good
 _RESOLUTIONS = ((6, 1.0), RESOLUTION, *FINER[:2])
-#: share by which the frequency may be moved, and tolerance, relative, of the limits that are the
-#: first to be found
-_FIRST_TUNING, _FIRST_TOLERANCE = 5e-2, 0.01
-#: from columns of the net to the next
+#: fit of the period, and tolerance, relative, of the limits that are found first
+_FIRST_FIT, _FIRST_TOLERANCE = PeriodFit(tuning=5e-2), 0.01
+#: from columns of the grid to the next
 _STRIDE = 4
 #: how far those may be off, relative to their depth
 _REACHES = (0.015, 0.06)
 #: limits are searched to this share of the largest error
 _SEARCHED = 0.2
-#: limits that are looked at again: with elements of so many points, and their length over that they
+#: limits that are re-evaluated: with elements of so many points, and their length over that they
 #: had, and with periods of so many tool periods at the least
 _CHECKED, _CHECK, _CHECK_PERIODS = 8, (10, 0.3), 150
 #: tool periods in a period at the least, one after the other until limits are good
@@ -66,27 +65,30 @@ def limits_of_varying_speed(
     cut_at : callable
         Cut at a resolution.
     speeds, depths, progress
-        As for `collocation.limit_curve`.
+        As for `multipliers.limit_curve`.
     tolerance : float
-        On the depths of the limits, relative.
+        On the critical depths, relative.
 
     Returns
     -------
     LimitCurve
         With the estimated error.
     """
-    first = tuned(cut_at(*_RESOLUTIONS[0]), _FIRST_TUNING)
-    crossings = followed_crossings(
-        len(speeds), depths, rates_at(first, speeds), _FIRST_TOLERANCE, _STRIDE, progress
+    first = cut_at(*_RESOLUTIONS[0]).with_fit(_FIRST_FIT)
+    crossings = continued_crossings(
+        len(speeds), depths, growth_rates_at(first, speeds), _FIRST_TOLERANCE, _STRIDE, progress
     )
     resolutions, periods = list(_RESOLUTIONS), list(_LEAST_PERIODS)
     while True:
         cut = cut_at(*resolutions[0])
         pair = beside(cut, periods[0])
         crossings = _between(crossings, pair, speeds, depths, _SEARCHED * tolerance)
-        limits = np.array([found[0] if found.size else np.inf for found in crossings])
-        checked = checked_limits(pair[0], speeds, limits, _CHECKED)
-        of_elements = _error_of_elements(checked, pair[0], cut_at, resolutions[0])
+        checked = checked_limits(pair[0], speeds, first_crossings(crossings), _CHECKED)
+        finer = cut_at(_CHECK[0], _CHECK[1] * resolutions[0][1]).with_fit(pair[0].arrays.fit)
+        # the true ratio lies between two: each has a growth rate there
+        of_elements = checked.largest_error(
+            *(growth_rates(one, checked.speed, checked.depth) for one in (finer, pair[0]))
+        )
         of_periods = checked.largest_error(_rates_between(beside(cut, _CHECK_PERIODS), checked))
         if of_elements + of_periods <= tolerance:
             break
@@ -96,40 +98,29 @@ def limits_of_varying_speed(
             resolutions.pop(0)
         else:
             break
-    heard = near_limits(pair[0], speeds)
     steps = points_of_periods(pair[0], speeds, depths)
-    curve = limits_at(heard.nearest, speeds, crossings, steps)
+    curve = limits_at(evaluated_points(pair[0], speeds).at_limits, speeds, crossings, steps)
     return curve._replace(error=of_elements + of_periods)
 
 
 def _between(
     crossings: _Crossings,
-    pair: tuple[CutArrays, CutArrays],
+    pair: Pair,
     speeds: NDArray[np.float64],
     depths: NDArray[np.float64],
     tolerance: float,
 ) -> _Crossings:
     """Limits at the true ratio, between those of the two beside it."""
     fewer, more = (
-        moved_limits(crossings, cut, speeds, depths, rates_at(cut, speeds), tolerance, _REACHES)
+        moved_limits(
+            crossings, cut, speeds, depths, growth_rates_at(cut, speeds), tolerance, _REACHES
+        )
         for cut in pair
     )
-    return interpolated(fewer, more, place_between(pair, speeds))
+    return interpolated(fewer, more, share_between(pair, speeds))
 
 
-def _rates_between(
-    pair: tuple[CutArrays, CutArrays], checked: CheckedLimits
-) -> NDArray[np.float64]:
-    """Growth at limits, at the true ratio."""
-    fewer, more = (rates(cut, checked.speed, checked.depth) for cut in pair)
-    return fewer + place_between(pair, checked.speed) * (more - fewer)
-
-
-def _error_of_elements(
-    checked: CheckedLimits, cut: CutArrays, cut_at: CutAt, resolution: tuple[int, float]
-) -> float:
-    """Error that the elements leave, by far finer ones."""
-    finer = cut_at(_CHECK[0], _CHECK[1] * resolution[1])._replace(variation=cut.variation)
-    # the true ratio lies between two: each has growth there
-    there = checked.speed, checked.depth
-    return checked.largest_error(rates(finer, *there) - rates(cut, *there))
+def _rates_between(pair: Pair, checked: CheckedLimits) -> NDArray[np.float64]:
+    """Growth rate at limits, at the true ratio."""
+    fewer, more = (growth_rates(cut, checked.speed, checked.depth) for cut in pair)
+    return fewer + share_between(pair, checked.speed) * (more - fewer)

@@ -14,20 +14,20 @@ from numba import njit
 from numpy.typing import NDArray
 
 from chatter.engine.presets import KERNEL, LEAF_KERNEL
-from chatter.stability.spindle_rotation import angle_at, speed_at, time_at
-from cutting.edge_segments.coupling import coupling_at, part_below, share_of_height
+from chatter.stability.spindle_rotation import SpindleRotation, angle_at, speed_at, time_at
+from cutting.edge_segments.coupling import coupling_at, delay_at, part_below, share_of_height
 from cutting.edge_segments.engaged_intervals import (
     MOST_POINTS,
-    crowd,
-    length_of_run,
-    place_in_run,
+    engaged_interval_from,
+    graded,
+    length_of_interval,
     points_along,
-    reach_of_piece,
-    run_from,
-    turns_of_chain,
+    position_in_interval,
+    reach_of_segment,
+    revolutions_of_group,
 )
 
-#: a piece is in the cut in no more than so many turns at once
+#: a segment is in the cut in no more than so many revolutions at once
 _TURNS = 4
 
 
@@ -40,12 +40,10 @@ class Sources(NamedTuple):
 
 
 class EdgeAtDepth(NamedTuple):
-    """Parts of the pieces that cut at a depth, and the quadrature along them."""
+    """Parts of the segments that cut at a depth."""
 
-    top: NDArray[np.float64]  # part of each piece below the depth (P,)
-    reach: NDArray[np.float64]  # spindle angles, see `reach_of_piece`, rad (P, 4)
-    place: NDArray[np.float64]  # Gauss points on [0, 1], row q for q of them (17, 16)
-    weight: NDArray[np.float64]  # (17, 16)
+    top: NDArray[np.float64]  # part of each segment below the depth (P,)
+    reach: NDArray[np.float64]  # spindle angles, see `reach_of_segment`, rad (P, 4)
     most: int  # sources of one time
 
 
@@ -60,18 +58,28 @@ class Present(NamedTuple):
     used: NDArray[np.int64]  # (G,)
 
 
+class Instant(NamedTuple):
+    """A time within a step."""
+
+    rotation: SpindleRotation
+    node: NDArray[np.float64]  # starts and middles of the steps, s (2 N + 1,)
+    rate: float  # by which velocities are divided, rad/s
+    step: int
+    time: float  # s
+
+
 @njit(**KERNEL)
 def edge_at_depth(cut, depth):
-    """Lay out the pieces of a cut at a depth (m)."""
-    pieces = cut.pieces
-    top, reach = np.empty(pieces.bottom.shape[0]), np.empty((pieces.bottom.shape[0], 4))
+    """Lay out the segments of a cut at a depth (m)."""
+    segments = cut.segments
+    top, reach = np.empty(segments.bottom.shape[0]), np.empty((segments.bottom.shape[0], 4))
     varying = 0
-    for piece in range(top.shape[0]):
-        top[piece] = part_below(pieces, piece, depth)
-        reach_of_piece(pieces, top, piece, reach[piece])
-        varying += 1 if pieces.group[piece] < 0 else 0
-    most = _TURNS * MOST_POINTS * varying + pieces.group_delay.shape[0]
-    return EdgeAtDepth(top, reach, cut.edge_place, cut.edge_weight, most)
+    for segment in range(top.shape[0]):
+        top[segment] = part_below(segments, segment, depth)
+        reach_of_segment(segments, top, segment, reach[segment])
+        varying += 1 if segments.delay_index[segment] < 0 else 0
+    most = _TURNS * MOST_POINTS * varying + segments.distinct_delay.shape[0]
+    return EdgeAtDepth(top, reach, most)
 
 
 @njit(**KERNEL)
@@ -97,11 +105,12 @@ def with_room(sources, count, more):
 
 
 @njit(**KERNEL)
-def nothing_present(rank, groups):
+def nothing_present(rank, distinct):
     """Room for the couplings at a time."""
     return Present(
         np.empty((rank, rank)), np.empty((rank, rank)), np.zeros((rank, rank)),
-        np.zeros((rank, rank)), np.empty((groups, rank, rank)), np.empty(groups, dtype=np.int64),
+        np.zeros((rank, rank)), np.empty((distinct, rank, rank)),
+        np.empty(distinct, dtype=np.int64),
     )  # fmt: skip
 
 
@@ -150,8 +159,9 @@ def _node_before(node, time):
 
 
 @njit(**LEAF_KERNEL)
-def _add_source(node, step, time, earlier, rate, coupling, sources, count, present):
+def _add_source(now, earlier, coupling, sources, count, present):
     """Add the coupling to the motion at an earlier time; returns the number of sources."""
+    node, step, time, rate = now.node, now.step, now.time, now.rate
     kept = node.shape[0] - 1
     weight = sources.weight[count]
     start = node[2 * step]
@@ -183,30 +193,19 @@ def add_contact(basis, contact, share, stiffness, dashpot):
     for i in range(rank):
         for j in range(rank):
             plane = basis[0, i] * basis[0, j] + basis[1, i] * basis[1, j]
-            stiffness[i, j] += share * contact[0] * plane
-            dashpot[i, j] += share * contact[1] * plane
+            stiffness[i, j] += share * contact.stiffness * plane
+            dashpot[i, j] += share * contact.damping * plane
 
 
 @njit(**LEAF_KERNEL)
-def couple(
-    pieces, edge, basis, turn, node, rate, step, time, speed_factor, sources, count, present
-):  # fmt: skip
+def couple(cut, edge, now, speed_factor, sources, count, present):
     """Enter the couplings at one time.
 
     Parameters
     ----------
-    pieces : EdgePieces
+    cut : CutArrays
     edge : EdgeAtDepth
-    basis : (3, r) array of float
-    turn : SpindleTurn
-    node : (2 N + 1,) array of float
-        Starts and middles of the steps, s.
-    rate : float
-        By which velocities are divided, rad/s.
-    step : int
-        That in which the time lies.
-    time : float
-        s.
+    now : Instant
     speed_factor : float
         One over the cutting speed, s/m.
     sources : Sources
@@ -220,73 +219,70 @@ def couple(
     (float, int)
         Height of edge in the cut, m, and the number of sources.
     """
+    segments, rotation = cut.segments, now.rotation
     clear(present.stiffness)
     clear(present.dashpot)
-    for group in range(present.used.shape[0]):
-        clear(present.of_delay[group])
-        present.used[group] = 0
-    spindle = angle_at(turn, time)
-    waves = rate / (2.0 * math.pi * speed_at(turn, time))
+    for number in range(present.used.shape[0]):
+        clear(present.of_delay[number])
+        present.used[number] = 0
+    spindle = angle_at(rotation, now.time)
+    wavelengths = now.rate / (2.0 * math.pi * speed_at(rotation, now.time))
     engaged = 0.0
-    for chain in range(pieces.chain.shape[0] - 1):
-        first, last = turns_of_chain(pieces, edge.reach, chain, spindle)
+    for group in range(segments.first_of_group.shape[0] - 1):
+        first, last = revolutions_of_group(segments, edge.reach, group, spindle)
         for back in range(first, last + 1):
-            piece, end = pieces.chain[chain], pieces.chain[chain + 1]
-            while piece < end:
-                final, low, high, change = run_from(
-                    pieces, edge.top, edge.reach, piece, end, spindle, back, waves
+            segment, end = segments.first_of_group[group], segments.first_of_group[group + 1]
+            while segment < end:
+                final, low, high, change = engaged_interval_from(
+                    segments, edge.top, edge.reach, segment, end, spindle, back, wavelengths
                 )
-                if final < piece:
-                    piece += 1
+                if final < segment:
+                    segment += 1
                     continue
-                engaged += _height(pieces, final, high) - _height(pieces, piece, low)
-                count = _couple_run(
-                    pieces, edge, basis, turn, node, rate, step, time, speed_factor, sources,
-                    count, present, (piece, final, low, high, change), spindle,
-                )  # fmt: skip
-                piece = final + 1
-    for group in range(present.used.shape[0]):
-        if present.used[group] == 1:
-            earlier = time_at(turn, spindle - pieces.group_delay[group])
-            count = _add_source(
-                node, step, time, earlier, rate, present.of_delay[group], sources, count, present
-            )
+                engaged += _height(segments, final, high) - _height(segments, segment, low)
+                interval = segment, final, low, high, change
+                count = _couple_interval(
+                    cut, now, speed_factor, sources, count, present, interval, spindle
+                )
+                segment = final + 1
+    for number in range(present.used.shape[0]):
+        if present.used[number] == 1:
+            earlier = time_at(rotation, spindle - segments.distinct_delay[number])
+            count = _add_source(now, earlier, present.of_delay[number], sources, count, present)
     return engaged, count
 
 
 @njit(**LEAF_KERNEL)
-def _height(pieces, piece, place):
-    """Height of a place along a piece above the tip, m."""
-    return pieces.bottom[piece] + pieces.thickness[piece] * share_of_height(pieces, piece, place)
+def _height(segments, segment, position):
+    """Height of a position along a segment above the tip, m."""
+    return segments.bottom[segment] + segments.thickness[segment] * share_of_height(
+        segments, segment, position
+    )
 
 
 @njit(**LEAF_KERNEL)
-def _couple_run(
-    pieces, edge, basis, turn, node, rate, step, time, speed_factor, sources, count, present,
-    run, spindle,
-):  # fmt: skip
-    """Enter the couplings along a run of pieces; returns the number of sources."""
-    piece, final, low, high, change = run
-    order, ends = points_along(pieces, piece, final, low, high, change, spindle)
-    length = length_of_run(pieces, piece, final, low, high)
-    at, start = piece, -low * pieces.length[piece]
+def _couple_interval(cut, now, speed_factor, sources, count, present, interval, spindle):
+    """Enter the couplings along an engaged interval; returns the number of sources."""
+    segments = cut.segments
+    segment, final, low, high, change = interval
+    order, ends = points_along(segments, segment, final, low, high, change, spindle)
+    length = length_of_interval(segments, segment, final, low, high)
+    at, start = segment, -low * segments.length[segment]
     for q in range(order):
-        x, share = crowd(edge.place[order, q], edge.weight[order, q], ends)
-        at, place, start = place_in_run(pieces, at, final, start, x * length)
+        x, share = graded(cut.edge_position[order, q], cut.edge_weight[order, q], ends)
+        at, position, start = position_in_interval(segments, at, final, start, x * length)
         coupling_at(
-            pieces, at, place, spindle, share * length, speed_factor, basis,
+            segments, at, position, spindle, share * length, speed_factor, cut.basis,
             present.part, present.part_dashpot,
         )  # fmt: skip
         _add(1.0, present.part, present.stiffness)
         if speed_factor > 0.0:
             _add(1.0, present.part_dashpot, present.dashpot)
-        group = pieces.group[at]
-        if group >= 0:
-            present.used[group] = 1
-            _add(1.0, present.part, present.of_delay[group])
+        number = segments.delay_index[at]
+        if number >= 0:
+            present.used[number] = 1
+            _add(1.0, present.part, present.of_delay[number])
             continue
-        shift = pieces.delay[at, 1] - pieces.delay[at, 0]
-        delay = pieces.delay[at, 0] + share_of_height(pieces, at, place) * shift
-        earlier = time_at(turn, spindle - delay)
-        count = _add_source(node, step, time, earlier, rate, present.part, sources, count, present)
+        earlier = time_at(now.rotation, spindle - delay_at(segments, at, position))
+        count = _add_source(now, earlier, present.part, sources, count, present)
     return count

@@ -1,7 +1,7 @@
-"""Exact answer of the modes over one step of the matrix-free method.
+"""Exact response of the modes over one step of the matrix-free method.
 
 Over a plain step the cutting force is the line through its values at the two Gauss points. Over one
-that is drawn towards a vanishing chip, force times rate of time is that line; see
+that is graded towards a vanishing chip, force times rate of time is that line; see
 `matrix_free_steps`.
 """
 
@@ -16,11 +16,11 @@ from chatter.engine.presets import KERNEL
 
 #: Gauss points of a step, and where the motion is kept besides: its middle and its end
 _ROOT = math.sqrt(3.0) / 6.0
-PLACES = np.array([0.5 - _ROOT, 0.5 + _ROOT, 0.5, 1.0])
+POSITIONS = np.array([0.5 - _ROOT, 0.5 + _ROOT, 0.5, 1.0])
 #: below this angle of a mode in a step the series holds more digits than the closed form
 _SERIES_BELOW = 1.5
 _TERMS = 40
-#: points of the quadrature over a drawn step: so many, one more a radian of the mode, and the most
+#: points of the quadrature over a graded step: so many, one more a radian of the mode, and the most
 _FEWEST_POINTS, _MOST_POINTS = 6, 16
 
 
@@ -28,7 +28,7 @@ _FEWEST_POINTS, _MOST_POINTS = 6, 16
 def _ramp(angle, damping, s):
     """Answer of y'' + 2 zeta a y' + a^2 y = s, at rest at zero: y, y', y'' at s.
 
-    y' is the answer to a step of force, y'' that to an impulse.
+    y' is the response to a step of force, y'' that to an impulse.
     """
     if angle > _SERIES_BELOW:
         root = math.sqrt(1.0 - damping * damping)
@@ -52,8 +52,8 @@ def _ramp(angle, damping, s):
 
 
 @njit(**KERNEL)
-def mode_answer(frequency, damping, length, out):
-    """Answer of one mode at the places of a step.
+def mode_response(frequency, damping, length, out):
+    """Answer of one mode at the positions of a step.
 
     Parameters
     ----------
@@ -62,14 +62,14 @@ def mode_answer(frequency, damping, length, out):
     length : float
         Of the step, s.
     out : (4, 2, 4) array of float
-        For each of `PLACES` the coordinate x and x'/omega from x and x'/omega at the start and
+        For each of `POSITIONS` the coordinate x and x'/omega from x and x'/omega at the start and
         the accelerations at the two Gauss points. Overwritten.
     """
     angle = frequency * length
     root = math.sqrt(1.0 - damping * damping)
-    first, second = PLACES[0], PLACES[1]
+    first, second = POSITIONS[0], POSITIONS[1]
     for p in range(4):
-        s = PLACES[p]
+        s = POSITIONS[p]
         fade = math.exp(-damping * angle * s)
         sine, cosine = fade * math.sin(root * angle * s), fade * math.cos(root * angle * s)
         out[p, 0, 0], out[p, 0, 1] = cosine + damping / root * sine, sine / root
@@ -92,8 +92,8 @@ def _free_motion(frequency, damping, elapsed):
 
 
 @njit(**KERNEL)
-def drawn_answer(frequency, damping, rule, drawn, out):
-    """Answer of one mode at the places of a step that is drawn towards a border.
+def graded_response(frequency, damping, rule, graded, out):
+    """Answer of one mode at the positions of a step that is graded towards a border.
 
     Parameters
     ----------
@@ -101,33 +101,33 @@ def drawn_answer(frequency, damping, rule, drawn, out):
         rad/s and ratio.
     rule : pair of (17, 16) arrays of float
         Places and weights of the Gauss quadratures on [0, 1], a row an order.
-    drawn : (span, power, low, high) of float
+    graded : (span, power, low, high) of float
         The time beyond the border is span s^power, s, as s goes from `low` to `high`.
     out : (4, 2, 4) array of float
-        As in `mode_answer`. Overwritten.
+        As in `mode_response`. Overwritten.
     """
-    span, power, low, high = drawn
+    span, power, low, high = graded
     gauss, weight = rule
     width = high - low
     start = span * low**power
     angle = frequency * (span * high**power - start)
     order = min(_MOST_POINTS, _FEWEST_POINTS + math.ceil(angle))
-    first, second = PLACES[0], PLACES[1]
+    first, second = POSITIONS[0], POSITIONS[1]
     # of time to the share of the step that has passed, at the Gauss points
     rate_first = span * power * (low + first * width) ** (power - 1.0) * width
     rate_second = span * power * (low + second * width) ** (power - 1.0) * width
     for p in range(4):
-        place = PLACES[p]
-        now = span * (low + place * width) ** power
+        position = POSITIONS[p]
+        now = span * (low + position * width) ** power
         sine, cosine = _free_motion(frequency, damping, now - start)
         out[p, 0, 0], out[p, 0, 1] = cosine + 2.0 * damping * sine, sine
         out[p, 1, 0], out[p, 1, 1] = -sine, cosine
         for part in range(2):
             out[p, part, 2], out[p, part, 3] = 0.0, 0.0
         for i in range(order):
-            share = place * gauss[order, i]
+            share = position * gauss[order, i]
             before = now - span * (low + share * width) ** power
-            scale = place * weight[order, i] / frequency / (second - first)
+            scale = position * weight[order, i] / frequency / (second - first)
             sine, cosine = _free_motion(frequency, damping, before)
             early = scale * (second - share) * rate_first
             late = scale * (share - first) * rate_second

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from chatter.engine.presets import KERNEL
 from chatter.stability.methods.matrix_free.couplings import (
+    Instant,
     add_contact,
     clear,
     couple,
@@ -22,16 +23,20 @@ from chatter.stability.methods.matrix_free.couplings import (
     nothing_present,
     with_room,
 )
-from chatter.stability.methods.matrix_free.modal_response import PLACES, drawn_answer, mode_answer
+from chatter.stability.methods.matrix_free.modal_response import (
+    POSITIONS,
+    graded_response,
+    mode_response,
+)
 from chatter.stability.methods.matrix_free.steps import period_steps, step_time
-from chatter.stability.spindle_rotation import speed_at, spindle_turn
+from chatter.stability.spindle_rotation import speed_at, spindle_rotation_at
 from cutting.edge_segments.coupling import radius_at
 
 #: step lengths closer than this share are the same
 _SAME_LENGTH = 1e-9
 
 
-class StepPlan(NamedTuple):
+class StepAssembly(NamedTuple):
     """N steps of S kinds; node 2 k is the start of step k, node 2 k + 1 its middle.
 
     Nodes count on from those of the period before, 0 .. 2 N - 1, to those of this one. A node holds
@@ -41,7 +46,7 @@ class StepPlan(NamedTuple):
 
     time: NDArray[np.float64]  # of the nodes of this period, and its end, s (2 N + 1,)
     kind: NDArray[np.int64]  # number of the kind of a step (N,)
-    answer: NDArray[np.float64]  # of every mode, see `mode_answer` (S, n, 4, 2, 4)
+    response: NDArray[np.float64]  # of every mode, see `mode_response` (S, n, 4, 2, 4)
     engaged: NDArray[np.int64]  # 1 in the cut (N,)
     from_motion: NDArray[np.float64]  # force at the Gauss points from free motion (N, 2r, 4r)
     from_earlier: NDArray[np.float64]  # and from the force of the earlier motion (N, 2r, 2r)
@@ -75,25 +80,25 @@ def _kinds(steps):
 
 
 @njit(**KERNEL)
-def _answers(cut, steps, first):
+def _responses(cut, steps, first):
     """Answers of all modes over the steps of each kind (S, n, 4, 2, 4)."""
     modes = cut.natural_frequency.shape[0]
-    answer = np.empty((first.shape[0], modes, 4, 2, 4))
-    rule = cut.edge_place, cut.edge_weight
+    response = np.empty((first.shape[0], modes, 4, 2, 4))
+    rule = cut.edge_position, cut.edge_weight
     for s in range(first.shape[0]):
         k = first[s]
         for m in range(modes):
             frequency, damping = cut.natural_frequency[m], cut.damping[m]
             if steps.power[k] == 1.0:
-                mode_answer(frequency, damping, steps.span[k], answer[s, m])
+                mode_response(frequency, damping, steps.span[k], response[s, m])
             else:
-                drawn = steps.span[k], steps.power[k], steps.low[k], steps.high[k]
-                drawn_answer(frequency, damping, rule, drawn, answer[s, m])
-    return answer
+                graded = steps.span[k], steps.power[k], steps.low[k], steps.high[k]
+                graded_response(frequency, damping, rule, graded, response[s, m])
+    return response
 
 
 @njit(**KERNEL)
-def _reach_of_force(cut, answer, displacement, velocity):
+def _reach_of_force(cut, response, displacement, velocity):
     """Displacement and velocity at both Gauss points from the forces there (2r, 2r)."""
     modes, rank = cut.shape.shape
     clear(displacement)
@@ -101,7 +106,7 @@ def _reach_of_force(cut, answer, displacement, velocity):
     for m in range(modes):
         for p in range(2):
             for q in range(2):
-                x, v = answer[m, p, 0, 2 + q], answer[m, p, 1, 2 + q] * cut.natural_frequency[m]
+                x, v = response[m, p, 0, 2 + q], response[m, p, 1, 2 + q] * cut.natural_frequency[m]
                 for k in range(rank):
                     for l in range(rank):  # noqa: E741
                         both = cut.shape[m, k] * cut.force_gain[m, l]
@@ -111,7 +116,7 @@ def _reach_of_force(cut, answer, displacement, velocity):
 
 @njit(**KERNEL)
 def _eliminate(system, first, second):
-    """Solve for two right-hand sides in their place; `system` is overwritten. Pivots by rows."""
+    """Solve for two right-hand sides in their position; `system` is overwritten. Pivots by rows."""
     n = system.shape[0]
     for k in range(n):
         pivot = k
@@ -135,7 +140,7 @@ def _eliminate(system, first, second):
 
 
 @njit(**KERNEL)
-def step_plan(stepped, speed, depth, steps_a_wave, refinement):
+def assemble_steps(stepped, speed, depth, steps_per_wavelength, refinement):
     """Lay out the steps of one period.
 
     Parameters
@@ -145,57 +150,58 @@ def step_plan(stepped, speed, depth, steps_a_wave, refinement):
         Mean spindle speed, rad/s.
     depth : float
         Axial depth, m.
-    steps_a_wave : float
+    steps_per_wavelength : float
     refinement : int
         See `period_steps`.
 
     Returns
     -------
-    StepPlan
+    StepAssembly
     """
     cut, rate = stepped.arrays, stepped.fastest
-    turn = spindle_turn(cut.variation, speed, cut.period_angle)
-    steps = period_steps(stepped, turn, depth, steps_a_wave, refinement)
+    rotation = spindle_rotation_at(cut.variation, cut.fit, speed, cut.period_angle)
+    steps = period_steps(stepped, rotation, depth, steps_per_wavelength, refinement)
     count = steps.power.shape[0]
     modes, rank = cut.shape.shape
     first, kind = _kinds(steps)
-    answer = _answers(cut, steps, first)
+    response = _responses(cut, steps, first)
     engaged = np.zeros(count, dtype=np.int64)
     from_motion = np.zeros((count, 2 * rank, 4 * rank))
     from_earlier = np.zeros((count, 2 * rank, 2 * rank))
     edge = edge_at_depth(cut, depth)
-    groups = cut.pieces.group_delay.shape[0]
+    groups = cut.segments.distinct_delay.shape[0]
     first_source = np.zeros(2 * count + 1, dtype=np.int64)
     sources = empty_sources(2 * count * (groups + 1) + edge.most, rank)
     present = nothing_present(rank, groups)
     reach, reach_rate = np.empty((2 * rank, 2 * rank)), np.empty((2 * rank, 2 * rank))
     system = np.empty((2 * rank, 2 * rank))
-    radius = radius_at(cut.pieces, depth) if cut.pieces.damping[1] > 0.0 else np.inf
-    held = stepped.contact[0] > 0.0 or stepped.contact[1] > 0.0
+    radius = radius_at(cut.segments, depth) if cut.segments.damping[1] > 0.0 else np.inf
+    held = stepped.contact.stiffness > 0.0 or stepped.contact.damping > 0.0
     for k in range(count):
         clear(system)
         for i in range(2 * rank):
             system[i, i], from_earlier[k, i, i] = 1.0, 1.0
-        _reach_of_force(cut, answer[kind[k]], reach, reach_rate)
+        _reach_of_force(cut, response[kind[k]], reach, reach_rate)
         for p in range(2):
             at = first_source[2 * k + p]
             sources = with_room(sources, at, edge.most)
-            time = step_time(steps, k, PLACES[p])
+            time = step_time(steps, k, POSITIONS[p])
+            now = Instant(rotation, steps.node, rate, k, time)
+            speed_factor = 1.0 / (speed_at(rotation, time) * radius)
             height, first_source[2 * k + p + 1] = couple(
-                cut.pieces, edge, cut.basis, turn, steps.node, rate, k, time,
-                1.0 / (speed_at(turn, time) * radius), sources, at, present,
-            )  # fmt: skip
+                cut, edge, now, speed_factor, sources, at, present
+            )
             if height > 0.0:
                 engaged[k] = 1
             if held:
-                share = min(1.0, height / depth / stepped.contact[2])
+                share = min(1.0, height / depth / stepped.contact.full_share)
                 add_contact(cut.basis, stepped.contact, share, present.stiffness, present.dashpot)
             _enter(present, p, rate, reach, reach_rate, from_motion[k], system)
         if engaged[k] == 1:
             _eliminate(system, from_motion[k], from_earlier[k])
     total = first_source[2 * count]
-    return StepPlan(
-        steps.node, kind, answer, engaged, from_motion, from_earlier, first_source,
+    return StepAssembly(
+        steps.node, kind, response, engaged, from_motion, from_earlier, first_source,
         sources.node[:total], sources.weight[:total], sources.block[:total],
         cut.shape, cut.shape * (cut.natural_frequency / rate).reshape(modes, 1),
         cut.force_gain, rate,

@@ -5,9 +5,9 @@ speed has its corners, so that all is smooth inside them. Where a size effect ma
 force law infinite, at a vanishing chip, the force f is like t^(p-1) in the time t from the border,
 and the integral of f dt is taken over s, with t = h s^k: f dt/ds is like s^(k p - 1), smooth for
 the right k (a graded mesh: Brunner 2004, Collocation Methods for Volterra Integral and Related
-Functional Differential Equations, chapter 6; here the force is drawn along with the mesh). So it is
-where an edge, on a cone or a corner, enters or leaves nearly all at once: what is engaged then is
-like the root of the time.
+Functional Differential Equations, chapter 6; here the force is graded along with the mesh). So it
+is where an edge, on a cone or a corner, enters or leaves nearly all at once: what is engaged then
+is like the root of the time.
 """
 
 from __future__ import annotations
@@ -20,15 +20,20 @@ from numba import njit
 from numpy.typing import NDArray
 
 from chatter.engine.presets import KERNEL
-from chatter.stability.methods.collocation.cut_arrays import CutArrays
-from chatter.stability.methods.matrix_free.modal_response import PLACES
+from chatter.stability.methods.matrix_free.modal_response import POSITIONS
 from chatter.stability.spindle_rotation import angle_at, time_at
-from cutting.edge_segments.coupling import chip_vanishes, part_below, share_of_height
+from cutting.edge_segments.coupling import chip_vanishes, part_below
+from cutting.edge_segments.segment_ends import (
+    border_at,
+    is_border,
+    lowest_height,
+    sort_with_marks,
+)
 
 #: borders closer than this share of the period are the same
 _SAME = 1e-10
-#: steps that one is drawn out into towards a vanishing chip, and towards a root of the time
-_DRAWN, _DRAWN_ROOT = 6, 3
+#: steps that one is graded into towards a vanishing chip, and towards a root of the time
+_GRADED, _GRADED_ROOT = 6, 3
 #: an edge enters nearly all at once where it does so in a share of the time that it takes elsewhere
 _FLAT = 0.5
 #: power for a root: f dt/ds is like s^2
@@ -39,16 +44,8 @@ _THIN = 0.1
 _BEFORE, _AFTER, _ROOT_BEFORE, _ROOT_AFTER = 1, 2, 4, 8
 #: borders closer than this share of a step are as good as one
 _NEAR = 0.3
-#: a step turns the spindle by no more than this over the steps a wave, rad
-_ANGLE_A_WAVE = 3.0
-
-
-class SteppedCut(NamedTuple):
-    """A milling cut with speed and depth left open, and what the steps need besides."""
-
-    arrays: CutArrays
-    fastest: float  # vibration that steps resolve, with no cut, rad/s
-    contact: NDArray[np.float64]  # stiffness N/m, damping N s/m, share at which it is whole (3,)
+#: a step turns the spindle by no more than this over the steps per wavelength, rad
+_ANGLE_PER_WAVELENGTH = 3.0
 
 
 class Steps(NamedTuple):
@@ -66,38 +63,38 @@ class Steps(NamedTuple):
 
 
 @njit(**KERNEL)
-def _rise(pieces, piece, side):
-    """Angle by which the edge enters (side 0) or leaves later at the high end of a piece, rad."""
-    arc = pieces.entry[piece] if side == 0 else pieces.exit[piece]
-    return arc[1] - arc[0] - (pieces.angle[piece, 1] - pieces.angle[piece, 0])
+def _rise(segments, segment, side):
+    """Angle by which the edge enters (side 0) or leaves later at the high end of a segment, rad."""
+    arc = segments.entry[segment] if side == 0 else segments.exit[segment]
+    return arc[1] - arc[0] - (segments.angle[segment, 1] - segments.angle[segment, 0])
 
 
 @njit(**KERNEL)
-def _follows(pieces, piece):
-    """Tell whether a piece goes on where that before it in the table ends."""
-    apart = abs(pieces.angle[piece - 1, 1] - pieces.angle[piece, 0])
-    apart += abs(pieces.entry[piece - 1, 1] - pieces.entry[piece, 0])
-    apart += abs(pieces.exit[piece - 1, 1] - pieces.exit[piece, 0])
-    return apart < _SAME and pieces.bottom[piece] > pieces.bottom[piece - 1]
+def _follows(segments, segment):
+    """Whether a segment goes on where that before it in the table ends."""
+    apart = abs(segments.angle[segment - 1, 1] - segments.angle[segment, 0])
+    apart += abs(segments.entry[segment - 1, 1] - segments.entry[segment, 0])
+    apart += abs(segments.exit[segment - 1, 1] - segments.exit[segment, 0])
+    return apart < _SAME and segments.bottom[segment] > segments.bottom[segment - 1]
 
 
 @njit(**KERNEL)
-def _sides_of_root(pieces, piece, side, end):
+def _sides_of_root(segments, segment, side, end):
     """Side of a border on which the edge enters or leaves nearly all at once, if any.
 
     There the angle of entry or exit has, along the edge, its least or largest value near by.
     """
-    first, last = piece, piece
-    while first > 0 and _follows(pieces, first):
+    first, last = segment, segment
+    while first > 0 and _follows(segments, first):
         first -= 1
-    while last + 1 < pieces.bottom.shape[0] and _follows(pieces, last + 1):
+    while last + 1 < segments.bottom.shape[0] and _follows(segments, last + 1):
         last += 1
     total, length = 0.0, 0.0
     for other in range(first, last + 1):
-        total += abs(_rise(pieces, other, side))
-        length += pieces.length[other]
-    rise = _rise(pieces, piece, side)
-    if abs(rise) * length >= _FLAT * total * pieces.length[piece]:
+        total += abs(_rise(segments, other, side))
+        length += segments.length[other]
+    rise = _rise(segments, segment, side)
+    if abs(rise) * length >= _FLAT * total * segments.length[segment]:
         return 0
     return _ROOT_AFTER if (rise > 0.0) == (end == 0) else _ROOT_BEFORE
 
@@ -105,36 +102,26 @@ def _sides_of_root(pieces, piece, side, end):
 @njit(**KERNEL)
 def _border_angles(cut, depth):
     """Borders in one period of the tool (rad), unsorted, and the sides with a thin chip of each."""
-    pieces, period = cut.pieces, cut.period_angle
-    angles = np.empty(4 * pieces.bottom.shape[0] + 1)
+    segments, period = cut.segments, cut.period_angle
+    angles = np.empty(4 * segments.bottom.shape[0] + 1)
     sides = np.zeros(angles.shape[0], dtype=np.int64)
     count = 0
-    lowest = pieces.bottom[0]
-    for piece in range(pieces.bottom.shape[0]):
-        lowest = min(lowest, pieces.bottom[piece])
-    for piece in range(pieces.bottom.shape[0]):
-        top = part_below(pieces, piece, depth)
-        ends = pieces.bottom[piece] + pieces.thickness[piece] * (1.0 + 1e-12)
+    lowest, sized = lowest_height(segments), segments.exponent != 0.0
+    for segment in range(segments.bottom.shape[0]):
+        top = part_below(segments, segment, depth)
+        if top <= 0.0:
+            continue
         for end in range(2):
-            # between the tip, the top of the cut and where an edge first meets the stock the
-            # pieces of an edge follow one another
-            inner = depth > ends if end == 1 else pieces.bottom[piece] > lowest
-            if top <= 0.0 or (inner and pieces.turning[piece, end] == 0):
+            if not is_border(segments, segment, end, depth, lowest):
                 continue
-            place = top if end == 1 else 0.0
-            turned = pieces.angle[piece, 1] - pieces.angle[piece, 0]
-            lag = pieces.angle[piece, 0] + share_of_height(pieces, piece, place) * turned
+            position = top if end == 1 else 0.0
             for side in range(2):
-                arc = pieces.entry[piece] if side == 0 else pieces.exit[piece]
-                immersed = arc[0] + place * (arc[1] - arc[0])
-                angle = immersed - lag
-                angles[count] = angle - period * math.floor(angle / period)
-                sides[count] = _sides_of_root(pieces, piece, side, end)
-                sized = pieces.exponent != 0.0
-                if sized and chip_vanishes(pieces, piece, place, immersed, _THIN):
-                    # a place that enters is in the cut after it, one that leaves before; where the
-                    # edge is flat, what is left of it next to it counts too
-                    turned_round = pieces.turning[piece, end] == 1
+                immersed, angles[count] = border_at(segments, segment, position, side, period)
+                sides[count] = _sides_of_root(segments, segment, side, end)
+                if sized and chip_vanishes(segments, segment, position, immersed, _THIN):
+                    # a position that enters is in the cut after it, one that leaves before; where
+                    # the edge is flat, what is left of it next to it counts too
+                    turned_round = segments.turning[segment, end] == 1
                     after = side == 0 or turned_round or sides[count] == _ROOT_AFTER
                     before = side == 1 or turned_round or sides[count] == _ROOT_BEFORE
                     sides[count] = _AFTER * after + _BEFORE * before
@@ -145,34 +132,23 @@ def _border_angles(cut, depth):
 
 
 @njit(**KERNEL)
-def _sort(times, flags):
-    """Sort times, and their flags with them, by insertion: there are few."""
-    for i in range(1, times.shape[0]):
-        time, flag, place = times[i], flags[i], i
-        while place > 0 and times[place - 1] > time:
-            times[place], flags[place] = times[place - 1], flags[place - 1]
-            place -= 1
-        times[place], flags[place] = time, flag
-
-
-@njit(**KERNEL)
-def _border_times(cut, turn, depth):
+def _border_times(cut, rotation, depth):
     """Border times over the whole period, ascending (s), and their flags."""
     angles, sides = _border_angles(cut, depth)
     per_tool = angles.shape[0]
-    corners = 2 * turn.cycles if turn.triangle == 1 and turn.amplitude > 0.0 else 0
-    times = np.empty(turn.patterns * per_tool + corners)
+    corners = 2 * rotation.cycles if rotation.triangle == 1 and rotation.amplitude > 0.0 else 0
+    times = np.empty(rotation.patterns * per_tool + corners)
     flags = np.zeros(times.shape[0], dtype=np.int64)
-    period = turn.patterns * cut.period_angle / turn.speed
+    period = rotation.patterns * cut.period_angle / rotation.speed
     for i in range(times.shape[0]):
-        if i < turn.patterns * per_tool:
+        if i < rotation.patterns * per_tool:
             pattern, k = i // per_tool, i % per_tool
-            times[i] = time_at(turn, angles[k] + pattern * cut.period_angle)
+            times[i] = time_at(rotation, angles[k] + pattern * cut.period_angle)
             flags[i] = sides[k]
         else:
-            times[i] = (0.25 + 0.5 * (i - turn.patterns * per_tool)) / turn.frequency
+            times[i] = (0.25 + 0.5 * (i - rotation.patterns * per_tool)) / rotation.frequency
         times[i] -= period * math.floor(times[i] / period)
-    _sort(times, flags)
+    sort_with_marks(times, flags)
     out, marks = np.empty(times.shape[0] + 1), np.zeros(times.shape[0] + 1, dtype=np.int64)
     kept = 0
     for i in range(times.shape[0]):
@@ -223,28 +199,28 @@ def _add_steps(steps, count, anchor, span, power, number):
 
 
 @njit(**KERNEL)
-def _drawn_out(pieces, sides, thin, root):
+def _grading(segments, sides, thin, root):
     """Power of the time and number of the steps beside a border; none for plain steps."""
     if sides & thin != 0:
-        p = 1.0 + pieces.exponent
+        p = 1.0 + segments.exponent
         # k p whole: 4 for a law that is nearly linear, less where k would be large
-        return math.ceil(4.0 * p) / p, _DRAWN
+        return math.ceil(4.0 * p) / p, _GRADED
     if sides & root != 0:
-        return _POWER_OF_ROOT, _DRAWN_ROOT
+        return _POWER_OF_ROOT, _GRADED_ROOT
     return 1.0, 0
 
 
 @njit(**KERNEL)
-def _plain_steps(cut, turn, depth, borders, steps_a_wave):
+def _plain_steps(cut, rotation, depth, borders, steps_per_wavelength):
     """Steps (I,) that each interval between borders needs, not rounded."""
     arrays = cut.arrays
-    stiffened = cut.fastest**2 + arrays.resolution.stiffening * depth
-    longest = 2.0 * math.pi / (steps_a_wave * math.sqrt(stiffened))
+    stiffened = cut.fastest**2 + arrays.stiffening * depth
+    longest = 2.0 * math.pi / (steps_per_wavelength * math.sqrt(stiffened))
     need = np.empty(borders.shape[0] - 1)
     for i in range(need.shape[0]):
-        turned = angle_at(turn, borders[i + 1]) - angle_at(turn, borders[i])
+        turned = angle_at(rotation, borders[i + 1]) - angle_at(rotation, borders[i])
         need[i] = (borders[i + 1] - borders[i]) / longest
-        need[i] = max(need[i], turned * steps_a_wave / _ANGLE_A_WAVE)
+        need[i] = max(need[i], turned * steps_per_wavelength / _ANGLE_PER_WAVELENGTH)
     return need
 
 
@@ -252,8 +228,8 @@ def _plain_steps(cut, turn, depth, borders, steps_a_wave):
 def _pass_on(sides, need):
     """Let a border next to a singular one be singular, too, on the side away from it.
 
-    On the scale of a step both are at the same place: as where an edge begins to leave within its
-    length, and a moment later its top leaves.
+    On the scale of a step both are at the same position: as where an edge begins to leave within
+    its length, and a moment later its top leaves.
     """
     last = need.shape[0]
     for _ in range(2):
@@ -269,16 +245,16 @@ def _pass_on(sides, need):
 
 
 @njit(**KERNEL)
-def period_steps(cut, turn, depth, steps_a_wave, refinement):
+def period_steps(cut, rotation, depth, steps_per_wavelength, refinement):
     """Cut a period into steps.
 
     Parameters
     ----------
     cut : SteppedCut
-    turn : SpindleTurn
+    rotation : SpindleRotation
     depth : float
         Axial depth, m.
-    steps_a_wave : float
+    steps_per_wavelength : float
         Steps in a period of the fastest vibration.
     refinement : int
         Every step that this gives is divided by this.
@@ -287,29 +263,29 @@ def period_steps(cut, turn, depth, steps_a_wave, refinement):
     -------
     Steps
     """
-    borders, sides = _border_times(cut.arrays, turn, depth)
-    need = _plain_steps(cut, turn, depth, borders, steps_a_wave)
+    borders, sides = _border_times(cut.arrays, rotation, depth)
+    need = _plain_steps(cut, rotation, depth, borders, steps_per_wavelength)
     _pass_on(sides, need)
     counts = np.maximum(1, np.ceil(need - 1e-9).astype(np.int64))
-    steps = _empty_steps(refinement * (np.sum(counts) + 2 * _DRAWN * counts.shape[0]))
+    steps = _empty_steps(refinement * (np.sum(counts) + 2 * _GRADED * counts.shape[0]))
     count = 0
     for i in range(counts.shape[0]):
         low, high = borders[i], borders[i + 1]
-        power, drawn = _drawn_out(cut.arrays.pieces, sides[i], _AFTER, _ROOT_AFTER)
-        power_before, drawn_before = _drawn_out(
-            cut.arrays.pieces, sides[i + 1], _BEFORE, _ROOT_BEFORE
+        power, graded = _grading(cut.arrays.segments, sides[i], _AFTER, _ROOT_AFTER)
+        power_before, graded_before = _grading(
+            cut.arrays.segments, sides[i + 1], _BEFORE, _ROOT_BEFORE
         )
-        plain = counts[i] - min(1, drawn) - min(1, drawn_before)
+        plain = counts[i] - min(1, graded) - min(1, graded_before)
         if plain < 0:
             plain, counts[i] = 0, 2
         step = (high - low) / counts[i]
-        if drawn > 0:
-            count = _add_steps(steps, count, low, step, power, drawn * refinement)
+        if graded > 0:
+            count = _add_steps(steps, count, low, step, power, graded * refinement)
             low += step
         if plain > 0:
             count = _add_steps(steps, count, low, plain * step, 1.0, plain * refinement)
-        if drawn_before > 0:
-            count = _add_steps(steps, count, high, -step, power_before, drawn_before * refinement)
+        if graded_before > 0:
+            count = _add_steps(steps, count, high, -step, power_before, graded_before * refinement)
     return _with_nodes(steps, count, borders[-1])
 
 
@@ -318,7 +294,7 @@ def _with_nodes(steps, count, end):
     """The steps that are there, with their starts and middles."""
     node = np.empty(2 * count + 1)
     for k in range(count):
-        node[2 * k], node[2 * k + 1] = step_time(steps, k, 0.0), step_time(steps, k, PLACES[2])
+        node[2 * k], node[2 * k + 1] = step_time(steps, k, 0.0), step_time(steps, k, POSITIONS[2])
     node[2 * count] = end
     return Steps(
         node, steps.anchor[:count], steps.span[:count], steps.power[:count],

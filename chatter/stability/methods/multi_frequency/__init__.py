@@ -1,1 +1,1 @@
-"""Multi frequency."""
+"""Multi-frequency solution: Fourier coefficients (harmonics), determinant, limits."""

@@ -7,13 +7,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.stability.model import MillingModel
 from cutting.force.directional_coefficients import DirectionalTable
 
 
 class MillingArrays(NamedTuple):
     """A milling cut on a modal structure, with speed and depth left open.
 
-    The motion of the tool point against the workpiece lies in the space of the mode directions;
+    The motion of the tool point against the worksegment lies in the space of the mode directions;
     r is its dimension (1 to 3) and n the number of modes.
     """
 
@@ -25,3 +26,18 @@ class MillingArrays(NamedTuple):
     tooth_pitch: float  # rad
     lag_per_depth: float  # tan(helix)/R, rad/m
     radius: float  # m, for the cutting speed
+
+
+def milling_arrays(model: MillingModel) -> MillingArrays:
+    """What semi-discretization sees of a model with a uniform-pitch cylindrical end mill."""
+    frequency, damping, shape, gain = model.modal_arrays
+    return MillingArrays(
+        natural_frequency=frequency,
+        damping=damping,
+        shape=shape,
+        force_gain=gain,
+        table=model.table,
+        tooth_pitch=2.0 * np.pi / model.teeth,
+        lag_per_depth=model.lag_per_depth,
+        radius=model.cutter.radius,
+    )

@@ -18,6 +18,8 @@ from numba.extending import overload
 from numpy.typing import NDArray
 
 from chatter.engine.presets import KERNEL, SUMMING_KERNEL
+from chatter.stability.arnoldi import register_operator
+from chatter.stability.methods.semi_discretization.first_order_step import first_order_step
 from chatter.stability.methods.semi_discretization.step_schemes import (
     FirstOrder,
     FullDiscretization,
@@ -28,11 +30,15 @@ from chatter.stability.methods.semi_discretization.step_schemes import (
 )
 from cutting.force.directional_coefficients import mean_coupling
 
+#: residual of the dominant eigenpair, relative to its magnitude, at which its search stops
+RESIDUAL = 1e-8
+#: dimension of the space beyond the state at the first check of convergence; the largest
+_FIRST_CHECK, LARGEST_SPACE = 5, 240
 #: intervals shorter than this share of a tooth period are joined to their neighbour
 _SMALLEST_INTERVAL = 1e-9
 
 
-class PeriodMap(NamedTuple):
+class Monodromy(NamedTuple):
     """The map of state and delayed motion over one tooth period, step by step.
 
     The state holds ``(omega x, v)`` of every mode, so that its norm is that of velocity. Delayed
@@ -105,122 +111,6 @@ def _free_transition(arrays, duration, out):
 
 
 @njit(**KERNEL)
-def _multiply_generator(arrays, stiffness, dashpot, x, motion, force, out):
-    """Set out = A x for the state equation in the cut; x and out have shape (2n, m)."""
-    modes, rank = arrays.shape.shape
-    columns = x.shape[1]
-    for j in range(columns):
-        for k in range(rank):
-            motion[0, k] = 0.0
-            motion[1, k] = 0.0
-        for i in range(modes):
-            position = x[2 * i, j] / arrays.natural_frequency[i]
-            for k in range(rank):
-                motion[0, k] += arrays.shape[i, k] * position
-                motion[1, k] += arrays.shape[i, k] * x[2 * i + 1, j]
-        for k in range(rank):
-            force[k] = 0.0
-            for m in range(rank):
-                force[k] -= stiffness[k, m] * motion[0, m] + dashpot[k, m] * motion[1, m]
-        for i in range(modes):
-            w = arrays.natural_frequency[i]
-            out[2 * i, j] = w * x[2 * i + 1, j]
-            rate = -w * x[2 * i, j] - 2.0 * arrays.damping[i] * w * x[2 * i + 1, j]
-            for k in range(rank):
-                rate += arrays.force_gain[i, k] * force[k]
-            out[2 * i + 1, j] = rate
-
-
-@njit(**KERNEL)
-def _generator_norm(arrays, stiffness, dashpot):
-    """Upper bound of the norm of the generator, 1/s."""
-    free, gain_0, gain_1, reach = 0.0, 0.0, 0.0, 0.0
-    modes, rank = arrays.shape.shape
-    for i in range(modes):
-        w = arrays.natural_frequency[i]
-        free = max(free, w * (1.0 + 2.0 * arrays.damping[i]))
-        for k in range(rank):
-            reach += arrays.force_gain[i, k] ** 2
-            gain_0 += (arrays.shape[i, k] / w) ** 2
-            gain_1 += arrays.shape[i, k] ** 2
-    size_0, size_1 = 0.0, 0.0
-    for k in range(rank):
-        for m in range(rank):
-            size_0 += stiffness[k, m] ** 2
-            size_1 += dashpot[k, m] ** 2
-    return free + math.sqrt(reach * size_0 * gain_0) + math.sqrt(reach * size_1 * gain_1)
-
-
-@njit(**KERNEL)
-def _cutting_step(arrays, stiffness, dashpot, duration, transition, from_left, from_right, work):
-    """Exact step with constant coefficients and a delayed motion linear in time.
-
-    Taylor series of exp(A h), h phi_1(A h) B and h^2 phi_2(A h) B on a fraction of the step,
-    then doubling (Al-Mohy and Higham 2011 for the choice of fraction).
-    """
-    size, rank = from_left.shape
-    bound = _generator_norm(arrays, stiffness, dashpot) * duration
-    doublings = max(0, math.ceil(math.log2(max(bound, 1e-300))))
-    h = duration / 2.0**doublings
-    term, following, motion, force, product, constant, ramp = work
-    # columns 0..2n-1 of term carry the identity, the last r the input matrix
-    term[:, :] = 0.0
-    for i in range(size):
-        term[i, i] = 1.0
-    for i in range(size // 2):
-        for k in range(rank):
-            total = 0.0
-            for m in range(rank):
-                total += arrays.force_gain[i, m] * stiffness[m, k]
-            term[2 * i + 1, size + k] = total
-    transition[:, :] = term[:, :size]
-    for i in range(size):
-        for k in range(rank):
-            constant[i, k] = h * term[i, size + k]
-            ramp[i, k] = 0.5 * h * h * term[i, size + k]
-    for order in range(1, 30):
-        _multiply_generator(arrays, stiffness, dashpot, term, motion, force, following)
-        factor = h / order
-        largest = 0.0
-        for i in range(size):
-            for j in range(size + rank):
-                term[i, j] = factor * following[i, j]
-            for j in range(size):
-                transition[i, j] += term[i, j]
-                largest = max(largest, abs(term[i, j]))
-            for k in range(rank):
-                constant[i, k] += h / (order + 1) * term[i, size + k]
-                ramp[i, k] += h * h / ((order + 1) * (order + 2)) * term[i, size + k]
-        if largest < 1e-17:
-            break
-    for _ in range(doublings):
-        for i in range(size):
-            for k in range(rank):
-                moved, moved_ramp = 0.0, 0.0
-                for j in range(size):
-                    moved += transition[i, j] * constant[j, k]
-                    moved_ramp += transition[i, j] * ramp[j, k]
-                from_left[i, k] = moved
-                from_right[i, k] = moved_ramp
-        for i in range(size):
-            for k in range(rank):
-                ramp[i, k] += from_right[i, k] + h * constant[i, k]
-                constant[i, k] += from_left[i, k]
-        for i in range(size):
-            for j in range(size):
-                total = 0.0
-                for k in range(size):
-                    total += transition[i, k] * transition[k, j]
-                product[i, j] = total
-        transition[:, :] = product
-        h *= 2.0
-    for i in range(size):
-        for k in range(rank):
-            from_right[i, k] = ramp[i, k] / duration
-            from_left[i, k] = constant[i, k] - from_right[i, k]
-
-
-@njit(**KERNEL)
 def _set_responses(transition, from_left, from_right, found, at_left, at_right):
     transition[:, :] = found
     from_left[:, :] = at_left
@@ -249,7 +139,7 @@ def _linear_and_square(arrays, stiffness, dashpot, duration, transition, left, r
 
 _STEPS = {
     ZerothOrder: _zeroth_order,
-    FirstOrder: _cutting_step,
+    FirstOrder: first_order_step,
     SecondOrder: _linear_and_square,
     FullDiscretization: _full,
 }
@@ -270,18 +160,6 @@ def _take_step(scheme, arrays, stiffness, dashpot, duration, transition, left, r
         step(arrays, stiffness, dashpot, duration, transition, left, right, work)
 
     return stepped
-
-
-def thirds_of(scheme, steps):
-    """Number of steps that refer to a third node."""
-    return steps if isinstance(scheme, SecondOrder) else 0
-
-
-@overload(thirds_of)
-def _thirds_of(scheme, steps):  # noqa: ARG001
-    if isinstance(scheme, types.BaseNamedTuple) and scheme.instance_class is SecondOrder:
-        return lambda scheme, steps: steps  # noqa: ARG005
-    return lambda scheme, steps: 0  # noqa: ARG005
 
 
 @njit(**KERNEL)
@@ -313,13 +191,7 @@ def _interval_steps(arrays, borders, lag, steps, refinement, free_steps):
 
 
 @njit(**KERNEL)
-def build_period_map(arrays, speed, depth, steps, refinement, free_steps):
-    """Assemble the steps of one tooth period by first-order semi-discretization; see below."""
-    return period_map_by(FirstOrder(0.0), arrays, speed, depth, steps, refinement, free_steps)
-
-
-@njit(**KERNEL)
-def period_map_by(scheme, arrays, speed, depth, steps, refinement, free_steps):
+def build_monodromy(scheme, arrays, speed, depth, steps, refinement, free_steps):
     """Assemble the steps of one tooth period.
 
     Parameters
@@ -331,7 +203,7 @@ def period_map_by(scheme, arrays, speed, depth, steps, refinement, free_steps):
     depth : float
         Axial depth, m.
     steps : int
-        Steps a tooth period; an interval of engagement gets its share, rounded up.
+        Steps per tooth period; an interval of engagement gets its share, rounded up.
     refinement : int
         Every step in the cut is divided by this, for extrapolation on nested steps.
     free_steps : int
@@ -339,7 +211,7 @@ def period_map_by(scheme, arrays, speed, depth, steps, refinement, free_steps):
 
     Returns
     -------
-    PeriodMap
+    Monodromy
     """
     modes, rank = arrays.shape.shape
     size = 2 * modes
@@ -351,7 +223,7 @@ def period_map_by(scheme, arrays, speed, depth, steps, refinement, free_steps):
     from_left = np.zeros((total, size, rank))
     from_right = np.zeros((total, size, rank))
     left = np.full(total, -1, dtype=np.int64)
-    thirds = thirds_of(scheme, total)
+    thirds = total * scheme.third_nodes
     further = np.zeros(thirds, dtype=np.int64)
     from_further = np.zeros((thirds, size, rank))
     duration = np.empty(total)
@@ -414,7 +286,7 @@ def period_map_by(scheme, arrays, speed, depth, steps, refinement, free_steps):
     for i in range(modes):
         for k in range(rank):
             output[k, 2 * i] = arrays.shape[i, k] / arrays.natural_frequency[i]
-    return PeriodMap(
+    return Monodromy(
         transition, from_left, from_right, left, duration, output, nodes, further, from_further
     )
 
@@ -456,19 +328,19 @@ def advance_step(period, step, vector, state, following):
 
 
 @njit(**KERNEL)
-def period_scratch(period):
-    """Scratch arrays of `apply_period_map`."""
+def monodromy_scratch(period):
+    """Scratch arrays of `apply_monodromy`."""
     size = period.from_left.shape[1]
     return np.empty(size), np.empty(size)
 
 
 @njit(**KERNEL)
-def apply_period_map(period, vector, out, scratch):
+def apply_monodromy(period, vector, out, scratch):
     """Set out to the image of the vector after one tooth period.
 
     Parameters
     ----------
-    period : PeriodMap
+    period : Monodromy
     vector, out : (2n + nodes r,) array of float
         State, then the motion at the nodes during the last period.
     scratch : tuple of two (2n,) arrays of float
@@ -484,3 +356,30 @@ def apply_period_map(period, vector, out, scratch):
         if period.left[s] >= 0:
             _record_motion(period.output, state, out[base + rank : base + 2 * rank])
     out[:size] = state
+
+
+@njit(**KERNEL)
+def first_check(period):
+    """Dimension of the space at which its dominant eigenpair is first searched."""
+    # weakly damped modes keep as many multipliers near the unit circle as there are states
+    return _FIRST_CHECK + period.output.shape[1]
+
+
+@njit(**KERNEL)
+def start_vector(period):
+    """A fixed pseudo-random state and delayed motion."""
+    _, size, rank = period.from_left.shape
+    start = np.empty(size + period.nodes * rank)
+    seed = 12345
+    for i in range(start.shape[0]):
+        seed = (1103515245 * seed + 12345) % 2147483648
+        start[i] = seed / 1073741824.0 - 1.0
+    scale = 0.0
+    for i in range(size):
+        scale += abs(period.output[0, i])
+    # motion is smaller than the state by the size of the output matrix
+    start[size:] *= scale / size
+    return start
+
+
+register_operator(Monodromy, monodromy_scratch, apply_monodromy)

@@ -23,25 +23,30 @@ from chatter.engine.presets import KERNEL
 class ZerothOrder(NamedTuple):
     """Delayed motion constant over a step."""
 
-    unused: float = 0.0
+    third_nodes: int = 0
 
 
 class FirstOrder(NamedTuple):
     """Delayed motion linear over a step."""
 
-    unused: float = 0.0
+    third_nodes: int = 0
 
 
 class SecondOrder(NamedTuple):
-    """Delayed motion a parabola over a step."""
+    """Delayed motion a parabola over a step, through a third node."""
 
-    unused: float = 0.0
+    third_nodes: int = 1
 
 
 class FullDiscretization(NamedTuple):
     """Delayed and present motion linear over a step."""
 
-    unused: float = 0.0
+    third_nodes: int = 0
+
+
+Scheme = ZerothOrder | FirstOrder | SecondOrder | FullDiscretization
+ZEROTH_ORDER, FIRST_ORDER = ZerothOrder(), FirstOrder()
+SECOND_ORDER, FULL_DISCRETIZATION = SecondOrder(), FullDiscretization()
 
 
 @njit(**KERNEL)

@@ -1,1 +1,1 @@
-"""Time domain."""
+"""Critical depths from the growth rate of small vibration in simulated cuts."""

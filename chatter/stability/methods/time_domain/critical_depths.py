@@ -12,10 +12,10 @@ from chatter.description.progress import Progress, no_progress
 from chatter.engine.parallel import sweep
 from chatter.simulation.perturbation.growth_rate import Growth, growth_of
 from chatter.stability.crossings import find_crossings
-from chatter.stability.limit_curve import LimitCurve
+from chatter.stability.limit_curve import LimitCurve, limits_at
 from dynamics.modal.modes import Mode
 
-#: depths looked at, at the most; limits are refined to this share of their depth
+#: depths evaluated, at the most; limits are refined to this share of their depth
 _MOST_DEPTHS = 32
 _DEPTH_TOLERANCE = 5e-4
 #: growth that is out of the chip at once, as a logarithm a period
@@ -64,15 +64,15 @@ def time_limit_curve(
     speeds : (n,) array of float
         rad/s.
     depths : (m,) array of float
-        Net, m; thinned to at most 32 depths.
+        Grid, m; thinned to at most 32 depths.
     progress : callable
-        Called with (done, total) points of the net.
+        Called with (done, total) points of the grid.
     """
-    net_depths = depths[:: -(-len(depths) // _MOST_DEPTHS)]
-    if net_depths[-1] != depths[-1]:
-        net_depths = np.append(net_depths, depths[-1])
-    speed, depth = (part.ravel() for part in np.meshgrid(speeds, net_depths, indexing="ij"))
-    net = _logarithms(growths(case, modes, speed, depth, progress))
+    grid_depths = depths[:: -(-len(depths) // _MOST_DEPTHS)]
+    if grid_depths[-1] != depths[-1]:
+        grid_depths = np.append(grid_depths, depths[-1])
+    speed, depth = (part.ravel() for part in np.meshgrid(speeds, grid_depths, indexing="ij"))
+    grid = _logarithms(growths(case, modes, speed, depth, progress))
 
     def refined(index: NDArray[np.int64], at: NDArray[np.float64]) -> NDArray[np.float64]:
         found = np.full(len(index), _AT_REST)
@@ -80,23 +80,16 @@ def time_limit_curve(
         found[cut] = _logarithms(growths(case, modes, speeds[index[cut]], at[cut]))
         return found
 
-    crossings = find_crossings(net.reshape(len(speeds), -1), net_depths, refined, _DEPTH_TOLERANCE)
-    first = np.array([found[0] if found.size else np.inf for found in crossings])
-    frequency = np.full(len(speeds), np.nan)
-    kind = ["none"] * len(speeds)
-    lost = np.flatnonzero(np.isfinite(first))
-    beyond = growths(case, modes, speeds[lost], _BEYOND * first[lost])
-    for i, growth in zip(lost, beyond, strict=True):
-        frequency[i] = growth.frequency
-        kind[i] = growth.bifurcation
-    return LimitCurve(
-        spindle_speed=speeds,
-        critical_depth=first,
-        chatter_frequency=frequency,
-        bifurcation=tuple(kind),
-        crossings=tuple(crossings),
-        steps=np.zeros(len(speeds), dtype=np.int64),
+    def at_limits(
+        index: NDArray[np.int64], at: NDArray[np.float64]
+    ) -> tuple[list[str], NDArray[np.float64]]:
+        found = growths(case, modes, speeds[index], _BEYOND * at)
+        return [one.bifurcation for one in found], np.array([one.frequency for one in found])
+
+    crossings = find_crossings(
+        grid.reshape(len(speeds), -1), grid_depths, refined, _DEPTH_TOLERANCE
     )
+    return limits_at(at_limits, speeds, crossings, np.zeros(len(speeds), dtype=np.int64))
 
 
 def _logarithms(found: list[Growth]) -> NDArray[np.float64]:

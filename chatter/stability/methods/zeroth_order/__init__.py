@@ -1,1 +1,1 @@
-"""Zeroth order."""
+"""Zeroth-order approximation: uniform pitch (kernels), distinct delays, limits of a model."""

@@ -68,7 +68,7 @@ def small_eigenvalues(matrix, out):
 
 @njit(**KERNEL)
 def _inverse_depths(omega, receptance, delays, means, speed, before, now):
-    """Set now (r,) to the inverse limit depths at a line, in the order of those before."""
+    """Set now (r,) to the inverse critical depths at a line, in the order of those before."""
     rank = receptance.shape[0]
     regenerated = np.zeros((rank, rank), dtype=np.complex128)
     for g in range(delays.shape[0]):
@@ -116,7 +116,7 @@ def _lowest_between(omega, receptance, delays, means, speed, first, last, before
 def _limits(omega, receptance, coarse, delays, means, speeds):
     """Lowest limit and its frequency (rad/s) at each speed; inf and nan where there is none.
 
-    All lines are looked at only between two of the coarse ones where an eigenvalue turns real.
+    All lines are evaluated only between two of the coarse ones where an eigenvalue turns real.
     """
     rank = receptance.shape[1]
     depth, frequency = np.full(speeds.shape[0], np.inf), np.full(speeds.shape[0], np.nan)
@@ -148,7 +148,7 @@ def limits_of_delays(
     means: NDArray[np.float64],
     speeds: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Limit depth (m) and chatter frequency (Hz) at every spindle speed.
+    """Critical depth (m) and chatter frequency (Hz) at every spindle speed.
 
     Parameters
     ----------
@@ -195,12 +195,12 @@ def _on_lattice(
     delays: NDArray[np.float64], means: NDArray[np.float64], spacing: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Fewer delays, evenly spaced, that stand for many by cubic interpolation of the phase."""
-    place = np.floor(delays / spacing).astype(np.int64)
-    number = place[:, None] + np.arange(-1, 3)
+    position = np.floor(delays / spacing).astype(np.int64)
+    number = position[:, None] + np.arange(-1, 3)
     nodes, node = np.unique(number, return_inverse=True)
     if nodes.size >= delays.size:
         return delays, means
-    s = delays / spacing - place
+    s = delays / spacing - position
     share = np.stack(
         [
             -s * (s - 1.0) * (s - 2.0) / 6.0,
@@ -223,11 +223,11 @@ def _enough_lines(
     between = np.ceil(np.diff(frequency) / spacing).astype(np.int64)
     if between.max() <= 1:
         return frequency, receptance
-    place = np.repeat(np.arange(between.size), between)
+    position = np.repeat(np.arange(between.size), between)
     first = np.cumsum(between) - between
-    share = (np.arange(place.size) - first[place]) / between[place]
-    step = np.diff(frequency)[place]
-    lines = np.append(frequency[place] + share * step, frequency[-1])
-    change = np.diff(receptance, axis=0)[place]
-    values = receptance[place] + share[:, None, None] * change
+    share = (np.arange(position.size) - first[position]) / between[position]
+    step = np.diff(frequency)[position]
+    lines = np.append(frequency[position] + share * step, frequency[-1])
+    change = np.diff(receptance, axis=0)[position]
+    values = receptance[position] + share[:, None, None] * change
     return lines, np.ascontiguousarray(np.concatenate([values, receptance[-1:]]))

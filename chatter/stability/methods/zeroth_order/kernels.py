@@ -1,4 +1,4 @@
-"""Limit depth of the zeroth-order frequency solution at given speeds, in compiled code."""
+"""Critical depth of the zeroth-order frequency solution at given speeds, in compiled code."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def _lowest_between_lines(delay, omega, step, start, change, limit, frequency):
 
 @njit(**DRIVER)
 def order_like_neighbours(eigenvalues):
-    """Reorder the rows (n, r) in place so that each column is continuous."""
+    """Reorder the rows (n, r) in position so that each column is continuous."""
     lines, rank = eigenvalues.shape
     for line in range(1, lines):
         for branch in range(rank - 1):

@@ -1,119 +1,40 @@
-"""Zeroth-order solution in the frequency domain (Altintas and Budak 1995).
-
-The periodic directional matrix is replaced by its mean H0. At the limit depth w
-
-    det(I + w (1 - exp(-i omega T)) G(i omega) H0) = 0,
-
-so that every eigenvalue lambda of G H0 gives w (1 - exp(-i theta)) = -1/lambda with theta the
-phase between this pass and the last. The receptance may come straight from a measurement.
-Exact where the mean is all there is (many teeth, slotting, a helix at w = k pi D/(N tan beta));
-low radial immersion adds flip lobes that it does not know.
-"""
+"""Zeroth-order approximation (ZOA) in the frequency domain."""
 
 from __future__ import annotations
-
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.stability.methods.zeroth_order.kernels import order_like_neighbours, zero_order_limits
+from chatter.stability.limit_curve import LimitCurve, limits_at
+from chatter.stability.method import StabilityMethod, Sweep
 
 
-class ZeroOrderLimit(NamedTuple):
-    """Limit over spindle speed by the zeroth-order solution."""
+class ZerothOrder(StabilityMethod):
+    """Limits from averaged directional coefficients; no steps, no flip bifurcations."""
 
-    spindle_speed: NDArray[np.float64]  # rad/s (n,)
-    critical_depth: NDArray[np.float64]  # m (n,), inf where no lobe reaches
-    chatter_frequency: NDArray[np.float64]  # Hz (n,), nan there
-    lowest_depth: float  # m, over all speeds
-    lowest_frequency: float  # Hz
+    name = "zero-order"
+    label = "zeroth-order"
+    help = "Averaged directional coefficients (Altintas and Budak 1995), straight from FRFs."
+    takes_varying_speed = True
+    takes_process_damping = False
+    takes_frfs = True
 
+    def limits_of(self, sweep: Sweep) -> LimitCurve:
+        """Limits within the depths; see `zero_order_of`."""
+        from chatter.stability.methods.zeroth_order.limits import zero_order_of
 
-def zero_order_limit(
-    frequency: NDArray[np.float64],
-    receptance: NDArray[np.complex128],
-    mean_directional: NDArray[np.float64],
-    teeth: int,
-    speeds: NDArray[np.float64],
-) -> ZeroOrderLimit:
-    """Limit depth at every spindle speed.
+        limit = zero_order_of(sweep.model, sweep.speeds)
+        crossings = [depth[depth <= sweep.depths[-1]] for depth in limit.critical_depth[:, None]]
 
-    Parameters
-    ----------
-    frequency : (m,) array of float
-        Hz, ascending, > 0.
-    receptance : (m, r, r) array of complex
-        Relative receptance of tool and workpiece in the directions of motion, m/N.
-    mean_directional : (r, r) array of float
-        Mean directional matrix over a revolution, all teeth, N/m^2.
-    teeth : int
-        Uniformly spaced.
-    speeds : (n,) array of float
-        Spindle speeds, rad/s.
+        def at_limits(
+            index: NDArray[np.int64],
+            depth: NDArray[np.float64],  # noqa: ARG001
+        ) -> tuple[list[str], NDArray[np.float64]]:
+            return ["hopf"] * index.size, limit.chatter_frequency[index]
 
-    Returns
-    -------
-    ZeroOrderLimit
-    """
-    eigenvalues = _continuous(_eigenvalues(receptance @ mean_directional))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        inverse = np.where(eigenvalues == 0.0, np.nan, -1.0 / eigenvalues)
-    omega = 2.0 * np.pi * frequency
-    delays = 2.0 * np.pi / (teeth * speeds)
-    depth, chatter = zero_order_limits(omega, np.ascontiguousarray(inverse), delays)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        anywhere = np.where(inverse.real > 0.0, np.abs(inverse) ** 2 / (2.0 * inverse.real), np.inf)
-    line, branch = np.unravel_index(np.nanargmin(anywhere), anywhere.shape)
-    lowest = float(anywhere[line, branch])
-    return ZeroOrderLimit(speeds, depth, chatter, lowest, float(frequency[line]))
+        count = len(sweep.speeds)
+        sweep.progress(count, count)
+        return limits_at(at_limits, sweep.speeds, crossings, np.zeros(count, dtype=np.int64))
 
 
-def _eigenvalues(matrices: NDArray[np.complex128]) -> NDArray[np.complex128]:
-    """Eigenvalues (m, r) of every line; those of two by two in closed form, ten times as fast."""
-    if matrices.shape[1] != 2:
-        return np.linalg.eigvals(matrices)
-    (a, b), (c, d) = (matrices[:, i, :].T for i in range(2))
-    middle, half = 0.5 * (a + d), 0.5 * (a - d)
-    root = np.sqrt(half * half + b * c)
-    # the larger one first; the smaller one from the product, which loses no digits
-    larger = middle + np.where((middle.conj() * root).real < 0.0, -root, root)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        smaller = np.where(larger == 0.0, 0.0, (a * d - b * c) / larger)
-    return np.stack([larger, smaller], axis=1)
-
-
-def _continuous(eigenvalues: NDArray[np.complex128]) -> NDArray[np.complex128]:
-    """Order the eigenvalues of every line like those of the line before."""
-    ordered = eigenvalues.copy()
-    order_like_neighbours(ordered)
-    return ordered
-
-
-def frequency_lines(
-    natural_frequency: NDArray[np.float64], damping: NDArray[np.float64], highest: float
-) -> NDArray[np.float64]:
-    """Frequencies on which a modal receptance is sampled: dense around each mode.
-
-    Parameters
-    ----------
-    natural_frequency : (n,) array of float
-        Hz.
-    damping : (n,) array of float
-        Ratio.
-    highest : float
-        Last line, Hz.
-
-    Returns
-    -------
-    (m,) array of float
-        Hz, ascending.
-    """
-    lines = [np.geomspace(0.05 * natural_frequency.min(), highest, 8000)]
-    for f, zeta in zip(natural_frequency, damping, strict=True):
-        width = max(zeta, 1e-4) * f
-        # evenly in the phase of the resonance: tangent spacing
-        angle = np.linspace(-1.0, 1.0, 6001) * np.arctan(60.0)
-        lines.append(f + width * np.tan(angle))
-    merged = np.unique(np.concatenate(lines))
-    return merged[(merged > 0.0) & (merged <= highest)]
+ZEROTH_ORDER = ZerothOrder()

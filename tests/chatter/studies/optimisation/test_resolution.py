@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from chatter.stability.methods.collocation import multipliers as collocation
+from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import milling_model
 from chatter.studies.optimisation.limits import limits_of
 from chatter.studies.optimisation.resolution import most_waves
@@ -28,9 +29,9 @@ def test_a_fast_mode_that_hardly_takes_part_needs_no_short_elements():
     depths = np.linspace(0.0, 10e-3, 41)[1:]
     waves = most_waves(model, speeds, depths)
     assert waves >= 2.0
-    found = first_limits(model.cut(10e-3, waves=waves), speeds, depths)
+    found = first_limits(element_cut(model, 10e-3, wavelengths=waves), speeds, depths)
     # the finest that any command takes
-    exact = first_limits(model.cut(10e-3, *collocation.FINER[1]), speeds, depths)
+    exact = first_limits(element_cut(model, 10e-3, *collocation.FINER[1]), speeds, depths)
     limited = np.isfinite(exact)
     assert limited.any()
     assert np.array_equal(limited, np.isfinite(found))
@@ -48,8 +49,8 @@ def test_elements_are_as_short_as_the_samples_need_them():
     assert limits.waves < nominal.waves
     speeds = np.linspace(500.0, 2500.0, 30) * RPM
     depths = np.linspace(0.0, 10e-3, 41)[1:]
-    exact = first_limits(stiffest.cut(10e-3, *collocation.FINER[1]), speeds, depths)
-    found = first_limits(stiffest.cut(10e-3, waves=limits.waves), speeds, depths)
+    exact = first_limits(element_cut(stiffest, 10e-3, *collocation.FINER[1]), speeds, depths)
+    found = first_limits(element_cut(stiffest, 10e-3, wavelengths=limits.waves), speeds, depths)
     limited = np.isfinite(exact)
     assert limited.any()
     assert found[limited] == pytest.approx(exact[limited], rel=1e-3)
@@ -57,7 +58,7 @@ def test_elements_are_as_short_as_the_samples_need_them():
 
 def test_speeds_are_stepped_over_while_lobes_are_wider():
     damped = {"structure.mode": [{**mode, "damping": 0.003} for mode in MODES]}
-    cut = milling_model(end_mill(damped)).cut(5e-3)
+    cut = element_cut(milling_model(end_mill(damped)), 5e-3)
 
     def stride(rpm):
         return widest_stride(cut, rpm * RPM * 1.0075 ** np.arange(40))
@@ -67,7 +68,7 @@ def test_speeds_are_stepped_over_while_lobes_are_wider():
     assert stride(500.0) == 1
     # with 10 % of damping the wave has died out by then: no lobes at all
     dead = {"structure.mode": [{**mode, "damping": 0.1} for mode in MODES]}
-    cut = milling_model(end_mill(dead)).cut(5e-3)
+    cut = element_cut(milling_model(end_mill(dead)), 5e-3)
     assert stride(500.0) == 4
 
 
@@ -75,7 +76,7 @@ def test_the_followed_limits_are_those_of_every_speed():
     model = milling_model(end_mill())
     speeds = 6000.0 * RPM * 1.0075 ** np.arange(60)
     depths = np.linspace(0.0, 8e-3, 41)[1:]
-    cut = model.cut(8e-3)
+    cut = element_cut(model, 8e-3)
     assert widest_stride(cut, speeds) > 1
     followed = stable_depths(cut, speeds, depths)
     alone = [

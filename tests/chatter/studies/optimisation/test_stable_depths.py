@@ -7,6 +7,7 @@ import pytest
 
 import chatter
 from chatter.io.shipped_examples import example
+from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import milling_model
 from chatter.studies.optimisation.stable_depths import (
     StableDepths,
@@ -19,9 +20,9 @@ RPM = math.pi / 30.0
 
 
 def test_stability_that_comes_back_is_used():
-    # BENCHMARKS.md 3.2: closed islands at 19 000 rpm leave stable depths above them
+    # validation 3.2: closed islands at 19 000 rpm leave stable depths above them
     case = chatter.load(example("helix-islands").folder / "case.toml")
-    cut = milling_model(case).cut(8e-3)
+    cut = element_cut(milling_model(case), 8e-3)
     speeds, depths = np.array([19000.0 * RPM]), np.linspace(0.0, 8e-3, 81)[1:]
     stretches = stable_depths(cut, speeds, depths).stretches(0)
     crossings = chatter.check(case).limit.crossings[0]

@@ -1,0 +1,280 @@
+"""Pictures of stability diagrams: critical depth over an axis, spectral radius over two."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap, ListedColormap, TwoSlopeNorm
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+from numpy.typing import NDArray
+
+from chatter.description.units import rpm
+from chatter.plots import style
+from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
+from chatter.stability.registry import METHODS
+
+if TYPE_CHECKING:
+    from chatter.stability.diagram import StabilityDiagram, StabilityMap
+
+_FILL_ROWS = 1000
+#: more values than this make a line without markers
+_FEW_VALUES = 150
+#: spectral radii beyond this look the same
+_HIGHEST_RADIUS = 2.0
+_RADIUS_COLOURS = LinearSegmentedColormap.from_list(
+    "spectral radius",
+    [
+        (0.0, "#5AB08F"),
+        (0.5, style.STABLE_FILL),
+        (0.5, style.UNSTABLE_FILL),
+        (1.0, "#D9905F"),
+    ],
+)
+
+
+def plot_limits(diagram: StabilityDiagram) -> Figure:
+    """Draw critical depth and chatter frequency over the axis of a diagram.
+
+    Parameters
+    ----------
+    diagram : StabilityDiagram
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = style.new_figure(8.0, 7.0 if diagram.is_over_speed else 6.4)
+    limit, frequency = figure.subplots(2, 1, sharex=True, height_ratios=[2.2, 1.0])
+    _draw_limits(limit, diagram)
+    _draw_frequency(frequency, diagram)
+    if diagram.is_over_speed:
+        frequency.text(
+            0.0, -0.42, _pocket_list(diagram), transform=frequency.transAxes,
+            fontsize=8.5, va="top", linespacing=1.5,
+        )  # fmt: skip
+    limit.set_title(diagram.case.title or "Critical depth", pad=52.0, loc="left")
+    return figure
+
+
+def _draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
+    x, top, limits = diagram.axis.values, _top(diagram), diagram.limits
+    _fill(axes, diagram, top)
+    # where stable intervals come or go the limit jumps: no line across
+    jumps = np.flatnonzero(np.diff([len(found) for found in limits.crossings])) + 1
+    across = np.insert(x, jumps, x[jumps])
+    marker = "." if x.size <= _FEW_VALUES else ""
+
+    def draw(depth: NDArray[np.float64], colour: str, width: float, label: str | None) -> None:
+        broken = np.insert(np.where(np.isfinite(depth), depth * 1e3, math.nan), jumps, math.nan)
+        axes.plot(
+            across, broken, "-", marker=marker, markersize=3.5, color=colour, linewidth=width,
+            label=label,
+        )  # fmt: skip
+
+    for index in range(1, max((len(found) for found in limits.crossings), default=0)):
+        further = [d[index] if len(d) > index else math.nan for d in limits.crossings]
+        draw(np.array(further), style.BLUE, 0.8, None)
+    draw(limits.critical_depth, style.BLUE, 1.6, f"limit, {METHODS[diagram.method].label}")
+    if diagram.is_over_speed and diagram.method != "zero-order":
+        zero_order = diagram.zero_order.critical_depth
+        axes.plot(
+            x, np.where(np.isfinite(zero_order), zero_order, math.nan) * 1e3, color=style.GREY,
+            linewidth=1.0, linestyle=(0, (4, 2)), label=f"limit, {METHODS['zero-order'].label}",
+        )  # fmt: skip
+    flip = np.array(limits.bifurcation) == "flip"
+    if flip.any():
+        draw(np.where(flip, limits.critical_depth, math.nan), style.RED, 2.0, "limit by flip")
+    if diagram.is_over_speed:
+        _mark_pockets(axes, diagram)
+        _mark_operating_point(axes, diagram)
+    else:
+        _mark_case(axes, diagram.axis.case_value, diagram.case.cut.axial_depth * 1e3, x)
+    _name_sides(axes)
+    axes.set_xlim(x[0], x[-1])
+    axes.set_ylim(0.0, top * 1e3)
+    axes.set_ylabel("axial depth [mm]")
+    style.finish(axes)
+
+
+def _top(diagram: StabilityDiagram) -> float:
+    """Highest depth shown, m: all of the search over speed, else what the limits reach."""
+    found = [depth for crossings in diagram.limits.crossings for depth in crossings]
+    highest = float(np.nanmax(diagram.max_depth))
+    if not diagram.is_over_speed and found:
+        highest = 1.15 * max(found)
+    return max(highest, 1.05 * diagram.case.cut.axial_depth)
+
+
+def _fill(axes: Axes, diagram: StabilityDiagram, top: float) -> None:
+    """Fill every stable and unstable interval of depth; closed islands show as such."""
+    depth = (np.arange(_FILL_ROWS) + 0.5) * top / _FILL_ROWS
+    crossings = diagram.limits.crossings
+    chatter = np.array([np.searchsorted(found, depth) % 2 for found in crossings]).T
+    # nothing is known beyond the search, and where there was none
+    beyond = ~(depth[:, None] <= np.maximum(diagram.max_depth[None, :], 0.0))
+    if diagram.is_over_speed:
+        beyond[:] = False
+    axes.pcolormesh(
+        diagram.axis.values,
+        depth * 1e3,
+        np.ma.masked_where(beyond, chatter),
+        cmap=ListedColormap([style.STABLE_FILL, style.UNSTABLE_FILL]),
+        shading="nearest",
+        vmin=0,
+        vmax=1,
+        zorder=0.5,
+        rasterized=True,
+    )
+
+
+def _mark_case(axes: Axes, x: float, y: float, inside: NDArray[np.float64]) -> None:
+    if math.isfinite(x) and math.isfinite(y) and inside[0] <= x <= inside[-1]:
+        axes.plot(
+            x, y, marker="D", markersize=7, markeredgecolor="black", color="white",
+            linestyle="none", label="the case", zorder=5,
+        )  # fmt: skip
+
+
+def _mark_pockets(axes: Axes, diagram: StabilityDiagram) -> None:
+    for number, pocket in enumerate(diagram.pockets, start=1):
+        x, y = rpm(pocket.spindle_speed), pocket.axial_depth * 1e3
+        label = "pocket, with margin" if number == 1 else None
+        axes.plot(x, y, "o", color=style.GREEN, markersize=11, linestyle="none", label=label)
+        axes.annotate(
+            str(number), (x, y), color="white", fontsize=8, ha="center", va="center", weight="bold"
+        )
+
+
+def _pocket_list(diagram: StabilityDiagram) -> str:
+    """List below the picture what the numbers in it stand for."""
+    lines = [
+        f"{number}: {rpm(pocket.spindle_speed):.0f} rpm, {pocket.axial_depth * 1e3:.3g} mm, "
+        f"{pocket.removal_rate * 6e7:.3g} cm³/min"
+        for number, pocket in enumerate(diagram.pockets, start=1)
+    ]
+    rows = ["     ".join(lines[k : k + 2]) for k in range(0, len(lines), 2)]
+    margin = f"pockets ({DEPTH_MARGIN:.0%} below the limit, speed off by {SPEED_MARGIN:.1%}):"
+    return "\n".join([margin, *rows]) if rows else "no pocket between these speeds"
+
+
+def _mark_operating_point(axes: Axes, diagram: StabilityDiagram) -> None:
+    cut = diagram.case.cut
+    stable = diagram.operating_is_stable
+    axes.plot(
+        rpm(cut.spindle_speed),
+        cut.axial_depth * 1e3,
+        marker="o" if stable else "X",
+        markersize=9,
+        markeredgecolor="black",
+        color=style.GREEN if stable else style.RED,
+        linestyle="none",
+        label=f"operating point, {'stable' if stable else 'chatter'}",
+        zorder=5,
+    )
+
+
+def _draw_frequency(axes: Axes, diagram: StabilityDiagram) -> None:
+    """Draw the chatter frequency at the limit, with the natural frequencies."""
+    kinds, frequency = np.array(diagram.limits.bifurcation), diagram.limits.chatter_frequency
+    for kind, name, colour in (("hopf", "Hopf", style.BLUE), ("flip", "flip", style.RED)):
+        of_kind = kinds == kind
+        if of_kind.any():
+            x = diagram.axis.values[of_kind]
+            axes.plot(x, frequency[of_kind], ".", markersize=3.5, color=colour, label=name)
+    low, high = _frequency_range(frequency)
+    label: str | None = "natural frequency"
+    for values in diagram.natural_frequencies:
+        shown = np.where((values >= low) & (values <= high), values, math.nan)
+        if np.isfinite(shown).any():
+            axes.plot(
+                diagram.axis.values, shown, color=style.GREY, linewidth=0.8, linestyle=":",
+                label=label,
+            )  # fmt: skip
+            label = None
+    axes.set_ylim(low, high)
+    axes.set_xlabel(diagram.axis.heading.replace("spindle_speed", "spindle speed"))
+    axes.set_ylabel("chatter\nfrequency [Hz]")
+    style.finish(axes)
+    if axes.get_legend_handles_labels()[0]:
+        # above the panel: within it there are points everywhere
+        axes.legend(
+            loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=7.5, frameon=False, ncols=3,
+            borderaxespad=0.1,
+        )  # fmt: skip
+
+
+def _frequency_range(frequency: NDArray[np.float64]) -> tuple[float, float]:
+    finite = frequency[np.isfinite(frequency)]
+    if finite.size == 0:
+        return 0.0, 1.0
+    low, high = float(finite.min()), float(finite.max())
+    room = max(0.15 * (high - low), 0.02 * high)
+    return max(0.0, low - room), high + room
+
+
+def _name_sides(axes: Axes) -> None:
+    """Legend above the axes, with the fills of both sides."""
+    lines, labels = axes.get_legend_handles_labels()
+    fills = [
+        Patch(facecolor=style.STABLE_FILL, edgecolor=style.GREY, label="stable"),
+        Patch(facecolor=style.UNSTABLE_FILL, edgecolor=style.GREY, label="chatter"),
+    ]
+    axes.legend(
+        [*lines, *fills],
+        [*labels, "stable", "chatter"],
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.02),
+        ncols=4,
+        fontsize=8.5,
+        frameon=False,
+        borderaxespad=0.0,
+    )
+
+
+def plot_map(diagram: StabilityMap) -> Figure:
+    """Draw the spectral radius over two axes, with the boundary of stability.
+
+    Parameters
+    ----------
+    diagram : StabilityMap
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = style.new_figure(8.0, 5.6)
+    axes = figure.subplots()
+    x, y = diagram.x_axis.values, diagram.y_axis.values
+    radius = np.ma.masked_invalid(diagram.spectral_radius)
+    lowest = min(float(radius.min()), 0.99)
+    highest = min(max(float(radius.max()), 1.01), _HIGHEST_RADIUS)
+    mesh = axes.pcolormesh(
+        x,
+        y,
+        radius,
+        cmap=_RADIUS_COLOURS,
+        norm=TwoSlopeNorm(1.0, lowest, highest),
+        shading="nearest",
+        rasterized=True,
+    )
+    if radius.min() < 1.0 < radius.max():
+        growth_rate = np.ma.log(np.ma.maximum(radius, 1e-300))
+        axes.contour(x, y, growth_rate, levels=[0.0], colors=[style.BLUE], linewidths=1.6)
+        axes.plot([], [], color=style.BLUE, linewidth=1.6, label="|µ| = 1")
+    if y[0] <= diagram.y_axis.case_value <= y[-1]:
+        _mark_case(axes, diagram.x_axis.case_value, diagram.y_axis.case_value, x)
+    axes.set_xlim(x[0], x[-1])
+    axes.set_ylim(y[0], y[-1])
+    axes.set_xlabel(diagram.x_axis.heading)
+    axes.set_ylabel(diagram.y_axis.heading)
+    axes.set_title(diagram.case.title or "Spectral radius", pad=28.0, loc="left")
+    _name_sides(axes)
+    style.finish(axes)
+    extend = "max" if radius.max() > _HIGHEST_RADIUS else "neither"
+    bar = figure.colorbar(mesh, ax=axes, extend=extend)
+    bar.set_label("spectral radius |µ|, stable below 1")
+    return figure

@@ -1,0 +1,258 @@
+"""The structure of a case in the time domain: modes, or a machine with its drives and frictions."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.compile.machine_cut import MachineCut, machine_cut
+from chatter.compile.rigid_motion import rigid_motion
+from chatter.compile.structure import structure_of
+from chatter.description.case import Case
+from chatter.description.errors import InputError
+from chatter.engine.loop_stability import refuse_unstable_control
+from chatter.simulation.resolution import (
+    LARGEST_LAG,
+    Resolution,
+    resolution_of,
+    shortest_arc,
+    turns_of,
+)
+from chatter.simulation.spindle import path_of
+from cutting.tool.cutter import Cutter, slice_counts
+from dynamics.control.sampling import ControlError
+from dynamics.machine.tables import StructureTables, machine_tables, modal_tables
+from dynamics.modal.modes import Mode
+from dynamics.structure.linear_structure import StructureError
+from dynamics.trajectory.set_points import SetPoints
+
+#: steps of the time that a tooth is in the cut, and between teeth, at the least
+_STEPS_A_CUT = 40
+_STEPS_A_PITCH = 16
+#: time that the machine runs before the cut, over which its axes come to speed, and in which they
+#: can at all, s
+_SETTLING, _SPEEDING_UP, _LEAST_SPEEDING_UP = 1.0, 0.3, 0.05
+#: rows of the record, at the most
+_MOST_ROWS = 200_000
+
+
+@dataclass(frozen=True, eq=False)
+class StructureInTime:
+    """What stands behind the ports of the time loop, at rest, and its steps.
+
+    Parameters
+    ----------
+    modes : tuple of Mode
+        Empty for a rigid tool; of a machine those of its structure, for resolution and pictures.
+    resolution : Resolution
+    step : float
+        Time step, s.
+    steps : int
+        Of the cut.
+    tables : StructureTables
+        They hold the state of one run.
+    notes : tuple of str
+    on_machine : MachineCut, optional
+        Where a machine makes the cut.
+    settling : int
+        Steps that it runs in the air before.
+    """
+
+    modes: tuple[Mode, ...]
+    resolution: Resolution
+    step: float
+    steps: int
+    tables: StructureTables
+    notes: tuple[str, ...] = ()
+    on_machine: MachineCut | None = None
+    settling: int = 0
+
+    @property
+    def rubs(self) -> bool:
+        """Whether there is friction on modes."""
+        return self.on_machine is None and len(self.tables.implicit) > 1
+
+
+def structure_in_time(
+    case: Case, cutter: Cutter, modes: tuple[Mode, ...] | None = None
+) -> StructureInTime:
+    """Compile the structure of a case for the time domain.
+
+    Parameters
+    ----------
+    case : Case
+    cutter : Cutter
+    modes : tuple of Mode, optional
+        Of the structure, where they are known already; a machine has its own.
+
+    Raises
+    ------
+    InputError
+        If the structure cannot be read or the machine cannot make the cut.
+    """
+    if case.structure is not None and case.structure.machine is not None:
+        return machine_in_time(case, cutter)
+    notes: tuple[str, ...] = ()
+    if modes is None:
+        modes, notes = modes_of(case)
+    return modes_in_time(case, cutter, modes, notes)
+
+
+def modes_of(case: Case) -> tuple[tuple[Mode, ...], tuple[str, ...]]:
+    """Modes of the structure of a case, and what was assumed of it; none for a rigid tool."""
+    if case.structure is None:
+        return (), ("no [structure]: tool and workpiece are rigid",)
+    structure = structure_of(case)
+    return structure.modes, tuple(structure.notes)
+
+
+def modes_in_time(
+    case: Case, cutter: Cutter, modes: tuple[Mode, ...], notes: tuple[str, ...] = ()
+) -> StructureInTime:
+    """Compile modes with the frictions on them."""
+    resolution = resolution_of(case, cutter, modes)
+    step = 2.0 * math.pi / (case.cut.spindle_speed * resolution.steps_a_turn)
+    given = case.structure.mode if case.structure is not None else ()
+    frictions = {
+        place: case.friction[mode.friction].spec()
+        for place, mode in enumerate(given)
+        if mode.friction
+    }
+    tables = modal_tables(modes, step, tuple(frictions.values()), tuple(frictions))
+    return StructureInTime(tuple(modes), resolution, step, resolution.steps, tables, notes)
+
+
+def machine_in_time(case: Case, cutter: Cutter) -> StructureInTime:
+    """Compile the machine of a case, its axes to be at the feed when the cut begins."""
+    if case.cut.speed_variation is not None:
+        raise InputError(
+            f"{case.name}: cut.speed_variation: the spindle of a machine turns as its drive lets it"
+        )
+    if case.simulation is not None and case.simulation.path is not None:
+        raise InputError(f"{case.name}: simulation.path: a machine is fed along a straight line")
+    cut = machine_cut(case)
+    step = _step(case, cut, cutter)
+    refuse_unstable_control(cut.machine, step)
+    modes = cut.modes()
+    resolution = _resolution(case, cutter, modes, step)
+    speed = case.cut.spindle_speed
+    before = round(_time_before(case, cut) / step)
+    duration = resolution.turns * 2.0 * math.pi / speed
+    points = _set_points(
+        cut, path_of(case).feed, speed, (before + 10) * step + duration, before * step
+    )
+    return StructureInTime(
+        modes,
+        resolution,
+        step,
+        max(1, round(duration / step)),
+        _tables(cut, case, step, points),
+        _notes(cut),
+        cut,
+        before,
+    )
+
+
+def _time_before(case: Case, cut: MachineCut) -> float:
+    """Time that the machine runs in the air, s: its axes have their feed at its end."""
+    settling = case.structure.settling
+    if settling is None:
+        return _SETTLING
+    if cut.feeds and settling < _LEAST_SPEEDING_UP:
+        raise InputError(
+            f"{case.name}: structure.settling: {settling:g} s is given, but the axes "
+            f"{', '.join(cut.feeds)} of {cut.file.name} have to come to the feed in it; "
+            f"{_LEAST_SPEEDING_UP:g} s or more is wanted"
+        )
+    return settling
+
+
+def _step(case: Case, cut: MachineCut, cutter: Cutter) -> float:
+    """Step of the machine file, or a whole part of it that resolves the cut."""
+    a_turn = 2.0 * math.pi / case.cut.spindle_speed
+    section = case.simulation
+    wanted = section.steps if section and section.steps else None
+    if wanted is None:
+        wanted = max(
+            _STEPS_A_CUT * 2.0 * math.pi / shortest_arc(case, cutter),
+            _STEPS_A_PITCH * 2.0 * math.pi / min(cutter.pitch),
+        )
+    parts = max(1, math.ceil(cut.file.step * wanted / a_turn - 1e-9))
+    return cut.file.step / parts
+
+
+def _resolution(case: Case, cutter: Cutter, modes: tuple, step: float) -> Resolution:
+    a_turn = 2.0 * math.pi / case.cut.spindle_speed
+    by = math.lcm(4, case.tool.teeth)
+    bins = math.ceil(a_turn / step / by) * by
+    section = case.simulation
+    chip = section.chip if section else "delay"
+    corner, straight = slice_counts(cutter, case.cut.axial_depth, LARGEST_LAG[chip])
+    if section and section.slices and straight:
+        straight = section.slices
+    turns = turns_of(case, modes)
+    steps = turns * a_turn / step
+    return Resolution(bins, (corner, straight), turns, max(1, math.ceil(steps / _MOST_ROWS)))
+
+
+def _set_points(
+    cut: MachineCut, feed: float, speed: float, duration: float, before: float
+) -> SetPoints:
+    """Axes that come to speed smoothly before the cut, the spindle at speed from the start."""
+    machine = cut.machine
+    cycle = max(
+        (drive.controller.position.timing.sample_time for drive in machine.drives),
+        default=cut.file.step,
+    )
+    time = cycle * np.arange(math.ceil(duration / cycle) + 2)
+    ramp = max(min(_SPEEDING_UP, before), _LEAST_SPEEDING_UP)
+    share = np.clip(time / ramp, 0.0, 1.0)
+    # half a cosine of velocity
+    rising = 0.5 * (1.0 - np.cos(np.pi * share))
+    way = np.where(
+        share < 1.0,
+        0.5 * ramp * (share - np.sin(np.pi * share) / np.pi),
+        time - 0.5 * ramp,
+    )
+    gain = np.where(share < 1.0, 0.5 * np.pi / ramp * np.sin(np.pi * share), 0.0)
+    columns = [np.zeros((time.size, max(len(machine.axes), 1))) for _ in range(3)]
+    for axis, velocity in cut.velocities(feed, speed).items():
+        place = machine.axes.index(axis)
+        turning = axis == cut.spindle_axis
+        columns[0][:, place] = velocity * (time if turning else way)
+        columns[1][:, place] = velocity * (1.0 if turning else rising)
+        columns[2][:, place] = 0.0 if turning else velocity * gain
+    return SetPoints(*columns, round(cycle / cut.file.step))
+
+
+def _tables(cut: MachineCut, case: Case, step: float, points: SetPoints) -> StructureTables:
+    outputs = {f"tool {axis}": row for axis, row in zip("xyz", cut.tool, strict=True)}
+    if cut.spindle is not None:
+        outputs["tool turn"] = cut.spindle
+    parts = round(cut.file.step / step)
+    points = points._replace(steps=points.steps * parts)
+    try:
+        return machine_tables(
+            cut.machine, step, points, {}, outputs, _start(cut, case.cut.spindle_speed)
+        )
+    except (StructureError, ControlError) as error:
+        raise InputError(f"{cut.file.name}: {error}") from error
+
+
+def _start(cut: MachineCut, speed: float) -> NDArray[np.float64]:
+    """Velocity of the freedoms with the spindle at speed and all else at rest."""
+    if cut.spindle_axis is None:
+        return np.zeros(cut.machine.structure.size)
+    return rigid_motion(cut.machine, {cut.spindle_axis: cut.sense * speed})
+
+
+def _notes(cut: MachineCut) -> tuple[str, ...]:
+    notes = []
+    if not cut.feeds:
+        notes.append("no axis under control feeds the tool: its path is prescribed")
+    if cut.spindle is None:
+        notes.append("no spindle under control turns the tool: its speed is prescribed")
+    return tuple(notes)

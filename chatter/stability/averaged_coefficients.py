@@ -1,0 +1,82 @@
+"""Directional coefficients averaged over a revolution, for every delay: what zeroth order keeps."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from chatter.engine.presets import DRIVER
+from cutting.edge_segments.coupling import arc_at, coupling_at, delay_at, part_below
+
+#: delays vary by no more than this along a part of a segment, rad; the most parts
+_DELAY_STEP, _MOST_PARTS = 2e-3, 64
+#: Gauss points over an arc
+_POINTS = 16
+
+
+class AveragedCoefficients(NamedTuple):
+    """Averaged directional coefficients: the force on the tool is -sum_g mean_g (u - u delayed)."""
+
+    delay: NDArray[np.float64]  # rad (g,)
+    mean: NDArray[np.float64]  # N/m, or N/m^2 per axial depth (g, r, r)
+
+
+@njit(**DRIVER)
+def averaged_coefficients(cut, depth):
+    """Average the couplings of a cut over a revolution, apart for every delay.
+
+    Parameters
+    ----------
+    cut : CutArrays
+    depth : float
+        Axial depth, m.
+
+    Returns
+    -------
+    AveragedCoefficients
+        In N/m.
+    """
+    segments = cut.segments
+    rank = cut.shape.shape[1]
+    count = _MOST_PARTS * segments.bottom.shape[0] + 1
+    delays, means = np.zeros(count), np.zeros((count, rank, rank))
+    part, unused = np.empty((rank, rank)), np.empty((rank, rank))
+    used = 0
+    for segment in range(segments.bottom.shape[0]):
+        top = part_below(segments, segment, depth)
+        if top <= 0.0:
+            continue
+        varies = abs(segments.delay[segment, 1] - segments.delay[segment, 0])
+        parts = min(_MOST_PARTS, 1 + int(varies / _DELAY_STEP))
+        for share in range(parts):
+            position = top * (share + 0.5) / parts
+            delay = delay_at(segments, segment, position)
+            own = -1
+            for g in range(used):
+                if abs(delays[g] - delay) < 1e-9:
+                    own = g
+            if own < 0:
+                own = used
+                delays[own] = delay
+                used += 1
+            entry, leave, at = arc_at(segments, segment, position)
+            weight = segments.length[segment] * top / parts
+            for q in range(_POINTS):
+                x, w = cut.edge_position[_POINTS, q], cut.edge_weight[_POINTS, q]
+                # dense towards both ends, where a size effect may be singular
+                w *= 6.0 * x * (1.0 - x)
+                x = x * x * (3.0 - 2.0 * x)
+                spindle = entry + x * (leave - entry) - at
+                of_revolution = w * (leave - entry) / (2.0 * math.pi)
+                coupling_at(
+                    segments, segment, position, spindle, weight * of_revolution, 0.0, cut.basis,
+                    part, unused,
+                )  # fmt: skip
+                for i in range(rank):
+                    for j in range(rank):
+                        means[own, i, j] += part[i, j]
+    return AveragedCoefficients(delays[:used], means[:used])

@@ -1,0 +1,110 @@
+"""Stability lobe diagram of a case: limits over spindle speed by two independent methods."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.case import Case
+from chatter.description.progress import Progress, no_progress
+from chatter.description.units import rpm
+from chatter.stability.diagram import DiagramAxis, StabilityDiagram, StabilityMap
+from chatter.stability.forced_vibration import notes_on_steady_cut
+from chatter.stability.limit_curve import LimitCurve
+from chatter.stability.method import StabilityMethod
+from chatter.stability.methods.zeroth_order.limits import zero_order_of
+from chatter.stability.model import MillingModel, milling_model
+from chatter.stability.pockets import find_pockets
+from chatter.stability.reference_speeds import natural_frequencies
+from chatter.stability.registry import chosen_method, fixed_steps, with_radius
+from chatter.stability.search_range import axial_depths, maximum_depth, spindle_speeds
+
+Array = NDArray[np.float64]
+
+
+def lobes(
+    case: Case, method: str | None = None, grid: bool = False, progress: Progress = no_progress
+) -> StabilityDiagram:
+    """Compute the stability lobe diagram of a case.
+
+    Parameters
+    ----------
+    case : Case
+    method : str, optional
+        Name in `chatter.stability.registry.METHODS`, or "auto"; by default what the case says, else
+        "auto".
+    grid : bool
+        Also the spectral radius on the whole grid of speeds and depths.
+    progress : callable, optional
+        Called with (done, total) speeds.
+
+    Returns
+    -------
+    StabilityDiagram
+
+    Raises
+    ------
+    InputError
+        If the case lacks something or asks for what cannot be computed.
+    """
+    chosen = chosen_method(case, method)
+    model = milling_model(case)
+    speeds = spindle_speeds(case)
+    zero_order = zero_order_of(model, speeds)
+    max_depth = maximum_depth(case, zero_order)
+    depths = axial_depths(case, max_depth)
+    limits = chosen.limits(model, speeds, depths, fixed_steps(case), progress)
+    radius = None
+    if grid:
+        speed, depth = (part.ravel() for part in np.meshgrid(speeds, depths))
+        found = with_radius(chosen).radius(model, speed, depth, fixed_steps(case), progress)
+        radius = found.reshape(len(depths), len(speeds))
+    removal_area = case.width_of_cut * case.cut.feed_per_tooth * case.tool.teeth / (2.0 * math.pi)
+    return StabilityDiagram(
+        case=case,
+        method=chosen.name,
+        axis=_speed_axis(case, speeds),
+        limits=limits,
+        max_depth=np.full(len(speeds), max_depth),
+        notes=(
+            *model.notes, *notes_on_steady_cut(model, chosen), *notes_on_tolerance(model, limits)
+        ),
+        zero_order=zero_order,
+        pockets=find_pockets(speeds, limits.critical_depth, max_depth, removal_area),
+        operating=_operating_limit(model, chosen, max_depth),
+        natural_frequencies=natural_frequencies(model, speeds),
+        depth_step=max_depth / len(depths),
+        grid=None if radius is None else map_over_speed(case, chosen, speeds, depths, radius),
+    )  # fmt: skip
+
+
+def _speed_axis(case: Case, speeds: Array) -> DiagramAxis:
+    return DiagramAxis("spindle_speed", "rpm", rpm(speeds), (), rpm(case.cut.spindle_speed))
+
+
+def map_over_speed(
+    case: Case, method: StabilityMethod, speeds: Array, depths: Array, radius: Array
+) -> StabilityMap:
+    """Map of the spectral radius (depths, speeds) over spindle speed (rad/s) and depth (m)."""
+    depth = DiagramAxis("axial_depth", "mm", depths * 1e3, (), case.cut.axial_depth * 1e3)
+    return StabilityMap(case, with_radius(method).name, _speed_axis(case, speeds), depth, radius)
+
+
+def notes_on_tolerance(model: MillingModel, limits: LimitCurve) -> tuple[str, ...]:
+    """Say where the tolerance on the critical depths is not met."""
+    if not limits.error > model.tolerance:
+        return ()
+    return (
+        f"the critical depths are accurate to {limits.error:.1%}, not to the {model.tolerance:.2%} "
+        "asked for; a lower lobes.tolerance takes finer elements, and longer",
+    )
+
+
+def _operating_limit(model: MillingModel, method: StabilityMethod, max_depth: float) -> LimitCurve:
+    """Limits at the operating speed, searched at least to the operating depth."""
+    case = model.case
+    depths = axial_depths(case, max(max_depth, 1.02 * case.cut.axial_depth))
+    speeds = np.array([case.cut.spindle_speed])
+    return method.limits(model, speeds, depths, fixed_steps(case), no_progress)

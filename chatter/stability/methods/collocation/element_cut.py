@@ -1,0 +1,75 @@
+"""A cut laid out for elements of a given resolution."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+from chatter.stability.cut_arrays import CutArrays
+from chatter.stability.methods.collocation.element_response import (
+    ElementPoints,
+    ResponseTable,
+    element_points,
+    response_table,
+)
+from chatter.stability.model import MillingModel
+from chatter.stability.spindle_rotation import PeriodFit
+
+#: Gauss points per element and chatter wavelengths that it holds, as a rule
+RESOLUTION = (8, 1.0)
+_SMALLEST_RESIDUAL = 1e-9
+
+
+class ElementCut(NamedTuple):
+    """A cut, and elements for it."""
+
+    arrays: CutArrays
+    points: ElementPoints
+    response: ResponseTable
+    longest: float  # element, s
+    residual: float  # of the dominant eigenpair, relative, at which its search stops
+
+    def with_fit(self, fit: PeriodFit) -> ElementCut:
+        """The cut with the period of a varying speed fitted in another way."""
+        return self._replace(arrays=self.arrays._replace(fit=fit))
+
+
+#: a cut at a resolution: Gauss points and wavelengths per element
+CutAt = Callable[[int, float], ElementCut]
+
+
+def element_cut(
+    model: MillingModel,
+    max_depth: float,
+    points: int = RESOLUTION[0],
+    wavelengths: float = RESOLUTION[1],
+) -> ElementCut:
+    """Lay out the cut of a model.
+
+    Parameters
+    ----------
+    model : MillingModel
+    max_depth : float
+        m.
+    points : int
+        Gauss points per element.
+    wavelengths : float
+        Of the fastest chatter, that an element holds at the most; edge segments shrink along.
+    """
+    arrays = model.cut(max_depth, wavelengths)
+    longest = wavelengths * 2.0 * math.pi / arrays.fastest
+    of_element = element_points(points)
+    response = response_table(arrays.natural_frequency, arrays.damping, of_element, longest)
+    # no better than the elements are
+    residual = max(_SMALLEST_RESIDUAL, 10.0 ** (4.0 - 1.5 * points))
+    return ElementCut(arrays, of_element, response, longest, residual)
+
+
+def element_cuts(model: MillingModel, max_depth: float) -> CutAt:
+    """The cut of a model at any resolution, down to a depth (m)."""
+
+    def cut_at(points: int, wavelengths: float) -> ElementCut:
+        return element_cut(model, max_depth, points, wavelengths)
+
+    return cut_at
