@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
 from chatter.description.case import Case
+from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
-from chatter.explain.selection.fitting import Parameter
 
 Values = Mapping[str, float]
 #: paths of a case -> values

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from chatter.explain.effects.effect import Effect, Values, free
+from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
-from chatter.explain.selection.fitting import Parameter
 
 
 class Dynamometer(Effect):

@@ -8,8 +8,8 @@ import numpy as np
 
 from chatter.description.case import Case
 from chatter.explain.effects.effect import Effect, Patch, Reported, Values, free, polar
+from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
-from chatter.explain.selection.fitting import Parameter
 
 
 class Runout(Effect):

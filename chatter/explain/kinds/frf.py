@@ -12,6 +12,7 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.explain.data_checks.responses import disagreeing_responses, wrong_responses
 from chatter.explain.data_checks.samples import Columns, sample_checks
+from chatter.explain.fitting import Parameter
 from chatter.explain.kinds.kind import (
     Array,
     Deviation,
@@ -20,9 +21,8 @@ from chatter.explain.kinds.kind import (
 )
 from chatter.explain.kinds.milling import structural_paths
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.prior import with_priors
 from chatter.explain.residuals.over_lines import by_condition, over_lines
-from chatter.explain.selection.fitting import Parameter
-from chatter.explain.selection.prior import with_priors
 from dynamics.modal.modes import receptance_matrix
 
 IN_CUT = "in_cut"

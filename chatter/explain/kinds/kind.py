@@ -14,20 +14,20 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.explain.data_checks.finding import Check
-from chatter.explain.measurement import Measurement, Run
-from chatter.explain.residuals.channel_residual import ChannelResidual
-from chatter.explain.residuals.finding import Finding
-from chatter.explain.residuals.noise import white_level
-from chatter.explain.residuals.variables import Condition, Form, Measure, Variable
-from chatter.explain.selection.criteria import (
+from chatter.explain.criteria import (
     AT_NOISE,
     FIRST_NOISE,
     LEAST_GAIN,
     LEAST_GAIN_SHARE,
     NUMERICS,
 )
-from chatter.explain.selection.fitting import Parameter
+from chatter.explain.data_checks.finding import Check
+from chatter.explain.fitting import Parameter
+from chatter.explain.measurement import Measurement, Run
+from chatter.explain.residuals.channel_residual import ChannelResidual
+from chatter.explain.residuals.finding import Finding
+from chatter.explain.residuals.noise import white_level
+from chatter.explain.residuals.variables import Condition, Form, Measure, Variable
 
 Array = NDArray[np.float64]
 Signals = Mapping[str, Array]

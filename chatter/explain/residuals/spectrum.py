@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.compile.structure import structure_of
-from chatter.explain.kinds.kind import AT_NOISE
+from chatter.explain.criteria import AT_NOISE
 from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.finding import Curve, Curves, Finding
 from chatter.explain.residuals.harmonics import Harmonics, Split

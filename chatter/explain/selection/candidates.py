@@ -10,16 +10,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.explain.effects.effect import Effect
-from chatter.explain.effects.registry import candidates, rank
-from chatter.explain.measurement import Run
-from chatter.explain.selection.criteria import (
+from chatter.explain.criteria import (
     EQUAL,
     FITTED_IN_FULL,
     FOLLOWED_STARTS,
     MOST_EFFECTS,
 )
-from chatter.explain.selection.fitting import WORKERS, Fit, Parameter
+from chatter.explain.effects.effect import Effect
+from chatter.explain.effects.registry import candidates, rank
+from chatter.explain.fitting import WORKERS, Fit, Parameter
+from chatter.explain.measurement import Run
 from chatter.explain.selection.problem import Problem
 
 Progress = Callable[[str, float], None]

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
+from chatter.explain.criteria import IMPOSSIBLE
 from chatter.explain.effects.effect import Effect
+from chatter.explain.fitting import Fit, Parameter, fit
 from chatter.explain.kinds.kind import Kind, Noise
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.prediction import Predictions
-from chatter.explain.selection.criteria import IMPOSSIBLE
-from chatter.explain.selection.fitting import Fit, Parameter, fit
 
 
 @dataclass(frozen=True, eq=False)

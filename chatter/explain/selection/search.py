@@ -9,6 +9,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from chatter.explain.criteria import (
+    ALTERNATIVES,
+    FITTED_AGAIN,
+    LEAST_SHARE,
+    MOST_EFFECTS,
+    NEAR_NOISE,
+    NO_RESIDUAL,
+)
+from chatter.explain.fitting import Fit, over_groups
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.prediction import Predictions
 from chatter.explain.selection.candidates import (
@@ -20,15 +29,6 @@ from chatter.explain.selection.candidates import (
     split_runs,
     stage_of,
 )
-from chatter.explain.selection.criteria import (
-    ALTERNATIVES,
-    FITTED_AGAIN,
-    LEAST_SHARE,
-    MOST_EFFECTS,
-    NEAR_NOISE,
-    NO_RESIDUAL,
-)
-from chatter.explain.selection.fitting import Fit, over_groups
 from chatter.explain.selection.problem import Problem
 
 

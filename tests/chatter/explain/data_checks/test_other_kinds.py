@@ -10,7 +10,7 @@ import pytest
 
 from chatter.compile.structure import structure_of
 from chatter.description.case import loads
-from chatter.explain.data_checks.checking import checked
+from chatter.explain.checking import checked
 from chatter.explain.explanation import explain
 from chatter.explain.measurement import Measurement, Run
 from dynamics.modal.modes import receptance_matrix
