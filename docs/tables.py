@@ -48,6 +48,13 @@ def friction_laws() -> str:
     return _laws(FRICTION_LAWS)
 
 
+def force_laws() -> str:
+    """Force laws of `[material]`."""
+    from chatter.description.laws import FORCE_LAWS
+
+    return _laws(FORCE_LAWS)
+
+
 def methods() -> str:
     """Stability methods."""
     from chatter.stability.registry import documentation
