@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from chatter.studies.optimisation.study import optimum as optimum
     from chatter.studies.pitch_design.study import pitch as pitch
     from chatter.studies.uncertainty.study import uncertainty as uncertainty
-    from chatter.studies.whatif.study import whatif as whatif
+    from chatter.studies.whatif.whatif_study import whatif as whatif
 
 __version__ = "0.1.0"
 
@@ -77,7 +77,7 @@ _PUBLIC = {
     "schema": "chatter.description.case_schema",
     "simulate": "chatter.simulation.simulate",
     "uncertainty": "chatter.studies.uncertainty.study",
-    "whatif": "chatter.studies.whatif.study",
+    "whatif": "chatter.studies.whatif.whatif_study",
 }
 
 __all__ = sorted([*_PUBLIC, "explain"])

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from chatter.description.case import Case
-from chatter.studies.whatif.study import whatif
+from chatter.studies.whatif.whatif_study import whatif
 
 RPM = math.pi / 30.0
 TEETH = 4

@@ -11,8 +11,8 @@ import chatter
 from chatter.description.errors import InputError, RunError
 from chatter.studies.model import load_model
 from chatter.studies.whatif import measures
-from chatter.studies.whatif.presets import STUDIES
-from chatter.studies.whatif.study import whatif
+from chatter.studies.whatif.preset_studies import STUDIES
+from chatter.studies.whatif.whatif_study import whatif
 
 ZERO_ORDER = {"method": "zero-order"}
 

@@ -4,7 +4,7 @@ import pytest
 from typer.testing import CliRunner
 
 from chatter.cli import app
-from chatter.studies.whatif.presets import STUDIES
+from chatter.studies.whatif.preset_studies import STUDIES
 
 CASE = "friction-amplitude/case.toml"
 MACHINE = "friction-amplitude/machine.toml"

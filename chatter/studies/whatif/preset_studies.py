@@ -1,4 +1,4 @@
-"""Ready studies: questions that people ask, each one command on a shipped example."""
+"""Preset studies: common questions, each one command on a shipped example."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from chatter.description.errors import InputError
 
 
 @dataclass(frozen=True)
-class ReadyStudy:
+class PresetStudy:
     """A study with its paths and values.
 
     Parameters
@@ -51,10 +51,10 @@ class ReadyStudy:
         """
         from chatter.io.shipped_examples import examples
 
-        places = {Path(one.folder).parent for one in examples().values()}
-        for place in places:
-            if (place / self.example).is_file():
-                return place / self.example
+        folders = {Path(one.folder).parent for one in examples().values()}
+        for folder in folders:
+            if (folder / self.example).is_file():
+                return folder / self.example
         raise InputError(f"study {self.name}: the example {self.example} is not installed")
 
 
@@ -64,7 +64,7 @@ _PLOUGHING = {
     "process_damping": {"indentation_force": "4e13 N/m^3", "friction": 0.3},
 }
 
-#: lobes straight from the FRFs of the machine, without a fit of modes at every place
+#: lobes straight from the FRFs of the machine, without a fit of modes at every position
 _WORKSPACE = {
     "lobes": {
         "method": "zero-order",
@@ -73,17 +73,17 @@ _WORKSPACE = {
     }
 }
 
-STUDIES: dict[str, ReadyStudy] = {
+STUDIES: dict[str, PresetStudy] = {
     study.name: study
     for study in (
-        ReadyStudy(
+        PresetStudy(
             "process-damping",
             "What does process damping add, over the whole diagram?",
             "one-degree-of-freedom/case.toml",
             ("process_damping.coefficient=0 N/m, 2e4 N/m, 5e4 N/m, 1e5 N/m",),
             "lobes",
         ),
-        ReadyStudy(
+        PresetStudy(
             "process-damping-speed",
             "At which speeds does process damping matter?",
             "one-degree-of-freedom/case.toml",
@@ -93,7 +93,7 @@ STUDIES: dict[str, ReadyStudy] = {
             ),
             "critical-depth",
         ),
-        ReadyStudy(
+        PresetStudy(
             "wear",
             "What becomes of chatter as the flank wears and ploughs?",
             "chattering-cut/case.toml",
@@ -102,7 +102,7 @@ STUDIES: dict[str, ReadyStudy] = {
             _PLOUGHING,
             quantity="settled_displacement_um",
         ),
-        ReadyStudy(
+        PresetStudy(
             "guide-friction",
             "What does the friction of a guide do to the table?",
             "machine-coupled-milling/machine.toml",
@@ -110,14 +110,14 @@ STUDIES: dict[str, ReadyStudy] = {
             "frf",
             only=("rest",),
         ),
-        ReadyStudy(
+        PresetStudy(
             "friction-amplitude",
             "What does the amplitude of the vibration do to lobes where a guide rubs?",
             "friction-amplitude/case.toml",
             ("structure.friction_amplitude=0.2 um, 1 um, 2 um, 4 um, 7 um, 20 um, 60 um",),
             "lobes",
         ),
-        ReadyStudy(
+        PresetStudy(
             "contact",
             "What does the contact of tool and work do to the table?",
             "machine-coupled-milling/machine.toml",
@@ -125,7 +125,7 @@ STUDIES: dict[str, ReadyStudy] = {
             "frf",
             only=("boring_in_cut",),
         ),
-        ReadyStudy(
+        PresetStudy(
             "velocity-gain",
             "What does the gain of the velocity controller do to the table?",
             "machine-coupled-milling/machine.toml",
@@ -136,7 +136,7 @@ STUDIES: dict[str, ReadyStudy] = {
             "frf",
             only=("moving",),
         ),
-        ReadyStudy(
+        PresetStudy(
             "controller-gains",
             "Which gains of position and velocity controller keep the table quiet?",
             "machine-coupled-milling/machine.toml",
@@ -148,7 +148,7 @@ STUDIES: dict[str, ReadyStudy] = {
             "frf",
             only=("moving",),
         ),
-        ReadyStudy(
+        PresetStudy(
             "axis-position",
             "What does the tool feel where the head stands elsewhere on its crossbeam?",
             "machine-gantry/machine.toml",
@@ -157,7 +157,7 @@ STUDIES: dict[str, ReadyStudy] = {
             {"machine.frf.tool_z": {"excite": "tcp:z", "band": ["30 Hz", "500 Hz"]}},
             only=("tool_z",),
         ),
-        ReadyStudy(
+        PresetStudy(
             "workspace-lobes",
             "What are the lobes of a cut where the head stands higher or lower?",
             "face-mill-chatter/case.toml",
@@ -165,7 +165,7 @@ STUDIES: dict[str, ReadyStudy] = {
             "lobes",
             _WORKSPACE,
         ),
-        ReadyStudy(
+        PresetStudy(
             "workspace",
             "Where in the workspace does a cut go how deep?",
             "face-mill-chatter/case.toml",
@@ -177,7 +177,7 @@ STUDIES: dict[str, ReadyStudy] = {
             _WORKSPACE,
             quantity="critical_depth_mm",
         ),
-        ReadyStudy(
+        PresetStudy(
             "pitch",
             "Does unequal pitch cut quietly where equal pitch chatters?",
             "chattering-cut/case.toml",
@@ -190,14 +190,14 @@ STUDIES: dict[str, ReadyStudy] = {
             "forces",
             quantity="settled_displacement_um",
         ),
-        ReadyStudy(
+        PresetStudy(
             "helix",
             "What does the helix do to the lobes of period doubling?",
             "helix-islands/case.toml",
             ("tool.helix=0 deg, 15 deg, 30 deg, 45 deg",),
             "lobes",
         ),
-        ReadyStudy(
+        PresetStudy(
             "runout",
             "What does runout do to forces and surface?",
             "chattering-cut/case.toml",
@@ -206,9 +206,9 @@ STUDIES: dict[str, ReadyStudy] = {
             {"cut.axial_depth": "1 mm"},
             quantity="Rz_um",
         ),
-        ReadyStudy(
+        PresetStudy(
             "sensitivity",
-            "Which declared value does the limit depth hang on most?",
+            "On which declared value does the critical depth depend most?",
             "steel-half-immersion/case.toml",
             (
                 "material.Ktc=+-10%",
@@ -225,8 +225,8 @@ STUDIES: dict[str, ReadyStudy] = {
 }
 
 
-def ready_study(name: str) -> ReadyStudy:
-    """Return a ready study.
+def preset_study(name: str) -> PresetStudy:
+    """Return a preset study.
 
     Raises
     ------
