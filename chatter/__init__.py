@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     from chatter.studies.modal_test import modes as modes
     from chatter.studies.optimisation.study import optimum as optimum
     from chatter.studies.pitch_design.study import pitch as pitch
-    from chatter.studies.uncertainty.study import uncertainty as uncertainty
+    from chatter.studies.uncertainty.monte_carlo import uncertainty as uncertainty
     from chatter.studies.whatif.whatif_study import whatif as whatif
 
 __version__ = "0.1.0"
@@ -76,7 +76,7 @@ _PUBLIC = {
     "pitch": "chatter.studies.pitch_design.study",
     "schema": "chatter.description.case_schema",
     "simulate": "chatter.simulation.simulate",
-    "uncertainty": "chatter.studies.uncertainty.study",
+    "uncertainty": "chatter.studies.uncertainty.monte_carlo",
     "whatif": "chatter.studies.whatif.whatif_study",
 }
 

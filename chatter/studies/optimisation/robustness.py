@@ -16,7 +16,6 @@ from chatter.studies.optimisation.search import Place
 from chatter.studies.optimisation.speed_depth_slice import Sheet, sheet_of
 from chatter.studies.optimisation.steady_cut import SteadyCuts
 from chatter.studies.optimisation.width_and_feed import model_at
-from chatter.studies.uncertainty.confidence import wilson_interval
 
 Array = NDArray[np.float64]
 
@@ -83,10 +82,13 @@ def _judged(candidate: Candidate, limits: Limits, sampled: SampledCuts) -> Candi
     sure, deeper = sampled.within(cuts, stable).mean(axis=0)
     if sure < limits.confidence:
         return None
+    from scipy.stats import binomtest
+
+    low, high = binomtest(round(sure * count), count).proportion_ci(method="wilson")
     found = Probability(
         float(stable[:, 0].mean()),
         float(sure),
-        wilson_interval(round(sure * count), count),
+        (float(low), float(high)),
         sampled.quantiles(SteadyCuts(*(values[:, 0] for values in cuts))),
     )
     risk = (1.0 - float(sure)) / (1.0 - limits.confidence)

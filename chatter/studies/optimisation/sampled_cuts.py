@@ -25,8 +25,12 @@ from chatter.studies.model import patched, standard_deviations
 from chatter.studies.optimisation.limits import LIMITED, Limits
 from chatter.studies.optimisation.steady_cut import SteadyCuts, SteadyModel
 from chatter.studies.optimisation.width_and_feed import model_at
-from chatter.studies.uncertainty.parameters import UncertainParameter, correlation_of, parameters_of
-from chatter.studies.uncertainty.sampling import samples
+from chatter.studies.uncertainty.latin_hypercube import samples
+from chatter.studies.uncertainty.uncertain_parameters import (
+    UncertainParameter,
+    correlation_of,
+    parameters_of,
+)
 
 Array = NDArray[np.float64]
 Result = TypeVar("Result")

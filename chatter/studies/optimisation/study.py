@@ -30,7 +30,7 @@ from chatter.studies.optimisation.search_state import KeptSearch
 from chatter.studies.optimisation.speed_depth_slice import Sheet, sheet_of
 from chatter.studies.optimisation.time_domain_verification import A_CHECK, SIMULATED, confirmed
 from chatter.studies.optimisation.width_and_feed import model_at
-from chatter.studies.uncertainty.propagation import check_counts
+from chatter.studies.uncertainty.sample_limits import check_counts
 
 DEFAULT_SAMPLES, DEFAULT_SEED = 200, 1
 #: sizes of the pieces of work against each other

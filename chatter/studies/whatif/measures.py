@@ -185,14 +185,15 @@ def _forces(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
     turned = result.spindle_angle / (2.0 * math.pi)
     first = int(np.searchsorted(turned, math.floor(turned[-1]) - _DRAWN_REVOLUTIONS))
     drawn = slice(
-        first, None, max(1, math.ceil((len(turned) - first) / 2 / _POINTS_PER_REVOLUTION))
+        first,
+        None,
+        max(1, math.ceil((len(turned) - first) / _DRAWN_REVOLUTIONS / _POINTS_PER_REVOLUTION)),
     )
     x = _numbers(turned[drawn])
     resultant = np.linalg.norm(result.force[drawn], axis=1)
     motion = np.linalg.norm(result.displacement[drawn], axis=1) * 1e6
-    curves = [
-        Curve("resultant force [N]", "", x, _numbers(resultant), "revolutions of the spindle")
-    ]
+    across = "revolutions of the spindle"
+    curves = [Curve("resultant force [N]", "", x, _numbers(resultant), across)]
     if motion.any():
         label = "displacement of the tool [µm]"
         curves.append(Curve(label, "", x, _numbers(motion), across))

@@ -7,7 +7,7 @@ import pytest
 
 from chatter.description.assignments import parse_assignments
 from chatter.studies.model import load_model, patched
-from chatter.studies.uncertainty.parameters import parameters_of
+from chatter.studies.uncertainty.uncertain_parameters import parameters_of
 from chatter.studies.whatif.design import chosen_layout, points_of
 from chatter.studies.whatif.preset_studies import STUDIES
 from chatter.studies.whatif.variation import read_variation
