@@ -13,14 +13,14 @@ from typer.testing import CliRunner
 from chatter.cli import app
 from chatter.description.case import loads
 from chatter.description.errors import InputError, RunError
-from chatter.studies.uncertainty import study as module
+from chatter.studies.uncertainty import monte_carlo as module
+from chatter.studies.uncertainty.latin_hypercube import samples
+from chatter.studies.uncertainty.monte_carlo import uncertainty
 from chatter.studies.uncertainty.uncertain_parameters import (
     UncertainParameter,
     correlation_of,
     parameters_of,
 )
-from chatter.studies.uncertainty.latin_hypercube import samples
-from chatter.studies.uncertainty.monte_carlo import uncertainty
 
 TEXT = """
 title = "one degree of freedom"
