@@ -16,7 +16,7 @@ from chatter.description.units import rpm
 from chatter.plots import style
 
 if TYPE_CHECKING:
-    from chatter.studies.optimisation.result import Optimum
+    from chatter.studies.optimisation.optimum import Optimum
 
 _PER_MINUTE = 6e7
 _FILL_ROWS = 800

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 
-from chatter.description.case import Case
 from chatter.stability.model import MillingModel
 from chatter.studies.optimisation.limits import Limits
-from chatter.studies.optimisation.search import Place, rounded
+from chatter.studies.optimisation.operating_point import Place, model_at, rounded
 from chatter.studies.optimisation.speed_depth_slice import STABILITY, Sheet, sheet_of
-from chatter.studies.optimisation.width_and_feed import at_width_and_feed, model_at
 
 #: a limit is active if it would not be held at a depth larger by this share
 DEEPER = 0.02
@@ -105,12 +104,22 @@ class Candidate:
         """Volume removed per time, m^3/s."""
         return self.place.removal_rate
 
+    def record(self) -> dict[str, Any]:
+        """Record of the result cache."""
+        return asdict(self)
 
-def case_at(case: Case, place: Place) -> Case:
-    """Case with a cut written in."""
-    return at_width_and_feed(case, place.radial_depth, place.feed_per_tooth).patch(
-        {"cut.spindle_speed": place.spindle_speed, "cut.axial_depth": place.axial_depth}
-    )
+    @classmethod
+    def from_record(cls, record: dict[str, Any]) -> Candidate:
+        """Read what `record` returned."""
+        known, time = record["probability"], record["time"]
+        values = {
+            **record,
+            "place": Place(*record["place"]),
+            "active": tuple(record["active"]),
+            "probability": known and Probability(**{**known, "interval": tuple(known["interval"])}),
+            "time": time and TimeCheck(**time),
+        }
+        return cls(**values)
 
 
 def max_usage(candidate: Candidate) -> float:

@@ -16,9 +16,9 @@ from chatter.stability.model import MillingModel
 from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
 from chatter.stability.search_range import maximum_depth, spindle_speeds
 from chatter.studies.model import standard_deviations
-from chatter.studies.optimisation.resolution import most_waves, telling
+from chatter.studies.optimisation.element_size import most_waves, telling
+from chatter.studies.optimisation.operating_point import model_at
 from chatter.studies.optimisation.steady_cut import SteadyCuts
-from chatter.studies.optimisation.width_and_feed import model_at
 
 Array = NDArray[np.float64]
 

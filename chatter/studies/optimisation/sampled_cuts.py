@@ -23,8 +23,8 @@ from chatter.stability.methods.collocation.element_cut import ElementCut, elemen
 from chatter.stability.model import MillingModel, milling_model
 from chatter.studies.model import patched, standard_deviations
 from chatter.studies.optimisation.limits import LIMITED, Limits
+from chatter.studies.optimisation.operating_point import model_at
 from chatter.studies.optimisation.steady_cut import SteadyCuts, SteadyModel
-from chatter.studies.optimisation.width_and_feed import model_at
 from chatter.studies.uncertainty.latin_hypercube import samples
 from chatter.studies.uncertainty.uncertain_parameters import (
     UncertainParameter,

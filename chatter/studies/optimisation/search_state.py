@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from chatter.description.case import Case
 from chatter.description.progress import Progress
@@ -12,9 +13,8 @@ from chatter.stability.model import milling_model
 from chatter.studies.model import fingerprint
 from chatter.studies.optimisation.candidate import Candidate, candidate_at
 from chatter.studies.optimisation.limits import limits_of
-from chatter.studies.optimisation.records import candidate_from, record_of_candidate
+from chatter.studies.optimisation.operating_point import Place
 from chatter.studies.optimisation.sampled_cuts import samples_of
-from chatter.studies.optimisation.search import Place
 from chatter.studies.result_cache import ResultCache
 
 
@@ -88,9 +88,13 @@ class KeptSearch:
         self, name: str, place: Place, compute: Callable[[], Candidate | None]
     ) -> Candidate | None:
         """Candidate of a place, or that it has none, computed if it is not known yet."""
-        inputs = (tuple(place), self.draw)
-        record = self.cache.record(name, inputs, lambda: record_of_candidate(compute()))
-        return candidate_from(record)
+
+        def found() -> dict[str, Any] | None:
+            candidate = compute()
+            return candidate and candidate.record()
+
+        record = self.cache.record(name, (tuple(place), self.draw), found)
+        return record and Candidate.from_record(record)
 
     def at(self, place: Place) -> Candidate:
         """Candidate at a place in round numbers."""

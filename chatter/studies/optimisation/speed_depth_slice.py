@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -175,3 +176,25 @@ def _steady(
         for name, values in zip(SteadyCuts._fields, found, strict=True):
             columns[name][row, where] = values
     return SteadyCuts(**columns)
+
+
+def slice_record(sheet: Sheet) -> dict[str, Any]:
+    """Record of the result cache: what takes long to compute."""
+    settled = settled_at(sheet.model, sheet.speeds, sheet.depths, sheet.stable)
+    return {
+        "crossings": [found.tolist() for found in sheet.stable.crossings],
+        "deepest": sheet.stable.deepest,
+        "cuts": [values[settled].tolist() for values in sheet.cuts],
+    }
+
+
+def slice_from_record(record: dict[str, Any], model: MillingModel, limits: Limits) -> Sheet:
+    """Sheet of the coarse net, of a model at its width and feed, from its record."""
+    speeds, depths = limits.speeds, limits.depths
+    crossings = [np.array(found, dtype=np.float64) for found in record["crossings"]]
+    stable = StableDepths(limits.looked_at_beyond(), crossings, record["deepest"])
+    settled = settled_at(model, speeds, depths, stable)
+    cuts = SteadyCuts(*np.full((len(SteadyCuts._fields), *settled.shape), np.nan))
+    for values, known in zip(cuts, record["cuts"], strict=True):
+        values[settled] = known
+    return sheet_with(model, limits, speeds, depths, stable, cuts)

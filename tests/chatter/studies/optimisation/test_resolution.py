@@ -8,8 +8,8 @@ import pytest
 from chatter.stability.methods.collocation import multipliers as collocation
 from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import milling_model
+from chatter.studies.optimisation.element_size import most_waves
 from chatter.studies.optimisation.limits import limits_of
-from chatter.studies.optimisation.resolution import most_waves
 from chatter.studies.optimisation.sampled_cuts import samples_of
 from chatter.studies.optimisation.stable_depths import first_limits, stable_depths, widest_stride
 from tests.chatter.studies.optimisation.cuts import MODES, end_mill

@@ -11,25 +11,33 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
 from chatter.studies.optimisation.candidate import Candidate
-from chatter.studies.optimisation.candidates import A_ROBUST, WIDTH_STEPS, candidates_of
 from chatter.studies.optimisation.exclusion import exclusions
-from chatter.studies.optimisation.limits import LIMITED, Limits
-from chatter.studies.optimisation.records import record_of_sheets, sheets_from
-from chatter.studies.optimisation.result import Optimum
-from chatter.studies.optimisation.sampled_cuts import Samples
-from chatter.studies.optimisation.search import (
+from chatter.studies.optimisation.grid_search import (
     LEVELS,
     STARTS,
-    Place,
     best_of,
     refined,
     sheets_of_width,
     starts_of,
 )
+from chatter.studies.optimisation.limits import LIMITED, Limits
+from chatter.studies.optimisation.operating_point import Place, model_at
+from chatter.studies.optimisation.optimum import Optimum
+from chatter.studies.optimisation.robustness import (
+    A_ROBUST,
+    SIMULATED,
+    WIDTH_STEPS,
+    candidates_of,
+)
+from chatter.studies.optimisation.sampled_cuts import Samples
 from chatter.studies.optimisation.search_state import KeptSearch
-from chatter.studies.optimisation.speed_depth_slice import Sheet, sheet_of
-from chatter.studies.optimisation.time_domain_verification import A_CHECK, SIMULATED, confirmed
-from chatter.studies.optimisation.width_and_feed import model_at
+from chatter.studies.optimisation.speed_depth_slice import (
+    Sheet,
+    sheet_of,
+    slice_from_record,
+    slice_record,
+)
+from chatter.studies.optimisation.time_domain_verification import A_CHECK, confirmed
 from chatter.studies.uncertainty.sample_limits import check_counts
 
 DEFAULT_SAMPLES, DEFAULT_SEED = 200, 1
@@ -121,11 +129,14 @@ def _sheets(search: KeptSearch, width: float) -> list[Sheet]:
 
     def compute() -> list:
         computed.extend(sheets_of_width(model, limits, width, search.part(size)))
-        return record_of_sheets(computed)
+        return [slice_record(sheet) for sheet in computed]
 
     record = search.cache.record("width", width, compute)
     search.done(size)
-    return computed or sheets_from(record, model, limits, width)
+    return computed or [
+        slice_from_record(one, model_at(model, width, float(feed)), limits)
+        for one, feed in zip(record, limits.feeds, strict=True)
+    ]
 
 
 def _refined(search: KeptSearch, start: Place) -> Place:

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.progress import Progress, no_progress
-from chatter.description.units import from_rpm, rpm
 from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import MillingModel
 from chatter.studies.optimisation.limits import Limits
+from chatter.studies.optimisation.operating_point import Place, model_at
 from chatter.studies.optimisation.speed_depth_slice import (
     Sheet,
     removal_rates,
@@ -23,7 +22,6 @@ from chatter.studies.optimisation.speed_depth_slice import (
 )
 from chatter.studies.optimisation.stable_depths import StableDepths, stable_depths
 from chatter.studies.optimisation.steady_cut import SteadyModel
-from chatter.studies.optimisation.width_and_feed import model_at
 
 Array = NDArray[np.float64]
 
@@ -38,19 +36,6 @@ _DEPTH_SPAN, _SPEED_STEPS, _STEPS = 0.5, 2.0, 1.0
 _SPEEDS, _DEPTHS, _WIDTHS = 7, 25, 3
 #: steps at which stability is looked at there, a share of the deepest depth
 _STABILITY_STEP = 0.03
-
-#: speeds are whole revolutions a minute above this, lengths whole micrometres
-_WHOLE_RPM_ABOVE = 1000.0
-
-
-class Place(NamedTuple):
-    """A cut that may be chosen, SI."""
-
-    spindle_speed: float
-    axial_depth: float
-    radial_depth: float
-    feed_per_tooth: float
-    removal_rate: float
 
 
 def sheets_of_width(
@@ -214,17 +199,3 @@ def _steps_around(middle: float, net: Array, span: float) -> Array:
 
 def _within(values: Array, net: Array) -> Array:
     return np.unique(np.clip(values, net[0], net[-1]))
-
-
-def rounded(place: Place) -> Place:
-    """Place in numbers that a programmer would write, no depth, width or feed larger."""
-    digits = 0 if rpm(place.spindle_speed) > _WHOLE_RPM_ABOVE else 2
-    speed = from_rpm(round(rpm(place.spindle_speed), digits))
-    depth, width = (math.floor(value * 1e6 + 1e-6) * 1e-6 for value in place[1:3])
-    return Place(
-        speed,
-        depth if depth > 1e-4 else place.axial_depth,
-        width if width > 1e-4 else place.radial_depth,
-        place.feed_per_tooth,
-        place.removal_rate,
-    )

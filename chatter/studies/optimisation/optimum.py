@@ -11,10 +11,10 @@ from chatter.description.case import Case
 from chatter.description.units import rpm
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, write_results
-from chatter.studies.optimisation.candidate import Candidate, case_at
+from chatter.studies.optimisation.candidate import Candidate
 from chatter.studies.optimisation.exclusion import Exclusion, why_nothing
 from chatter.studies.optimisation.limits import Limits
-from chatter.studies.optimisation.search import Place
+from chatter.studies.optimisation.operating_point import Place, case_at
 from chatter.studies.optimisation.speed_depth_slice import Sheet
 
 if TYPE_CHECKING:
