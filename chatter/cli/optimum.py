@@ -1,4 +1,4 @@
-"""`chatter optimum CASE`: the best speed, depth and width within the limits."""
+"""`chatter optimum CASE`: the best speed, depth and radial depth within the limits."""
 
 from __future__ import annotations
 

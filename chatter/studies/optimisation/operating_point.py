@@ -14,7 +14,7 @@ from chatter.stability.model import MillingModel
 _WHOLE_RPM_ABOVE = 1000.0
 
 
-class Place(NamedTuple):
+class OperatingPoint(NamedTuple):
     """A cut that may be chosen, SI."""
 
     spindle_speed: float
@@ -24,35 +24,35 @@ class Place(NamedTuple):
     removal_rate: float
 
 
-def rounded(place: Place) -> Place:
-    """Place in numbers that a programmer would write, no depth, width or feed larger."""
-    digits = 0 if rpm(place.spindle_speed) > _WHOLE_RPM_ABOVE else 2
-    speed = from_rpm(round(rpm(place.spindle_speed), digits))
-    depth, width = (math.floor(value * 1e6 + 1e-6) * 1e-6 for value in place[1:3])
-    return Place(
+def rounded(point: OperatingPoint) -> OperatingPoint:
+    """Point in numbers that a programmer would write, no depth or feed larger."""
+    digits = 0 if rpm(point.spindle_speed) > _WHOLE_RPM_ABOVE else 2
+    speed = from_rpm(round(rpm(point.spindle_speed), digits))
+    depth, radial_depth = (math.floor(value * 1e6 + 1e-6) * 1e-6 for value in point[1:3])
+    return OperatingPoint(
         speed,
-        depth if depth > 1e-4 else place.axial_depth,
-        width if width > 1e-4 else place.radial_depth,
-        place.feed_per_tooth,
-        place.removal_rate,
+        depth if depth > 1e-4 else point.axial_depth,
+        radial_depth if radial_depth > 1e-4 else point.radial_depth,
+        point.feed_per_tooth,
+        point.removal_rate,
     )
 
 
-def at_width_and_feed(case: Case, width: float, feed: float) -> Case:
+def case_with(case: Case, radial_depth: float, feed: float) -> Case:
     """Case with another radial depth and feed per tooth, m."""
     values = {"cut.feed_per_tooth": feed}
     if case.cut.mode != "slot":
-        values["cut.radial_depth"] = width
+        values["cut.radial_depth"] = radial_depth
     return case.patch({path: value for path, value in values.items() if value != case.get(path)})
 
 
-def model_at(model: MillingModel, width: float, feed: float) -> MillingModel:
-    """Model at another radial depth and feed per tooth, m; its structure is not looked at again."""
-    return replace(model, case=at_width_and_feed(model.case, width, feed))
+def model_with(model: MillingModel, radial_depth: float, feed: float) -> MillingModel:
+    """Model at another radial depth and feed per tooth, m; its structure is not evaluated again."""
+    return replace(model, case=case_with(model.case, radial_depth, feed))
 
 
-def case_at(case: Case, place: Place) -> Case:
+def case_at(case: Case, point: OperatingPoint) -> Case:
     """Case with a cut written in."""
-    return at_width_and_feed(case, place.radial_depth, place.feed_per_tooth).patch(
-        {"cut.spindle_speed": place.spindle_speed, "cut.axial_depth": place.axial_depth}
+    return case_with(case, point.radial_depth, point.feed_per_tooth).patch(
+        {"cut.spindle_speed": point.spindle_speed, "cut.axial_depth": point.axial_depth}
     )

@@ -1,4 +1,4 @@
-"""What a search for the best cut has found: candidates, pictures, files."""
+"""Result of a process optimisation: candidates, picture, files."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from chatter.io.result_files import as_json, finite_or_none, write_results
 from chatter.studies.optimisation.candidate import Candidate
 from chatter.studies.optimisation.exclusion import Exclusion, why_nothing
 from chatter.studies.optimisation.limits import Limits
-from chatter.studies.optimisation.operating_point import Place, case_at
-from chatter.studies.optimisation.speed_depth_slice import Sheet
+from chatter.studies.optimisation.operating_point import OperatingPoint, case_at
+from chatter.studies.optimisation.speed_depth_slice import SpeedDepthSlice
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -32,7 +32,8 @@ _QUANTILE = {
 _COLUMNS = (
     "rank,spindle_speed [rpm],axial_depth [mm],radial_depth [mm],feed_per_tooth [mm],"
     "removal_rate [cm^3/min],power [kW],torque [N m],deflection [um],surface_error [um],"
-    "limit_depth [mm],probability_of_stability,probability,active,verdict_in_time,held_in_time"
+    "critical_depth [mm],probability_of_stability,probability,active,time_domain_verdict,"
+    "time_domain_verified"
 )
 
 
@@ -46,14 +47,14 @@ class Optimum:
     limits : Limits
     candidates : tuple of Candidate
         Those that hold in the time domain first, highest removal rate first.
-    over_widths : tuple of Place
-        Best place of the coarse net at every width that has one.
-    sheet : Sheet
-        All speeds and depths at the width and feed of the best cut.
+    over_radial_depths : tuple of OperatingPoint
+        Best point of the coarse grid at every radial depth that has one.
+    grid_slice : SpeedDepthSlice
+        All speeds and depths at the radial depth and feed of the best cut.
     exclusions : tuple of Exclusion
-        What each limit excludes of the coarse net.
+        What each limit excludes of the coarse grid.
     points : int
-        Of the coarse net.
+        Of the coarse grid.
     samples, seed : int
         Of what is uncertain; no samples where nothing is.
     notes : tuple of str
@@ -62,8 +63,8 @@ class Optimum:
     case: Case
     limits: Limits
     candidates: tuple[Candidate, ...]
-    over_widths: tuple[Place, ...]
-    sheet: Sheet
+    over_radial_depths: tuple[OperatingPoint, ...]
+    grid_slice: SpeedDepthSlice
     exclusions: tuple[Exclusion, ...]
     points: int
     samples: int
@@ -73,13 +74,15 @@ class Optimum:
     @property
     def best(self) -> Candidate | None:
         """The best cut; None where no cut keeps all limits."""
-        held = [one for one in self.candidates if one.time is None or one.time.held]
-        return held[0] if held else None
+        verified = [
+            one for one in self.candidates if one.verification is None or one.verification.verified
+        ]
+        return verified[0] if verified else None
 
     @property
     def best_case(self) -> Case | None:
         """The case with the best cut written in; None where there is none."""
-        return None if self.best is None else case_at(self.case, self.best.place)
+        return None if self.best is None else case_at(self.case, self.best.point)
 
     @property
     def why_nothing(self) -> str:
@@ -88,7 +91,7 @@ class Optimum:
             return ""
         if self.candidates:
             return "no candidate of the linear search holds all limits in the time domain"
-        if self.over_widths:
+        if self.over_radial_depths:
             return (
                 "no cut is stable and keeps all limits with a probability of "
                 f"{self.limits.confidence:.3g}"
@@ -112,26 +115,26 @@ class Optimum:
             "searched": {
                 "spindle_speeds_rpm": _ends(rpm(self.limits.speeds)),
                 "axial_depths_mm": _ends(self.limits.depths * 1e3),
-                "radial_depths_mm": _ends(self.limits.widths * 1e3),
+                "radial_depths_mm": _ends(self.limits.radial_depths * 1e3),
                 "feeds_per_tooth_mm": _ends(self.limits.feeds * 1e3),
                 "points": self.points,
             },
             "excluded_share": {one.limit: one.excluded for one in self.exclusions},
-            "over_widths": [_place(place) for place in self.over_widths],
+            "over_radial_depths": [_point_summary(point) for point in self.over_radial_depths],
             "samples": self.samples,
             "seed": self.seed,
             "notes": list(self.notes),
         }
 
-    def told(self) -> list[str]:
+    def sentences(self) -> list[str]:
         """Sentences for the terminal; none where there is no best cut, see `why_nothing`."""
         if self.best is None:
             return []
         best = self.best
-        place, known = best.place, best.probability
+        point, known = best.point, best.probability
         lines = [
-            f"{rpm(place.spindle_speed):.5g} rpm, {place.axial_depth * 1e3:.4g} mm deep, "
-            f"{place.radial_depth * 1e3:.4g} mm wide, {place.feed_per_tooth * 1e3:.4g} mm a tooth: "
+            f"{rpm(point.spindle_speed):.5g} rpm, {point.axial_depth * 1e3:.4g} mm deep, "
+            f"{point.radial_depth * 1e3:.4g} mm wide, {point.feed_per_tooth * 1e3:.4g} mm a tooth: "
             f"{best.removal_rate * _PER_MINUTE:.4g} cm^3/min",
             f"{best.power * 1e-3:.3g} kW, {best.torque:.3g} N m, deflection "
             f"{best.deflection * 1e6:.3g} um, surface error {best.surface_error * 1e6:.3g} um",
@@ -172,14 +175,14 @@ class Optimum:
     def _table(self) -> str:
         lines = [_COLUMNS]
         for rank, one in enumerate(self.candidates, start=1):
-            place, time = one.place, one.time
-            limit = f"{one.limit_depth * 1e3:.7g}" if math.isfinite(one.limit_depth) else ""
+            point, verification = one.point, one.verification
+            limit = f"{one.critical_depth * 1e3:.7g}" if math.isfinite(one.critical_depth) else ""
             cells = [
                 f"{rank}",
-                f"{rpm(place.spindle_speed):.8g}",
-                f"{place.axial_depth * 1e3:.7g}",
-                f"{place.radial_depth * 1e3:.7g}",
-                f"{place.feed_per_tooth * 1e3:.7g}",
+                f"{rpm(point.spindle_speed):.8g}",
+                f"{point.axial_depth * 1e3:.7g}",
+                f"{point.radial_depth * 1e3:.7g}",
+                f"{point.feed_per_tooth * 1e3:.7g}",
                 f"{one.removal_rate * _PER_MINUTE:.7g}",
                 f"{one.power * 1e-3:.7g}",
                 f"{one.torque:.7g}",
@@ -189,8 +192,8 @@ class Optimum:
                 "" if one.probability is None else f"{one.probability.stable:.6g}",
                 "" if one.probability is None else f"{one.probability.value:.6g}",
                 " ".join(name.replace(" ", "-") for name in one.active),
-                "" if time is None else time.verdict,
-                "" if time is None else str(time.held).lower(),
+                "" if verification is None else verification.verdict,
+                "" if verification is None else str(verification.verified).lower(),
             ]
             lines.append(",".join(cells))
         return "\n".join(lines) + "\n"
@@ -200,22 +203,22 @@ def _ends(values) -> list[float]:
     return [float(values[0]), float(values[-1])]
 
 
-def _place(place: Place) -> dict:
+def _point_summary(point: OperatingPoint) -> dict:
     return {
-        "spindle_speed_rpm": rpm(place.spindle_speed),
-        "axial_depth_mm": place.axial_depth * 1e3,
-        "radial_depth_mm": place.radial_depth * 1e3,
-        "feed_per_tooth_mm": place.feed_per_tooth * 1e3,
-        "removal_rate_cm3_per_min": place.removal_rate * _PER_MINUTE,
+        "spindle_speed_rpm": rpm(point.spindle_speed),
+        "axial_depth_mm": point.axial_depth * 1e3,
+        "radial_depth_mm": point.radial_depth * 1e3,
+        "feed_per_tooth_mm": point.feed_per_tooth * 1e3,
+        "removal_rate_cm3_per_min": point.removal_rate * _PER_MINUTE,
     }
 
 
 def _summary_of(one: Candidate) -> dict:
-    known, time = one.probability, one.time
+    known, verification = one.probability, one.verification
     return {
-        **_place(one.place),
+        **_point_summary(one.point),
         **_numbers(one),
-        "limit_depth_mm": finite_or_none(one.limit_depth * 1e3),
+        "critical_depth_mm": finite_or_none(one.critical_depth * 1e3),
         "usage": {key: finite_or_none(value) for key, value in one.usage.items()},
         "active": list(one.active),
         "probability_of_stability": None if known is None else known.stable,
@@ -224,9 +227,13 @@ def _summary_of(one: Candidate) -> dict:
         "at_confidence": None
         if known is None
         else {_QUANTILE[key][0]: _scaled(key, value) for key, value in known.quantiles.items()},
-        "in_time": None
-        if time is None
-        else {"verdict": time.verdict, "held": time.held, **_numbers(time)},
+        "time_domain": None
+        if verification is None
+        else {
+            "verdict": verification.verdict,
+            "verified": verification.verified,
+            **_numbers(verification),
+        },
     }
 
 

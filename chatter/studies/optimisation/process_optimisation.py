@@ -17,32 +17,32 @@ from chatter.studies.optimisation.grid_search import (
     STARTS,
     best_of,
     refined,
-    sheets_of_width,
+    slices_at_radial_depth,
     starts_of,
 )
 from chatter.studies.optimisation.limits import LIMITED, Limits
-from chatter.studies.optimisation.operating_point import Place, model_at
+from chatter.studies.optimisation.operating_point import OperatingPoint, model_with
 from chatter.studies.optimisation.optimum import Optimum
 from chatter.studies.optimisation.robustness import (
-    A_ROBUST,
+    RADIAL_DEPTH_STEPS,
+    ROBUST_WORK,
     SIMULATED,
-    WIDTH_STEPS,
     candidates_of,
 )
 from chatter.studies.optimisation.sampled_cuts import Samples
-from chatter.studies.optimisation.search_state import KeptSearch
+from chatter.studies.optimisation.search_state import OptimumSearch
 from chatter.studies.optimisation.speed_depth_slice import (
-    Sheet,
-    sheet_of,
+    SpeedDepthSlice,
+    evaluated_slice,
     slice_from_record,
     slice_record,
 )
-from chatter.studies.optimisation.time_domain_verification import A_CHECK, confirmed
+from chatter.studies.optimisation.time_domain_verification import VERIFICATION_WORK, confirmed
 from chatter.studies.uncertainty.sample_limits import check_counts
 
 DEFAULT_SAMPLES, DEFAULT_SEED = 200, 1
 #: sizes of the pieces of work against each other
-_A_SHEET, _A_START = 100, 40
+_SLICE_WORK, _START_WORK = 100, 40
 
 
 def optimum(
@@ -52,7 +52,7 @@ def optimum(
     progress: Progress = no_progress,
     folder: str | Path | None = None,
 ) -> Optimum:
-    """Find the speed, depth, width and feed of the highest removal rate within the limits.
+    """Find the speed, depth, radial depth and feed of the highest removal rate within the limits.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def optimum(
     """
     check_counts(samples, 2, seed)
     _refuse(case)
-    search = KeptSearch(case, samples, seed, progress, folder)
+    search = OptimumSearch(case, samples, seed, progress, folder)
     search.expect(_work(search))
     with search.cache as cache:
         try:
@@ -93,26 +93,35 @@ def optimum(
             raise cache.search_interrupted() from None
 
 
-def _work(search: KeptSearch) -> int:
+def _work(search: OptimumSearch) -> int:
     """All pieces of the search, at the most that are to be expected."""
-    sheets = search.limits.widths.size * search.limits.feeds.size
-    robust = STARTS + 2 * WIDTH_STEPS if search.drawn is not None else 0
-    return _A_SHEET * sheets + _A_START * STARTS + A_ROBUST * robust + A_CHECK * SIMULATED
+    grid_slices = search.limits.radial_depths.size * search.limits.feeds.size
+    robust = STARTS + 2 * RADIAL_DEPTH_STEPS if search.drawn is not None else 0
+    return (
+        _SLICE_WORK * grid_slices
+        + _START_WORK * STARTS
+        + ROBUST_WORK * robust
+        + VERIFICATION_WORK * SIMULATED
+    )
 
 
-def _found(case: Case, search: KeptSearch, seed: int) -> Optimum:
+def _found(case: Case, search: OptimumSearch, seed: int) -> Optimum:
     limits, drawn = search.limits, search.drawn
-    sheets = [sheet for width in limits.widths for sheet in _sheets(search, float(width))]
-    places = [_refined(search, start) for start in starts_of(sheets)]
-    candidates = confirmed(search, candidates_of(search, places))
+    grid_slices = [
+        grid_slice
+        for radial_depth in limits.radial_depths
+        for grid_slice in _slices_at(search, float(radial_depth))
+    ]
+    points = [_refined(search, start) for start in starts_of(grid_slices)]
+    candidates = confirmed(search, candidates_of(search, points))
     result = Optimum(
         case=case,
         limits=limits,
         candidates=tuple(candidates),
-        over_widths=tuple(_best_of_widths(sheets, limits)),
-        sheet=_shown_sheet(search, candidates, sheets),
-        exclusions=exclusions(sheets),
-        points=sum(sheet.kept.size for sheet in sheets),
+        over_radial_depths=tuple(_best_of_radial_depths(grid_slices, limits)),
+        grid_slice=_drawn_slice(search, candidates, grid_slices),
+        exclusions=exclusions(grid_slices),
+        points=sum(grid_slice.kept.size for grid_slice in grid_slices),
         samples=len(drawn) if drawn else 0,
         seed=seed,
         notes=(*search.model.notes, *_notes(case, limits, drawn)),
@@ -121,33 +130,33 @@ def _found(case: Case, search: KeptSearch, seed: int) -> Optimum:
     return result
 
 
-def _sheets(search: KeptSearch, width: float) -> list[Sheet]:
-    """Sheets of the coarse net at a width and every feed."""
+def _slices_at(search: OptimumSearch, radial_depth: float) -> list[SpeedDepthSlice]:
+    """Slices of the coarse grid at a radial depth and every feed."""
     model, limits = search.model, search.limits
-    size = _A_SHEET * limits.feeds.size
-    computed: list[Sheet] = []
+    size = _SLICE_WORK * limits.feeds.size
+    computed: list[SpeedDepthSlice] = []
 
     def compute() -> list:
-        computed.extend(sheets_of_width(model, limits, width, search.part(size)))
-        return [slice_record(sheet) for sheet in computed]
+        computed.extend(slices_at_radial_depth(model, limits, radial_depth, search.part(size)))
+        return [slice_record(grid_slice) for grid_slice in computed]
 
-    record = search.cache.record("width", width, compute)
+    record = search.cache.record("radial depth", radial_depth, compute)
     search.done(size)
     return computed or [
-        slice_from_record(one, model_at(model, width, float(feed)), limits)
+        slice_from_record(one, model_with(model, radial_depth, float(feed)), limits)
         for one, feed in zip(record, limits.feeds, strict=True)
     ]
 
 
-def _refined(search: KeptSearch, start: Place) -> Place:
-    model, limits, told = search.model, search.limits, search.part(_A_START)
+def _refined(search: OptimumSearch, start: OperatingPoint) -> OperatingPoint:
+    model, limits, report = search.model, search.limits, search.part(_START_WORK)
 
     def compute() -> list:
-        return list(refined(model, limits, start, lambda level: told(level, LEVELS)))
+        return list(refined(model, limits, start, lambda level: report(level, LEVELS)))
 
-    place = Place(*search.cache.record("refined", tuple(start), compute))
-    search.done(_A_START)
-    return place
+    point = OperatingPoint(*search.cache.record("refined", tuple(start), compute))
+    search.done(_START_WORK)
+    return point
 
 
 def _refuse(case: Case) -> None:
@@ -159,28 +168,34 @@ def _refuse(case: Case) -> None:
         )
 
 
-def _best_of_widths(sheets: Sequence[Sheet], limits: Limits) -> list[Place]:
-    """Best place of every width that has one, of the coarse net."""
+def _best_of_radial_depths(
+    grid_slices: Sequence[SpeedDepthSlice], limits: Limits
+) -> list[OperatingPoint]:
+    """Best point of every radial depth that has one, of the coarse grid."""
     best = []
-    for width in limits.widths:
-        places = [best_of(sheet) for sheet in sheets if np.isclose(sheet.case.width_of_cut, width)]
-        known = [place for place in places if place is not None]
-        best += [max(known, key=lambda place: place.removal_rate)] if known else []
+    for radial_depth in limits.radial_depths:
+        points = [
+            best_of(grid_slice)
+            for grid_slice in grid_slices
+            if np.isclose(grid_slice.case.width_of_cut, radial_depth)
+        ]
+        known = [point for point in points if point is not None]
+        best += [max(known, key=lambda point: point.removal_rate)] if known else []
     return best
 
 
-def _shown_sheet(
-    search: KeptSearch, candidates: Sequence[Candidate], sheets: Sequence[Sheet]
-) -> Sheet:
-    """Sheet at the width and feed of the best cut; else that with the most points left."""
+def _drawn_slice(
+    search: OptimumSearch, candidates: Sequence[Candidate], grid_slices: Sequence[SpeedDepthSlice]
+) -> SpeedDepthSlice:
+    """Slice at the radial depth and feed of the best cut; else that with the most points left."""
     if not candidates:
-        return max(sheets, key=lambda sheet: int(sheet.kept.sum()))
-    limits, place = search.limits, candidates[0].place
-    here = model_at(search.model, place.radial_depth, place.feed_per_tooth)
-    for sheet in sheets:
-        if sheet.case == here.case:
-            return sheet
-    return sheet_of(here, limits, limits.speeds, limits.depths, limits.looked_at_beyond())
+        return max(grid_slices, key=lambda grid_slice: int(grid_slice.kept.sum()))
+    limits, point = search.limits, candidates[0].point
+    here = model_with(search.model, point.radial_depth, point.feed_per_tooth)
+    for grid_slice in grid_slices:
+        if grid_slice.case == here.case:
+            return grid_slice
+    return evaluated_slice(here, limits, limits.speeds, limits.depths, limits.extended_speeds())
 
 
 def _notes(case: Case, limits: Limits, drawn: Samples | None) -> list[str]:

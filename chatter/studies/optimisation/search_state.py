@@ -13,12 +13,12 @@ from chatter.stability.model import milling_model
 from chatter.studies.model import fingerprint
 from chatter.studies.optimisation.candidate import Candidate, candidate_at
 from chatter.studies.optimisation.limits import limits_of
-from chatter.studies.optimisation.operating_point import Place
+from chatter.studies.optimisation.operating_point import OperatingPoint
 from chatter.studies.optimisation.sampled_cuts import samples_of
 from chatter.studies.result_cache import ResultCache
 
 
-class KeptSearch:
+class OptimumSearch:
     """A case compiled for a search, its pieces on disk, and how far the search is.
 
     Parameters
@@ -56,28 +56,28 @@ class KeptSearch:
 
     def part(self, size: int) -> Progress:
         """Progress of a piece of this size."""
-        return lambda done, total: self._tell(self.finished + size * done // max(total, 1))
+        return lambda done, total: self._report(self.finished + size * done // max(total, 1))
 
     def parts(self, count: int, size: int) -> list[Progress]:
         """Progress of pieces of this size that go on at the same time, in threads."""
         shares = [0] * count
 
-        def of(place: int) -> Progress:
+        def of(index: int) -> Progress:
             def tell(done: int, total: int) -> None:
                 with self._lock:
-                    shares[place] = size * done // max(total, 1)
-                    self._tell(self.finished + sum(shares))
+                    shares[index] = size * done // max(total, 1)
+                    self._report(self.finished + sum(shares))
 
             return tell
 
-        return [of(place) for place in range(count)]
+        return [of(index) for index in range(count)]
 
     def done(self, size: int) -> None:
         """Count a piece of this size."""
         self.finished += size
-        self._tell(self.finished)
+        self._report(self.finished)
 
-    def _tell(self, finished: int) -> None:
+    def _report(self, finished: int) -> None:
         self._progress(min(finished, self.total - 1), self.total)
 
     def end(self) -> None:
@@ -85,19 +85,21 @@ class KeptSearch:
         self._progress(self.total, self.total)
 
     def candidate(
-        self, name: str, place: Place, compute: Callable[[], Candidate | None]
+        self, name: str, point: OperatingPoint, compute: Callable[[], Candidate | None]
     ) -> Candidate | None:
-        """Candidate of a place, or that it has none, computed if it is not known yet."""
+        """Candidate of a point, or that it has none, computed if it is not known yet."""
 
         def found() -> dict[str, Any] | None:
             candidate = compute()
             return candidate and candidate.record()
 
-        record = self.cache.record(name, (tuple(place), self.draw), found)
+        record = self.cache.record(name, (tuple(point), self.draw), found)
         return record and Candidate.from_record(record)
 
-    def at(self, place: Place) -> Candidate:
-        """Candidate at a place in round numbers."""
-        found = self.candidate("place", place, lambda: candidate_at(self.model, self.limits, place))
+    def at(self, point: OperatingPoint) -> Candidate:
+        """Candidate at a point in round numbers."""
+        found = self.candidate(
+            "rounded", point, lambda: candidate_at(self.model, self.limits, point)
+        )
         assert found is not None
         return found

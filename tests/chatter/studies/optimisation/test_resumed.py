@@ -17,7 +17,7 @@ from tests.chatter.studies.optimisation.cuts import end_mill
 NET = {"speeds": {"from": "8800 rpm", "to": "9600 rpm"}, "depths": {"to": "3 mm", "count": 10}}
 WIDTHS = {"from": "2 mm", "to": "6 mm", "count": 3}
 CASES = {
-    "optimum": {"optimum": {**NET, "widths": WIDTHS, "max_power": "2 kW"}},
+    "optimum": {"optimum": {**NET, "radial_depths": WIDTHS, "max_power": "2 kW"}},
     "pitch": {"pitch_design": {**NET, "count": 4}},
 }
 #: what each command writes that must not depend on an interruption
@@ -53,10 +53,10 @@ def interrupted_after(count, command, case, out):
         while len(records_in(out)) < count and process.poll() is None and time.monotonic() < until:
             time.sleep(0.002)
         process.send_signal(signal.SIGINT)
-        _, told = process.communicate(timeout=60.0)
+        _, report = process.communicate(timeout=60.0)
     finally:
         process.kill()
-    return process.returncode, told
+    return process.returncode, report
 
 
 def parts_before_the_time_domain(records):
@@ -77,19 +77,19 @@ def test_an_interrupted_search_goes_on_where_it_stopped(command, tmp_path):
         stops.append(parts_before_the_time_domain(records_in(whole)))
     before = []
     for stop in stops:
-        code, told = interrupted_after(stop, command, path, out)
-        assert code == 1, told
-        assert "the same command goes on from there" in told
-        assert "Traceback" not in told
+        code, report = interrupted_after(stop, command, path, out)
+        assert code == 1, report
+        assert "the same command goes on from there" in report
+        assert "Traceback" not in report
         assert not (out / "summary.json").exists()
         # what was known is there once, and was not computed again
         known, before = before, records_in(out)
         assert before[: len(known)] == known
         assert stop <= len(before) < len(records_in(whole))
-        assert "parts of the search are finished" in told
+        assert "parts of the search are finished" in report
     process = started(command, path, out)
-    _, told = process.communicate(timeout=240.0)
-    assert process.returncode == 0, told
+    _, report = process.communicate(timeout=240.0)
+    assert process.returncode == 0, report
     after = records_in(out)
     assert after[: len(before)] == before
     assert sorted(after) == sorted(records_in(whole))
