@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from chatter.studies.diagram_over_axes import lobes_over as lobes_over
     from chatter.studies.modal_test import modes as modes
     from chatter.studies.optimisation.process_optimisation import optimum as optimum
-    from chatter.studies.pitch_design.study import pitch as pitch
+    from chatter.studies.pitch_design.pitch_design import pitch as pitch
     from chatter.studies.uncertainty.monte_carlo import uncertainty as uncertainty
     from chatter.studies.whatif.whatif_study import whatif as whatif
 
@@ -73,7 +73,7 @@ _PUBLIC = {
     "modes": "chatter.studies.modal_test",
     "optimum": "chatter.studies.optimisation.process_optimisation",
     "move": "chatter.simulation.virtual_tests.from_file",
-    "pitch": "chatter.studies.pitch_design.study",
+    "pitch": "chatter.studies.pitch_design.pitch_design",
     "schema": "chatter.description.case_schema",
     "simulate": "chatter.simulation.simulate",
     "uncertainty": "chatter.studies.uncertainty.monte_carlo",

@@ -101,7 +101,7 @@ def test_a_changed_case_starts_anew_and_the_same_one_computes_nothing(tmp_path, 
     case = end_mill(CASES["pitch"])
     first = chatter.pitch(case, folder=tmp_path)
     known = records_in(tmp_path)
-    monkeypatch.setattr("chatter.studies.pitch_design.search.first_limits", None)
+    monkeypatch.setattr("chatter.studies.pitch_design.pitch_search.first_limits", None)
     again = chatter.pitch(case, folder=tmp_path)
     assert records_in(tmp_path) == known
     assert again.best.pitch == first.best.pitch
