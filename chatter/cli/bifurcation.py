@@ -1,4 +1,4 @@
-"""`chatter bifurcation CASE`: once-per-period points over speed, depth or any other value."""
+"""`chatter bifurcation CASE`: Poincaré sections over speed, depth or any other value."""
 
 from __future__ import annotations
 

@@ -12,7 +12,6 @@ engine       the compiled time loop
 simulate     `simulate`: runs a case and returns its result
 growth       multiplier of a cut from the growth of its vibration
 limits       limits of stability from it, over speed
-bifurcation  `bifurcation`: once-per-period points over a value of the case
 stock        workpiece of dexels or voxels
 carved       walls of a carved workpiece
 reconstruction wall and floor from the motion of the tool

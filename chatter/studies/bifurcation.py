@@ -1,4 +1,4 @@
-"""Bifurcation diagram: once-per-period points of simulated cuts over a value of the case."""
+"""Bifurcation diagram: Poincaré sections of simulated cuts over a value of the case."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ from dynamics.modal.modes import Mode
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: turns of every cut, and turns at its end that are kept
-_TURNS = 200.0
-_KEPT_TURNS = 60
+#: revolutions of every cut, and those at its end that are kept
+_REVOLUTIONS = 200.0
+_KEPT_REVOLUTIONS = 60
 
 
 @dataclass(frozen=True)
@@ -38,9 +38,9 @@ class BifurcationPoint:
     ----------
     value : float
         Of the path that varies, SI.
-    once_a_period : (k, 3) array of float
-        Displacement when a tooth is at +y, m, over the last turns: every tooth where all are
-        alike, else the first one; empty where the tool left the range of the model.
+    poincare_section : (k, 3) array of float
+        Displacement when a tooth is at +y, m, over the last revolutions: every tooth of a
+        uniform tool, else the first one; empty where the tool left the range of the model.
     verdict : str
         "stable" or "chatter".
     bifurcation : str
@@ -49,7 +49,7 @@ class BifurcationPoint:
     """
 
     value: float
-    once_a_period: NDArray[np.float64]
+    poincare_section: NDArray[np.float64]
     verdict: str
     bifurcation: str
     chatter_frequency: float
@@ -109,7 +109,7 @@ class BifurcationDiagram:
     def _table(self) -> str:
         lines = [f"{self.path} [SI],x [um],y [um],z [um],verdict"]
         for point in self.points:
-            for x, y, z in point.once_a_period * 1e6:
+            for x, y, z in point.poincare_section * 1e6:
                 lines.append(f"{point.value:.9g},{x:.6g},{y:.6g},{z:.6g},{point.verdict}")
         return "\n".join(lines) + "\n"
 
@@ -142,7 +142,7 @@ def bifurcation(
     if len(values) == 0:
         raise InputError(f"{case.name}: {path}: no values are given for the bifurcation diagram")
     if not (case.simulation and (case.simulation.revolutions or case.simulation.duration)):
-        case = case.patch({"simulation.revolutions": _TURNS})
+        case = case.patch({"simulation.revolutions": _REVOLUTIONS})
     cases = [case.patch({path: value}) for value in values]
     modes = None if path.startswith("structure") else modes_of(case)[0]
     if modes == ():
@@ -163,7 +163,7 @@ def _point(case: Case, path: str, modes: tuple[Mode, ...] | None) -> Bifurcation
     detection = result.detection
     a_turn = periods_a_turn(result.setup)
     periods = np.arange(math.floor(result.turns * a_turn) + 1) / a_turn
-    kept = 2.0 * math.pi * periods[-_KEPT_TURNS * a_turn :]
+    kept = 2.0 * math.pi * periods[-_KEPT_REVOLUTIONS * a_turn :]
     points = np.stack(
         [np.interp(kept, result.spindle_angle, column) for column in result.displacement.T], axis=1
     )
@@ -175,7 +175,7 @@ def _point(case: Case, path: str, modes: tuple[Mode, ...] | None) -> Bifurcation
 
 
 def _spread(point: BifurcationPoint) -> float:
-    """Largest extent of the once-per-revolution points, m."""
-    if len(point.once_a_period) == 0:
+    """Largest extent of the Poincaré section, m."""
+    if len(point.poincare_section) == 0:
         return 0.0
-    return float(np.ptp(point.once_a_period, axis=0).max())
+    return float(np.ptp(point.poincare_section, axis=0).max())

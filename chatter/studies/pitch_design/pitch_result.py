@@ -108,7 +108,7 @@ class PitchResult:
             "goal": self.goal,
             "max_pitch_ratio_allowed": self.max_pitch_ratio,
             "spindle_speeds_rpm": [float(rpm(end)) for end in self.speeds[[0, -1]]],
-            "max_depth_searched_mm": self.max_depth * 1e3,
+            "max_axial_depth_mm": self.max_depth * 1e3,
             "better_than_the_case": self.is_better,
             "best": self._design(self.best),
             "designs": [self._design(one) for one in self.designs],

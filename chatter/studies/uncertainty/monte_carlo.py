@@ -155,7 +155,7 @@ class Uncertainty:
                 "standard_deviation": float(limit.std(ddof=1)) if limit.size > 1 else None,
                 "samples_without_limit": int((~known).sum()),
             },
-            "max_depth_searched_mm": self.max_depth * 1e3,
+            "max_axial_depth_mm": self.max_depth * 1e3,
             "convergence": [
                 {
                     "samples": int(count),
