@@ -50,7 +50,9 @@ def test_elements_are_as_short_as_the_samples_need_them():
     speeds = np.linspace(500.0, 2500.0, 30) * RPM
     depths = np.linspace(0.0, 10e-3, 41)[1:]
     exact = first_limits(element_cut(stiffest, 10e-3, *collocation.FINER[1]), speeds, depths)
-    found = first_limits(element_cut(stiffest, 10e-3, wavelengths=limits.wavelengths), speeds, depths)
+    found = first_limits(
+        element_cut(stiffest, 10e-3, wavelengths=limits.wavelengths), speeds, depths
+    )
     limited = np.isfinite(exact)
     assert limited.any()
     assert found[limited] == pytest.approx(exact[limited], rel=1e-3)
