@@ -10,14 +10,12 @@ import typer
 
 from chatter.cli.options import Assignments, Cluster, Json, Method, OutputFolder, output_folder
 from chatter.cli.progress import announce_compilation, announce_resumed, progress_bar
-from chatter.cli.results import present
+from chatter.cli.results import present, print_sentences
 from chatter.description.assignments import parse_assignments
 from chatter.description.errors import InputError
-from chatter.report.console import print_line
 
 if TYPE_CHECKING:
     from chatter.studies.whatif.preset_studies import PresetStudy
-    from chatter.studies.whatif.whatif_study import WhatIf
 
 
 def whatif(
@@ -95,12 +93,7 @@ def whatif(
                 cluster=cluster,
             ),
         )
-    present(found, folder, json=json, words=_print_answer)
-
-
-def _print_answer(found: WhatIf) -> None:
-    for sentence in found.sentences:
-        print_line(sentence)
+    present(found, folder, json=json, words=print_sentences)
 
 
 def _chosen(study: str | None, vary: list[str] | None) -> PresetStudy | None:

@@ -6,7 +6,9 @@ import json
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
+
+from chatter.io.presentation import presentation
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -45,3 +47,31 @@ def write_results(
     for name, figure in pictures.items():
         figure.savefig(folder / name)
     return [folder / name for name in (*texts, *pictures)]
+
+
+class SavedResult:
+    """A result that draws itself and writes its files: base of results, which give their texts."""
+
+    #: module of pictures and function in it, such as "plots.whatif.plot_whatif"
+    drawn_by: ClassVar[str]
+    #: file name of the picture
+    picture: ClassVar[str]
+
+    def texts(self) -> Mapping[str, str]:
+        """Content of each file of text, by its name."""
+        raise NotImplementedError
+
+    def plot(self) -> Figure:
+        """Return the picture of the result as a matplotlib figure."""
+        module, _, function = self.drawn_by.rpartition(".")
+        return getattr(presentation(module), function)(self)
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write all texts and the picture into a folder.
+
+        Returns
+        -------
+        list of Path
+            What was written.
+        """
+        return write_results(folder, self.texts(), {self.picture: self.plot()})

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,15 +14,11 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
 from chatter.engine.parallel import sweep
-from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, finite_or_none, write_results
+from chatter.io.result_files import SavedResult, as_json, finite_or_none
 from chatter.simulation.perturbation.growth_rate import periods_a_turn
 from chatter.simulation.setup import modes_of, set_up
 from chatter.simulation.simulate import run_setup
 from dynamics.modal.modes import Mode
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 #: revolutions of every cut, and those at its end that are kept
 _REVOLUTIONS = 200.0
@@ -56,7 +51,7 @@ class BifurcationPoint:
 
 
 @dataclass(frozen=True)
-class BifurcationDiagram:
+class BifurcationDiagram(SavedResult):
     """Points of all cuts.
 
     Parameters
@@ -66,6 +61,9 @@ class BifurcationDiagram:
         Dotted path of the value that varies.
     points : tuple of BifurcationPoint
     """
+
+    drawn_by: ClassVar[str] = "plots.bifurcation.plot_bifurcation"
+    picture: ClassVar[str] = "bifurcation.png"
 
     case: Case
     path: str
@@ -88,23 +86,9 @@ class BifurcationDiagram:
             ],
         }
 
-    def plot(self) -> Figure:
-        """Return the diagram as a matplotlib figure."""
-        return presentation("plots.bifurcation").plot_bifurcation(self)
-
-    def save(self, folder: str | Path) -> list[Path]:
-        """Write bifurcation.csv, bifurcation.png and summary.json.
-
-        Returns
-        -------
-        list of Path
-            What was written.
-        """
-        return write_results(
-            folder,
-            {"bifurcation.csv": self._table(), "summary.json": as_json(self.summary())},
-            {"bifurcation.png": self.plot()},
-        )
+    def texts(self) -> dict[str, str]:
+        """Content of bifurcation.csv and summary.json."""
+        return {"bifurcation.csv": self._table(), "summary.json": as_json(self.summary())}
 
     def _table(self) -> str:
         lines = [f"{self.path} [SI],x [um],y [um],z [um],verdict"]

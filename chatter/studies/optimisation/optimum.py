@@ -5,20 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import ClassVar
 
 from chatter.description.case import Case
 from chatter.description.units import rpm
-from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, finite_or_none, write_results
+from chatter.io.result_files import SavedResult, as_json, finite_or_none
 from chatter.studies.optimisation.candidate import Candidate
 from chatter.studies.optimisation.exclusion import Exclusion, why_nothing
 from chatter.studies.optimisation.limits import Limits
 from chatter.studies.optimisation.operating_point import OperatingPoint, case_at
 from chatter.studies.optimisation.speed_depth_slice import SpeedDepthSlice
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 #: m^3/s in cm^3/min
 _PER_MINUTE = 6e7
@@ -38,7 +34,7 @@ _COLUMNS = (
 
 
 @dataclass(frozen=True, eq=False)
-class Optimum:
+class Optimum(SavedResult):
     """Best cuts within the limits of a case.
 
     Parameters
@@ -59,6 +55,9 @@ class Optimum:
         Of what is uncertain; no samples where nothing is.
     notes : tuple of str
     """
+
+    drawn_by: ClassVar[str] = "plots.optimum.plot_optimum"
+    picture: ClassVar[str] = "optimum.png"
 
     case: Case
     limits: Limits
@@ -150,21 +149,13 @@ class Optimum:
         lines.append(f"limited by {limited}")
         return lines
 
-    def plot(self) -> Figure:
-        """Return the picture of the search as a matplotlib figure."""
-        return presentation("plots.optimum").plot_optimum(self)
+    def texts(self) -> dict[str, str]:
+        """Content of optimum.csv and summary.json."""
+        return {"optimum.csv": self._table(), "summary.json": as_json(self.summary())}
 
     def save(self, folder: str | Path) -> list[Path]:
-        """Write optimum.csv, summary.json, optimum.png and, where there is one, case-optimum.toml.
-
-        Returns
-        -------
-        list of Path
-            What was written.
-        """
-        texts = {"optimum.csv": self._table(), "summary.json": as_json(self.summary())}
-        written = write_results(folder, texts, {"optimum.png": self.plot()})
-        path = Path(folder) / "case-optimum.toml"
+        """Write optimum.csv, summary.json, optimum.png and, of an optimum, case-optimum.toml."""
+        written, path = super().save(folder), Path(folder) / "case-optimum.toml"
         if self.best_case is not None:
             self.best_case.save(path)
             return [*written, path]

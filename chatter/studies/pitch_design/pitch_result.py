@@ -5,20 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.units import rpm
-from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, write_results
+from chatter.io.result_files import SavedResult, as_json
 from chatter.studies.pitch_design.families import regeneration
 from chatter.studies.pitch_design.pitch_search import Design
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -49,7 +45,7 @@ class FamilyCurve:
 
 
 @dataclass(frozen=True, eq=False)
-class PitchResult:
+class PitchResult(SavedResult):
     """Pitch angles for a range of speeds.
 
     Parameters
@@ -73,6 +69,9 @@ class PitchResult:
         rad/s.
     notes : tuple of str
     """
+
+    drawn_by: ClassVar[str] = "plots.pitch_design.plot_pitch"
+    picture: ClassVar[str] = "pitch.png"
 
     case: Case
     goal: str
@@ -151,25 +150,18 @@ class PitchResult:
             lines.append("no pitch within the bounds is better than that of the case")
         return lines
 
-    def plot(self) -> Figure:
-        """Return lobes before and after, and the limit over the difference of pitch."""
-        return presentation("plots.pitch_design").plot_pitch(self)
-
-    def save(self, folder: str | Path) -> list[Path]:
-        """Write pitch.csv, lobes.csv, summary.json, pitch.png and case-pitch.toml.
-
-        Returns
-        -------
-        list of Path
-            What was written.
-        """
-        texts = {
+    def texts(self) -> dict[str, str]:
+        """Content of pitch.csv, lobes.csv and summary.json."""
+        return {
             "pitch.csv": self._table(),
             "lobes.csv": self._lobes(),
             "summary.json": as_json(self.summary()),
         }
-        written = write_results(folder, texts, {"pitch.png": self.plot()})
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write pitch.csv, lobes.csv, summary.json, pitch.png and case-pitch.toml."""
         path = Path(folder) / "case-pitch.toml"
+        written = super().save(folder)
         self.best_case.save(path)
         return [*written, path]
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +16,7 @@ from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
 from chatter.description.units import rpm
 from chatter.engine.parallel import Executor
-from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, finite_or_none, write_results
+from chatter.io.result_files import SavedResult, as_json, finite_or_none
 from chatter.studies.model import fingerprint, patched
 from chatter.studies.result_cache import ResultCache
 from chatter.studies.uncertainty.latin_hypercube import samples
@@ -34,9 +33,6 @@ from chatter.studies.uncertainty.uncertain_parameters import (
     parameters_of,
 )
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 Array = NDArray[np.float64]
 
 #: probabilities of the band
@@ -46,7 +42,7 @@ _CONVERGENCE_ROWS = 12
 
 
 @dataclass(frozen=True, eq=False)
-class Uncertainty:
+class Uncertainty(SavedResult):
     """Limits of all samples.
 
     Parameters
@@ -67,6 +63,9 @@ class Uncertainty:
         Deepest that was searched, m.
     seed : int
     """
+
+    drawn_by: ClassVar[str] = "plots.uncertainty.plot_uncertainty"
+    picture: ClassVar[str] = "uncertainty.png"
 
     case: Case
     parameters: tuple[UncertainParameter, ...]
@@ -166,24 +165,13 @@ class Uncertainty:
             ],
         }
 
-    def plot(self) -> Figure:
-        """Return the band of lobes as a matplotlib figure."""
-        return presentation("plots.uncertainty").plot_uncertainty(self)
-
-    def save(self, folder: str | Path) -> list[Path]:
-        """Write uncertainty.csv, samples.csv, summary.json and uncertainty.png.
-
-        Returns
-        -------
-        list of Path
-            What was written.
-        """
-        texts = {
+    def texts(self) -> dict[str, str]:
+        """Content of uncertainty.csv, samples.csv and summary.json."""
+        return {
             "uncertainty.csv": self._table(),
             "samples.csv": self._samples(),
             "summary.json": as_json(self.summary()),
         }
-        return write_results(folder, texts, {"uncertainty.png": self.plot()})
 
     def _table(self) -> str:
         lines = [

@@ -8,13 +8,12 @@ from dataclasses import asdict, dataclass
 from functools import partial
 from io import StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from chatter.description.errors import InputError, RunError
 from chatter.description.progress import Progress, no_progress
 from chatter.engine.parallel import Executor
-from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, write_results
+from chatter.io.result_files import SavedResult, as_json
 from chatter.studies.model import fingerprint, patched
 from chatter.studies.result_cache import ResultCache
 from chatter.studies.whatif.design import AS_GIVEN, DesignPoint, Layout, chosen_layout, points_of
@@ -25,13 +24,11 @@ from chatter.studies.whatif.variation import Variation, read_variation, variatio
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from matplotlib.figure import Figure
-
     from chatter.studies.model import Model
 
 
 @dataclass(frozen=True)
-class WhatIf:
+class WhatIf(SavedResult):
     """Result of a study.
 
     Parameters
@@ -48,6 +45,9 @@ class WhatIf:
     outcomes : tuple of Outcome
     """
 
+    drawn_by: ClassVar[str] = "plots.whatif.plot_whatif"
+    picture: ClassVar[str] = "whatif.png"
+
     model: Model
     variations: tuple[Variation, ...]
     layout: Layout
@@ -56,7 +56,6 @@ class WhatIf:
     points: tuple[DesignPoint, ...]
     outcomes: tuple[Outcome, ...]
 
-    @property
     def sentences(self) -> list[str]:
         """What changed, by how much."""
         return sentences(self)
@@ -84,23 +83,12 @@ class WhatIf:
                 }
                 for point, outcome in zip(self.points, self.outcomes, strict=True)
             ],
-            "changes": self.sentences,
+            "changes": self.sentences(),
         }
 
-    def plot(self) -> Figure:
-        """Return the picture of the study as a matplotlib figure."""
-        return presentation("plots.whatif").plot_whatif(self)
-
-    def save(self, folder: str | Path) -> list[Path]:
-        """Write whatif.csv, summary.json and whatif.png.
-
-        Returns
-        -------
-        list of Path
-            What was written.
-        """
-        texts = {"whatif.csv": self._table(), "summary.json": as_json(self.summary())}
-        return write_results(folder, texts, {"whatif.png": self.plot()})
+    def texts(self) -> dict[str, str]:
+        """Content of whatif.csv and summary.json."""
+        return {"whatif.csv": self._table(), "summary.json": as_json(self.summary())}
 
     def _table(self) -> str:
         """One row a point: values of the paths, then words and numbers."""
