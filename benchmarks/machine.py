@@ -129,15 +129,15 @@ def guide(first: str, second: str, along: str, places: list[list[float]]) -> dic
 
 def frictions() -> dict:
     """Friction of every guide and every screw."""
-    keys = ("coulomb", "viscous", "slow_viscous", "slow_decay")
-    law = {"law": "tanh hysteresis"}
+    keys = ("coulomb", "viscous", "low_speed_viscous", "low_speed_decay")
+    law = {"law": "tanh-hysteresis"}
     places = {}
     for name, values in GUIDE_FRICTION.items():
-        told = dict(zip(keys, values, strict=True)) | {"inclination": INCLINATION}
+        told = dict(zip(keys, values, strict=True)) | {"hysteresis_slope": INCLINATION}
         places[f"guide_{name}"] = law | told | {"on": {"axis": name}}
     for name, values in SCREW_FRICTION.items():
         told = dict(zip(keys, values, strict=True))
-        told["inclination"] = INCLINATION * LEAD / (2.0 * np.pi)
+        told["hysteresis_slope"] = INCLINATION * LEAD / (2.0 * np.pi)
         places[f"screw_{name}"] = law | told | {"on": {"motor": name}}
     return places
 
@@ -199,12 +199,12 @@ def with_lugre(machine: Machine) -> Machine:
         frictions=tuple(
             one._replace(
                 law=LuGre(
-                    stiffness=2.0 * one.law.inclination * one.law.coulomb,
+                    bristle_stiffness=2.0 * one.law.hysteresis_slope * one.law.coulomb,
                     bristle_damping=0.0,
                     viscous=one.law.viscous,
                     coulomb=one.law.coulomb,
                     static=1.4 * one.law.coulomb,
-                    stribeck_velocity=0.1 / one.law.slow_decay,
+                    stribeck_velocity=0.1 / one.law.low_speed_decay,
                 )
             )
             for one in machine.frictions
@@ -268,8 +268,8 @@ def main() -> dict[str, list[dict]]:
     steps = DURATION / STEP
     rows = []
     for name, one in (
-        ("tanh hysteresis", machine),
-        ("LuGre", with_lugre(machine)),
+        ("tanh-hysteresis", machine),
+        ("lugre", with_lugre(machine)),
         ("none", machine.without_friction()),
     ):
         inputs = RunInputs(DURATION, points, outputs=tool)

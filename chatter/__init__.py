@@ -35,7 +35,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from chatter.description.case import Case as Case
     from chatter.description.case import load as load
-    from chatter.description.case_schema import schema as schema
     from chatter.description.errors import InputError as InputError
     from chatter.description.errors import RunError as RunError
     from chatter.description.machine.machine_file import load_machine as load_machine
@@ -44,6 +43,7 @@ if TYPE_CHECKING:
     from chatter.simulation.simulate import simulate as simulate
     from chatter.simulation.virtual_tests.from_file import frf as frf
     from chatter.simulation.virtual_tests.from_file import move as move
+    from chatter.stability.case_schema import schema as schema
     from chatter.stability.check import check as check
     from chatter.studies.bifurcation import bifurcation as bifurcation
     from chatter.studies.diagram_over_axes import lobes as lobes
@@ -74,7 +74,7 @@ _PUBLIC = {
     "optimum": "chatter.studies.optimisation.process_optimisation",
     "move": "chatter.simulation.virtual_tests.from_file",
     "pitch": "chatter.studies.pitch_design.pitch_design",
-    "schema": "chatter.description.case_schema",
+    "schema": "chatter.stability.case_schema",
     "simulate": "chatter.simulation.simulate",
     "uncertainty": "chatter.studies.uncertainty.monte_carlo",
     "whatif": "chatter.studies.whatif.whatif_study",

@@ -256,8 +256,9 @@ def test_leaves_of_both_packages_are_compiled_alike():
     from chatter.engine import presets
     from cutting import compiled
 
-    text = [(ROOT / package / "compiled.py").read_text() for package in ("cutting", "dynamics")]
-    assert text[0] == text[1]
+    for module in ("compiled.py", "keys.py"):
+        text = [(ROOT / package / module).read_text() for package in ("cutting", "dynamics")]
+        assert text[0] == text[1], module
     assert compiled.UNCOUNTED.items() <= presets.TIME_LOOP.items()
     for package in ("chatter", "cutting", "dynamics"):
         for path in modules(package):

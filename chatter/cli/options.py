@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, TypeVar
 
 import typer
 
 from chatter.description.assignments import parse_assignments
 from chatter.description.case import Case, load
+from chatter.description.patchable import Description
+from chatter.report.console import print_notes
 from chatter.stability.registry import AUTO, METHODS
 
 if TYPE_CHECKING:
     from chatter.description.machine.machine_file import MachineFile
+
+Described = TypeVar("Described", bound=Description)
 
 CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).")]
 MachinePath = Annotated[Path, typer.Argument(metavar="MACHINE", help="Machine file (TOML).")]
@@ -47,16 +51,20 @@ Method = Annotated[
 
 def patched_case(path: Path, assignments: list[str] | None) -> Case:
     """Load a case file and apply the assignments of the command line."""
-    case = load(path)
-    return case.patch(parse_assignments(assignments)) if assignments else case
+    return _patched(load(path), assignments)
 
 
 def patched_machine(path: Path, assignments: list[str] | None) -> MachineFile:
     """Load a machine file and apply the assignments of the command line."""
     from chatter.description.machine.machine_file import load_machine
 
-    machine = load_machine(path)
-    return machine.patch(parse_assignments(assignments)) if assignments else machine
+    return _patched(load_machine(path), assignments)
+
+
+def _patched(described: Described, assignments: list[str] | None) -> Described:
+    patched = described.patch(parse_assignments(assignments)) if assignments else described
+    print_notes(patched.notes)
+    return patched
 
 
 def output_folder(given: Path | None, name: str) -> Path:

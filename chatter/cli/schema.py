@@ -22,7 +22,7 @@ def schema(
     if machine:
         from chatter.description.machine.machine_schema import machine_schema as content
     else:
-        from chatter.description.case_schema import schema as content
+        from chatter.stability.case_schema import schema as content
     if out is None:
         print_json(content())
         return

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import Field, PrivateAttr, model_validator
 
+from chatter.description import renamed
 from chatter.description.case_checks import (
     engagement_problems,
     engagement_problems_of_draft,
@@ -16,15 +17,16 @@ from chatter.description.case_checks import (
 )
 from chatter.description.errors import InputError
 from chatter.description.patchable import Description
+from chatter.description.renamed import Renamed
 from chatter.description.section import raise_if_any
 from chatter.description.sections.cut import Cut
+from chatter.description.sections.friction import Friction
 from chatter.description.sections.material import Material
 from chatter.description.sections.optimisation import Optimum, PitchDesign
 from chatter.description.sections.process import (
     Axis,
     Contact,
     Dynamometer,
-    Friction,
     Lobes,
     ProcessDamping,
     Simulation,
@@ -54,6 +56,7 @@ class Case(Description):
         ("body", "beam", "connector", "point"),
         "machine",
     )
+    RENAMED: ClassVar[tuple[Renamed, ...]] = renamed.CASE
     LAYOUT: ClassVar[Layout] = Layout(
         headed=frozenset({("friction", "*")}),
         alternatives={

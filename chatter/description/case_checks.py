@@ -7,8 +7,8 @@ from typing import Any
 
 from chatter.description.path import field_at
 from chatter.description.sections.cut import Cut
+from chatter.description.sections.friction import Friction
 from chatter.description.sections.optimisation import Optimum
-from chatter.description.sections.process import Friction
 from chatter.description.sections.structure import StructureSection
 from chatter.description.sections.tool import Tool
 
@@ -75,21 +75,22 @@ def friction_problems(
 def optimum_problems(
     optimum: Optimum | None, cut: Cut | None, tool: Tool | None
 ) -> list[tuple[str, str]]:
-    """Check the widths of [optimum] against the cut and the tool.
+    """Check the radial depths of [optimum] against the cut and the tool.
 
     Returns
     -------
     list of (str, str)
         Path and sentence of what is wrong.
     """
-    if optimum is None or optimum.widths is None or cut is None or tool is None:
+    if optimum is None or optimum.radial_depths is None or cut is None or tool is None:
         return []
     if cut.mode == "slot":
-        text = 'mode = "slot" cuts the whole diameter; leave widths out, or choose "up" or "down"'
-        return [("optimum.widths", text)]
-    if optimum.widths.to > tool.diameter * (1.0 + 1e-9):
-        width, size = f"{optimum.widths.to * 1e3:g} mm", f"{tool.diameter * 1e3:g} mm"
-        return [("optimum.widths.to", f"{width} is more than the diameter of the tool, {size}")]
+        text = 'mode = "slot" cuts the whole diameter; leave it out, or choose "up" or "down"'
+        return [("optimum.radial_depths", text)]
+    if optimum.radial_depths.to > tool.diameter * (1.0 + 1e-9):
+        width, size = f"{optimum.radial_depths.to * 1e3:g} mm", f"{tool.diameter * 1e3:g} mm"
+        text = f"{width} is more than the diameter of the tool, {size}"
+        return [("optimum.radial_depths.to", text)]
     return []
 
 

@@ -23,6 +23,7 @@ from chatter.description.path import (
     model_at,
     parse_path,
 )
+from chatter.description.renamed import Renamed, rename, rename_patch
 from chatter.description.section import Section
 from chatter.description.toml_document import parse_document, plain, read_text, value_at
 from chatter.description.toml_editing import PLAIN, Layout, set_value
@@ -46,6 +47,8 @@ class Description(Section):
     LAYOUT: ClassVar[Layout]
     #: sections that only another kind of file has, and how that is called
     OTHER_KIND: ClassVar[tuple[tuple[str, ...], str]]
+    #: keys and values that have a new name
+    RENAMED: ClassVar[tuple[Renamed, ...]] = ()
 
     #: the file that it came from, and what was set in it since: (path, value)
     _document: Any = PrivateAttr(default=None)
@@ -54,6 +57,7 @@ class Description(Section):
     _data: Any = PrivateAttr(default=None)
     _folder: Path = PrivateAttr(default=Path())
     _name: str = PrivateAttr(default="")
+    _notes: tuple[str, ...] = PrivateAttr(default=())
 
     def __eq__(self, other: object) -> bool:
         """Compare by content, whatever the files looked like and wherever they lie."""
@@ -96,6 +100,11 @@ class Description(Section):
     def name(self) -> str:
         """Name of the file, for messages."""
         return self._name or self.NOUN
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the reader of the file should know, such as keys that have a new name."""
+        return self._notes
 
     @property
     def folder(self) -> Path:
@@ -151,8 +160,10 @@ class Description(Section):
 
     @classmethod
     def _of_document(cls, document: Any, name: str, folder: Path) -> Self:
+        notes = rename(document, cls.RENAMED)
         made = cls._validated(document.unwrap(), name, folder)
         made._document = document
+        made._notes = tuple(f"{name}: {note}" for note in notes)
         return made
 
     @classmethod
@@ -230,14 +241,17 @@ class Description(Section):
         """
         data = copied(self._plain())
         edits = []
+        notes: list[str] = []
         problems: list[str] = []
         unknown: list[str] = []
         for path, value in values.items():
             try:
-                steps = self._steps(path)
+                given = plain(value, self._steps(path), self.NOUN)
+                steps, given, renamed = rename_patch(self._steps(path), given, self.RENAMED)
+                notes += renamed
                 self._check_known(steps)
                 unknown += self._newly_made(data, steps)
-                given = self._in_given_unit(data, steps, plain(value, steps, self.NOUN))
+                given = self._in_given_unit(data, steps, given)
                 set_value(data, steps, copied(given), self.LAYOUT, PLAIN)
                 edits.append((steps, given))
             except InputError as error:
@@ -252,6 +266,7 @@ class Description(Section):
                 [f"{self.name}: {text}" for text in unknown] or error.messages
             ) from None
         made._document, made._edits = self._document, (*self._edits, *edits)
+        made._notes = (*self._notes, *notes)
         return made
 
     def deviations(self) -> dict[str, float]:

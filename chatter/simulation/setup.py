@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from chatter.compile.cutter import cutter_of, edge_law, flank_table
-from chatter.compile.mode_friction import mode_frictions
 from chatter.compile.structure import structure_of
 from chatter.description.case import Case
 from chatter.description.errors import InputError
@@ -22,6 +21,7 @@ from cutting.chip.regeneration import delayed_cut
 from cutting.engagement.immersion import slice_engagement
 from cutting.process_damping.contact import ToolContact
 from cutting.tool.cutter import Cutter, EdgeSlices, edge_slices
+from dynamics.friction.laws import friction_groups
 from dynamics.modal.modes import Mode
 
 #: the model of the chip holds while the tool moves by less than this share of its radius
@@ -141,7 +141,7 @@ def compiled(
     groups: tuple = (CHIPS[chip](case, cutter, slices, modes, resolution, spindle, path),)
     if case.contact is not None:
         contact = case.contact
-        groups += (ToolContact(contact.stiffness, contact.damping, contact.full_at),)
+        groups += (ToolContact(contact.stiffness, contact.damping, contact.full_engagement_share),)
     return Setup(
         case=case,
         cutter=cutter,
@@ -151,7 +151,7 @@ def compiled(
         spindle=spindle,
         path=path,
         groups=groups,
-        frictions=mode_frictions(case),
+        frictions=_mode_frictions(case),
         furthest=_FURTHEST * cutter.radius,
         notes=notes,
     )
@@ -257,3 +257,10 @@ def _delayed(
 
 #: name in a case file -> group of the cutting force
 CHIPS = {"delay": _delayed, "dexel": discrete_cut, "voxel": discrete_cut}
+
+
+def _mode_frictions(case: Case) -> tuple:
+    """Tables of the frictions of the modes of a case at rest; ports are numbers of modes."""
+    modes = case.structure.mode if case.structure is not None else ()
+    laws = {i: case.friction[mode.friction].spec() for i, mode in enumerate(modes) if mode.friction}
+    return friction_groups(list(laws.values()), list(laws))

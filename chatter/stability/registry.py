@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from chatter.description.formatting import shown
 from chatter.description.registry import Registry
-from chatter.description.stability_methods import known_method
 from chatter.stability.method import StabilityMethod
 from chatter.stability.methods.collocation.method import COLLOCATION
 from chatter.stability.methods.matrix_free.method import MATRIX_FREE
@@ -48,10 +48,9 @@ def chosen_method(case: Case, name: str | None = None) -> StabilityMethod:
     if name == AUTO:
         name = "collocation" if case.contact is None else "matrix-free"
         name = name if fixed_steps(case) is None else "semi-discretization"
-    try:
-        return METHODS[known_method(name)]
-    except ValueError as error:
-        raise InputError(str(error)) from None
+    if name not in METHODS:
+        raise InputError(f"{METHODS.unknown(name)}; {shown(AUTO)} chooses")
+    return METHODS[name]
 
 
 def with_radius(method: StabilityMethod) -> StabilityMethod:

@@ -13,21 +13,21 @@ class ToolContact(NamedTuple):
     """Spring and damper in the plane of the cut, in both directions alike.
 
     They act as far as the tool is in the cut: in proportion to the engaged share of the depth of
-    cut, and whole from the share `full_at` on; near 0, as soon as any edge cuts. The group comes
-    after the cut that it belongs to.
+    cut, and whole from `full_engagement_share` on; near 0, as soon as any edge cuts. The group
+    comes after the cut that it belongs to.
     Suzuki et al. (coupled simulation with friction and process damping, figure 7) identify such a
     pair from the frequency response in the cut.
     """
 
     stiffness: float  # N/m
     damping: float  # N s/m
-    full_at: float  # engaged share of the depth of cut, 1
+    full_engagement_share: float  # engaged share of the depth of cut, 1
 
 
 @register_jitable(**INLINED)
 def contact_forces(group, turn, point):  # noqa: ARG001
     """Add the force of the contact on the tool."""
-    share = min(1.0, point.contact[0] / group.full_at)
+    share = min(1.0, point.contact[0] / group.full_engagement_share)
     for axis in range(2):
         force = -share * (
             group.stiffness * point.displacement[axis] + group.damping * point.velocity[axis]

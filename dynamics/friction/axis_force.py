@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.friction.coulomb_stribeck import CoulombStribeck
 from dynamics.friction.identification.dynamic_fit import friction_along
 from dynamics.friction.lugre import LuGre
 
@@ -114,20 +115,20 @@ class AxisForce:
     ) -> NDArray[np.float64]:
         """Coulomb friction with its onset, its presliding and its asymmetry, N."""
         way = np.tanh(velocity / SMOOTH)
-        level = self.coulomb + self.asymmetry * way
-        above = 0.0 if self.static is None else self.static - self.coulomb
+        static = self.coulomb if self.static is None else self.static
         if self.presliding_stiffness is None or self.coulomb <= 0.0:
-            bump = np.exp(-((velocity / self.stribeck_velocity) ** 2))
-            return (level + above * bump) * way
+            law = CoulombStribeck(self.coulomb, static, self.stribeck_velocity)
+            sliding = law.steady_state_force(np.abs(velocity))
+            return (sliding + self.asymmetry * way) * way
         damping = self.presliding_damping
         if damping is None:
             damping = 2.0 * _BRISTLE_DAMPING * math.sqrt(self.mass * self.presliding_stiffness)
         law = LuGre(
-            stiffness=self.presliding_stiffness,
+            bristle_stiffness=self.presliding_stiffness,
             bristle_damping=damping,
             viscous=0.0,
             coulomb=self.coulomb,
-            static=self.coulomb + max(above, 0.0),
+            static=max(static, self.coulomb),
             stribeck_velocity=self.stribeck_velocity,
         )
         return friction_along(law, position, step) + self.asymmetry * way * way

@@ -17,7 +17,22 @@ from numpy.typing import ArrayLike, NDArray
 
 from dynamics.compiled import INLINED
 from dynamics.friction.columns import parameter_columns, port_column
-from dynamics.friction.implicit import held_force
+from dynamics.friction.harmonic import memoryless_describing_function
+from dynamics.friction.implicit import held_force, no_energy, no_force
+from dynamics.friction.law import FrictionLawEntry
+from dynamics.keys import Key, check_ranges
+
+KEYS = (
+    Key("coulomb", "force", "Coulomb friction", needed=True, at_least=0.0),
+    Key("static", "force", "largest at rest; as coulomb by default", at_least=0.0),
+    Key("stribeck_velocity", "velocity", "over which the static force falls", above=0.0),
+    Key("viscous", "damping", "force per velocity", 0.0, at_least=0.0),
+    Key("stribeck_shape", "number", "exponent of the Stribeck curve", 2.0, above=0.0),
+)
+#: dynamic stiffness at rest, N/m (N m/rad): it holds, and nothing in a machine is stiffer
+HELD = 1e14
+#: Stribeck velocity where the static force is the Coulomb friction, m/s: it changes nothing
+_ANY_VELOCITY = 1.0
 
 
 @dataclass(frozen=True)
@@ -48,14 +63,7 @@ class CoulombStribeck:
     stribeck_shape: float = 2.0
 
     def __post_init__(self) -> None:
-        for name in ("coulomb", "static", "viscous"):
-            if not 0.0 <= getattr(self, name) < math.inf:
-                raise ValueError(
-                    f"dry friction: {name} must be 0 or above, not {getattr(self, name)}"
-                )
-        for name in ("stribeck_velocity", "stribeck_shape"):
-            if not 0.0 < getattr(self, name) < math.inf:
-                raise ValueError(f"dry friction: {name} must be above 0, not {getattr(self, name)}")
+        check_ranges(self, KEYS, "dry friction")
 
     def steady_state_force(self, velocity: ArrayLike) -> NDArray[np.float64]:
         """Force at constant velocities in m/s, N; 0 at 0, where any up to the static is held."""
@@ -64,13 +72,12 @@ class CoulombStribeck:
         dry = (self.static - self.coulomb) * np.exp(-(ratio**self.stribeck_shape))
         return np.sign(velocity) * (self.coulomb + dry) + self.viscous * velocity
 
-    def stiffness_in_motion(self, frequency: ArrayLike, velocity: float) -> NDArray[np.complex128]:
-        """Dynamic stiffness j w dF/dv, N/m, about a velocity in m/s (not 0); Hz.
+    def stiffness_at_rest(self, frequency: ArrayLike) -> NDArray[np.complex128]:
+        """Dynamic stiffness of small motion about rest, N/m: the port is held."""
+        return np.full(np.shape(np.asarray(frequency)), HELD, dtype=np.complex128)
 
-        Notes
-        -----
-        About rest it is infinite: the port is held.
-        """
+    def stiffness_in_motion(self, frequency: ArrayLike, velocity: float) -> NDArray[np.complex128]:
+        """Dynamic stiffness j w dF/dv, N/m, about a velocity in m/s (not 0); Hz."""
         speed = abs(velocity)
         if not speed > 0.0:
             raise ValueError("dry friction: velocity must not be 0, at rest the port is held")
@@ -88,10 +95,7 @@ class CoulombStribeck:
         The stiffness is 0. Without a Stribeck curve the damping is 4 FC / (pi A w) + c (Den
         Hartog 1931); with it the mean over the cycle is taken.
         """
-        peak = 2.0 * np.pi * frequency * amplitude
-        angle = (np.arange(4000) + 0.5) * (0.5 * np.pi / 4000)
-        force = self.steady_state_force(peak * np.sin(angle))
-        return 0.0, float(2.0 * np.mean(force * np.sin(angle)) / peak)
+        return memoryless_describing_function(self.steady_state_force, amplitude, frequency)
 
 
 class CoulombStribeckTable(NamedTuple):
@@ -124,16 +128,6 @@ def _resist(law, i, sign, way, h):  # noqa: ARG001
 
 
 @register_jitable(**INLINED)
-def _rest(law, i):  # noqa: ARG001
-    return 0.0
-
-
-@register_jitable(**INLINED)
-def _stored(law, i, motion, h):  # noqa: ARG001
-    return 0.0
-
-
-@register_jitable(**INLINED)
 def coulomb_stribeck_force(law, i, motion, h):
     """Force, N, of a motion (m) at constant velocity in a time h (s); 0 without motion."""
     if motion == 0.0:
@@ -145,10 +139,47 @@ def coulomb_stribeck_force(law, i, motion, h):
 @register_jitable(**INLINED)
 def coulomb_stribeck_step(law, i, dx_free, gx, v_free, g, h):
     """Held force, N, and motion of the law, m; see `implicit.held_force`."""
-    return held_force(_rest, _resist, _stored, law, i, math.inf, dx_free, gx, v_free, g, h)
+    return held_force(no_force, _resist, no_energy, law, i, math.inf, dx_free, gx, v_free, g, h)
 
 
 @register_jitable(**INLINED)
 def coulomb_stribeck_advance(law, i, motion, h):
     """Note a motion, m, in a time h, s."""
     law.rate[i] = motion / h
+
+
+def coulomb_stribeck_of_keys(
+    coulomb: float,
+    static: float | None = None,
+    stribeck_velocity: float | None = None,
+    **further: float,
+) -> CoulombStribeck:
+    """Dry friction; without a static force it is plain Coulomb friction.
+
+    Raises
+    ------
+    ValueError
+        If the Stribeck velocity is missing, or a parameter is out of its range.
+    """
+    if static is None:
+        static = coulomb
+    if stribeck_velocity is None:
+        if static != coulomb:
+            raise ValueError("dry friction: stribeck_velocity is missing; static needs it")
+        stribeck_velocity = _ANY_VELOCITY
+    return CoulombStribeck(coulomb, static, stribeck_velocity, **further)
+
+
+COULOMB_STRIBECK = FrictionLawEntry(
+    name="coulomb-stribeck",
+    label="Coulomb-Stribeck",
+    help="dry friction with true rest, a Stribeck curve and a viscous part",
+    keys=KEYS,
+    spec=CoulombStribeck,
+    table=CoulombStribeckTable,
+    columns=coulomb_stribeck_table,
+    step=coulomb_stribeck_step,
+    force=coulomb_stribeck_force,
+    advance=coulomb_stribeck_advance,
+    make=coulomb_stribeck_of_keys,
+)

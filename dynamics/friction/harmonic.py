@@ -1,4 +1,4 @@
-"""Equivalent stiffness and damping of a law with memory under harmonic motion."""
+"""Equivalent stiffness and damping of friction laws under harmonic motion."""
 
 from __future__ import annotations
 
@@ -6,8 +6,12 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
 _STEPS = 2000
 _CYCLES = 3
+#: samples of a quarter of a cycle of a law without memory
+_SAMPLES = 4000
 
 
 def describing_function(
@@ -59,3 +63,28 @@ def describing_function(
     omega = 2.0 * math.pi * frequency
     stiffness = 2.0 * elastic / (_STEPS * amplitude**2)
     return float(stiffness), float(work / (math.pi * amplitude**2 * omega))
+
+
+def memoryless_describing_function(
+    steady_state_force: Callable[..., Any], amplitude: float, frequency: float
+) -> tuple[float, float]:
+    """First harmonic of x = A sin(w t), of a law whose force depends on velocity alone.
+
+    Parameters
+    ----------
+    steady_state_force : callable
+        Velocities, m/s -> forces, N.
+    amplitude, frequency : float
+        A, m, and Hz.
+
+    Returns
+    -------
+    stiffness : float
+        0.
+    damping : float
+        N s/m; the mean over the cycle.
+    """
+    peak = 2.0 * np.pi * frequency * amplitude
+    angle = (np.arange(_SAMPLES) + 0.5) * (0.5 * np.pi / _SAMPLES)
+    force = steady_state_force(peak * np.sin(angle))
+    return 0.0, float(2.0 * np.mean(force * np.sin(angle)) / peak)

@@ -27,6 +27,18 @@ _CONTRACTIONS, _CLOSING = 5, 0.1
 
 
 @register_jitable(**INLINED)
+def no_force(law, i):  # noqa: ARG001
+    """Force at no motion of a law without memory."""
+    return 0.0
+
+
+@register_jitable(**INLINED)
+def no_energy(law, i, motion, h):  # noqa: ARG001
+    """Change of the stored energy of a law that stores none, J."""
+    return 0.0
+
+
+@register_jitable(**INLINED)
 def held_force(rest, resist, stored, law, i, stiffness, dx_free, gx, v_free, g, h):
     """Force held over the step and motion of the law.
 

@@ -1,95 +1,43 @@
-"""Friction laws by name, by specification and by table: where a new one joins.
-
-A law joins by its module and one entry in the table here.
-"""
+"""The friction laws: one module and one line here each, and their tables for the time loops."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.compiled import by_table
-from dynamics.friction.coulomb_stribeck import (
-    CoulombStribeck,
-    CoulombStribeckTable,
-    coulomb_stribeck_advance,
-    coulomb_stribeck_force,
-    coulomb_stribeck_step,
-    coulomb_stribeck_table,
-)
-from dynamics.friction.lugre import (
-    LuGre,
-    LuGreTable,
-    lugre_advance,
-    lugre_force,
-    lugre_step,
-    lugre_table,
-)
-from dynamics.friction.smooth_coulomb import (
-    SmoothCoulomb,
-    SmoothCoulombTable,
-    smooth_coulomb_advance,
-    smooth_coulomb_force,
-    smooth_coulomb_step,
-    smooth_coulomb_table,
-)
-from dynamics.friction.tanh_hysteresis import (
-    TanhHysteresis,
-    TanhTable,
-    tanh_advance,
-    tanh_force,
-    tanh_step,
-    tanh_table,
-)
+from dynamics.friction.coulomb_stribeck import COULOMB_STRIBECK
+from dynamics.friction.law import FrictionLaw, FrictionLawEntry
+from dynamics.friction.lugre import LUGRE
+from dynamics.friction.smooth_coulomb import SMOOTH_COULOMB
+from dynamics.friction.tanh_hysteresis import TANH_HYSTERESIS
 
-FrictionLaw = LuGre | TanhHysteresis | CoulombStribeck | SmoothCoulomb
+#: the laws of this package, in the order in which they are listed
+LAWS: tuple[FrictionLawEntry, ...] = (LUGRE, TANH_HYSTERESIS, COULOMB_STRIBECK, SMOOTH_COULOMB)
+
+#: specification -> law, of this package and of others that were included
+BY_SPEC: dict[type, FrictionLawEntry] = {}
+_STEP: dict[type, object] = {}
+_ADVANCE: dict[type, object] = {}
 
 
-class LawEntry(NamedTuple):
-    """A law: its specification, its table, and its leaves."""
-
-    spec: type
-    table: type
-    columns: Callable[[Sequence[FrictionLaw], Sequence[int]], NamedTuple]
-    step: Callable  # force held over a step
-    force: Callable  # mean force over a motion at constant velocity
-    advance: Callable  # moves the state on
+def include(law: FrictionLawEntry) -> None:
+    """Make a law known to the time loops."""
+    BY_SPEC[law.spec] = law
+    _STEP[law.table] = law.step
+    _ADVANCE[law.table] = law.advance
 
 
-#: name in machine files -> law; where a new one joins
-ENTRIES = {
-    "LuGre": LawEntry(LuGre, LuGreTable, lugre_table, lugre_step, lugre_force, lugre_advance),
-    "tanh hysteresis": LawEntry(
-        TanhHysteresis, TanhTable, tanh_table, tanh_step, tanh_force, tanh_advance
-    ),
-    "Coulomb-Stribeck": LawEntry(
-        CoulombStribeck,
-        CoulombStribeckTable,
-        coulomb_stribeck_table,
-        coulomb_stribeck_step,
-        coulomb_stribeck_force,
-        coulomb_stribeck_advance,
-    ),
-    "smooth Coulomb": LawEntry(
-        SmoothCoulomb,
-        SmoothCoulombTable,
-        smooth_coulomb_table,
-        smooth_coulomb_step,
-        smooth_coulomb_force,
-        smooth_coulomb_advance,
-    ),
-}
-#: name -> specification
-LAWS = {name: entry.spec for name, entry in ENTRIES.items()}
-#: specification -> the law
-BY_SPEC = {entry.spec: entry for entry in ENTRIES.values()}
+for _law in LAWS:
+    include(_law)
+
 #: held force, N, and motion of a law, m; see `implicit.held_force`
-friction_step = by_table({entry.table: entry.step for entry in ENTRIES.values()})
+friction_step = by_table(_STEP)
 #: moves the state of a law by a motion, m, in a time, s
-friction_advance = by_table({entry.table: entry.advance for entry in ENTRIES.values()})
+friction_advance = by_table(_ADVANCE)
 
 
 class Frictions(NamedTuple):
@@ -102,7 +50,7 @@ class Frictions(NamedTuple):
 
 
 def friction_groups(laws: Sequence[FrictionLaw], ports: Sequence[int]) -> tuple[Frictions, ...]:
-    """Tables of frictions at rest, one a law that occurs, in the order of `ENTRIES`."""
+    """Tables of frictions at rest, one a law that occurs, in the order of `LAWS`."""
     groups = []
     for kind, entry in BY_SPEC.items():
         chosen = [place for place, law in enumerate(laws) if isinstance(law, kind)]

@@ -25,9 +25,26 @@ from dynamics.compiled import INLINED
 from dynamics.friction.columns import parameter_columns, port_column
 from dynamics.friction.harmonic import describing_function
 from dynamics.friction.implicit import held_force
+from dynamics.friction.law import FrictionLawEntry
+from dynamics.keys import Key, check_ranges
 
 #: exponent of the Stribeck curve beyond which it is below rounding
 _FAR_SLIDING = 60.0
+
+
+KEYS = (
+    Key("bristle_stiffness", "stiffness", "s0 of the bristles", needed=True, above=0.0),
+    Key("bristle_damping", "damping", "s1 of the bristles", 0.0, at_least=0.0),
+    Key("viscous", "damping", "force per velocity; s2 of the LuGre law", 0.0, at_least=0.0),
+    Key("coulomb", "force", "Coulomb friction", needed=True, above=0.0),
+    Key("static", "force", "force at the onset of sliding", needed=True, above=0.0),
+    Key(
+        "stribeck_velocity", "velocity", "over which the static force falls", needed=True, above=0.0
+    ),
+    Key("stribeck_shape", "number", "exponent of the Stribeck curve", 2.0, above=0.0),
+    Key("logarithmic", "force", "that grows with the logarithm of speed", 0.0, at_least=0.0),
+    Key("logarithmic_velocity", "velocity", "from which it grows", 1.0, above=0.0),
+)
 
 
 @dataclass(frozen=True)
@@ -36,8 +53,8 @@ class LuGre:
 
     Parameters
     ----------
-    stiffness : float
-        s0 of the bristle, N/m.
+    bristle_stiffness : float
+        s0, N/m.
     bristle_damping : float
         s1, N s/m.
     viscous : float
@@ -59,7 +76,7 @@ class LuGre:
         If a parameter is out of its range; the message names it.
     """
 
-    stiffness: float
+    bristle_stiffness: float
     bristle_damping: float
     viscous: float
     coulomb: float
@@ -70,23 +87,7 @@ class LuGre:
     logarithmic_velocity: float = 1.0
 
     def __post_init__(self) -> None:
-        for name in (
-            "stiffness",
-            "coulomb",
-            "static",
-            "stribeck_velocity",
-            "stribeck_shape",
-            "logarithmic_velocity",
-        ):
-            if not 0.0 < getattr(self, name) < math.inf:
-                raise ValueError(
-                    f"LuGre friction: {name} must be above 0, not {getattr(self, name)}"
-                )
-        for name in ("bristle_damping", "viscous", "logarithmic"):
-            if not 0.0 <= getattr(self, name) < math.inf:
-                raise ValueError(
-                    f"LuGre friction: {name} must be 0 or above, not {getattr(self, name)}"
-                )
+        check_ranges(self, KEYS, "LuGre friction")
 
     def sliding_force(self, velocity: ArrayLike) -> NDArray[np.float64]:
         """s0 g(v), N, at velocities in m/s: steady force without its viscous part."""
@@ -103,7 +104,7 @@ class LuGre:
     def stiffness_at_rest(self, frequency: ArrayLike) -> NDArray[np.complex128]:
         """Dynamic stiffness s0 + j w (s1 + s2), N/m, of small motion about rest; Hz."""
         omega = 2.0 * np.pi * np.asarray(frequency, dtype=np.float64)
-        return self.stiffness + 1j * omega * (self.bristle_damping + self.viscous)
+        return self.bristle_stiffness + 1j * omega * (self.bristle_damping + self.viscous)
 
     def stiffness_in_motion(self, frequency: ArrayLike, velocity: float) -> NDArray[np.complex128]:
         """Dynamic stiffness of small motion about a steady velocity (m/s, not 0), N/m.
@@ -123,9 +124,9 @@ class LuGre:
         slope = self.logarithmic / (speed + self.logarithmic_velocity)
         slope -= falling / self.stribeck_velocity
         sliding = float(self.sliding_force(speed))
-        relaxation = speed * self.stiffness / sliding
+        relaxation = speed * self.bristle_stiffness / sliding
         bristle = slope * speed / sliding / (rate + relaxation)  # dz/dv
-        bent = (self.stiffness + self.bristle_damping * rate) * bristle
+        bent = (self.bristle_stiffness + self.bristle_damping * rate) * bristle
         return rate * (bent + self.viscous)
 
     def describing_function(self, amplitude: float, frequency: float) -> tuple[float, float]:
@@ -137,7 +138,7 @@ class LuGre:
 class LuGreTable(NamedTuple):
     """LuGre frictions as the kernels see them; columns (n,)."""
 
-    stiffness: NDArray[np.float64]  # s0, N/m
+    bristle_stiffness: NDArray[np.float64]  # s0, N/m
     bristle_damping: NDArray[np.float64]  # s1, N s/m
     viscous: NDArray[np.float64]  # s2, N s/m
     coulomb: NDArray[np.float64]  # FC, N
@@ -167,7 +168,7 @@ def lugre_bent(law, i, speed):
         force += (law.static[i] - law.coulomb[i]) * math.exp(-power)
     if law.logarithmic[i] > 0.0:
         force += law.logarithmic[i] * math.log1p(speed / law.logarithmic_velocity[i])
-    return force / law.stiffness[i]
+    return force / law.bristle_stiffness[i]
 
 
 @register_jitable(**INLINED)
@@ -188,14 +189,14 @@ def _resist(law, i, sign, way, h):
     mean, end, slip = _bend(law, i, sign, way, h)
     start = sign * law.deflection[i]
     change = (end - start) / h
-    force = law.stiffness[i] * mean + law.bristle_damping[i] * change
+    force = law.bristle_stiffness[i] * mean + law.bristle_damping[i] * change
     force += law.viscous[i] * way / h
     return max(force, 0.0) if start > slip else force
 
 
 @register_jitable(**INLINED)
 def _rest(law, i):
-    return law.stiffness[i] * law.deflection[i]
+    return law.bristle_stiffness[i] * law.deflection[i]
 
 
 @register_jitable(**INLINED)
@@ -203,7 +204,7 @@ def _stored(law, i, motion, h):
     sign = 1.0 if motion >= 0.0 else -1.0
     _, end, _ = _bend(law, i, sign, abs(motion), h)
     start = sign * law.deflection[i]
-    return 0.5 * law.stiffness[i] * (end - start) * (end + start)
+    return 0.5 * law.bristle_stiffness[i] * (end - start) * (end + start)
 
 
 @register_jitable(**INLINED)
@@ -216,7 +217,7 @@ def lugre_force(law, i, motion, h):
 @register_jitable(**INLINED)
 def lugre_step(law, i, dx_free, gx, v_free, g, h):
     """Held force, N, and motion of the law, m; see `implicit.held_force`."""
-    stiffness = law.stiffness[i] + (law.bristle_damping[i] + law.viscous[i]) / h
+    stiffness = law.bristle_stiffness[i] + (law.bristle_damping[i] + law.viscous[i]) / h
     return held_force(_rest, _resist, _stored, law, i, stiffness, dx_free, gx, v_free, g, h)
 
 
@@ -232,4 +233,18 @@ def lugre_advance(law, i, motion, h):
 @register_jitable(**INLINED)
 def lugre_energy(law, i):
     """Energy stored in the bristle, J."""
-    return 0.5 * law.stiffness[i] * law.deflection[i] * law.deflection[i]
+    return 0.5 * law.bristle_stiffness[i] * law.deflection[i] * law.deflection[i]
+
+
+LUGRE = FrictionLawEntry(
+    name="lugre",
+    label="LuGre",
+    help="one bristle that bends and slips, with a Stribeck curve",
+    keys=KEYS,
+    spec=LuGre,
+    table=LuGreTable,
+    columns=lugre_table,
+    step=lugre_step,
+    force=lugre_force,
+    advance=lugre_advance,
+)

@@ -105,7 +105,7 @@ def _along(over, share, law, i, sign, way):
     branch, travel : int, float
         At the end.
     """
-    a = law.inclination[i]
+    a = law.hysteresis_slope[i]
     n, u = law.count[i], law.travel[i]
     origin = sign * law.value[i, n - 1] if n > 0 else 0.0
     close = law.length[i, n - 1] if n > 0 else math.inf

@@ -17,7 +17,23 @@ from numba.extending import register_jitable
 from numpy.typing import ArrayLike, NDArray
 
 from dynamics.compiled import INLINED
-from dynamics.friction.implicit import held_force
+from dynamics.friction.columns import parameter_columns, port_column
+from dynamics.friction.harmonic import memoryless_describing_function
+from dynamics.friction.implicit import held_force, no_energy, no_force
+from dynamics.friction.law import FrictionLawEntry
+from dynamics.keys import Key, check_ranges
+
+KEYS = (
+    Key("coulomb", "force", "Coulomb friction", needed=True, at_least=0.0),
+    Key(
+        "smoothing_velocity",
+        "velocity",
+        "below which the friction falls to zero",
+        needed=True,
+        above=0.0,
+    ),
+    Key("viscous", "damping", "force per velocity", 0.0, at_least=0.0),
+)
 
 
 @dataclass(frozen=True)
@@ -44,21 +60,16 @@ class SmoothCoulomb:
     viscous: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("coulomb", "viscous"):
-            if not 0.0 <= getattr(self, name) < math.inf:
-                raise ValueError(
-                    f"smooth friction: {name} must be 0 or above, not {getattr(self, name)}"
-                )
-        if not 0.0 < self.smoothing_velocity < math.inf:
-            raise ValueError(
-                "smooth friction: smoothing_velocity must be above 0, not "
-                f"{self.smoothing_velocity}"
-            )
+        check_ranges(self, KEYS, "smooth friction")
 
     def steady_state_force(self, velocity: ArrayLike) -> NDArray[np.float64]:
         """Force at constant velocities in m/s, N."""
         velocity = np.asarray(velocity, dtype=np.float64)
         return self.coulomb * np.tanh(velocity / self.smoothing_velocity) + self.viscous * velocity
+
+    def stiffness_at_rest(self, frequency: ArrayLike) -> NDArray[np.complex128]:
+        """Dynamic stiffness of small motion about rest, N/m; Hz."""
+        return self.stiffness_in_motion(frequency, 0.0)
 
     def stiffness_in_motion(self, frequency: ArrayLike, velocity: float) -> NDArray[np.complex128]:
         """Dynamic stiffness j w dF/dv, N/m, about a velocity in m/s, 0 included; Hz."""
@@ -74,10 +85,7 @@ class SmoothCoulomb:
         The stiffness is 0; the damping is the mean over the cycle, and tends to 4 FC / (pi A w)
         + c as the smoothing vanishes (Den Hartog 1931).
         """
-        peak = 2.0 * np.pi * frequency * amplitude
-        angle = (np.arange(4000) + 0.5) * (0.5 * np.pi / 4000)
-        force = self.steady_state_force(peak * np.sin(angle))
-        return 0.0, float(2.0 * np.mean(force * np.sin(angle)) / peak)
+        return memoryless_describing_function(self.steady_state_force, amplitude, frequency)
 
 
 class SmoothCoulombTable(NamedTuple):
@@ -92,30 +100,14 @@ class SmoothCoulombTable(NamedTuple):
 
 def smooth_coulomb_table(laws: Sequence[SmoothCoulomb], ports: Sequence[int]) -> SmoothCoulombTable:
     """Return frictions at rest on ports."""
-    columns = []
-    for name in SmoothCoulombTable._fields[:3]:
-        column = np.array([getattr(law, name) for law in laws], dtype=np.float64)
-        column.flags.writeable = False
-        columns.append(column)
-    port = np.array(ports, dtype=np.int64)
-    port.flags.writeable = False
-    return SmoothCoulombTable(*columns, port, np.zeros(len(laws)))
+    columns = parameter_columns(laws, SmoothCoulombTable._fields[:3])
+    return SmoothCoulombTable(*columns, port_column(ports), np.zeros(len(laws)))
 
 
 @register_jitable(**INLINED)
 def _resist(law, i, sign, way, h):  # noqa: ARG001
     speed = way / h
     return law.coulomb[i] * math.tanh(speed / law.smoothing_velocity[i]) + law.viscous[i] * speed
-
-
-@register_jitable(**INLINED)
-def _rest(law, i):  # noqa: ARG001
-    return 0.0
-
-
-@register_jitable(**INLINED)
-def _stored(law, i, motion, h):  # noqa: ARG001
-    return 0.0
 
 
 @register_jitable(**INLINED)
@@ -129,10 +121,24 @@ def smooth_coulomb_force(law, i, motion, h):
 def smooth_coulomb_step(law, i, dx_free, gx, v_free, g, h):
     """Held force, N, and motion of the law, m; see `implicit.held_force`."""
     stiffness = (law.coulomb[i] / law.smoothing_velocity[i] + law.viscous[i]) / h
-    return held_force(_rest, _resist, _stored, law, i, stiffness, dx_free, gx, v_free, g, h)
+    return held_force(no_force, _resist, no_energy, law, i, stiffness, dx_free, gx, v_free, g, h)
 
 
 @register_jitable(**INLINED)
 def smooth_coulomb_advance(law, i, motion, h):
     """Note a motion, m, in a time h, s."""
     law.rate[i] = motion / h
+
+
+SMOOTH_COULOMB = FrictionLawEntry(
+    name="smooth-coulomb",
+    label="smooth Coulomb",
+    help="Coulomb friction that passes smoothly through zero: FC tanh(v / vc) + c v",
+    keys=KEYS,
+    spec=SmoothCoulomb,
+    table=SmoothCoulombTable,
+    columns=smooth_coulomb_table,
+    step=smooth_coulomb_step,
+    force=smooth_coulomb_force,
+    advance=smooth_coulomb_advance,
+)

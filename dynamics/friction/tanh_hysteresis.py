@@ -34,12 +34,23 @@ from dynamics.compiled import INLINED
 from dynamics.friction.columns import parameter_columns, port_column
 from dynamics.friction.harmonic import describing_function
 from dynamics.friction.implicit import held_force
+from dynamics.friction.law import FrictionLawEntry
 from dynamics.friction.reversals import (
     branch_lost,
     branch_mean,
     reversal_columns,
     take_way,
     way_value,
+)
+from dynamics.keys import Key, check_ranges
+
+KEYS = (
+    Key("coulomb", "force", "Coulomb friction", needed=True, above=0.0),
+    Key("viscous", "damping", "force per velocity", 0.0, at_least=0.0),
+    Key("low_speed_viscous", "damping", "further viscous friction at rest", 0.0, at_least=0.0),
+    Key("low_speed_decay", "inverse_velocity", "of it over speed", 0.0, at_least=0.0),
+    Key("hysteresis_slope", "inverse_length", "of the presliding branch over motion", above=0.0),
+    Key("presliding_stiffness", "stiffness", "in place of hysteresis_slope", above=0.0),
 )
 
 
@@ -53,11 +64,11 @@ class TanhHysteresis:
         fc, N; above 0.
     viscous : float
         C, N s/m; not below 0.
-    slow_viscous : float
+    low_speed_viscous : float
         Cv, N s/m; not below 0.
-    slow_decay : float
+    low_speed_decay : float
         av, s/m; not below 0.
-    inclination : float
+    hysteresis_slope : float
         ah, 1/m; above 0.
 
     Raises
@@ -68,26 +79,17 @@ class TanhHysteresis:
 
     coulomb: float
     viscous: float
-    slow_viscous: float
-    slow_decay: float
-    inclination: float
+    low_speed_viscous: float
+    low_speed_decay: float
+    hysteresis_slope: float
 
     def __post_init__(self) -> None:
-        for name in ("coulomb", "inclination"):
-            if not 0.0 < getattr(self, name) < math.inf:
-                raise ValueError(
-                    f"tanh hysteresis: {name} must be above 0, not {getattr(self, name)}"
-                )
-        for name in ("viscous", "slow_viscous", "slow_decay"):
-            if not 0.0 <= getattr(self, name) < math.inf:
-                raise ValueError(
-                    f"tanh hysteresis: {name} must be 0 or above, not {getattr(self, name)}"
-                )
+        check_ranges(self, KEYS, "tanh hysteresis")
 
     def steady_state_force(self, velocity: ArrayLike) -> NDArray[np.float64]:
         """Sliding force at constant velocities in m/s, N; 0 at 0."""
         velocity = np.asarray(velocity, dtype=np.float64)
-        slow = self.slow_viscous * np.exp(-self.slow_decay * np.abs(velocity))
+        slow = self.low_speed_viscous * np.exp(-self.low_speed_decay * np.abs(velocity))
         return np.sign(velocity) * self.coulomb + (self.viscous + slow) * velocity
 
     def stiffness_at_rest(self, frequency: ArrayLike) -> NDArray[np.complex128]:
@@ -98,14 +100,14 @@ class TanhHysteresis:
         Its damping vanishes with the amplitude; see `describing_function`.
         """
         shape = np.shape(np.asarray(frequency))
-        return np.full(shape, 2.0 * self.inclination * self.coulomb, dtype=np.complex128)
+        return np.full(shape, 2.0 * self.hysteresis_slope * self.coulomb, dtype=np.complex128)
 
     def stiffness_in_motion(self, frequency: ArrayLike, velocity: float) -> NDArray[np.complex128]:
         """Dynamic stiffness j w dF/dv, N/m, about a velocity in m/s (not 0); Hz."""
         if velocity == 0.0:
             raise ValueError("tanh hysteresis: velocity must not be 0; see stiffness_at_rest")
-        decay = self.slow_decay * abs(velocity)
-        slope = self.viscous + self.slow_viscous * (1.0 - decay) * math.exp(-decay)
+        decay = self.low_speed_decay * abs(velocity)
+        slope = self.viscous + self.low_speed_viscous * (1.0 - decay) * math.exp(-decay)
         return 2j * np.pi * np.asarray(frequency, dtype=np.float64) * slope
 
     def describing_function(self, amplitude: float, frequency: float) -> tuple[float, float]:
@@ -119,9 +121,9 @@ class TanhTable(NamedTuple):
 
     coulomb: NDArray[np.float64]  # fc, N
     viscous: NDArray[np.float64]  # C, N s/m
-    slow_viscous: NDArray[np.float64]  # Cv, N s/m
-    slow_decay: NDArray[np.float64]  # av, s/m
-    inclination: NDArray[np.float64]  # ah, 1/m
+    low_speed_viscous: NDArray[np.float64]  # Cv, N s/m
+    low_speed_decay: NDArray[np.float64]  # av, s/m
+    hysteresis_slope: NDArray[np.float64]  # ah, 1/m
     port: NDArray[np.int64]
     count: NDArray[np.int64]  # reversals remembered: state
     value: NDArray[np.float64]  # r at each of them: state
@@ -143,7 +145,7 @@ def tanh_table(laws: Sequence[TanhHysteresis], ports: Sequence[int]) -> TanhTabl
 def _resist(law, i, sign, way, h):
     mean = branch_mean(law, i, sign, way)
     speed = way / h
-    slow = law.slow_viscous[i] * math.exp(-law.slow_decay[i] * speed)
+    slow = law.low_speed_viscous[i] * math.exp(-law.low_speed_decay[i] * speed)
     return law.coulomb[i] * mean + (law.viscous[i] + slow) * speed * max(mean, 0.0)
 
 
@@ -172,8 +174,8 @@ def tanh_force(law, i, motion, h):
 @register_jitable(**INLINED)
 def tanh_step(law, i, dx_free, gx, v_free, g, h):
     """Held force, N, and motion of the law, m; see `implicit.held_force`."""
-    stiffness = 2.0 * law.inclination[i] * law.coulomb[i]
-    stiffness += (law.viscous[i] + law.slow_viscous[i]) / h
+    stiffness = 2.0 * law.hysteresis_slope[i] * law.coulomb[i]
+    stiffness += (law.viscous[i] + law.low_speed_viscous[i]) / h
     return held_force(_rest, _resist, _stored, law, i, stiffness, dx_free, gx, v_free, g, h)
 
 
@@ -188,3 +190,40 @@ def tanh_advance(law, i, motion, h):
 def tanh_stored(law, i, motion):
     """Change of the stored energy, J, over a motion, m."""
     return _stored(law, i, motion, 1.0)
+
+
+def tanh_of_keys(
+    coulomb: float,
+    hysteresis_slope: float | None = None,
+    presliding_stiffness: float | None = None,
+    **further: float,
+) -> TanhHysteresis:
+    """Hysteresis whose slope is given, or the stiffness at a reversal: twice slope times force.
+
+    Raises
+    ------
+    ValueError
+        If neither is given, or both are, or a parameter is out of its range.
+    """
+    if (hysteresis_slope is None) == (presliding_stiffness is None):
+        raise ValueError("tanh hysteresis: give hysteresis_slope or presliding_stiffness")
+    if hysteresis_slope is None:
+        if not coulomb > 0.0:
+            raise ValueError(f"tanh hysteresis: coulomb must be above 0, not {coulomb}")
+        hysteresis_slope = presliding_stiffness / (2.0 * coulomb)
+    return TanhHysteresis(coulomb=coulomb, hysteresis_slope=hysteresis_slope, **further)
+
+
+TANH_HYSTERESIS = FrictionLawEntry(
+    name="tanh-hysteresis",
+    label="tanh hysteresis",
+    help="presliding hysteresis with memory of its reversals, sliding that depends on speed",
+    keys=KEYS,
+    spec=TanhHysteresis,
+    table=TanhTable,
+    columns=tanh_table,
+    step=tanh_step,
+    force=tanh_force,
+    advance=tanh_advance,
+    make=tanh_of_keys,
+)

@@ -21,7 +21,7 @@ Linearised = Callable[[FrictionLaw, NDArray[np.float64]], NDArray[np.complex128]
 
 
 def at_rest(law: FrictionLaw, frequency: NDArray[np.float64]) -> NDArray[np.complex128]:
-    """Friction under vanishing motion: its presliding stiffness."""
+    """Friction under vanishing motion: its presliding stiffness; a dry one holds."""
     return np.asarray(law.stiffness_at_rest(frequency), dtype=np.complex128)
 
 

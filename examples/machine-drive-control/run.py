@@ -162,7 +162,7 @@ def sine_record(machine: MachineFile, name: str) -> DriveRecord:
 def identified(records: list[DriveRecord]) -> AxisFit:
     """LuGre law and inertia of the X axis from both records, from a rough first guess."""
     guess = AxisModel(LuGre(20e6, 0.0, 1000.0, 300.0, 400.0, 2e-3), 2500.0)
-    free = ("stiffness", "viscous", "coulomb", "static", "stribeck_velocity", "inertia")
+    free = ("bristle_stiffness", "viscous", "coulomb", "static", "stribeck_velocity", "inertia")
     return fit_axis(records, guess, free, low_pass=LOW_PASS, settling=0.2, starts=2)
 
 
@@ -174,8 +174,8 @@ def friction_findings(machine: MachineFile, fit: AxisFit) -> list[Finding]:
                 float(found.steady_state_force(speed / 6e4)), "N", MODEL)
         for speed in (1000.0, 3000.0)
     ]  # fmt: skip
-    presliding = Finding("presliding stiffness of X", law.stiffness * 1e-6,
-                         found.stiffness * 1e-6, "N/um", MODEL)  # fmt: skip
+    presliding = Finding("presliding stiffness of X", law.bristle_stiffness * 1e-6,
+                         found.bristle_stiffness * 1e-6, "N/um", MODEL)  # fmt: skip
     inertia = Finding("moved mass of X with its turning parts", moved_mass(machine),
                       fit.model.inertia, "kg", MODEL)  # fmt: skip
     return [*findings, presliding, inertia]

@@ -58,7 +58,8 @@ def test_thirty_three_freedoms_and_three_axes_that_move_freely(machine):
 @pytest.mark.parametrize("axis", ["x", "y", "z"])
 def test_friction_of_table_1(machine, kind, axis):
     law = machine.friction[f"{kind}_{axis}"].spec()
-    given = (law.coulomb, law.viscous, law.slow_viscous, law.slow_decay, law.inclination)
+    low = law.low_speed_viscous, law.low_speed_decay
+    given = (law.coulomb, law.viscous, *low, law.hysteresis_slope)
     assert given == pytest.approx({"rotation": ROTATION, "translation": TRANSLATION}[kind][axis])
 
 

@@ -375,9 +375,9 @@ def test_a_contact_that_is_always_whole_is_a_stiffer_mode():
     assert not np.allclose(found, free, rtol=0.02)
 
 
-@pytest.mark.parametrize("full_at", [1.0, 0.3])
-def test_a_contact_that_comes_and_goes_grows_as_in_the_simulation(full_at):
-    contact = {"stiffness": 5e5, "damping": 20.0, "full_at": full_at}
+@pytest.mark.parametrize("full_engagement_share", [1.0, 0.3])
+def test_a_contact_that_comes_and_goes_grows_as_in_the_simulation(full_engagement_share):
+    contact = {"stiffness": 5e5, "damping": 20.0, "full_engagement_share": full_engagement_share}
     # shallow: a large steady deflection moves the place where a vanishing chip ends the contact
     depth = 0.2e-3
     cut = {

@@ -21,18 +21,21 @@ from chatter.stability.registry import COLLOCATION
 
 TURNS = 300
 LAWS = {
-    "coulomb": {},
-    "coulomb-stribeck": {"stribeck_velocity": 1e-3},
-    "lugre": {"stribeck_velocity": 1e-3, "sigma0": 1e8, "sigma1": 100.0},
-    "tanh": {"presliding_stiffness": 2e7},
-}
+    "coulomb": {"law": "coulomb-stribeck"},
+    "coulomb-stribeck": {"law": "coulomb-stribeck", "stribeck_velocity": 1e-3},
+    "lugre": {
+        "law": "lugre", "stribeck_velocity": 1e-3, "bristle_stiffness": 1e8,
+        "bristle_damping": 100.0,
+    },
+    "tanh": {"law": "tanh-hysteresis", "presliding_stiffness": 2e7},
+}  # fmt: skip
 
 
 def rubbing_case(law, force, depth=1e-3):
     """Four straight teeth in a slot, on a guide that rubs along the feed."""
     speed = 2.0 * math.pi * 900.0 / (4.25 * 4)
     variation = {"amplitude": 0.15, "frequency": speed / (4.0 * math.pi), "shape": "triangle"}
-    friction = {"law": law, "coulomb": force} | LAWS[law]
+    friction = {"coulomb": force} | LAWS[law]
     if "stribeck_velocity" in friction:
         friction["static"] = 1.3 * force
     mode = {"frequency": 900.0, "damping": 0.02, "stiffness": 8e6, "direction": [1, 0, 0]}

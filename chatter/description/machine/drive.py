@@ -6,6 +6,7 @@ from typing import Any, Literal
 
 from pydantic import Field, model_validator
 
+from chatter.description.keys_of_kind import key_problems
 from chatter.description.machine.beam import MaterialSection
 from chatter.description.machine.fields import (
     Direction,
@@ -13,7 +14,6 @@ from chatter.description.machine.fields import (
     Places,
     arguments,
     fields_of,
-    key_problems,
     pair,
 )
 from chatter.description.quantities import quantity

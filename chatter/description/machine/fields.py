@@ -11,10 +11,8 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, WithJsonSchema
 
 from chatter.description.formatting import shown
-from chatter.description.path import field_at
 from chatter.description.quantities import QuantityField, quantities
 from chatter.description.section import Section
-from chatter.description.wording import nearest
 
 #: no machine is larger, so that a number meant in mm is not taken for one in m
 _FARTHEST = 200.0
@@ -139,33 +137,3 @@ def fields_of(make: type) -> dict[str, bool]:
         and field.default_factory is dataclasses.MISSING
         for field in dataclasses.fields(make)
     }
-
-
-def key_problems(
-    section: Section, choosing: str, keys: Mapping[str, bool], always: tuple[str, ...] = ()
-) -> list[tuple[str, str]]:
-    """Tell keys that do not belong to the kind that a section is of, and needed ones missing.
-
-    Parameters
-    ----------
-    section : Section
-    choosing : str
-        Key that chooses the kind.
-    keys : mapping of str to bool
-        Keys of the kind, and whether each is needed.
-    always : tuple of str
-        Keys of every kind.
-    """
-    kind = f'{choosing} = "{getattr(section, choosing)}"'
-    problems = []
-    for name in type(section).model_fields:
-        if name in (choosing, *always):
-            continue
-        given = getattr(section, name) not in (None, ())
-        if given and name not in keys:
-            problems.append((name, f"does not belong to {kind}; {nearest(name, list(keys))}"))
-        if not given and keys.get(name, False):
-            field = field_at(type(section), (name,))
-            wanted = "" if field is None else f"; {field.noun}, such as {field.example}"
-            problems.append((name, f"is missing; {kind} needs it{wanted}"))
-    return problems

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import Field, model_validator
 
-from chatter.description.machine.fields import Place, arguments, fields_of, key_problems
+from chatter.description.machine.fields import Place
 from chatter.description.quantities import either_quantity, quantity, whole_number
 from chatter.description.section import Section, raise_if_any
-from dynamics.friction.laws import LAWS, FrictionLaw
+from chatter.description.sections.friction import friction_section
 
 _TARGETS = ("axis", "motor", "connector", "mode")
 
@@ -45,53 +45,27 @@ class FrictionTarget(Section):
         return self
 
 
-def _force(**bounds: float) -> object:
-    return either_quantity("force", "torque", **bounds)
+#: dimension along a travel -> the same about an axis
+_ROTATIONAL = {
+    "force": "torque",
+    "stiffness": "rotational_stiffness",
+    "damping": "rotational_damping",
+    "velocity": "angular_speed",
+    "inverse_length": "inverse_angle",
+    "inverse_velocity": "inverse_angular_speed",
+}
 
 
-def _viscous(**bounds: float) -> object:
-    return either_quantity("damping", "rotational_damping", **bounds)
+def _along_or_about(dimension: str, **bounds: float) -> Any:
+    if dimension not in _ROTATIONAL:
+        return quantity(dimension, **bounds)
+    return either_quantity(dimension, _ROTATIONAL[dimension], **bounds)
 
 
-_slow_decay = either_quantity("inverse_velocity", "inverse_angular_speed", at_least=0.0)
+_Keys: Any = friction_section(None, _along_or_about)
 
 
-class FrictionSection(Section):
+class FrictionSection(_Keys):
     """Friction law; about an axis its quantities are those of a rotation."""
 
-    law: Literal["LuGre", "tanh hysteresis", "Coulomb-Stribeck", "smooth Coulomb"]
     on: FrictionTarget
-    coulomb: _force(at_least=0.0) | None = None
-    static: _force(at_least=0.0) | None = None
-    viscous: _viscous(at_least=0.0) | None = None
-    stribeck_velocity: either_quantity("velocity", "angular_speed", above=0.0) | None = None
-    stribeck_shape: quantity("number", above=0.0) | None = None
-    smoothing_velocity: either_quantity("velocity", "angular_speed", above=0.0) | None = None
-    stiffness: either_quantity("stiffness", "rotational_stiffness", above=0.0) | None = Field(
-        None, description="of the bristles"
-    )
-    bristle_damping: _viscous(at_least=0.0) | None = None
-    logarithmic: _force(at_least=0.0) | None = None
-    logarithmic_velocity: either_quantity("velocity", "angular_speed", above=0.0) | None = None
-    slow_viscous: _viscous(at_least=0.0) | None = None
-    slow_decay: (
-        either_quantity("inverse_velocity", "inverse_angular_speed", at_least=0.0) | None
-    ) = None
-    inclination: either_quantity("inverse_length", "inverse_angle", above=0.0) | None = Field(
-        None, description="a_h of the presliding hysteresis"
-    )
-
-    @model_validator(mode="after")
-    def _check_law(self) -> FrictionSection:
-        raise_if_any(key_problems(self, "law", fields_of(LAWS[self.law]), ("on",)))
-        return self
-
-    def spec(self) -> FrictionLaw:
-        """The law.
-
-        Raises
-        ------
-        ValueError
-            If a number is out of its range.
-        """
-        return LAWS[self.law](**arguments(self, LAWS[self.law]))

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 from pydantic import Field, PrivateAttr
 
+from chatter.description import renamed
 from chatter.description.errors import InputError
 from chatter.description.machine.axis import AxisSection
 from chatter.description.machine.beam import BeamSection
@@ -26,6 +27,7 @@ from chatter.description.machine.move import MoveSection
 from chatter.description.machine.references import dimension_problems, reference_problems
 from chatter.description.patchable import Description
 from chatter.description.quantities import QuantityField, quantity, whole_number
+from chatter.description.renamed import Renamed
 from chatter.description.toml_document import moved_reference
 from chatter.description.toml_editing import Layout
 from chatter.description.wording import nearest
@@ -44,6 +46,7 @@ class MachineFile(Description):
         ("tool", "material", "cut", "structure"),
         "case",
     )
+    RENAMED: ClassVar[tuple[Renamed, ...]] = renamed.MACHINE
     LAYOUT: ClassVar[Layout] = Layout(
         headed=frozenset(
             {

@@ -8,7 +8,7 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
-from chatter.description.machine.fields import key_problems
+from chatter.description.keys_of_kind import key_problems
 from chatter.description.machine.frequency_response import StateSection
 from chatter.description.quantities import QuantityField, quantity
 from chatter.description.section import raise_if_any

@@ -51,7 +51,7 @@ class RadialDepths(Section):
 
     from_: PositiveLength = Field(alias="from")
     to: PositiveLength
-    count: Values = Field(8, description="widths of the coarse net")
+    count: Values = Field(8, description="radial depths of the coarse grid")
 
     @model_validator(mode="after")
     def _check_order(self) -> RadialDepths:
@@ -80,7 +80,7 @@ class Optimum(Section):
 
     speeds: SpeedBand | None = Field(None, description="by default those of the lobe diagram")
     depths: AxialDepths | None = Field(None, description="by default those of the lobe diagram")
-    widths: RadialDepths | None = Field(None, description="by default that of the cut alone")
+    radial_depths: RadialDepths | None = Field(None, description="by default that of the cut alone")
     feeds: Feeds | None = Field(None, description="by default that of the cut alone")
     max_power: quantity("power", above=0.0) | None = Field(
         None, description="of the spindle, mean over a turn"
@@ -111,7 +111,7 @@ class PitchDesign(Section):
     speeds: SpeedBand | None = Field(None, description="by default those of the lobe diagram")
     count: Values = Field(20, description="speeds at which the limit is computed")
     depths: AxialDepths | None = Field(None, description="to which the limit is looked for")
-    largest_chip: quantity("number", above=1.0, at_most=2.0) = Field(
+    max_pitch_ratio: quantity("number", above=1.0, at_most=2.0) = Field(
         1.25, description="of a tooth, in units of the mean; no pitch is smaller than 2 less this"
     )
     goal: Literal["lowest limit", "removal rate"] = Field(

@@ -6,7 +6,6 @@ import itertools
 from typing import Annotated, Any, Literal
 
 from pydantic import (
-    AfterValidator,
     BeforeValidator,
     Field,
     WithJsonSchema,
@@ -17,7 +16,6 @@ from pydantic import (
 from chatter.description.formatting import shown
 from chatter.description.quantities import PositiveLength, QuantityField, quantity, whole_number
 from chatter.description.section import Section, raise_if_any
-from chatter.description.stability_methods import known_method, with_methods
 from chatter.description.units import rpm
 
 #: most points a side of a diagram, and in all
@@ -57,7 +55,7 @@ class Contact(Section):
 
     stiffness: quantity("stiffness", at_least=0.0)
     damping: quantity("damping", at_least=0.0) = 0.0
-    full_at: quantity("number", above=0.0, at_most=1.0) = Field(
+    full_engagement_share: quantity("number", above=0.0, at_most=1.0) = Field(
         1.0,
         description="engaged share of the depth from which on the contact acts whole; 1: it grows "
         "until the whole depth is engaged, near 0: it acts whole as soon as any edge cuts",
@@ -79,51 +77,6 @@ class Dynamometer(Section):
 
     frequency: quantity("frequency", above=0.0)
     damping: quantity("number", above=0.0, below=1.0) = Field(description="damping ratio")
-
-
-#: law of friction -> its keys
-FRICTION_LAWS: dict[str, tuple[str, ...]] = {
-    "coulomb": ("coulomb", "viscous"),
-    "smooth-coulomb": ("coulomb", "smoothing_velocity", "viscous"),
-    "coulomb-stribeck": ("coulomb", "static", "stribeck_velocity", "viscous"),
-    "tanh": ("coulomb", "viscous", "presliding_stiffness"),
-    "lugre": ("coulomb", "static", "stribeck_velocity", "sigma0", "sigma1", "sigma2"),
-}
-
-
-class Friction(Section):
-    """Friction of a guide or drive."""
-
-    law: Literal["coulomb", "smooth-coulomb", "coulomb-stribeck", "tanh", "lugre"] = "coulomb"
-    coulomb: quantity("force", at_least=0.0) | None = None
-    static: quantity("force", at_least=0.0) | None = None
-    viscous: quantity("damping", at_least=0.0) | None = None
-    stribeck_velocity: quantity("velocity", above=0.0) | None = None
-    smoothing_velocity: quantity("velocity", above=0.0) | None = Field(
-        None, description="below which the friction falls to zero"
-    )
-    presliding_stiffness: quantity("stiffness", above=0.0) | None = None
-    sigma0: quantity("stiffness", at_least=0.0) | None = Field(
-        None, description="stiffness of the bristles"
-    )
-    sigma1: quantity("damping", at_least=0.0) | None = Field(
-        None, description="damping of the bristles"
-    )
-    sigma2: quantity("damping", at_least=0.0) | None = Field(
-        None, description="viscous part of the LuGre law"
-    )
-
-    @model_validator(mode="after")
-    def _check_law(self) -> Friction:
-        known = ("law", *FRICTION_LAWS[self.law])
-        raise_if_any(
-            [
-                (key, f'does not belong to law = "{self.law}"')
-                for key in type(self).model_fields
-                if key not in known and getattr(self, key) is not None
-            ]
-        )
-        return self
 
 
 class Cogging(Section):
@@ -276,9 +229,7 @@ class Lobes(Section):
 
     speeds: SpeedRange | None = None
     depths: DepthRange | None = None
-    method: Annotated[str, AfterValidator(known_method)] | None = Field(
-        None, description="that finds the limits", json_schema_extra=with_methods
-    )
+    method: str | None = Field(None, description="stability method; by default it is chosen")
     steps: whole_number(4, 20_000, "steps a tooth period") | None = Field(
         None, description="fixes the steps a tooth period; by default they are chosen"
     )

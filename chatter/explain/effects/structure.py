@@ -119,7 +119,7 @@ class Contact(Effect):
 
     Parameters
     ----------
-    full_at : float
+    full_engagement_share : float
         Share of the depth engaged from which on the contact is whole.
     """
 
@@ -129,8 +129,8 @@ class Contact(Effect):
 
     kinds = ("milling", "frf")
 
-    def __init__(self, full_at: float = 1.0) -> None:
-        self.full_at = full_at
+    def __init__(self, full_engagement_share: float = 1.0) -> None:
+        self.full_engagement_share = full_engagement_share
 
     @property
     def variants(self) -> tuple[Effect, ...]:
@@ -154,7 +154,7 @@ class Contact(Effect):
     def patch(self, case: Case, values: Values) -> Patch:
         """The contact."""
         given = {key: float(values[key]) for key in ("stiffness", "damping")}
-        return {"contact": {**given, "full_at": self.full_at}}
+        return {"contact": {**given, "full_engagement_share": self.full_engagement_share}}
 
 
 class ContactAtOnce(Contact):

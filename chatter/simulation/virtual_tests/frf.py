@@ -15,8 +15,6 @@ from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, write_results
 from chatter.simulation.virtual_tests.frf_peaks import peaks, peaks_of_test
 from dynamics.frf.container import Frf
-from dynamics.friction.coulomb_stribeck import CoulombStribeck
-from dynamics.friction.laws import FrictionLaw
 from dynamics.machine.description import Machine
 from dynamics.machine.harmonic import Linearised, at_amplitude, at_rest, at_velocity, receptance
 
@@ -25,8 +23,6 @@ if TYPE_CHECKING:
 
 #: velocity of a friction, m/s or rad/s, below which it rests
 _RESTING = 1e-12
-#: stiffness of a dry friction at rest, N/m (N m/rad): it holds, and nothing in a machine is stiffer
-_HELD = 1e14
 #: what makes the unit of a motion that of each quantity, and the unit of what excites
 _RATES = {"receptance": "", "mobility": "/s", "accelerance": "/s^2"}
 _LOADS = {"force": "N", "torque": "(N*m)"}
@@ -90,14 +86,7 @@ def linearised_frictions(
 
 def _resting(name: str, amplitude: float | Mapping[str, float] | None) -> Linearised:
     here = amplitude.get(name) if isinstance(amplitude, Mapping) else amplitude
-    return _at_rest if here is None else at_amplitude(here)
-
-
-def _at_rest(law: FrictionLaw, frequency: NDArray[np.float64]) -> NDArray[np.complex128]:
-    """Friction under vanishing motion; a dry one holds."""
-    if isinstance(law, CoulombStribeck):
-        return np.full(frequency.shape, _HELD, dtype=np.complex128)
-    return at_rest(law, frequency)
+    return at_rest if here is None else at_amplitude(here)
 
 
 @dataclass(frozen=True, eq=False)

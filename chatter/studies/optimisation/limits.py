@@ -111,7 +111,7 @@ def limits_of(case: Case, model: MillingModel, sampled: Sequence[MillingModel] =
         )
     ]
     speeds, depths = _speeds(case, section, margins[1]), _depths(case, section, model)
-    radial_depths = _values(section.widths, case.width_of_cut)
+    radial_depths = _values(section.radial_depths, case.width_of_cut)
     feed = case.cut.feed_per_tooth
     extremes = [
         model_with(one, float(radial_depth), feed)

@@ -80,7 +80,7 @@ def _designed(case: Case, cache: ResultCache, progress: Progress) -> PitchResult
     total = len(kinds) * DIFFERENCES + MAX_MOVES + 1
     done = iter(range(1, 10 * total))
     search = PitchSearch(
-        case, wide, _depths(case, section, model), section.goal, section.largest_chip,
+        case, wide, _depths(case, section, model), section.goal, section.max_pitch_ratio,
         lambda: progress(min(next(done), total), total), cache,
     )  # fmt: skip
     original = search.design("the case", np.degrees(pitch_angles(case)))
@@ -103,7 +103,7 @@ def _designed(case: Case, cache: ResultCache, progress: Progress) -> PitchResult
     return PitchResult(
         case=case,
         goal=section.goal,
-        max_pitch_ratio=section.largest_chip,
+        max_pitch_ratio=section.max_pitch_ratio,
         max_depth=float(search.depths[-1]),
         original=next(one for one in ranked if one.pitch == original.pitch),
         designs=ranked,

@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 import math
-from dataclasses import fields, replace
+from dataclasses import replace
 
-from dynamics.friction.identification.dynamic_fit import FrictionLaw
+from dynamics.friction.law import FrictionLaw
+from dynamics.friction.laws import BY_SPEC
 
-#: each parameter's powers of force and of motion
+#: powers of force and of motion of a parameter, by its dimension
 _POWERS = {
-    "coulomb": (1, 0),
-    "static": (1, 0),
-    "logarithmic": (1, 0),
+    "force": (1, 0),
     "stiffness": (1, -1),
-    "bristle_damping": (1, -1),
-    "viscous": (1, -1),
-    "slow_viscous": (1, -1),
-    "slow_decay": (0, -1),
-    "inclination": (0, -1),
-    "stribeck_velocity": (0, 1),
-    "logarithmic_velocity": (0, 1),
-    "stribeck_shape": (0, 0),
+    "damping": (1, -1),
+    "inverse_length": (0, -1),
+    "inverse_velocity": (0, -1),
+    "velocity": (0, 1),
+    "number": (0, 0),
 }
 
 
@@ -93,7 +89,8 @@ def split_about_shaft(
 
 def _scaled(law: FrictionLaw, force: float, motion: float) -> FrictionLaw:
     changed = {}
-    for field in fields(law):
-        of_force, of_motion = _POWERS[field.name]
-        changed[field.name] = getattr(law, field.name) * force**of_force * motion**of_motion
+    for key in BY_SPEC[type(law)].keys:
+        if hasattr(law, key.name):
+            of_force, of_motion = _POWERS[key.dimension]
+            changed[key.name] = getattr(law, key.name) * force**of_force * motion**of_motion
     return replace(law, **changed)

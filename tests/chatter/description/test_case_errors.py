@@ -127,11 +127,10 @@ def test_the_good_case_is_good():
         ('Ktc = "1650 MPa"', 'Ktc = "1650 MPa"\nh0 = "1 mm"', 'material.h0: does not belong to law = "linear"'),
         ('law = "linear"', 'law = "exponential"\nh0 = "1 mm"', 'material.exponent: is missing; law = "exponential" needs it'),
         ("[lobes]", "[simulation]\nduration = 1\nrevolutions = 3\n[lobes]", "simulation: give duration or revolutions, not both"),
-        ("[lobes]", '[friction.guide]\nlaw = "coulomb"\nsigma0 = 3\n[lobes]', 'friction.guide.sigma0: does not belong to law = "coulomb"'),
+        ("[lobes]", '[friction.guide]\nlaw = "coulomb-stribeck"\ncoulomb = 1\nbristle_stiffness = 3\n[lobes]', 'friction.guide.bristle_stiffness: does not belong to law = "coulomb-stribeck"; known are coulomb, static, stribeck_velocity, viscous, stribeck_shape'),
         # choices
         ('"end mill"', '"endmill"', 'tool.kind: "endmill" is not allowed; allowed are "end mill", "ball", "bull nose", "taper" or "inserted"'),
         ('mode = "up"', 'mode = "climb"', 'cut.mode: "climb" is not allowed; allowed are "up", "down" or "slot"'),
-        ("[lobes]", '[lobes]\nmethod = "magic"', 'lobes.method: "magic" is not allowed; allowed are "auto", "collocation", "semi-discretization", "semi-discretization-0", "semi-discretization-2", "full-discretization", "matrix-free", "multi-frequency", "zero-order" or "time"'),
         # types
         ('title = "good"', "title = 3", "title: 3 is given, text in quotes is wanted"),
         ('{ to = "5 mm", count = 20 }', '"5 mm"', 'lobes.depths: "5 mm" is given, a table is wanted'),

@@ -289,7 +289,9 @@ CASES = st.fixed_dictionaries(
             process_damping=st.fixed_dictionaries({"coefficient": quantity(["N/m"])}),
             friction=st.dictionaries(
                 st.sampled_from(["guide", "screw", "x-axis"]),
-                st.fixed_dictionaries({"law": st.just("lugre"), "sigma0": quantity(["N/m"])}),
+                st.fixed_dictionaries(
+                    {"law": st.just("coulomb-stribeck"), "coulomb": quantity(["N"])}
+                ),
                 max_size=2,
             ),
             lobes=st.fixed_dictionaries(

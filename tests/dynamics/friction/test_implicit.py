@@ -7,7 +7,7 @@ import pytest
 from numba import njit
 from scipy.integrate import solve_ivp
 
-from dynamics.friction import coulomb_stribeck, lugre, tanh_hysteresis
+from dynamics.friction import lugre, tanh_hysteresis
 from dynamics.friction.coulomb_stribeck import (
     CoulombStribeck,
     coulomb_stribeck_advance,
@@ -15,6 +15,7 @@ from dynamics.friction.coulomb_stribeck import (
     coulomb_stribeck_step,
     coulomb_stribeck_table,
 )
+from dynamics.friction.implicit import no_energy
 from dynamics.friction.lugre import LuGre, lugre_advance, lugre_force, lugre_step, lugre_table
 from dynamics.friction.tanh_hysteresis import (
     TanhHysteresis,
@@ -73,7 +74,7 @@ def marcher(step, advance, stored):
 MARCH = {
     "lugre": marcher(lugre_step, lugre_advance, lugre._stored),
     "tanh": marcher(tanh_step, tanh_advance, tanh_hysteresis._stored),
-    "dry": marcher(coulomb_stribeck_step, coulomb_stribeck_advance, coulomb_stribeck._stored),
+    "dry": marcher(coulomb_stribeck_step, coulomb_stribeck_advance, no_energy),
 }
 STEP = {"lugre": lugre_step, "tanh": tanh_step, "dry": coulomb_stribeck_step}
 ADVANCE = {"lugre": lugre_advance, "tanh": tanh_advance, "dry": coulomb_stribeck_advance}
@@ -126,9 +127,9 @@ def _unresolved():
     """Laws and steps whose presliding spring swings by more than three radians in a step."""
     for kind, spec in LAWS:
         if kind == "tanh":
-            stiff = 2.0 * spec.inclination * spec.coulomb
+            stiff = 2.0 * spec.hysteresis_slope * spec.coulomb
         else:
-            stiff = math.inf if kind == "dry" else spec.stiffness
+            stiff = math.inf if kind == "dry" else spec.bristle_stiffness
         yield from ((kind, spec, h) for h in STEPS[1:] if stiff * h * h > 10.0)
 
 
@@ -224,9 +225,9 @@ def test_slowly_loaded_port_follows_the_presliding_curve(kind, spec, turn):
     """Resolved or not: turn is the angle per step of the mass on the presliding spring."""
     h, share = 1e-4, 0.6
     if kind == "tanh":
-        stiff, away = 2.0 * spec.inclination, math.atanh(share)
+        stiff, away = 2.0 * spec.hysteresis_slope, math.atanh(share)
     else:
-        stiff, away = spec.stiffness, -spec.static * math.log(1.0 - share / spec.static)
+        stiff, away = spec.bristle_stiffness, -spec.static * math.log(1.0 - share / spec.static)
     load = share * np.sin(0.5 * np.pi * np.clip(np.arange(6000) / 4000.0, 0.0, 1.0)) ** 2
     structure = (np.array([stiff * (h / turn) ** 2]), np.array([0.0]), np.array([1.0]))
     out = march(kind, spec, structure, h, load=load, start=([0.0], [0.0]))
@@ -252,8 +253,8 @@ def test_stick_slip_of_the_published_example(h):
 def _breakaway_by_radau(spec, ramp):
     def rates(t, state):
         v, z = state
-        bend = v - abs(v) * z * spec.stiffness / float(spec.sliding_force(v))
-        force = spec.stiffness * z + spec.bristle_damping * bend + spec.viscous * v
+        bend = v - abs(v) * z * spec.bristle_stiffness / float(spec.sliding_force(v))
+        force = spec.bristle_stiffness * z + spec.bristle_damping * bend + spec.viscous * v
         return [ramp * t - force, bend]
 
     def reached(t, state):

@@ -17,7 +17,7 @@ from dynamics.friction.tanh_hysteresis import (
 GUIDE = TanhHysteresis(98.6, 856.2, 3000.0, 500.0, 1.15e4)
 SCREW = TanhHysteresis(0.188, 3.2e-3, 0.03, 2.0, 1.15e4)
 QUIET = TanhHysteresis(10.0, 0.0, 0.0, 0.0, 1.15e4)
-A = QUIET.inclination
+A = QUIET.hysteresis_slope
 
 
 def advance(law, *motions):
@@ -57,7 +57,7 @@ def test_branch_after_sliding_is_the_published_one():
 @pytest.mark.parametrize(("spec", "speed"), [(GUIDE, 7e-3), (GUIDE, 0.1), (SCREW, 2.0)])
 def test_sliding_force_is_the_published_curve(spec, speed):
     law = advance(fresh(spec), 0.01)
-    decay = spec.slow_viscous * math.exp(-spec.slow_decay * speed)
+    decay = spec.low_speed_viscous * math.exp(-spec.low_speed_decay * speed)
     expected = spec.coulomb + (spec.viscous + decay) * speed
     assert tanh_force(law, 0, speed * 1e-3, 1e-3) == pytest.approx(expected, rel=1e-13)
     assert spec.steady_state_force(speed) == pytest.approx(expected, rel=1e-13)
@@ -168,7 +168,7 @@ def test_dynamic_stiffness_in_motion_is_the_slope_of_the_curve():
 def test_no_energy_comes_out_of_random_motion(spec):
     rng = np.random.default_rng(12)
     law, stored = fresh(spec), 0.0
-    scale = spec.coulomb / spec.inclination
+    scale = spec.coulomb / spec.hysteresis_slope
     for _ in range(4000):
         motion = rng.choice([-1, 1]) * 10.0 ** rng.uniform(-9, -3)
         h = 10.0 ** rng.uniform(-6, 0)
@@ -225,10 +225,10 @@ def test_left_and_right_are_alike():
 
 
 @pytest.mark.parametrize(
-    ("name", "value"), [("coulomb", 0.0), ("inclination", math.inf), ("viscous", -1.0)]
+    ("name", "value"), [("coulomb", 0.0), ("hysteresis_slope", math.inf), ("viscous", -1.0)]
 )
 def test_bad_parameter_is_named(name, value):
-    given = {"coulomb": 1.0, "viscous": 0.0, "slow_viscous": 0.0, "slow_decay": 0.0}
-    given |= {"inclination": 1e4, name: value}
+    given = {"coulomb": 1.0, "viscous": 0.0, "low_speed_viscous": 0.0, "low_speed_decay": 0.0}
+    given |= {"hysteresis_slope": 1e4, name: value}
     with pytest.raises(ValueError, match=f"{name} must be"):
         TanhHysteresis(**given)

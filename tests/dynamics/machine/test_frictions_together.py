@@ -23,8 +23,8 @@ from dynamics.structure.linear_structure import LinearStructure
 LUGRE = LuGre(2e7, 0.0, 300.0, 80.0, 120.0, 2e-3)
 TANH = TanhHysteresis(90.0, 400.0, 3000.0, 300.0, 2e4)
 DRY = CoulombStribeck(60.0, 85.0, 3e-3, 200.0)
-LAWS = {"LuGre": LUGRE, "tanh": TANH, "dry": DRY}
-SOLVED = {"LuGre": lugre_force, "tanh": tanh_force}
+LAWS = {"lugre": LUGRE, "tanh": TANH, "dry": DRY}
+SOLVED = {"lugre": lugre_force, "tanh": tanh_force}
 
 
 def slide(laws):
@@ -111,7 +111,7 @@ def energies(machine, step, velocity, count):
 
 
 #: part of the first energy that a step may create: what the sweeps leave unsolved
-ROUNDING = {"LuGre": 1e-12, "tanh": 1e-7, "dry": 1e-4}
+ROUNDING = {"lugre": 1e-12, "tanh": 1e-7, "dry": 1e-4}
 
 
 @pytest.mark.parametrize("factor", [1.0, 10.0])
@@ -142,7 +142,7 @@ def test_one_friction_creates_none_over_thousands_of_steps(name):
 def test_carriages_of_a_slide_against_the_joint_problem(name):
     """Sliding steps end at the joint solution of all carriages, found by Newton's method."""
     other = {
-        "LuGre": LuGre(3e7, 0.0, 100.0, 50.0, 90.0, 1e-3),
+        "lugre": LuGre(3e7, 0.0, 100.0, 50.0, 90.0, 1e-3),
         "tanh": TanhHysteresis(30.0, 100.0, 900.0, 100.0, 5e4),
     }
     machine = slide([LAWS[name], other[name], LAWS[name], other[name]])
@@ -198,7 +198,7 @@ def test_internal_friction_keeps_momentum(name):
         v = tables.steps.v[places]
         assert 3.0 * v[0] + 7.0 * v[1] == pytest.approx(0.6, rel=1e-12)
     # Coulomb friction alone stops them after 0.2 m/s * 2.1 kg / F, less than 10 ms
-    swing = {"LuGre": 0.02, "tanh": 0.02, "dry": 1e-9}[name]
+    swing = {"lugre": 0.02, "tanh": 0.02, "dry": 1e-9}[name]
     assert abs(v[0] - v[1]) < swing
 
 

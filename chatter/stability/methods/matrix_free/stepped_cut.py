@@ -48,7 +48,7 @@ def stepped_cut(model: MillingModel, max_depth: float, relative_length: float = 
     section, cut = model.case.contact, model.cut(max_depth, relative_length)
     if section is None:
         return with_contact(cut)
-    share = max(section.full_at, 1e-12)
+    share = max(section.full_engagement_share, 1e-12)
     return with_contact(cut, Contact(section.stiffness, section.damping, share))
 
 

@@ -71,20 +71,20 @@ sample_time = "125 us"
 torque_limit = "80 N*m"
 
 [friction.guide]
-law = "Coulomb-Stribeck"
+law = "coulomb-stribeck"
 on = { axis = "Y" }
 coulomb = "300 N"
 static = "400 N"
 stribeck_velocity = "5 mm/s"
 
 [friction.screw]
-law = "tanh hysteresis"
+law = "tanh-hysteresis"
 on = { motor = "Y" }
 coulomb = "2 N*m"
 viscous = "0.02 N*m*s/rad"
-slow_viscous = "0.1 N*m*s/rad"
-slow_decay = "0.5 s/rad"
-inclination = "40 1/rad"
+low_speed_viscous = "0.1 N*m*s/rad"
+low_speed_decay = "0.5 s/rad"
+hysteresis_slope = "40 1/rad"
 
 [contact]
 stiffness = "2.5 N/um"

@@ -68,15 +68,15 @@ def test_reference_model_dead_times_and_regulated_motor(line_text):
 def test_friction_rows(line_text):
     file = loads_machine(line_text).patch({
         "friction.guide_z": {
-            "law": "Coulomb-Stribeck", "coulomb": "1 N", "static": "1 N",
+            "law": "coulomb-stribeck", "coulomb": "1 N", "static": "1 N",
             "stribeck_velocity": "1 mm/s", "on": {"connector": "guide", "direction": "z"},
         },
         "friction.tilting": {
-            "law": "Coulomb-Stribeck", "coulomb": "1 N*m", "static": "1 N*m",
+            "law": "coulomb-stribeck", "coulomb": "1 N*m", "static": "1 N*m",
             "stribeck_velocity": "1 rpm", "on": {"connector": "guide", "direction": "rx"},
         },
         "friction.slide": {
-            "law": "Coulomb-Stribeck", "coulomb": 1, "static": 1, "stribeck_velocity": 1,
+            "law": "coulomb-stribeck", "coulomb": 1, "static": 1, "stribeck_velocity": 1,
             "on": {"mode": 4},
         },
     })  # fmt: skip
@@ -103,12 +103,12 @@ def _up(point, structure):
 def test_each_place_of_a_connector_has_its_friction(head_on_beam):
     head_on_beam["friction"] = {
         "rail": {
-            "law": "LuGre", "stiffness": "50 N/um", "bristle_damping": "1 kN*s/m",
+            "law": "lugre", "bristle_stiffness": "50 N/um", "bristle_damping": "1 kN*s/m",
             "viscous": "10 N*s/m", "coulomb": "40 N", "static": "50 N",
             "stribeck_velocity": "2 mm/s", "on": {"connector": "carriage", "direction": "x"},
         },
         "seal": {
-            "law": "Coulomb-Stribeck", "coulomb": "1 N*m", "static": "1 N*m",
+            "law": "coulomb-stribeck", "coulomb": "1 N*m", "static": "1 N*m",
             "stribeck_velocity": "1 rpm",
             "on": {"connector": "crossbeam.left", "direction": "rx"},
         },

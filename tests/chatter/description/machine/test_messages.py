@@ -7,7 +7,7 @@ from chatter.compile.machine_parts import assembled_machine
 from chatter.description.machine.machine_file import MachineFile, load_machine, loads_machine
 
 FRICTION = {
-    "law": "Coulomb-Stribeck", "coulomb": "1 N", "static": "1 N", "stribeck_velocity": "1 mm/s",
+    "law": "coulomb-stribeck", "coulomb": "1 N", "static": "1 N", "stribeck_velocity": "1 mm/s",
 }  # fmt: skip
 CONTROL = ["axis", "Y", "control"]
 
@@ -74,7 +74,7 @@ CONTROL = ["axis", "Y", "control"]
          ["axis.Y.control.velocity.torque_limit", "a force", "a torque is wanted"]),
         ([*CONTROL, "position", "computing"], 1.5,
          ["axis.Y.control.position.computing", "no whole number"]),
-        (["friction", "guide", "law"], "lugre", ["friction.guide.law", "LuGre"]),
+        (["friction", "guide", "law"], "Dahl", ["friction.guide.law", "lugre"]),
         (["friction", "guide", "on"], {"axis": "Z"}, ["friction.guide.on.axis", '"Z"', "Y"]),
         (["friction", "guide", "on"], {"axis": "Y", "motor": "Y"},
          ["friction.guide.on", "one of", "2 are given"]),
@@ -84,12 +84,13 @@ CONTROL = ["axis", "Y", "control"]
          ["friction.guide.on.connector", '"rail"']),
         (["friction", "guide", "coulomb"], "3 N*m",
          ["friction.guide.coulomb", "a torque", "a force is wanted"]),
-        (["friction", "screw", "inclination"], "40 1/m",
-         ["friction.screw.inclination", "an inverse of an angle is wanted"]),
-        (["friction", "guide", "inclination"], 4,
-         ["friction.guide.inclination", "does not belong to law"]),
-        (["friction", "screw", "slow_decay"], None, ["friction.screw.slow_decay", "missing"]),
-        (["friction", "screw", "coulomb"], 0, ["friction.screw", "coulomb must be above 0"]),
+        (["friction", "screw", "hysteresis_slope"], "40 1/m",
+         ["friction.screw.hysteresis_slope", "an inverse of an angle is wanted"]),
+        (["friction", "guide", "hysteresis_slope"], 4,
+         ["friction.guide.hysteresis_slope", "does not belong to law"]),
+        (["friction", "screw", "hysteresis_slope"], None,
+         ["friction.screw", "give hysteresis_slope or presliding_stiffness"]),
+        (["friction", "screw", "coulomb"], 0, ["friction.screw.coulomb", "must be above 0"]),
         (["contact", "directions"], ["u"], ["contact.directions[0]", "allowed are"]),
         (["damping_ratio"], 1.5, ["damping_ratio", "less than 1"]),
     ],

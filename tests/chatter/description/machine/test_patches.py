@@ -63,7 +63,7 @@ def test_new_tables_get_headers(line_text):
 
 
 def test_bare_numbers_of_a_rotation_keep_its_unit(line_text):
-    patched = loads_machine(line_text).patch({"friction.screw.slow_decay": 0.25})
+    patched = loads_machine(line_text).patch({"friction.screw.low_speed_decay": 0.25})
     assert '"0.25 s/rad"' in patched.to_toml()
     with pytest.raises(InputError, match=r"friction\.screw\.coulomb"):
         patched.patch({"friction.screw.coulomb": "3 N"})

@@ -56,11 +56,11 @@ def test_an_amplitude_without_friction(case):
 def test_frictions_at_motors_move_by_the_transmission(case):
     """A friction at the motor, 1 N m over 10 mm/2 pi, is one of the axis in other units."""
     i = 10e-3 / (2 * np.pi)
-    law = {"law": "tanh hysteresis", "viscous": 0.0, "slow_viscous": 0.0, "slow_decay": 0.0}
+    law = {"law": "tanh-hysteresis"}
     lines = {}
     machine = case.machine_file()
     for name, scale, on in (("axis", 1.0, {"axis": "Y"}), ("motor", i, {"motor": "Y"})):
-        guide = {**law, "on": on, "coulomb": 10.0 * scale, "inclination": 2e5 * scale}
+        guide = {**law, "on": on, "coulomb": 10.0 * scale, "hysteresis_slope": 2e5 * scale}
         changed = case.patch({"structure.friction_amplitude": "3 um"})
         stiff = {"axis.Y.drive.nut_stiffness": 1e12, "axis.Y.brake.stiffness": 50.0}
         machine_file = machine.patch({**stiff, "friction.guide": guide})

@@ -61,8 +61,8 @@ def test_friction_adds_to_the_drive_what_it_takes(tmp_path, delayed):
     machine = turned(np.eye(3))
     machine["friction"] = {
         "guide": {
-            "law": "tanh hysteresis", "coulomb": 60.0, "viscous": 0.0, "slow_viscous": 0.0,
-            "slow_decay": 1.0, "inclination": 1e4, "on": {"axis": "X"},
+            "law": "tanh-hysteresis", "coulomb": 60.0, "viscous": 0.0, "low_speed_viscous": 0.0,
+            "low_speed_decay": 1.0, "hysteresis_slope": 1e4, "on": {"axis": "X"},
         }
     }  # fmt: skip
     path = written(tmp_path, machine)

@@ -80,9 +80,9 @@ current = { sample_time = "100 us" }
 feedforward = { velocity = 1.0, inertia = "0.0067 kg*m^2" }
 
 [friction.guide]
-law = "LuGre"
+law = "lugre"
 on = { axis = "Y" }
-stiffness = "5 N/um"
+bristle_stiffness = "5 N/um"
 bristle_damping = "2 kN*s/m"
 viscous = "800 N*s/m"
 coulomb = "100 N"

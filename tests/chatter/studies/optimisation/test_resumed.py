@@ -17,7 +17,7 @@ from tests.chatter.studies.optimisation.cuts import end_mill
 NET = {"speeds": {"from": "8800 rpm", "to": "9600 rpm"}, "depths": {"to": "3 mm", "count": 10}}
 WIDTHS = {"from": "2 mm", "to": "6 mm", "count": 3}
 CASES = {
-    "optimum": {"optimum": {**NET, "widths": WIDTHS, "max_power": "2 kW"}},
+    "optimum": {"optimum": {**NET, "radial_depths": WIDTHS, "max_power": "2 kW"}},
     "pitch": {"pitch_design": {**NET, "count": 4}},
 }
 #: what each command writes that must not depend on an interruption

@@ -44,7 +44,9 @@ def test_a_stiff_machine_is_limited_by_its_spindle_alone(limit, value, removal):
     changes = {"structure.mode": STIFF, "material.Kte": 0.0, "material.Kre": 0.0}
     section = {"speeds": {"from": "9200 rpm", "to": "9600 rpm"}, "depths": {"to": "4 mm"}}
     radial_depths = {"from": "4 mm", "to": "8 mm", "count": 2}
-    case = end_mill({**changes, "optimum": {**section, "widths": radial_depths, limit: value}})
+    case = end_mill(
+        {**changes, "optimum": {**section, "radial_depths": radial_depths, limit: value}}
+    )
     found = chatter.optimum(case)
     # a depth step of the last refinement, and whole micrometres
     assert found.best.removal_rate == pytest.approx(removal, rel=3e-3)
@@ -61,7 +63,7 @@ def limited():
     """Search over speed, depth and radial depth with every kind of limit."""
     limits = {"max_power": "1.5 kW", "max_deflection": "40 um", "max_surface_error": "8 um"}
     radial_depths = {"from": "2 mm", "to": "6 mm", "count": 3}
-    case = end_mill({"optimum": {**SMALL, "widths": radial_depths, **limits}})
+    case = end_mill({"optimum": {**SMALL, "radial_depths": radial_depths, **limits}})
     return chatter.optimum(case)
 
 
@@ -187,8 +189,8 @@ def test_the_command_writes_a_case_that_others_accept(tmp_path):
     [
         ({"optimum": {"max_power": "3 N"}}, 'optimum.max_power: "3 N" is a force; a power'),
         (
-            {"optimum": {"widths": {"from": "2 mm", "to": "20 mm"}}},
-            "optimum.widths.to: 20 mm is",
+            {"optimum": {"radial_depths": {"from": "2 mm", "to": "20 mm"}}},
+            "optimum.radial_depths.to: 20 mm is",
         ),
         ({"optimum": {"speeds": {"from": "9 rpm", "to": "3 rpm"}}}, "optimum.speeds: the range"),
         ({"optimum": {"confidence": 1.0}}, "optimum.confidence: 1.0 is out of range"),
@@ -197,9 +199,9 @@ def test_the_command_writes_a_case_that_others_accept(tmp_path):
             {
                 "cut.mode": "slot",
                 "cut.radial_depth": None,
-                "optimum": {"widths": {"from": "2 mm", "to": "3 mm"}},
+                "optimum": {"radial_depths": {"from": "2 mm", "to": "3 mm"}},
             },
-            'optimum.widths: mode = "slot" cuts the whole diameter',
+            'optimum.radial_depths: mode = "slot" cuts the whole diameter',
         ),
     ],
 )
@@ -222,7 +224,9 @@ def test_a_ball_removes_what_it_sweeps_and_nothing_where_it_does_not_reach():
         "depths": {"to": "1 mm", "count": 4},
     }
     changes = {"tool.kind": "ball", "cut.radial_depth": "8 mm"}
-    found = chatter.optimum(end_mill({**changes, "optimum": {**section, "widths": radial_depths}}))
+    found = chatter.optimum(
+        end_mill({**changes, "optimum": {**section, "radial_depths": radial_depths}})
+    )
     point = found.best.point
     # at 1 mm the ball of 16 mm reaches 3.87 mm from its axis, where half of its segment is cut
     segment = 64.0 * math.acos(7.0 / 8.0) - 7.0 * math.sqrt(15.0)

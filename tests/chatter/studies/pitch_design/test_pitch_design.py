@@ -118,7 +118,7 @@ def test_the_command_writes_a_case_that_others_accept(tmp_path):
         "speeds": {"from": "5400 rpm", "to": "5600 rpm"},
         "count": 2,
         "depths": {"to": "6 mm", "count": 10},
-        "largest_chip": 1.1,
+        "max_pitch_ratio": 1.1,
         "goal": "removal rate",
     }
     case = tool_of_1999(**{"tool.helix": "0 deg", "tool.teeth": 2}).patch({"pitch_design": section})

@@ -46,7 +46,8 @@ def lugre_friction(law, amplitude, peak_speed, time):
         g = law.coulomb + (law.static - law.coulomb) * math.exp(
             -((s / law.stribeck_velocity) ** law.stribeck_shape)
         )
-        return (g + law.logarithmic * math.log1p(s / law.logarithmic_velocity)) / law.stiffness
+        g += law.logarithmic * math.log1p(s / law.logarithmic_velocity)
+        return g / law.bristle_stiffness
 
     def rate(t, z):
         v = amplitude * omega * math.sin(omega * t)
@@ -57,7 +58,8 @@ def lugre_friction(law, amplitude, peak_speed, time):
     ).y[0]
     v = amplitude * omega * np.sin(omega * time)
     g = np.array([slip(s) for s in v])
-    return law.stiffness * z + law.bristle_damping * (v - np.abs(v) / g * z) + law.viscous * v
+    bend = v - np.abs(v) / g * z
+    return law.bristle_stiffness * z + law.bristle_damping * bend + law.viscous * v
 
 
 def noisy(time, position, velocity, effort, rng, *, effort_noise, velocity_noise, name="made up"):

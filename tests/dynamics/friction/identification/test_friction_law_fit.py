@@ -47,9 +47,9 @@ def test_lugre_is_recovered_from_sine_moves(sine_records):
     """Guess and all: linear fit, way of the reversal, then the whole law."""
     linear = fit_linear(sine_records, low_pass=LOW_PASS, minimum_speed=8e-3)
     way = reversal_way(sine_records[0], linear, LOW_PASS)
-    assert way == pytest.approx(GUIDE.static / GUIDE.stiffness * math.log(2.0), rel=0.5)
+    assert way == pytest.approx(GUIDE.static / GUIDE.bristle_stiffness * math.log(2.0), rel=0.5)
     guess = AxisModel(guess_lugre(linear, way, 1e-2), linear.value("inertia"))
-    of_law = ("stiffness", "viscous", "coulomb", "static", "stribeck_velocity")
+    of_law = ("bristle_stiffness", "viscous", "coulomb", "static", "stribeck_velocity")
     fit = fit_axis(
         sine_records, guess, (*of_law, "inertia", "offset"), low_pass=LOW_PASS, settling=0.3
     )
@@ -80,12 +80,12 @@ def test_what_a_record_does_not_show_is_named():
     fit = fit_axis(
         [record],
         AxisModel(law, 50.0),
-        ("coulomb", "viscous", "stiffness"),
+        ("coulomb", "viscous", "bristle_stiffness"),
         low_pass=LOW_PASS,
         minimum_speed=0.02,
         starts=2,
     )
-    assert "stiffness" in fit.unsupported
+    assert "bristle_stiffness" in fit.unsupported
     assert fit.model.law.coulomb == pytest.approx(100.0, rel=0.02)
 
 
@@ -93,7 +93,7 @@ def test_what_a_record_does_not_show_is_named():
 TABLE = TanhHysteresis(99.2, 426.7, 6000.0, 500.0, 1.15e4)
 
 
-def test_tanh_inclination_from_a_small_slow_circle():
+def test_hysteresis_slope_from_a_small_slow_circle():
     """Axis of a circle of 0.2 mm radius at 5 mm/min; force is the paper's eq. 2 itself."""
     feed, radius, step = 5.0 / 60e3, 0.2e-3, 5e-3
     t, x, v, a = sine_motion(radius, feed, 2, step)
@@ -108,16 +108,17 @@ def test_tanh_inclination_from_a_small_slow_circle():
     way = reversal_way(record, linear, low_pass)
     assert way == pytest.approx(math.atanh(0.5) / 1.15e4, rel=0.1)
     slow = guess_tanh(linear, way, 2e-3)
-    guess = TanhHysteresis(slow.coulomb, TABLE.viscous, TABLE.slow_viscous, 500.0, slow.inclination)
+    low = TABLE.viscous, TABLE.low_speed_viscous, 500.0
+    guess = TanhHysteresis(slow.coulomb, *low, slow.hysteresis_slope)
     half = 0.5 * (t[-1] - t[0])  # the paper's branch begins at full sliding
     fit = fit_axis(
         [record],
         AxisModel(guess, 200.0),
-        ("coulomb", "inclination"),
+        ("coulomb", "hysteresis_slope"),
         low_pass=low_pass,
         settling=half,
     )
-    assert fit.model.law.inclination == pytest.approx(TABLE.inclination, rel=0.02)
+    assert fit.model.law.hysteresis_slope == pytest.approx(TABLE.hysteresis_slope, rel=0.02)
     assert fit.model.law.coulomb == pytest.approx(TABLE.coulomb, rel=0.01)
     assert fit.unsupported == ()
 
@@ -131,8 +132,8 @@ def test_kernels_agree_with_a_stiff_integrator():
 
 def test_bad_requests_are_told(sine_records):
     model = AxisModel(CoulombStribeck(1.0, 1.0, 1e-3, 0.0), MASS)
-    with pytest.raises(ValueError, match="has no parameter 'stiffness'"):
-        fit_axis(sine_records, model, ("stiffness",), low_pass=LOW_PASS)
+    with pytest.raises(ValueError, match="has no parameter 'bristle_stiffness'"):
+        fit_axis(sine_records, model, ("bristle_stiffness",), low_pass=LOW_PASS)
     with pytest.raises(ValueError, match="viscous is to be fitted and needs a guess above 0"):
         fit_axis(sine_records, model, ("viscous",), low_pass=LOW_PASS)
     with pytest.raises(ValueError, match="no parameter is free"):

@@ -96,7 +96,7 @@ def test_both_halves_agree_on_dry_and_viscous_friction(halves):
 
 def test_a_stribeck_peak_is_not_supported_by_both_halves(halves):
     """The hump of the start does not come back when braking: with it, the other half is worse."""
-    free = ("stiffness", "coulomb", "static", "stribeck_velocity", "viscous")
+    free = ("bristle_stiffness", "coulomb", "static", "stribeck_velocity", "viscous")
     half = halves["accelerating"]
     peaked = AxisModel(LuGre(1e6, 0.0, 50.0, 12.0, 20.0, 0.02), MASS)
     flat = AxisModel(LuGre(1e8, 0.0, 50.0, 12.0, 12.0, 0.02), MASS)

@@ -35,14 +35,15 @@ def test_speed_part_of_the_published_torque_curve():
     """Eq. 1 in full sliding, X-axis, with noise of 1 mN m in each mean torque."""
     curve = points(lambda w: 0.188 + (3.2e-3 + 0.03 * np.exp(-2.0 * w)) * w, noise=2e-4)
     guess = TanhHysteresis(0.3, 1e-3, 0.1, 1.0, 1.15e4)
-    fit = fit_steady_state(curve, guess, ("coulomb", "viscous", "slow_viscous", "slow_decay"))
+    names = ("coulomb", "viscous", "low_speed_viscous", "low_speed_decay")
+    fit = fit_steady_state(curve, guess, names)
     assert fit.law.coulomb == pytest.approx(0.188, rel=2e-3)
     assert fit.law.viscous == pytest.approx(3.2e-3, rel=2e-3)
-    assert fit.law.slow_viscous == pytest.approx(0.03, rel=0.15)
-    assert fit.law.slow_decay == pytest.approx(2.0, rel=0.15)
-    for name, true in (("slow_viscous", 0.03), ("slow_decay", 2.0)):
+    assert fit.law.low_speed_viscous == pytest.approx(0.03, rel=0.15)
+    assert fit.law.low_speed_decay == pytest.approx(2.0, rel=0.15)
+    for name, true in (("low_speed_viscous", 0.03), ("low_speed_decay", 2.0)):
         assert fit.estimates[name].lower < true < fit.estimates[name].upper
-    assert fit.law.inclination == 1.15e4  # not asked for
+    assert fit.law.hysteresis_slope == 1.15e4  # not asked for
 
 
 def test_lugre_curve_with_logarithmic_part():
