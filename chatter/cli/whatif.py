@@ -44,9 +44,9 @@ def whatif(
         str | None, typer.Option("--quantity", help="Number to show, by its column in whatif.csv.")
     ] = None,
     study: Annotated[
-        str | None, typer.Option("--study", metavar="NAME", help="A ready study.")
+        str | None, typer.Option("--study", metavar="NAME", help="A preset study.")
     ] = None,
-    studies: Annotated[bool, typer.Option("--studies", help="List the ready studies.")] = False,
+    studies: Annotated[bool, typer.Option("--studies", help="List the preset studies.")] = False,
     only: Annotated[
         list[str] | None, typer.Option("--only", help="Name of a [frf.NAME]; repeatable.")
     ] = None,

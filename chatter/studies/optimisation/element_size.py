@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 #: chatter wavelengths in an element that are tried, the most first
 _TRIED = (6.0, 4.0, 3.0, 2.0, 1.4)
-#: growth (logarithm of the spectral radius) may be off by this much: limits move by less than 1e-3
+#: growth rate (logarithm of the spectral radius) may be off by this much: limits move by less than 1e-3
 _ERROR = 2e-5
 #: speeds and depths at which it is compared
 _SPEEDS, _DEPTHS = 6, 5
@@ -43,14 +43,14 @@ def max_wavelengths(model: MillingModel, speeds: Array, depths: Array) -> float:
         )
     )
 
-    def growth(wavelengths: float) -> Array:
+    def growth_rate(wavelengths: float) -> Array:
         cut = element_cut(model, float(depths[-1]), wavelengths=wavelengths)
         found = np.abs(collocation.multipliers(cut, speed, depth))
         return np.log(np.maximum(found, _SMALLEST))
 
-    known = growth(RESOLUTION[1])
+    known = growth_rate(RESOLUTION[1])
     for wavelengths in _TRIED:
-        if np.all(np.abs(growth(wavelengths) - known) <= _ERROR):
+        if np.all(np.abs(growth_rate(wavelengths) - known) <= _ERROR):
             return wavelengths
     return RESOLUTION[1]
 

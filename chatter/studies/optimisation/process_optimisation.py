@@ -206,7 +206,7 @@ def _notes(case: Case, limits: Limits, drawn: Samples | None) -> list[str]:
     if drawn is None:
         notes.append(
             f"nothing in the case is uncertain: stability keeps {limits.depth_margin:.3g} of the "
-            f"limit depth and {limits.speed_margin:.3g} of the speed as margins"
+            f"critical depth and {limits.speed_margin:.3g} of the speed as margins"
         )
     modes = case.structure.mode if case.structure else ()
     if any(mode.frequency_slope for mode in modes):

@@ -1,4 +1,4 @@
-"""State that all pieces of a search share: the case compiled, what is kept of it, progress."""
+"""State that all parts of a search share: the compiled case, the result cache, progress."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from chatter.studies.result_cache import ResultCache
 
 
 class OptimumSearch:
-    """A case compiled for a search, its pieces on disk, and how far the search is.
+    """A case compiled for a search, its parts on disk, and how far the search is.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ class OptimumSearch:
     progress : callable
         Called with (done, total) parts of the work.
     folder : path or None
-        Keeps finished pieces.
+        Keeps finished parts.
     """
 
     def __init__(
@@ -45,35 +45,35 @@ class OptimumSearch:
         sampled = self.drawn.models if self.drawn is not None else ()
         self.limits = limits_of(case, self.model, sampled)
         self.cache = ResultCache(folder, "optimum", fingerprint(case))
-        #: what pieces depend on where something is uncertain
+        #: what parts depend on where something is uncertain
         self.draw = (samples, seed) if self.drawn is not None else None
         self._progress, self._lock = progress, threading.Lock()
         self.total, self.finished = 1, 0
 
     def expect(self, total: int) -> None:
-        """Say how much work there is in all, at the most."""
+        """Set how much work there is in all, at the most."""
         self.total = total + 1
 
     def part(self, size: int) -> Progress:
-        """Progress of a piece of this size."""
+        """Progress of a part of this size."""
         return lambda done, total: self._report(self.finished + size * done // max(total, 1))
 
     def parts(self, count: int, size: int) -> list[Progress]:
-        """Progress of pieces of this size that go on at the same time, in threads."""
+        """Progress of parts of this size that go on at the same time, in threads."""
         shares = [0] * count
 
         def of(index: int) -> Progress:
-            def tell(done: int, total: int) -> None:
+            def report(done: int, total: int) -> None:
                 with self._lock:
                     shares[index] = size * done // max(total, 1)
                     self._report(self.finished + sum(shares))
 
-            return tell
+            return report
 
         return [of(index) for index in range(count)]
 
     def done(self, size: int) -> None:
-        """Count a piece of this size."""
+        """Count a part of this size."""
         self.finished += size
         self._report(self.finished)
 
@@ -81,7 +81,7 @@ class OptimumSearch:
         self._progress(min(finished, self.total - 1), self.total)
 
     def end(self) -> None:
-        """Say that nothing is left to do."""
+        """Report that nothing remains to do."""
         self._progress(self.total, self.total)
 
     def candidate(

@@ -115,8 +115,8 @@ def stable_depths(
         Called with (done, total) speeds.
     """
     stride = widest_stride(cut, speeds)
-    growth = _growth_at(cut, speeds)
-    crossings = continued_crossings(speeds.size, depths, growth, _TOLERANCE, stride, progress)
+    growth_rate = _growth_rate_at(cut, speeds)
+    crossings = continued_crossings(speeds.size, depths, growth_rate, _TOLERANCE, stride, progress)
     return StableDepths(speeds, crossings, float(depths[-1]))
 
 
@@ -148,26 +148,26 @@ def first_limits(cut: ElementCut, speeds: Array, depths: Array) -> Array:
     cut, speeds, depths
         As for `stable_depths`.
     """
-    growth = _growth_at(cut, speeds)
+    growth_rate = _growth_rate_at(cut, speeds)
     # a speed that has lost its stability needs no deeper look
     grid = np.ones((speeds.size, depths.size))
     open_speeds = np.arange(speeds.size)
     for start in range(0, depths.size, _ROWS_AT_ONCE):
         rows = np.arange(start, min(start + _ROWS_AT_ONCE, depths.size))
         index, row = (part.ravel() for part in np.meshgrid(open_speeds, rows, indexing="ij"))
-        grid[index, row] = growth(index, depths[row])
+        grid[index, row] = growth_rate(index, depths[row])
         lost = (grid[open_speeds][:, rows] > 0.0).any(axis=1)
         open_speeds = open_speeds[~lost]
         if open_speeds.size == 0:
             break
-    crossings = find_crossings(grid, depths, growth, _TOLERANCE)
+    crossings = find_crossings(grid, depths, growth_rate, _TOLERANCE)
     return np.array([found[0] if len(found) else np.inf for found in crossings])
 
 
-def _growth_at(cut: ElementCut, speeds: Array) -> Callable[[NDArray[np.int64], Array], Array]:
+def _growth_rate_at(cut: ElementCut, speeds: Array) -> Callable[[NDArray[np.int64], Array], Array]:
     """Logarithm of the spectral radius at (indices of speeds, depths)."""
 
-    def growth(index: NDArray[np.int64], depth: Array) -> Array:
+    def growth_rate(index: NDArray[np.int64], depth: Array) -> Array:
         radius = np.abs(collocation.multipliers(cut, speeds[index], depth))
         return np.log(np.maximum(radius, _SMALLEST))
 
