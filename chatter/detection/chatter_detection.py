@@ -172,7 +172,7 @@ def _motion(periods: Periods, noise: float, growth_rate: float) -> _Motion:
     """Fit the chatter motion in the later half of the record."""
     later = periods.values[len(periods.values) // 2 :]
     line = strongest_line(later, growth_rate)
-    bifurcation, period = bifurcation_of(later, line, growth, noise)
+    bifurcation, period = bifurcation_of(later, line, growth_rate, noise)
     if period > 0:
         # a closed orbit has its lines exactly at multiples of 1/period
         order = max(round(line.rotation * period / (2.0 * math.pi)), 1)
@@ -237,8 +237,8 @@ def _decide(trend: _Trend, periods: Periods) -> tuple[str, float, str]:
     if decays:
         return (
             "stable", sure,
-            f"the deviation from {of_what} to {of_what} decays by {-math.expm1(growth_rate):.1%} per "
-            "revolution",
+            f"the deviation from {of_what} to {of_what} decays by {-math.expm1(growth_rate):.1%} "
+            "per revolution",
         )  # fmt: skip
     return (
         "chatter", sure,

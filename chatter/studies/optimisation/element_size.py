@@ -15,7 +15,8 @@ Array = NDArray[np.float64]
 
 #: chatter wavelengths in an element that are tried, the most first
 _TRIED = (6.0, 4.0, 3.0, 2.0, 1.4)
-#: growth rate (logarithm of the spectral radius) may be off by this much: limits move by less than 1e-3
+#: permitted error of the growth rate (logarithm of the spectral radius): limits move by less than
+#: 1e-3
 _ERROR = 2e-5
 #: speeds and depths at which it is compared
 _SPEEDS, _DEPTHS = 6, 5

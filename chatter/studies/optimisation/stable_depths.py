@@ -171,4 +171,4 @@ def _growth_rate_at(cut: ElementCut, speeds: Array) -> Callable[[NDArray[np.int6
         radius = np.abs(collocation.multipliers(cut, speeds[index], depth))
         return np.log(np.maximum(radius, _SMALLEST))
 
-    return growth
+    return growth_rate
