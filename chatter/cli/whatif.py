@@ -118,9 +118,9 @@ def _fitted(chosen: PresetStudy | None, make):
 
 
 def _list_studies() -> None:
-    from chatter.studies.whatif.preset_studies import STUDIES
+    from chatter.studies.whatif.preset_studies import preset_studies
 
-    for one in STUDIES.values():
+    for one in preset_studies().values():
         typer.echo(f"{one.name}: {one.question}")
         typer.echo(f"    chatter whatif --study {one.name}      (example {one.example})")
         for each in one.vary:

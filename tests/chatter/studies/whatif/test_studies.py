@@ -11,7 +11,7 @@ import chatter
 from chatter.description.errors import InputError, RunError
 from chatter.studies.model import load_model
 from chatter.studies.whatif import measures
-from chatter.studies.whatif.preset_studies import STUDIES
+from chatter.studies.whatif.preset_studies import preset_studies
 from chatter.studies.whatif.whatif_study import whatif
 
 ZERO_ORDER = {"method": "zero-order"}
@@ -194,14 +194,14 @@ def test_lobes_of_a_case_follow_its_machine(case_on_machine, machine_file):
     assert high == pytest.approx(single.critical_depth * 1e3, rel=1e-9)
 
 
-@pytest.mark.parametrize("name", STUDIES)
+@pytest.mark.parametrize("name", preset_studies())
 def test_ready_studies_fit_their_examples(name):
     """Every patch of a ready study is valid on its example."""
     from chatter.studies.model import patched
     from chatter.studies.whatif.design import chosen_layout, points_of
     from chatter.studies.whatif.variation import read_variation
 
-    study = STUDIES[name]
+    study = preset_studies()[name]
     try:
         file = study.file()
     except InputError:

@@ -4,7 +4,7 @@ import pytest
 from typer.testing import CliRunner
 
 from chatter.cli import app
-from chatter.studies.whatif.preset_studies import STUDIES
+from chatter.studies.whatif.preset_studies import preset_study
 
 CASE = "friction-amplitude/case.toml"
 MACHINE = "friction-amplitude/machine.toml"
@@ -12,7 +12,7 @@ MACHINE = "friction-amplitude/machine.toml"
 
 @pytest.fixture(scope="module")
 def folder():
-    return STUDIES["friction-amplitude"].file().parents[1]
+    return preset_study("friction-amplitude").file().parents[1]
 
 
 @pytest.mark.parametrize(
