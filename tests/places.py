@@ -6,7 +6,7 @@ from types import ModuleType
 
 ROOT = Path(__file__).resolve().parents[1]
 EXAMPLES = ROOT / "examples"
-SHARED = ROOT.parent / "shared"  # measurements beside the repository
+DATA = ROOT / "tests" / "data"  # where from: README.md there
 
 
 def example_module(example: str, script: str = "run") -> ModuleType:

@@ -10,26 +10,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import tomlkit
 
+from tests.cases import TOOL_OF_922_HERTZ
 from tests.places import ROOT
 
 #: what kernels and physics know nothing of
 FOREIGN = {"chatter", "matplotlib", "pint", "pydantic", "typer", "rich", "tomlkit"}
 HEAVY = ["numba", "scipy", "numpy", "matplotlib", "pint", "pydantic", "tomlkit", "typer", "rich"]
 
-CASE = {
-    "tool": {"teeth": 2, "diameter": "16 mm"},
-    "material": {"Ktc": "600 MPa", "Krc": "200 MPa"},
-    "cut": {
-        "mode": "down", "spindle_speed": "10000 rpm", "feed_per_tooth": "0.1 mm",
-        "axial_depth": "1 mm", "radial_depth": "8 mm",
-    },
-    "structure": {
-        "mode": [
-            {"frequency": "922 Hz", "damping": 0.011, "mass": "0.03993 kg", "direction": [1, 0, 0]}
-        ]
-    },
-}  # fmt: skip
+CASE = tomlkit.parse(TOOL_OF_922_HERTZ).unwrap()
 
 
 def modules(package):

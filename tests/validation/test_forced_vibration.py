@@ -86,7 +86,7 @@ def test_even_teeth_never_are(given):
 
 @pytest.mark.parametrize(("rpm", "parts"), [(5000, False), (8000, True), (10000, False)])
 def test_on_the_benchmark_of_unequal_pitch_where_the_simulation_parts(rpm, parts):
-    """BENCHMARKS.md 4 at the limits published there: 70 and 110 degrees."""
+    """validation 4 at the limits published there: 70 and 110 degrees."""
     modes = [
         (441.64, 0.028722, 11.125, [1, 0, 0]), (563.6, 0.055801, 1.4986, [1, 0, 0]),
         (778.56, 0.058996, 13.063, [1, 0, 0]), (516.21, 0.025004, 1.199, [0, 1, 0]),

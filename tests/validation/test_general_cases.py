@@ -48,7 +48,7 @@ def test_the_store_is_what_the_reference_gives():
 @pytest.mark.parametrize(
     ("cut", "periods", "expected"),
     [
-        # BENCHMARKS.md 2.2, 4 and 3.3: even teeth, unequal pitch, flutes of different helix
+        # validation 2.2, 4 and 3.3: even teeth, unequal pitch, flutes of different helix
         (
             GeneralCut(
                 16e-3, (math.pi,) * 2, (0.0,) * 2, "up", 1.6e-3, (6e8, 2e8, 0.0), X,

@@ -1,4 +1,4 @@
-"""Measured parameters against 85 real cutting tests (Hajdu et al. 2020; BENCHMARKS.md 6.1)."""
+"""Measured parameters against 85 real cutting tests (Hajdu et al. 2020; validation 6.1)."""
 
 import csv
 import math
@@ -10,10 +10,9 @@ import chatter
 from chatter.stability.methods.semi_discretization.arrays import milling_arrays
 from chatter.stability.methods.semi_discretization.multipliers import limit_curve, multipliers
 from chatter.stability.model import milling_model
-from tests.places import SHARED
+from tests.places import DATA
 
-FOLDER = SHARED / "data/stability-hajdu-2020"
-pytestmark = pytest.mark.skipif(not FOLDER.exists(), reason="shared data not at hand")
+FOLDER = DATA / "stability-hajdu-2020"
 RPM = math.pi / 30.0
 
 REFITTED = {

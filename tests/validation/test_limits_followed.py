@@ -5,42 +5,23 @@ import math
 import numpy as np
 import pytest
 
-from chatter.description.case import Case
 from chatter.description.progress import no_progress
 from chatter.stability.methods.collocation import multipliers as collocation
 from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import milling_model
 from chatter.stability.registry import COLLOCATION
+from tests.cases import tool_of_922_hertz
 
 RPM = math.pi / 30.0
 
 
 def island_case(helix_deg=45.0, **lobes):
-    """BENCHMARKS 3.1: 922 Hz, one direction, two flutes of 8 mm, up-milling of 5 % immersion."""
+    """validation 3.1: 922 Hz, one direction, two flutes of 8 mm, up-milling of 5 % immersion."""
     diameter = 8e-3
-    return Case.from_dict(
-        {
-            "tool": {"teeth": 2, "diameter": diameter, "helix": math.radians(helix_deg)},
-            "material": {"Ktc": "600 MPa", "Krc": "200 MPa"},
-            "cut": {
-                "mode": "up",
-                "spindle_speed": "19000 rpm",
-                "feed_per_tooth": "0.1 mm",
-                "axial_depth": "1 mm",
-                "radial_depth": 0.05 * diameter,
-            },
-            "structure": {
-                "mode": [
-                    {
-                        "frequency": "922 Hz",
-                        "damping": 0.011,
-                        "mass": "0.03993 kg",
-                        "direction": [1, 0, 0],
-                    }
-                ]
-            },
-            "lobes": lobes,
-        }
+    return tool_of_922_hertz(
+        tool={"diameter": diameter, "helix": math.radians(helix_deg)},
+        cut={"mode": "up", "spindle_speed": "19000 rpm", "radial_depth": 0.05 * diameter},
+        lobes=lobes,
     )
 
 

@@ -171,7 +171,7 @@ def test_a_size_effect_where_chips_vanish(exponent, changes):
 @pytest.mark.parametrize(
     ("mode", "rpm", "depth_mm", "immersion", "exact"),
     [
-        # BENCHMARKS.md 2.1 and 2.2
+        # validation 2.1 and 2.2
         ("down", 5000, 0.2, 1.0, 0.81974278427),
         ("down", 5000, 1.0, 1.0, 1.40647352539),
         ("up", 20000, 4.0, 0.05, 1.0543980187),

@@ -47,7 +47,7 @@ def tool_922(degrees_of_freedom, immersion, cut, **tool):
 
 
 def altintas_engin_budak(helix_deg=0.0, pitch=(70, 110, 70, 110)):
-    """BENCHMARKS.md 4."""
+    """validation 4."""
     modes = [
         mode(441.64, 0.028722, mass=11.125),
         mode(563.6, 0.055801, mass=1.4986),
@@ -64,7 +64,7 @@ def altintas_engin_budak(helix_deg=0.0, pitch=(70, 110, 70, 110)):
     return model_of(modes, tool, cut, 697e6, 255.8e6)
 
 
-# --- BENCHMARKS.md 2.1: what every scheme gives with 40 steps a tooth period ----------------------
+# --- validation 2.1: what every scheme gives with 40 steps a tooth period ----------------------
 
 
 @pytest.mark.parametrize(
@@ -116,7 +116,7 @@ def test_a_parabola_is_nearer_than_a_line_and_a_line_than_a_constant():
 @pytest.mark.parametrize(
     ("freedom", "immersion", "cut", "rpm", "depth_mm", "exact"),
     [
-        # BENCHMARKS.md 2.1 and 2.2
+        # validation 2.1 and 2.2
         (1, 1.0, "down", 5000, 0.2, 0.81974278427),
         (1, 1.0, "down", 5000, 1.0, 1.40647352539),
         (1, 0.05, "up", 20000, 4.0, 1.0543980187),
@@ -135,7 +135,7 @@ def test_collocation_meets_the_exact_multipliers(freedom, immersion, cut, rpm, d
 
 
 def test_limits_of_unequal_pitch():
-    """BENCHMARKS.md 4: 70 and 110 degrees, no helix; and with helix."""
+    """validation 4: 70 and 110 degrees, no helix; and with helix."""
     rpms = np.array([3000, 4000, 5000, 6000, 8000, 10000])
     depths = np.linspace(0.0, 8e-3, 41)[1:]
     model = altintas_engin_budak()
@@ -162,7 +162,7 @@ def test_limits_of_unequal_pitch():
     ],
 )
 def test_islands_of_a_helical_tool(rpm, expected, kinds):
-    """BENCHMARKS.md 3.1: stable again between the island and the next limit."""
+    """validation 3.1: stable again between the island and the next limit."""
     model = tool_922(1, 0.05, "up", diameter=8e-3, helix=math.radians(45.0))
     depths = np.linspace(0.0, 9e-3, 61)[1:]
     curve = collocation.limit_curve(element_cut(model, 9e-3), np.array([rpm * RPM]), depths)
@@ -178,7 +178,7 @@ def test_islands_of_a_helical_tool(rpm, expected, kinds):
     [(15000, 3, 0.4701), (15000, 6, 0.3396), (20000, 2, 0.975), (10000, 3, 0.163)],
 )
 def test_flutes_of_different_helix(rpm, depth_mm, published):
-    """BENCHMARKS.md 3.3, to the tolerance that it states."""
+    """validation 3.3, to the tolerance that it states."""
     angles = [math.radians(30.0), math.radians(45.0)]
     model = tool_922(1, 0.05, "down", helix=angles)
     point = np.array([rpm * RPM]), np.array([depth_mm * 1e-3])
@@ -206,7 +206,7 @@ def test_runout_without_effect_and_with():
 
 
 def test_a_slow_variation_of_the_speed_stabilizes():
-    """BENCHMARKS.md 1.4: less growth over the same time with the variation than without."""
+    """validation 1.4: less growth over the same time with the variation than without."""
     modes = [mode(922.0, 0.011, mass=0.03993)]
     cut = {"mode": "slot", "spindle_speed": 6000 * RPM, "axial_depth": 0.5e-3}
     varied = cut | {"speed_variation": {"amplitude": 0.1, "frequency": 10.0}}
@@ -223,7 +223,7 @@ def test_a_slow_variation_of_the_speed_stabilizes():
 
 
 def test_multi_frequency_finds_flip_lobes_and_islands():
-    """BENCHMARKS.md 2.4 and 3.1, straight from the FRFs."""
+    """validation 2.4 and 3.1, straight from the FRFs."""
     depths = np.linspace(0.0, 5e-3, 26)[1:]
     model = tool_922(2, 0.05, "up")
     curve = METHODS["multi-frequency"].limits(

@@ -84,7 +84,7 @@ def turning_case():
     return slot_case(mass, damping, stiffness, Kf, 1, TURNING_DIAMETER, 1.5e-3)
 
 
-# BENCHMARKS.md 1.6 (Altintas, Eynian and Onozuka 2008: AISI 1045)
+# validation 1.6 (Altintas, Eynian and Onozuka 2008: AISI 1045)
 WITHOUT = {500: 0.373937, 1000: 0.370363, 1500: 0.384913, 2000: 0.371674, 3000: 0.472420,
            5000: 0.370186}  # fmt: skip
 WITH = {1500: 0.975588, 2000: 0.735469, 3000: 0.593802, 5000: 0.450280}
@@ -128,7 +128,7 @@ def test_low_speed_stability_rises_with_the_coefficient_as_the_exact_solution_do
     assert np.all(np.diff(study.values()) > 0.0)
 
 
-# BENCHMARKS.md 5.4: average tooth angle, two modes alike; at 45 degrees half of C acts along each
+# validation 5.4: average tooth angle, two modes alike; at 45 degrees half of C acts along each
 AVERAGE_ANGLE = {1000: (1.12969, 1.25394), 2000: (1.52452, 1.58125), 4000: (1.16598, 1.19640),
                  7500: (1.80279, 1.82581)}  # fmt: skip
 

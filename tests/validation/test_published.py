@@ -1,4 +1,4 @@
-"""Published and independently computed limits (BENCHMARKS.md), with the tolerance each bears."""
+"""Published and independently computed limits (docs/validation.md), each with its tolerance."""
 
 import math
 
@@ -58,7 +58,7 @@ def limits_mm(model, rpms, deepest_mm, count=200):
     return curve.critical_depth * 1e3, curve
 
 
-# --- BENCHMARKS.md 2.1: plain semi-discretization has its own, lower, published values -----------
+# --- validation 2.1: plain semi-discretization has its own, lower, published values -----------
 
 
 @pytest.mark.parametrize(

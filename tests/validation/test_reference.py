@@ -1,4 +1,4 @@
-"""The reference itself against published and exact multipliers (BENCHMARKS.md 2.1, 2.2, 3.2)."""
+"""The reference itself against published and exact multipliers (validation 2.1, 2.2, 3.2)."""
 
 import math
 

@@ -21,7 +21,7 @@ from chatter.stability.registry import COLLOCATION
 from cutting.edge_segments.segments import period_angle
 from tests.validation.reference.turning import delay_of_a_spindle, spectral_radius
 
-# --- BENCHMARKS.md 1.4: turning -------------------------------------------------------------------
+# --- validation 1.4: turning -------------------------------------------------------------------
 
 #: x'' + z x' + (1 + kw) x = kw x(t - tau); ten delays are a period of the variation
 CUT, DAMPING, DELAYS = 0.2, 0.1, 10

@@ -7,12 +7,12 @@ import pytest
 
 from chatter import Case
 from chatter.simulation.simulate import simulate
-from tests.places import SHARED
+from tests.places import DATA
 from tests.validation.reference import time_domain_check as sets
 from tests.validation.reference.time_domain import nrmse, to_case_dict
 from tests.validation.reference.time_domain_store import REVOLUTIONS, SIGNALS, load, sample_times
 
-MEASUREMENTS = SHARED / "measurements"
+MEASUREMENTS = DATA / "measurements"
 CUTS = load()
 
 
@@ -79,7 +79,6 @@ def with_what_the_truth_leaves_out(name, cut):
     return cut
 
 
-@pytest.mark.skipif(not MEASUREMENTS.is_dir(), reason="no measurements beside the project")
 @pytest.mark.parametrize("name", ["set-101", "set-102", "set-103", "set-104", "set-107"])
 def test_measurements_are_met_to_their_noise(name):
     cuts, tables, truth = sets.load(MEASUREMENTS / name)

@@ -5,43 +5,32 @@ import math
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import chatter
-from chatter import Case
-from chatter.cli import app
+from tests.cases import tool_of_922_hertz
+from tests.command_line import chatter_command
 
 RPM = math.pi / 30.0
 X = ((1, 0, 0),)
 X_AND_Y = ((1, 0, 0), (0, 1, 0))
 
 
-def tool_of_922_hertz(directions, mode, immersion, speeds, deepest, **changes):
-    """Tool of Insperger and Stepan (2004), one mode of 922 Hz along every direction."""
+def cut_of(directions, mode, immersion, speeds, deepest, **changes):
+    """Cut of the tool of 922 Hz, with what the limits are searched over."""
     values = {"diameter": 16e-3, "helix": "0 deg", "depths": 12, "count": 10} | changes
-    structure = {"frequency": "922 Hz", "damping": 0.011, "mass": "0.03993 kg"}
-    return Case.from_dict(
-        {
-            "title": "922 Hz",
-            "tool": {"teeth": 2, "diameter": values["diameter"], "helix": values["helix"]},
-            "material": {"Ktc": "600 MPa", "Krc": "200 MPa"},
-            "cut": {
-                "mode": mode,
-                "spindle_speed": f"{speeds[0]} rpm",
-                "feed_per_tooth": "0.1 mm",
-                "axial_depth": "1 mm",
-                "radial_depth": immersion * values["diameter"],
-            },
-            "structure": {"mode": [{**structure, "direction": list(d)} for d in directions]},
-            "lobes": {
-                "speeds": {
-                    "from": f"{speeds[0]} rpm",
-                    "to": f"{speeds[1]} rpm",
-                    "count": values["count"],
-                },
-                "depths": {"to": deepest, "count": values["depths"]},
-            },
-        }
+    lowest, highest = (f"{speed} rpm" for speed in speeds)
+    return tool_of_922_hertz(
+        directions,
+        tool={"diameter": values["diameter"], "helix": values["helix"]},
+        cut={
+            "mode": mode,
+            "spindle_speed": lowest,
+            "radial_depth": immersion * values["diameter"],
+        },
+        lobes={
+            "speeds": {"from": lowest, "to": highest, "count": values["count"]},
+            "depths": {"to": deepest, "count": values["depths"]},
+        },
     )
 
 
@@ -55,7 +44,7 @@ TEN_SPEEDS = {
 
 @pytest.mark.parametrize("name", list(TEN_SPEEDS))
 def test_limits_at_ten_speeds_within_two_percent(name):
-    case = tool_of_922_hertz(*TEN_SPEEDS[name])
+    case = cut_of(*TEN_SPEEDS[name])
     found = chatter.lobes(case, method="time-domain").limits
     wanted = chatter.lobes(case).limits
     assert np.isfinite(wanted.critical_depth).all()
@@ -65,7 +54,7 @@ def test_limits_at_ten_speeds_within_two_percent(name):
     assert {"hopf", "flip"} >= set(found.bifurcation)
 
 
-# BENCHMARKS.md 2.3: first limit, mm, and its kind
+# validation 2.3: first limit, mm, and its kind
 PUBLISHED = [
     (X, "up", 0.05, "5 mm", {10000: (1.657701, "hopf"), 20000: (3.774048, "flip")}),
     (X, "down", 0.5, "5 mm", {10000: (2.104690, "flip"), 20000: (0.719643, "hopf")}),
@@ -76,7 +65,7 @@ PUBLISHED = [
 
 @pytest.mark.parametrize(("directions", "mode", "immersion", "deepest", "limits"), PUBLISHED)
 def test_published_limits(directions, mode, immersion, deepest, limits):
-    case = tool_of_922_hertz(directions, mode, immersion, (10000, 20000), deepest, count=2)
+    case = cut_of(directions, mode, immersion, (10000, 20000), deepest, count=2)
     found = chatter.lobes(case, method="time-domain").limits
     depths, kinds = zip(*limits.values(), strict=True)
     assert found.spindle_speed == pytest.approx(np.array(list(limits)) * RPM)
@@ -84,19 +73,18 @@ def test_published_limits(directions, mode, immersion, deepest, limits):
     assert found.bifurcation == kinds
 
 
-# BENCHMARKS.md 3.1: closed island of period doubling below the Hopf limit, mm
+# validation 3.1: closed island of period doubling below the Hopf limit, mm
 ISLANDS = {18800: [1.14676, 1.98935, 4.62804], 19000: [1.60997, 2.50485, 5.17385]}
 
 
 def test_islands_of_period_doubling_with_helix(tmp_path):
-    case = tool_of_922_hertz(
+    case = cut_of(
         X, "up", 0.05, (18800, 19000), "6 mm",
         diameter=8e-3, helix="45 deg", depths=24, count=2,
     )  # fmt: skip
     case.save(tmp_path / "island.toml")
-    result = CliRunner().invoke(
-        app,
-        ["lobes", str(tmp_path / "island.toml"), "--method", "time-domain", "--out", str(tmp_path)],
+    result = chatter_command(
+        "lobes", tmp_path / "island.toml", "--method", "time-domain", "--out", tmp_path
     )
     assert result.exit_code == 0, result.output
     with (tmp_path / "lobes.csv").open() as file:
@@ -129,7 +117,7 @@ BEYOND = [
 @pytest.mark.parametrize(("directions", "mode", "immersion", "rpm", "kind"), BEYOND)
 def test_full_chatter_beyond_the_limit(directions, mode, immersion, rpm, kind):
     """The signals of a whole run, with loss of contact, tell frequency and kind."""
-    case = tool_of_922_hertz(directions, mode, immersion, (rpm, rpm + 1), "9 mm", count=2)
+    case = cut_of(directions, mode, immersion, (rpm, rpm + 1), "9 mm", count=2)
     limit = chatter.check(case).critical_depth
     case = case.patch({"cut.axial_depth": 1.05 * limit, "simulation.revolutions": 120})
     wanted = chatter.check(case)

@@ -11,9 +11,8 @@ import urllib.error
 import urllib.request
 
 import pytest
-from typer.testing import CliRunner
 
-from chatter.cli import app
+from tests.command_line import chatter_command
 from tests.places import EXAMPLES
 
 CASE = EXAMPLES / "two-degrees-of-freedom" / "case.toml"
@@ -47,7 +46,7 @@ def test_serves_until_ctrl_c():
 
 @pytest.mark.parametrize("options", [["--live", "--grid"], ["--live", "--json"], ["--port", "1"]])
 def test_options_that_do_not_go_together_are_told(options):
-    found = CliRunner().invoke(app, ["lobes", str(CASE), *options])
+    found = chatter_command("lobes", CASE, *options)
     assert found.exit_code == 2
     assert "--live" in found.output
 

@@ -6,34 +6,11 @@ import math
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
-from chatter.cli import app
+from tests.cases import TOOL_OF_922_HERTZ
+from tests.command_line import chatter_command
 
-CASE = """
-title = "a case"
-
-[tool]
-teeth = 2
-diameter = "16 mm"
-
-[material]
-Ktc = "600 MPa"
-Krc = "200 MPa"
-
-[cut]
-mode = "down"
-spindle_speed = "10000 rpm"
-feed_per_tooth = "0.1 mm"
-axial_depth = "1 mm"
-radial_depth = "8 mm"
-
-[[structure.mode]]
-frequency = "922 Hz"
-damping = 0.011
-mass = "0.03993 kg"
-direction = [1, 0, 0]
-
+CASE = f"""{TOOL_OF_922_HERTZ}
 [simulation]
 revolutions = 40
 """
@@ -53,7 +30,7 @@ def simulate(case_file, *assignments, options=()):
     sets = [part for text in assignments for part in ("--set", text)]
     out = case_file.parent / "out"
     words = ["simulate", case_file, "--out", out, *sets, *options]
-    return CliRunner().invoke(app, [str(word) for word in words])
+    return chatter_command(*words)
 
 
 def refused(result, folder, *words, code=2):
@@ -102,7 +79,7 @@ def test_numbers_of_a_run(case_file, tmp_path):
     assert simulate(case_file).exit_code == 0
     summary = strict((tmp_path / "out/summary.json").read_text())
     table = table_of(tmp_path / "out/signals.csv")
-    # BENCHMARKS.md 2.3: stable below 2.104690 mm
+    # validation 2.3: stable below 2.104690 mm
     assert summary["verdict"] == "stable"
     assert summary["chatter_frequency_Hz"] is None
     for column, name in enumerate(("Fx", "Fy", "Fz"), start=2):
@@ -130,7 +107,7 @@ def test_numbers_of_a_run(case_file, tmp_path):
 
 
 def test_chatter_is_told_with_its_frequency(case_file, tmp_path):
-    # BENCHMARKS.md 2.3: limit of 3.774048 mm at 20000 rpm, a flip
+    # validation 2.3: limit of 3.774048 mm at 20000 rpm, a flip
     result = simulate(
         case_file,
         "cut.mode=up",

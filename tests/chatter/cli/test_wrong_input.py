@@ -3,44 +3,21 @@
 import json
 
 import pytest
-from typer.testing import CliRunner
 
-from chatter.cli import app
+from tests.cases import TOOL_OF_922_HERTZ
+from tests.command_line import chatter_command
 
-GOOD = """
-title = "a case"
-
-[tool]
-teeth = 2
-diameter = "16 mm"
-
-[material]
-Ktc = "600 MPa"
-Krc = "200 MPa"
-
-[cut]
-mode = "down"
-spindle_speed = "10000 rpm"
-feed_per_tooth = "0.1 mm"
-axial_depth = "1 mm"
-radial_depth = "8 mm"
-
-[[structure.mode]]
-frequency = "922 Hz"
-damping = 0.011
-mass = "0.03993 kg"
-direction = [1, 0, 0]
-
+GOOD = f"""{TOOL_OF_922_HERTZ}
 [lobes]
-speeds = { from = "9000 rpm", to = "11000 rpm", count = 3 }
-depths = { to = "4 mm", count = 8 }
+speeds = {{ from = "9000 rpm", to = "11000 rpm", count = 3 }}
+depths = {{ to = "4 mm", count = 8 }}
 """
 
 FRF_STRUCTURE = '[[structure.frf]]\nfile = "tap.csv"\ndirection = "x"\n'
 
 
 def run(*arguments):
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+    return chatter_command(*arguments)
 
 
 def refused(result, *words):
@@ -62,7 +39,7 @@ def test_the_good_case_is_good(tmp_path):
     result = run("check", write(tmp_path, GOOD))
     assert result.exit_code == 0, result.output
     summary = json.loads(result.stdout)
-    # BENCHMARKS.md 2.3: first limit 2.104690 mm, a flip
+    # validation 2.3: first limit 2.104690 mm, a flip
     assert summary["critical_depth_mm"] == pytest.approx(2.104690, rel=2e-4)
     assert summary["stable"] is True
 

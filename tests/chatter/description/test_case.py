@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import chatter
 from chatter import Case, InputError, load
 from chatter.description.case import loads
-from tests.places import ROOT
+from tests.places import DATA, EXAMPLES
 
 TEXT = """# my case, with care
 title = "Étude"   # as in the report
@@ -239,8 +239,7 @@ def test_save_below_a_file(case, tmp_path):
 
 
 def case_files():
-    found = [*ROOT.glob("examples/*/case.toml"), *ROOT.glob("../shared/data/**/case.toml")]
-    return sorted([*found, *ROOT.glob("../shared/measurements/**/case.toml")])
+    return sorted([*EXAMPLES.glob("*/case.toml"), *DATA.rglob("case.toml")])
 
 
 @pytest.mark.parametrize("path", case_files(), ids=lambda path: path.parent.name)

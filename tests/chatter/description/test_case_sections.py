@@ -13,10 +13,9 @@ from chatter.description.sections.friction import Friction
 from chatter.stability.case_schema import schema
 from chatter.stability.registry import AUTO, METHODS
 from cutting.material.table import MATERIALS
-from tests.places import ROOT, SHARED
+from tests.places import DATA, EXAMPLES
 
-EXAMPLES = sorted((ROOT / "examples").glob("*/case.toml"))
-SHARED_CASES = sorted([*SHARED.glob("measurements/*/case.toml"), *SHARED.glob("data/*/case.toml")])
+CASES = sorted([*EXAMPLES.glob("*/case.toml"), *DATA.rglob("case.toml")])
 
 FULL = """
 title = "everything"
@@ -152,19 +151,16 @@ def test_the_smaller_sections(full):
     assert (full.lobes.method, full.lobes.steps) == ("zero-order", 40)
 
 
-@pytest.mark.parametrize("path", EXAMPLES + SHARED_CASES, ids=lambda path: path.parent.name)
-def test_shipped_and_shared_cases(path):
+@pytest.mark.parametrize("path", CASES, ids=lambda path: path.parent.name)
+def test_cases_of_examples_and_sets(path):
     case = load(path)
     assert case.title
     assert case.to_toml() == path.read_text(encoding="utf-8")
     assert loads(case.to_toml(), folder=path.parent) == case
 
 
-def test_a_shared_case_by_hand():
-    path = SHARED / "measurements/set-105/case.toml"
-    if not path.exists():
-        pytest.skip("the shared folder is not here")
-    case = load(path)
+def test_the_case_of_a_set_by_hand():
+    case = load(DATA / "measurements/set-105/case.toml")
     assert case.tool.teeth == 5
     assert case.tool.helix == pytest.approx(math.radians(14))
     assert case.material.Ktc == pytest.approx(1.8962e9)
@@ -289,7 +285,7 @@ def test_oblique_law():
         '[material]\nlaw = "oblique"\nshear_stress = "613 MPa"\nfriction_angle = "19.1 deg"\n'
         'shear_angle = "33.067 deg"\nrake_angle = "0 deg"'
     )
-    # BENCHMARKS.md 8: orthogonal, rake 0, h = 0.05 mm: 1730.9 and 599.4 MPa
+    # validation 8: orthogonal, rake 0, h = 0.05 mm: 1730.9 and 599.4 MPa
     tangential, radial, axial = loads(text).material.cutting_coefficients(0.0)
     assert (tangential, radial) == pytest.approx((1730.9e6, 599.4e6), rel=1e-4)
     assert axial == pytest.approx(0.0, abs=1.0)

@@ -11,7 +11,7 @@ import chatter
 from chatter import InputError
 from chatter.description.case import Case
 from chatter.description.path import keys_of
-from tests.places import ROOT
+from tests.places import DATA, EXAMPLES
 
 SCHEMA = chatter.schema()
 
@@ -130,9 +130,7 @@ def fits(value, node):
 
 
 def case_files():
-    shared = [*ROOT.glob("../shared/data/**/case.toml")]
-    shared += ROOT.glob("../shared/measurements/**/case.toml")
-    return sorted([*ROOT.glob("examples/*/case.toml"), *shared])
+    return sorted([*EXAMPLES.glob("*/case.toml"), *DATA.rglob("case.toml")])
 
 
 @pytest.mark.parametrize("path", case_files(), ids=lambda path: path.parent.name)

@@ -12,10 +12,9 @@ from chatter.description.errors import InputError
 from chatter.explain.comparison import compare
 from chatter.explain.explanation import Explanation, explain
 from chatter.explain.measurement_file import read_measurement
-from tests.places import SHARED
+from tests.places import DATA
 
-SETS = SHARED / "measurements"
-needs_sets = pytest.mark.skipif(not SETS.is_dir(), reason="no measurement sets here")
+SETS = DATA / "measurements"
 
 
 def truth(name: str) -> dict:
@@ -26,7 +25,6 @@ def explained(name: str) -> Explanation:
     return explain(read_measurement(SETS / name))
 
 
-@needs_sets
 @pytest.mark.parametrize(
     ("name", "numbers", "closeness"),
     [
@@ -52,7 +50,6 @@ def test_the_missing_effect_is_named_with_its_numbers(name, numbers, closeness):
     assert error["holdout_after"] < 0.5 * error["holdout_before"]
 
 
-@needs_sets
 @pytest.mark.parametrize("name", ["set-113", "set-132"])
 def test_nothing_missing_is_said(name):
     summary = explained(name).summary()
@@ -61,7 +58,6 @@ def test_nothing_missing_is_said(name):
     assert summary["error"]["before"] == pytest.approx(summary["error"]["after"])
 
 
-@needs_sets
 def test_the_updated_case_is_one_and_predicts_as_told(tmp_path):
     result = explained("set-112")
     written = {path.name for path in result.save(tmp_path)}

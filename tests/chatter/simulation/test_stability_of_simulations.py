@@ -6,35 +6,26 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter import Case
 from chatter.simulation.simulate import simulate
+from tests.cases import tool_of_922_hertz
 
 # the 922 Hz tool of Insperger and Stepan 2004
 FREQUENCY, DAMPING, MASS = 922.0, 0.011, 0.03993
 
 
 def case(speed, depth, mode="up", immersion=0.05, directions=((1, 0, 0),), helix=0.0, **sections):
-    return Case.from_dict(
-        {
-            "title": "922 Hz tool",
-            "tool": {"kind": "end mill", "teeth": 2, "diameter": "16 mm", "helix": helix},
-            "material": {"law": "linear", "Ktc": 600e6, "Krc": 200e6},
-            "cut": {
-                "mode": mode,
-                "spindle_speed": f"{speed} rpm",
-                "feed_per_tooth": "0.2 mm",
-                "axial_depth": depth,
-                "radial_depth": immersion * 16e-3,
-            },
-            "structure": {
-                "mode": [
-                    {"frequency": FREQUENCY, "damping": DAMPING, "mass": MASS, "direction": list(d)}
-                    for d in directions
-                ]
-            },
-            "simulation": {"revolutions": 60, "steps": 1200},
-            **sections,
-        }
+    return tool_of_922_hertz(
+        directions,
+        tool={"helix": helix},
+        cut={
+            "mode": mode,
+            "spindle_speed": f"{speed} rpm",
+            "feed_per_tooth": "0.2 mm",
+            "axial_depth": depth,
+            "radial_depth": immersion * 16e-3,
+        },
+        simulation={"revolutions": 60, "steps": 1200},
+        **sections,
     )
 
 

@@ -8,34 +8,21 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.description.case import Case
+from tests.cases import tool_of_922_hertz
 
 RPM = math.pi / 30.0
 
 
 def two_degrees_of_freedom(**cut):
-    mode = {"frequency": "922 Hz", "damping": 0.011, "mass": "0.03993 kg"}
-    return Case.from_dict(
-        {
-            "title": "922 Hz",
-            "tool": {"teeth": 2, "diameter": "16 mm"},
-            "material": {"Ktc": "600 MPa", "Krc": "200 MPa"},
-            "cut": {
-                "mode": "up",
-                "spindle_speed": "20000 rpm",
-                "feed_per_tooth": "0.1 mm",
-                "axial_depth": "2.5 mm",
-                "radial_depth": "0.8 mm",
-                **cut,
-            },
-            "structure": {
-                "mode": [{**mode, "direction": [1, 0, 0]}, {**mode, "direction": [0, 1, 0]}]
-            },
-            "lobes": {
-                "speeds": {"from": "15000 rpm", "to": "20000 rpm", "count": 5},
-                "depths": {"to": "10 mm", "count": 60},
-            },
-        }
+    """Cut of a tool that is alike along the feed and across it."""
+    small = {"mode": "up", "spindle_speed": "20000 rpm", "axial_depth": "2.5 mm"}
+    return tool_of_922_hertz(
+        ((1, 0, 0), (0, 1, 0)),
+        cut={**small, "radial_depth": "0.8 mm", **cut},
+        lobes={
+            "speeds": {"from": "15000 rpm", "to": "20000 rpm", "count": 5},
+            "depths": {"to": "10 mm", "count": 60},
+        },
     )
 
 
@@ -60,7 +47,7 @@ def test_files_of_a_diagram(tmp_path):
         "chatter_frequency [Hz]",
         "bifurcation",
     ]
-    # BENCHMARKS.md 2.3: 1.651214 mm Hopf at 15 000 rpm, 3.250386 mm flip at 20 000 rpm
+    # validation 2.3: 1.651214 mm Hopf at 15 000 rpm, 3.250386 mm flip at 20 000 rpm
     assert float(rows[0]["critical_depth [mm]"]) == pytest.approx(1.651214, rel=2e-4)
     assert float(rows[-1]["critical_depth [mm]"]) == pytest.approx(3.250386, rel=2e-4)
     assert (rows[0]["bifurcation"], rows[-1]["bifurcation"]) == ("hopf", "flip")
@@ -73,7 +60,7 @@ def test_files_of_a_diagram(tmp_path):
     summary = json.loads((tmp_path / "summary.json").read_text())
     assert summary["operating_point"]["stable"] is True
     assert summary["operating_point"]["critical_depth_mm"] == pytest.approx(3.250386, rel=2e-4)
-    # BENCHMARKS.md 2.4: 6.8496 mm against 3.2504 mm at 20 000 rpm
+    # validation 2.4: 6.8496 mm against 3.2504 mm at 20 000 rpm
     ratio = diagram.zero_order.critical_depth / diagram.limits.critical_depth
     assert ratio[-1] == pytest.approx(6.8496 / 3.2504, rel=1e-3)
     assert summary["zero_order"]["highest_ratio"] == pytest.approx(ratio.max())
@@ -82,7 +69,7 @@ def test_files_of_a_diagram(tmp_path):
 @pytest.mark.parametrize(
     ("rpm", "depth", "radius", "stable", "kind"),
     [
-        # BENCHMARKS.md 2.2, two degrees of freedom, up-milling at 5 %
+        # validation 2.2, two degrees of freedom, up-milling at 5 %
         ("5000 rpm", "1 mm", 0.8404703243, True, "none"),
         ("15000 rpm", "4 mm", 1.1290631919, False, "hopf"),
         ("20000 rpm", "4 mm", 1.1638620576, False, "flip"),
@@ -122,7 +109,7 @@ def test_fixed_steps_give_plain_semi_discretization():
             "lobes.steps": 40,
         }
     )
-    # published for first-order semi-discretization with 40 steps (BENCHMARKS.md 2.1)
+    # published for first-order semi-discretization with 40 steps (validation 2.1)
     assert chatter.check(case).spectral_radius == pytest.approx(1.35026, abs=6e-6)
 
 
@@ -144,7 +131,7 @@ def test_zero_order_method_fills_the_same_files(tmp_path):
 
 
 def test_symmetric_structure_cannot_tell_up_from_down():
-    # BENCHMARKS.md 1.7: equal modes in x and y, equal multipliers
+    # validation 1.7: equal modes in x and y, equal multipliers
     up, down = (
         chatter.check(two_degrees_of_freedom(mode=mode, axial_depth="1 mm")).spectral_radius
         for mode in ("up", "down")

@@ -6,41 +6,19 @@ import math
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import chatter
 from chatter import Case, InputError
-from chatter.cli import app
+from tests.cases import tool_of_922_hertz
+from tests.command_line import chatter_command
 
 RPM = math.pi / 30.0
 
 
-def tool_of_922_hertz(rpm, depth, mode="up", radial_depth="0.8 mm"):
-    """Tool of Insperger and Stepan (2004), one mode along the feed."""
-    return Case.from_dict(
-        {
-            "title": "922 Hz",
-            "tool": {"teeth": 2, "diameter": "16 mm"},
-            "material": {"Ktc": "600 MPa", "Krc": "200 MPa"},
-            "cut": {
-                "mode": mode,
-                "spindle_speed": f"{rpm} rpm",
-                "feed_per_tooth": "0.1 mm",
-                "axial_depth": depth,
-                "radial_depth": radial_depth,
-            },
-            "structure": {
-                "mode": [
-                    {
-                        "frequency": "922 Hz",
-                        "damping": 0.011,
-                        "mass": "0.03993 kg",
-                        "direction": [1, 0, 0],
-                    }
-                ]
-            },
-            "simulation": {"revolutions": 160},
-        }
+def cut_of(rpm, depth, mode="up", radial_depth="0.8 mm"):
+    cut = {"spindle_speed": f"{rpm} rpm", "axial_depth": depth}
+    return tool_of_922_hertz(
+        cut={**cut, "mode": mode, "radial_depth": radial_depth}, simulation={"revolutions": 160}
     )
 
 
@@ -50,9 +28,9 @@ def branches(values, tolerance):
 
 
 def test_flip_opens_two_branches():
-    # BENCHMARKS.md 2.3: period doubling at 3.774048 mm
+    # validation 2.3: period doubling at 3.774048 mm
     depths = np.array([3.5e-3, 3.65e-3, 3.9e-3, 4.1e-3])
-    diagram = chatter.bifurcation(tool_of_922_hertz(20000, "3 mm"), "cut.axial_depth", depths)
+    diagram = chatter.bifurcation(cut_of(20000, "3 mm"), "cut.axial_depth", depths)
     assert [point.value for point in diagram.points] == pytest.approx(depths)
     assert [point.verdict for point in diagram.points] == ["stable"] * 2 + ["chatter"] * 2
     for point in diagram.points[:2]:
@@ -75,9 +53,9 @@ def test_flip_opens_two_branches():
 
 
 def test_hopf_opens_a_band():
-    # BENCHMARKS.md 2.3: Hopf at 1.657701 mm
+    # validation 2.3: Hopf at 1.657701 mm
     depths = [1.2e-3, 1.9e-3]
-    diagram = chatter.bifurcation(tool_of_922_hertz(10000, "1 mm"), "cut.axial_depth", depths)
+    diagram = chatter.bifurcation(cut_of(10000, "1 mm"), "cut.axial_depth", depths)
     stable, chattering = diagram.points
     assert stable.verdict == "stable"
     assert np.ptp(stable.poincare_section[:, 0]) < 1e-7
@@ -90,15 +68,15 @@ def test_hopf_opens_a_band():
 
 
 def test_speed_may_vary_as_text():
-    # BENCHMARKS.md 2.3: limits of 2.2 mm or more at 10000 rpm, of 0.72 mm at 20000 rpm
-    case = tool_of_922_hertz(10000, "1 mm", "down", "8 mm")
+    # validation 2.3: limits of 2.2 mm or more at 10000 rpm, of 0.72 mm at 20000 rpm
+    case = cut_of(10000, "1 mm", "down", "8 mm")
     diagram = chatter.bifurcation(case, "cut.spindle_speed", ["10000 rpm", "20000 rpm"])
     assert [point.value for point in diagram.points] == pytest.approx([10000 * RPM, 20000 * RPM])
     assert [point.verdict for point in diagram.points] == ["stable", "chatter"]
 
 
 def test_tool_that_leaves_the_model_is_chatter_without_points():
-    case = tool_of_922_hertz(10000, "1 mm", "down", "8 mm")
+    case = cut_of(10000, "1 mm", "down", "8 mm")
     diagram = chatter.bifurcation(case, "cut.axial_depth", [1e-3, 30e-3])
     assert diagram.points[1].verdict == "chatter"
     assert diagram.points[1].poincare_section.shape == (0, 3)
@@ -106,7 +84,7 @@ def test_tool_that_leaves_the_model_is_chatter_without_points():
 
 
 def test_order_of_the_cuts_changes_nothing():
-    case = tool_of_922_hertz(20000, "3 mm").patch({"simulation.revolutions": 20})
+    case = cut_of(20000, "3 mm").patch({"simulation.revolutions": 20})
     there = chatter.bifurcation(case, "cut.axial_depth", [1e-3, 4e-3])
     back = chatter.bifurcation(case, "cut.axial_depth", [4e-3, 1e-3])
     for one, other in zip(there.points, reversed(back.points), strict=True):
@@ -125,11 +103,11 @@ def test_order_of_the_cuts_changes_nothing():
 )
 def test_wrong_values(path, values, words):
     with pytest.raises(InputError, match=words):
-        chatter.bifurcation(tool_of_922_hertz(20000, "3 mm"), path, values)
+        chatter.bifurcation(cut_of(20000, "3 mm"), path, values)
 
 
 def test_rigid_tool_is_refused():
-    document = tool_of_922_hertz(20000, "3 mm").model_dump(by_alias=True, exclude_none=True)
+    document = cut_of(20000, "3 mm").model_dump(by_alias=True, exclude_none=True)
     del document["structure"]
     with pytest.raises(InputError, match="structure"):
         chatter.bifurcation(Case.from_dict(document), "cut.axial_depth", [1e-3])
@@ -138,14 +116,14 @@ def test_rigid_tool_is_refused():
 @pytest.fixture
 def case_file(tmp_path):
     path = tmp_path / "case.toml"
-    tool_of_922_hertz(20000, "3 mm").save(path)
+    cut_of(20000, "3 mm").save(path)
     return path
 
 
 def run(case_file, vary, *options):
     out = case_file.parent / "out"
     words = ["bifurcation", case_file, "--vary", vary, "--out", out, *options]
-    return CliRunner().invoke(app, [str(word) for word in words])
+    return chatter_command(*words)
 
 
 def strict(text):

@@ -6,39 +6,26 @@ import math
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import chatter
-from chatter import Case, InputError
-from chatter.cli import app
+from chatter import InputError
+from tests.cases import tool_of_922_hertz
+from tests.command_line import chatter_command
 
 RPM = math.pi / 30.0
 MODE = {"frequency": "922 Hz", "damping": 0.011, "mass": "0.03993 kg"}
 
 
 def two_degrees_of_freedom(**cut):
-    """Tool of Insperger and Stepan (2004), alike along the feed and across it."""
-    return Case.from_dict(
-        {
-            "title": "922 Hz",
-            "tool": {"teeth": 2, "diameter": "16 mm"},
-            "material": {"Ktc": "600 MPa", "Krc": "200 MPa"},
-            "cut": {
-                "mode": "up",
-                "spindle_speed": "20000 rpm",
-                "feed_per_tooth": "0.1 mm",
-                "axial_depth": "2.5 mm",
-                "radial_depth": "0.8 mm",
-                **cut,
-            },
-            "structure": {
-                "mode": [{**MODE, "direction": [1, 0, 0]}, {**MODE, "direction": [0, 1, 0]}]
-            },
-            "lobes": {
-                "speeds": {"from": "15000 rpm", "to": "20000 rpm", "count": 6},
-                "depths": {"to": "10 mm", "count": 60},
-            },
-        }
+    """Cut of a tool that is alike along the feed and across it."""
+    small = {"mode": "up", "spindle_speed": "20000 rpm", "axial_depth": "2.5 mm"}
+    return tool_of_922_hertz(
+        ((1, 0, 0), (0, 1, 0)),
+        cut={**small, "radial_depth": "0.8 mm", **cut},
+        lobes={
+            "speeds": {"from": "15000 rpm", "to": "20000 rpm", "count": 6},
+            "depths": {"to": "10 mm", "count": 60},
+        },
     )
 
 
@@ -56,7 +43,7 @@ def test_limits_over_radial_depth_are_those_of_checks(over_radial_depth):
         assert found.limits.critical_depth[place] == pytest.approx(checked.critical_depth, rel=1e-9)
         assert found.limits.bifurcation[place] == checked.limit.bifurcation[0]
         assert found.limits.crossings[place] == pytest.approx(checked.limit.crossings[0], rel=1e-9)
-    # BENCHMARKS.md 2.3: 3.250386 mm by flip at 20 000 rpm; a flip is heard at half the tooth
+    # validation 2.3: 3.250386 mm by flip at 20 000 rpm; a flip is heard at half the tooth
     # frequency, or an odd multiple of it
     assert found.limits.critical_depth[0] == pytest.approx(3.250386e-3, rel=2e-4)
     assert found.limits.bifurcation[0] == "flip"
@@ -203,35 +190,16 @@ def test_nothing_is_drawn_where_no_value_is_reached():
 
 
 def write_case(folder):
+    cut = {"mode": "up", "spindle_speed": "20000 rpm", "axial_depth": "2.5 mm"}
     path = folder / "case.toml"
-    path.write_text(
-        """
-title = "922 Hz"
-tool = { teeth = 2, diameter = "16 mm" }
-material = { Ktc = "600 MPa", Krc = "200 MPa" }
-
-[cut]
-mode = "up"
-spindle_speed = "20000 rpm"
-feed_per_tooth = "0.1 mm"
-axial_depth = "2.5 mm"
-radial_depth = "0.8 mm"
-
-[[structure.mode]]
-frequency = "922 Hz"
-damping = 0.011
-mass = "0.03993 kg"
-direction = [1, 0, 0]
-""",
-        encoding="utf-8",
-    )
+    tool_of_922_hertz(cut={**cut, "radial_depth": "0.8 mm"}).save(path)
     return str(path)
 
 
 def test_files_of_the_command(tmp_path):
     case, out = write_case(tmp_path), tmp_path / "out"
     width = 'cut.radial_depth="0.5 mm".."2 mm":3'
-    done = CliRunner().invoke(app, ["lobes", case, "--x", width, "--out", str(out)])
+    done = chatter_command("lobes", case, "--x", width, "--out", out)
     assert done.exit_code == 0, done.output
     with (out / "lobes.csv").open() as file:
         rows = list(csv.DictReader(file))
@@ -241,9 +209,7 @@ def test_files_of_the_command(tmp_path):
     assert summary["x"]["value_of_the_case"] == pytest.approx(0.8)
     assert (out / "lobes.png").stat().st_size > 10_000
     speed = "cut.spindle_speed=15000 rpm..20000 rpm:3"
-    done = CliRunner().invoke(
-        app, ["lobes", case, "--x", speed, "--y", width, "--out", str(out), "--json"]
-    )
+    done = chatter_command("lobes", case, "--x", speed, "--y", width, "--out", out, "--json")
     assert done.exit_code == 0, done.output
     with (out / "lobes.csv").open() as file:
         rows = list(csv.DictReader(file))
@@ -274,7 +240,7 @@ def test_files_of_the_command(tmp_path):
 )
 def test_refusals(tmp_path, options, told):
     out = tmp_path / "out"
-    done = CliRunner().invoke(app, ["lobes", write_case(tmp_path), *options, "--out", str(out)])
+    done = chatter_command("lobes", write_case(tmp_path), *options, "--out", out)
     assert done.exit_code == 2, done.output
     assert told in done.output
     assert done.output.count("chatter: ") == 1

@@ -1,42 +1,57 @@
 """Folders of raw hammer records: faults found, good ones kept, modes as they were made."""
 
+import numpy as np
 import pytest
-import tomlkit
 
 import chatter
 from chatter.description.errors import InputError
-from tests.places import SHARED
-
-FOLDER = SHARED / "taptests"
-SETS = sorted(FOLDER.glob("tap-*"))
+from tests.dynamics.frf.hammer import hammer_records as made
 
 
-@pytest.mark.skipif(not SETS, reason="shared data not at hand")
-@pytest.mark.parametrize("folder", SETS, ids=lambda path: path.name)
-def test_hammer_sets(folder):
-    truth = tomlkit.parse((folder / "truth.toml").read_text()).unwrap()
-    test = chatter.modes(folder, direction="x")
+def write_set(folder, seed):
+    """Seven records of three modes, two of them close, as CSV; names of the two faulty ones."""
+    rng = np.random.default_rng(seed)
+    faults = {"tap2.csv": made.double_hit, "tap5.csv": made.clipped}
+    for number in range(1, 8):
+        hit, name = made.random_hit(rng), f"tap{number}.csv"
+        if name in faults:
+            record = faults[name](rng, made.CLOSE, hit, made.Noise(), name).record
+        else:
+            record = made.record_of(rng, made.CLOSE, [hit], made.Noise(), name)
+        time = np.arange(record.force.size) / record.sampling_rate
+        np.savetxt(
+            folder / name,
+            np.column_stack((time, record.force, record.response)),
+            delimiter=",", header="time [s],force [N],acceleration [m/s^2]", comments="",
+        )  # fmt: skip
+    return set(faults)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_hammer_sets(tmp_path, seed):
+    faulty = write_set(tmp_path, seed)
+    test = chatter.modes(tmp_path, direction="x")
     # every faulty record found, no good one lost
-    assert {finding.record for finding in test.hammer.left_out} == set(truth["faults"])
+    assert {finding.record for finding in test.hammer.left_out} == faulty
     found = [mode for mode in test.fit.identified if not mode.warning]
-    assert len(found) == len(truth["modes"])
-    for mode, (frequency, damping, mass) in zip(found, truth["modes"], strict=True):
+    assert len(found) == len(made.CLOSE.modes)
+    for mode, (frequency, damping, mass) in zip(found, made.CLOSE.modes, strict=True):
         assert mode.frequency == pytest.approx(frequency, rel=0.002)
         assert mode.damping == pytest.approx(damping, rel=0.05)
         assert mode.mass == pytest.approx(mass, rel=0.03)
 
 
-@pytest.mark.skipif(not SETS, reason="shared data not at hand")
-def test_a_faulty_record_can_be_kept():
-    test = chatter.modes(SETS[0], keep=["tap03.csv"], direction="x")
-    assert "tap03.csv" in test.hammer.used
-    assert "tap03.csv" not in {finding.record for finding in test.hammer.left_out}
+def test_a_faulty_record_can_be_kept(tmp_path):
+    faulty = min(write_set(tmp_path, 0))
+    test = chatter.modes(tmp_path, keep=[faulty], direction="x")
+    assert faulty in test.hammer.used
+    assert faulty not in {finding.record for finding in test.hammer.left_out}
 
 
-@pytest.mark.skipif(not SETS, reason="shared data not at hand")
-def test_unknown_record_to_keep():
+def test_unknown_record_to_keep(tmp_path):
+    write_set(tmp_path, 0)
     with pytest.raises(InputError, match=r"tap99\.csv"):
-        chatter.modes(SETS[0], keep=["tap99.csv"])
+        chatter.modes(tmp_path, keep=["tap99.csv"])
 
 
 def test_keep_belongs_to_hammer_records(tmp_path):

@@ -119,7 +119,7 @@ def test_small_and_tiny_lags_meet():
 
 
 def test_full_turn_of_helix_has_constant_mean():
-    # lag = k tooth pitches: every rotation sees the mean matrix (BENCHMARKS.md 1.7)
+    # lag = k tooth pitches: every rotation sees the mean matrix (validation 1.7)
     table = table_of("up", 0.05)
     teeth = 2
     lag = 2 * math.pi / teeth

@@ -11,7 +11,7 @@ MPA = 1e6
 
 
 def titanium(rake_deg: float, chip_mm: float, inclination_deg: float):
-    """Ti6Al4V orthogonal data of Budak, Altintas, Armarego 1996, as in BENCHMARKS.md 8."""
+    """Ti6Al4V orthogonal data of Budak, Altintas, Armarego 1996, as in validation 8."""
     rake = math.radians(rake_deg)
     ratio = (1.755 - 0.028 * rake_deg) * chip_mm ** (0.331 - 0.0082 * rake_deg)
     shear = math.atan2(ratio * math.cos(rake), 1.0 - ratio * math.sin(rake))

@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
-import tomlkit
 
 from dynamics.frf.container import Frf, MeasurementError, Point
 from dynamics.identification.fit import identify_modes
 from dynamics.modal.modes import Mode, receptance_matrix
+from tests.dynamics.frf.hammer import hammer_records as hammer
 from tests.dynamics.identification import made_up_frfs as made_up
-from tests.places import SHARED
-
-ROOT_BEAM = SHARED / "data/frf-beam"
-TAPTESTS = SHARED / "taptests"
-
+from tests.places import DATA
 
 LINES = np.arange(1.0, 2001.0)
 THREE = (Mode(310.0, 0.02, 0.8), Mode(905.0, 0.035, 0.35), Mode(1490.0, 0.012, 0.2))
@@ -257,13 +252,12 @@ BEAM_FREQUENCIES = (52.0, 142.0, 279.0, 460.0, 687.0, 959.0)  # from the README 
 def beam_frfs():
     frfs = []
     for i in (1, 2, 3):
-        table = np.loadtxt(ROOT_BEAM / f"point_{i}.csv", delimiter=",", skiprows=1)
+        table = np.loadtxt(DATA / "frf-beam" / f"point_{i}.csv", delimiter=",", skiprows=1)
         ends = Point("1", "z"), Point(str(i), "z")
         frfs.append(Frf(table[:, 0], table[:, 1] + 1j * table[:, 2], "accelerance", *ends))
     return frfs
 
 
-@pytest.mark.skipif(not ROOT_BEAM.exists(), reason="recordings not at hand")
 def test_beam_has_six_modes_and_is_described_within_five_percent_of_the_peak():
     fit = identify_modes(beam_frfs())
     found = [mode.frequency for mode in fit.identified]
@@ -275,7 +269,6 @@ def test_beam_has_six_modes_and_is_described_within_five_percent_of_the_peak():
     assert np.array(found) / found[0] == pytest.approx(ratios / ratios[0], rel=0.01)
 
 
-@pytest.mark.skipif(not ROOT_BEAM.exists(), reason="recordings not at hand")
 @pytest.mark.parametrize("index", [0, 1, 2])
 def test_single_function_of_the_beam(index):
     fit = identify_modes([beam_frfs()[index]])
@@ -284,26 +277,24 @@ def test_single_function_of_the_beam(index):
     assert fit.worst_error < 0.05
 
 
-def h1_of_good_records(folder: Path, faulty: set[str]) -> Frf:
-    cross = power = 0.0
-    for path in sorted(folder.glob("*.csv")):
-        if path.name in faulty:
-            continue
-        time, force, acceleration = np.loadtxt(path, delimiter=",", skiprows=1).T
-        f, a = np.fft.rfft(force), np.fft.rfft(acceleration)
-        cross, power = cross + f.conj() * a, power + np.abs(f) ** 2
-    step = (time[-1] - time[0]) / (time.size - 1)
-    return Frf(np.fft.rfftfreq(time.size, step), cross / power, "accelerance", source=folder.name)
+def h1_of(records) -> Frf:
+    blows = [np.fft.rfft(record.force) for record in records]
+    answers = [np.fft.rfft(record.response) for record in records]
+    cross = sum(f.conj() * a for f, a in zip(blows, answers, strict=True))
+    power = sum(np.abs(f) ** 2 for f in blows)
+    step = 1.0 / records[0].sampling_rate
+    return Frf(np.fft.rfftfreq(records[0].force.size, step), cross / power, "accelerance")
 
 
-@pytest.mark.skipif(not TAPTESTS.exists(), reason="recordings not at hand")
-@pytest.mark.parametrize("name", ["tap-301", "tap-302", "tap-303"])
-def test_hammer_average_separates_close_modes(name):
-    truth = tomlkit.parse((TAPTESTS / name / "truth.toml").read_text()).unwrap()
-    frf = h1_of_good_records(TAPTESTS / name, set(truth.get("faults", {})))
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_hammer_average_separates_close_modes(seed):
+    rng = np.random.default_rng(seed)
+    hits = [hammer.random_hit(rng) for _ in range(6)]
+    noise = hammer.Noise()
+    frf = h1_of([hammer.record_of(rng, hammer.CLOSE, [hit], noise, "tap") for hit in hits])
     fit = identify_modes([frf])
-    assert len(fit.modes) == len(truth["modes"])
-    for found, (frequency, damping, mass) in zip(fit.modes, truth["modes"], strict=True):
+    assert len(fit.modes) == len(hammer.CLOSE.modes)
+    for found, (frequency, damping, mass) in zip(fit.modes, hammer.CLOSE.modes, strict=True):
         assert found.frequency == pytest.approx(frequency, rel=2e-3)
         assert found.damping == pytest.approx(damping, rel=5e-2)
         assert found.mass == pytest.approx(mass, rel=5e-2)

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import tomlkit
 
-from tests.places import SHARED
+from tests.places import DATA
 from tests.validation.reference.time_domain import (
     ReferenceCut,
     ReferenceMode,
@@ -71,7 +71,7 @@ def load(folder: Path) -> tuple[list[ReferenceCut], list[np.ndarray], dict]:
                 ),
             )
         )
-        tables.append(np.loadtxt(folder / run["file"], delimiter=",", skiprows=1))
+        tables.append(np.column_stack(list(np.load(folder / run["file"]).values())))
     return cuts, tables, truth
 
 
@@ -152,7 +152,7 @@ def check_random(count: int, seed: int) -> None:
 if __name__ == "__main__":
     parser = argparse.ArgumentParser()
     parser.add_argument("measurements", nargs="?", type=Path,
-                        default=SHARED / "measurements")  # fmt: skip
+                        default=DATA / "measurements")  # fmt: skip
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--random", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1)

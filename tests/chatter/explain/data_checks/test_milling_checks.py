@@ -10,10 +10,9 @@ from chatter.explain.data_checks.checking import checked
 from chatter.explain.explanation import explain
 from chatter.explain.measurement_file import read_measurement
 from tests.chatter.explain.data_checks import simulated
-from tests.places import SHARED
+from tests.places import DATA
 
-SETS = SHARED / "measurements"
-needs_sets = pytest.mark.skipif(not SETS.is_dir(), reason="no measurement sets here")
+SETS = DATA / "measurements"
 
 
 def scaled(channel, factor):
@@ -248,7 +247,6 @@ def test_samples_left_out_do_not_count_in_the_error(tmp_path):
     result.save(tmp_path)
 
 
-@needs_sets
 @pytest.mark.parametrize("path", sorted(SETS.glob("set-*")), ids=lambda path: path.name)
 def test_no_false_alarm_on_sets_without_faults(path):
     assert checked(read_measurement(path)).findings == ()

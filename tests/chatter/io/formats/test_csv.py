@@ -5,7 +5,7 @@ import pytest
 
 from chatter.io.formats.registry import read_frfs
 from dynamics.frf.container import MeasurementError
-from tests.places import SHARED
+from tests.places import DATA
 
 
 def write(folder, text, name="frf.csv", encoding="utf-8"):
@@ -19,9 +19,8 @@ def only(path):
     return frf
 
 
-@pytest.mark.skipif(not SHARED.exists(), reason="recordings not at hand")
 def test_reads_the_recordings_of_the_beam():
-    frf = only(SHARED / "data/frf-beam/point_1.csv")
+    frf = only(DATA / "frf-beam/point_1.csv")
     assert frf.quantity == "accelerance"
     assert frf.frequency[-1] == 1000.0
     assert frf.values[1] == pytest.approx(-1.751511549e-01 - 1.204237207e-01j, rel=1e-12)

@@ -5,9 +5,8 @@ import json
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
-from chatter.cli import app
+from tests.command_line import chatter_command
 
 PNG = b"\x89PNG\r\n\x1a\n"
 
@@ -15,7 +14,7 @@ PNG = b"\x89PNG\r\n\x1a\n"
 def chatter(command, file, *options, sets=()):
     words = [command, file, "--out", file.parent / "out", *options]
     words += [word for text in sets for word in ("--set", text)]
-    return CliRunner().invoke(app, [str(word) for word in words])
+    return chatter_command(*words)
 
 
 def refused(result, folder, *words, code=2):

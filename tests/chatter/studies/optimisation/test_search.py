@@ -5,17 +5,16 @@ import math
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import chatter
 from chatter import InputError
-from chatter.cli import app
 from chatter.io.shipped_examples import example
 from chatter.stability.methods.collocation import multipliers as collocation
 from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import milling_model
 from chatter.studies.optimisation.steady_cut import SteadyModel
 from tests.chatter.studies.optimisation.cuts import end_mill
+from tests.command_line import chatter_command
 
 RPM = math.pi / 30.0
 STIFF = [
@@ -135,7 +134,7 @@ def test_nothing_feasible_is_said_with_its_reason(tmp_path):
     assert f"{least:.4g} N m" in found.why_nothing
     path = tmp_path / "case.toml"
     case.save(path)
-    answer = CliRunner().invoke(app, ["optimum", str(path), "--out", str(tmp_path / "out")])
+    answer = chatter_command("optimum", path, "--out", tmp_path / "out")
     assert answer.exit_code == 1
     assert "max_torque is held nowhere" in answer.stderr
     assert not (tmp_path / "out" / "case-optimum.toml").exists()
@@ -164,7 +163,7 @@ def test_the_command_writes_a_case_that_others_accept(tmp_path):
     section = {"speeds": speeds, "depths": {"to": "2 mm", "count": 8}, "max_power": "2 kW"}
     end_mill({"optimum": section}).save(path)
     out = tmp_path / "out"
-    answer = CliRunner().invoke(app, ["optimum", str(path), "--out", str(out), "--json"])
+    answer = chatter_command("optimum", path, "--out", out, "--json")
     assert answer.exit_code == 0, answer.stderr
     summary = json.loads((out / "summary.json").read_text())
     assert json.loads(answer.stdout) == summary

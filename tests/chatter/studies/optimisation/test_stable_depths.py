@@ -20,7 +20,7 @@ RPM = math.pi / 30.0
 
 
 def test_stability_that_comes_back_is_used():
-    # BENCHMARKS.md 3.2: closed islands at 19 000 rpm leave stable depths above them
+    # validation 3.2: closed islands at 19 000 rpm leave stable depths above them
     case = chatter.load(example("helix-islands").folder / "case.toml")
     cut = element_cut(milling_model(case), 8e-3)
     speeds, depths = np.array([19000.0 * RPM]), np.linspace(0.0, 8e-3, 81)[1:]

@@ -5,23 +5,22 @@ import math
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import chatter
 from chatter import InputError
-from chatter.cli import app
 from chatter.io.shipped_examples import example
 from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import milling_model
 from chatter.studies.optimisation.stable_depths import first_limits
 from chatter.studies.pitch_design.families import alternating, families, linear, regeneration
 from chatter.studies.pitch_design.pitch_search import rounded_pitch
+from tests.command_line import chatter_command
 
 RPM = math.pi / 30.0
 
 
 def tool_of_1999(**changes):
-    """Altintas, Engin and Budak 1999, as in BENCHMARKS.md 4."""
+    """Altintas, Engin and Budak 1999, as in validation 4."""
     case = chatter.load(example("pitch-design").folder / "case.toml")
     return case.patch(changes)
 
@@ -51,7 +50,7 @@ def test_the_rule_leaves_no_regeneration(teeth):
 
 
 def test_limits_of_the_published_cutter():
-    # BENCHMARKS.md 4: exact limits without helix, mm
+    # validation 4: exact limits without helix, mm
     pitch = ["70 deg", "110 deg", "70 deg", "110 deg"]
     case = tool_of_1999(**{"tool.pitch": pitch, "tool.helix": "0 deg"})
     speeds = np.array([3000.0, 4000.0, 5000.0, 6000.0, 8000.0]) * RPM
@@ -124,7 +123,7 @@ def test_the_command_writes_a_case_that_others_accept(tmp_path):
     case = tool_of_1999(**{"tool.helix": "0 deg", "tool.teeth": 2}).patch({"pitch_design": section})
     path, out = tmp_path / "case.toml", tmp_path / "out"
     case.save(path)
-    answer = CliRunner().invoke(app, ["pitch", str(path), "--out", str(out), "--json"])
+    answer = chatter_command("pitch", path, "--out", out, "--json")
     assert answer.exit_code == 0, answer.stderr
     summary = json.loads((out / "summary.json").read_text())
     assert summary["best"]["max_pitch_ratio"] <= 1.1 + 1e-9

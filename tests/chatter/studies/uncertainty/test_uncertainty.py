@@ -8,9 +8,7 @@ import re
 import numpy as np
 import pytest
 from scipy.stats import norm, truncnorm
-from typer.testing import CliRunner
 
-from chatter.cli import app
 from chatter.description.case import loads
 from chatter.description.errors import InputError, RunError
 from chatter.studies.uncertainty import monte_carlo as module
@@ -21,34 +19,18 @@ from chatter.studies.uncertainty.uncertain_parameters import (
     correlation_of,
     parameters_of,
 )
+from tests.cases import TOOL_OF_922_HERTZ
+from tests.command_line import chatter_command
 
-TEXT = """
-title = "one degree of freedom"
-
-[tool]
-teeth = 2
-diameter = "16 mm"
-
-[material]
-Ktc = "600 +- 60 MPa"
-Krc = 0
-
-[cut]
-mode = "up"
-spindle_speed = "10000 rpm"
-feed_per_tooth = "0.1 mm"
-axial_depth = "1 mm"
-radial_depth = "8 mm"
-
-[[structure.mode]]
-frequency = "922 Hz"
-damping = 0.011
-mass = "0.03993 kg"
-direction = [1, 0, 0]
-
+ONE_DIRECTION = (
+    TOOL_OF_922_HERTZ.replace('"600 MPa"', '"600 +- 60 MPa"')
+    .replace('"200 MPa"', "0")
+    .replace('"down"', '"up"')
+)
+TEXT = f"""{ONE_DIRECTION}
 [lobes]
-speeds = { from = "8000 rpm", to = "12000 rpm", count = 9 }
-depths = { to = "6 mm", count = 40 }
+speeds = {{ from = "8000 rpm", to = "12000 rpm", count = 9 }}
+depths = {{ to = "6 mm", count = 40 }}
 method = "zero-order"
 """
 FEW = {"speeds": 3}
@@ -197,14 +179,12 @@ def test_the_command(tmp_path):
     path = tmp_path / "case.toml"
     path.write_text(TEXT)
     words = ["uncertainty", path, "--samples", 20, "--speeds", 3, "--out", tmp_path / "out"]
-    result = CliRunner().invoke(app, [str(word) for word in words])
+    result = chatter_command(*words)
     assert result.exit_code == 0, result.output
     assert "is stable with a probability of" in result.stdout
     # 1 / Ktc is nearly straight
     assert re.search(r"material.Ktc: (9\d|100)% of its variance", result.stdout)
-    wrong = CliRunner().invoke(
-        app, ["uncertainty", str(path), "--set", "material.Ktc=600 MPa", "--out", str(tmp_path)]
-    )
+    wrong = chatter_command("uncertainty", path, "--set", "material.Ktc=600 MPa", "--out", tmp_path)
     assert wrong.exit_code == 2
     assert "no value is uncertain" in wrong.stderr
 

@@ -3,37 +3,15 @@
 import pytest
 
 from chatter.description.case import loads
+from tests.cases import TOOL_OF_922_HERTZ
 
-TEXT = """
-title = "one degree of freedom"
-
-[tool]
-teeth = 2
-diameter = "16 mm"
-
-[material]
-Ktc = "600 MPa"
-Krc = "200 MPa"
-
-[cut]
-mode = "down"
-spindle_speed = "10000 rpm"
-feed_per_tooth = "0.1 mm"
-axial_depth = "1.5 mm"
-radial_depth = "8 mm"
-
-[[structure.mode]]
-frequency = "922 Hz"
-damping = 0.011
-mass = "0.03993 kg"
-direction = [1, 0, 0]
-
+TEXT = f"""{TOOL_OF_922_HERTZ.replace('"1 mm"', '"1.5 mm"')}
 [simulation]
 revolutions = 30
 
 [lobes]
-speeds = { from = "8000 rpm", to = "12000 rpm", count = 9 }
-depths = { to = "5 mm", count = 40 }
+speeds = {{ from = "8000 rpm", to = "12000 rpm", count = 9 }}
+depths = {{ to = "5 mm", count = 40 }}
 method = "zero-order"
 """
 

@@ -3,13 +3,12 @@
 import json
 
 import pytest
-from typer.testing import CliRunner
 
-from chatter.cli import app
+from tests.command_line import chatter_command
 
 
 def run(*words):
-    return CliRunner().invoke(app, ["whatif", *(str(word) for word in words)])
+    return chatter_command("whatif", *words)
 
 
 def test_a_study_on_the_command_line(case_file, tmp_path):

@@ -1,10 +1,9 @@
 """Paths and files that lead nowhere are told in one sentence, with exit code 2."""
 
 import pytest
-from typer.testing import CliRunner
 
-from chatter.cli import app
 from chatter.studies.whatif.preset_studies import preset_study
+from tests.command_line import chatter_command
 
 CASE = "friction-amplitude/case.toml"
 MACHINE = "friction-amplitude/machine.toml"
@@ -45,9 +44,10 @@ def folder():
 def test_one_sentence(folder, tmp_path, words, told):
     command, file, *options = words
     out = tmp_path / "out"
-    result = CliRunner().invoke(app, [command, str(folder / file), *options, "--out", str(out)])
+    result = chatter_command(command, folder / file, *options, "--out", out)
     assert result.exit_code == 2, result.output
-    (line,) = result.stderr.strip().splitlines()
+    lines = result.stderr.strip().splitlines()
+    (line,) = [line for line in lines if not line.startswith("first use")]
     assert line.startswith("chatter: ")
     for word in told:
         assert word in line

@@ -28,6 +28,10 @@ class Structure:
         )
 
 
+#: three modes, two of them close
+CLOSE = Structure(((660.0, 0.018, 0.57), (700.0, 0.029, 1.03), (1479.0, 0.021, 0.21)))
+
+
 @dataclass(frozen=True)
 class Hit:
     """One blow: start s, duration s, peak N, and exponent of sin (1 half-sine, 2 smooth)."""

@@ -20,7 +20,7 @@ from dynamics.frf.hammer.windows import choose_windows, force_window
 from tests.dynamics.frf.hammer import hammer_records as made
 
 NO_NOISE = made.Noise(0.0, 0.0)
-CLOSE = made.Structure(((660.0, 0.018, 0.57), (700.0, 0.029, 1.03), (1479.0, 0.021, 0.21)))
+CLOSE = made.CLOSE
 ONE = made.Structure(((450.0, 0.03, 0.8),))
 SLOW = made.Structure(((120.0, 0.004, 2.0),))
 

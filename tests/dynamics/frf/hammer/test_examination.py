@@ -7,14 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import tomlkit
 
-from chatter.io.hammer_records import read_hammer_folder
 from dynamics.frf.hammer.examine import examine_records
 from tests.dynamics.frf.hammer import hammer_records as made
-from tests.places import SHARED
 
-CLOSE = made.Structure(((660.0, 0.018, 0.57), (700.0, 0.029, 1.03), (1479.0, 0.021, 0.21)))
+CLOSE = made.CLOSE
 RATE = made.SAMPLING_RATE
 
 
@@ -38,15 +35,6 @@ def with_fault(change, place=2, count=6, seed=0):
     findings = examine_records(records)
     assert {finding.record for finding in findings} == {records[place].name}
     return findings
-
-
-@pytest.mark.skipif(not (SHARED / "taptests").exists(), reason="recordings not at hand")
-@pytest.mark.parametrize("name", ["tap-301", "tap-302", "tap-303"])
-def test_recorded_sets(name):
-    folder = SHARED / "taptests" / name
-    truth = tomlkit.parse((folder / "truth.toml").read_text()).unwrap()["faults"]
-    findings = examine_records(read_hammer_folder(folder).records)
-    assert {finding.record: finding.fault for finding in findings} == truth
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -11,7 +11,7 @@ from dynamics.frf.hammer.averaging import hammer_test
 from dynamics.frf.hammer.spectra import h2
 from tests.dynamics.frf.hammer import hammer_records as made
 
-CLOSE = made.Structure(((660.0, 0.018, 0.57), (700.0, 0.029, 1.03), (1479.0, 0.021, 0.21)))
+CLOSE = made.CLOSE
 
 
 def records(count=6, seed=0):
