@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from chatter.io.presentation import presentation
 
@@ -22,6 +22,23 @@ def finite_or_none(value: float) -> float | None:
 def as_json(summary: Mapping) -> str:
     """Text of a summary; refuses nan and inf, which JSON does not know."""
     return json.dumps(summary, indent=2, allow_nan=False) + "\n"
+
+
+def csv_text(columns: Mapping[str, tuple[Iterable[Any], str]]) -> str:
+    """CSV of columns: heading -> values and their format; empty where a value is none or no number.
+
+    Texts and truth values stand as they are; none of them may hold a comma.
+    """
+    cells = [[_cell(value, form) for value in values] for values, form in columns.values()]
+    return "\n".join(",".join(row) for row in (columns, *zip(*cells, strict=True))) + "\n"
+
+
+def _cell(value: Any, form: str) -> str:
+    if isinstance(value, str):
+        return value
+    if isinstance(value, bool):
+        return str(value).lower()
+    return format(value, form) if value is not None and math.isfinite(value) else ""
 
 
 def write_results(

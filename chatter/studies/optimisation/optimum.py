@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
 from chatter.description.case import Case
 from chatter.description.units import rpm
-from chatter.io.result_files import SavedResult, as_json, finite_or_none
+from chatter.io.result_files import SavedResult, as_json, csv_text, finite_or_none
 from chatter.studies.optimisation.candidate import Candidate
 from chatter.studies.optimisation.exclusion import Exclusion, why_nothing
 from chatter.studies.optimisation.limits import Limits
@@ -25,12 +24,6 @@ _QUANTILE = {
     "max_deflection": ("deflection_um", 1e6),
     "max_surface_error": ("surface_error_um", 1e6),
 }
-_COLUMNS = (
-    "rank,spindle_speed [rpm],axial_depth [mm],radial_depth [mm],feed_per_tooth [mm],"
-    "removal_rate [cm^3/min],power [kW],torque [N m],deflection [um],surface_error [um],"
-    "critical_depth [mm],probability_of_stability,probability,active,time_domain_verdict,"
-    "time_domain_verified"
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,30 +157,32 @@ class Optimum(SavedResult):
         return written
 
     def _table(self) -> str:
-        lines = [_COLUMNS]
-        for rank, one in enumerate(self.candidates, start=1):
-            point, verification = one.point, one.verification
-            limit = f"{one.critical_depth * 1e3:.7g}" if math.isfinite(one.critical_depth) else ""
-            cells = [
-                f"{rank}",
-                f"{rpm(point.spindle_speed):.8g}",
-                f"{point.axial_depth * 1e3:.7g}",
-                f"{point.radial_depth * 1e3:.7g}",
-                f"{point.feed_per_tooth * 1e3:.7g}",
-                f"{one.removal_rate * _PER_MINUTE:.7g}",
-                f"{one.power * 1e-3:.7g}",
-                f"{one.torque:.7g}",
-                f"{one.deflection * 1e6:.7g}",
-                f"{one.surface_error * 1e6:.7g}",
-                limit,
-                "" if one.probability is None else f"{one.probability.stable:.6g}",
-                "" if one.probability is None else f"{one.probability.value:.6g}",
-                " ".join(name.replace(" ", "-") for name in one.active),
-                "" if verification is None else verification.verdict,
-                "" if verification is None else str(verification.verified).lower(),
-            ]
-            lines.append(",".join(cells))
-        return "\n".join(lines) + "\n"
+        found = self.candidates
+        points = [one.point for one in found]
+        known = [one.probability for one in found]
+        checks = [one.verification for one in found]
+        rates = [one.removal_rate * _PER_MINUTE for one in found]
+        active = [" ".join(name.replace(" ", "-") for name in one.active) for one in found]
+        return csv_text(
+            {
+                "rank": (range(1, len(found) + 1), "d"),
+                "spindle_speed [rpm]": ([rpm(one.spindle_speed) for one in points], ".8g"),
+                "axial_depth [mm]": ([one.axial_depth * 1e3 for one in points], ".7g"),
+                "radial_depth [mm]": ([one.radial_depth * 1e3 for one in points], ".7g"),
+                "feed_per_tooth [mm]": ([one.feed_per_tooth * 1e3 for one in points], ".7g"),
+                "removal_rate [cm^3/min]": (rates, ".7g"),
+                "power [kW]": ([one.power * 1e-3 for one in found], ".7g"),
+                "torque [N m]": ([one.torque for one in found], ".7g"),
+                "deflection [um]": ([one.deflection * 1e6 for one in found], ".7g"),
+                "surface_error [um]": ([one.surface_error * 1e6 for one in found], ".7g"),
+                "critical_depth [mm]": ([one.critical_depth * 1e3 for one in found], ".7g"),
+                "probability_of_stability": ([one and one.stable for one in known], ".6g"),
+                "probability": ([one and one.value for one in known], ".6g"),
+                "active": (active, ""),
+                "time_domain_verdict": ([one and one.verdict for one in checks], ""),
+                "time_domain_verified": ([one and one.verified for one in checks], ""),
+            }
+        )
 
 
 def _ends(values) -> list[float]:

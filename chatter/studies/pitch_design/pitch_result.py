@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.units import rpm
-from chatter.io.result_files import SavedResult, as_json
+from chatter.io.result_files import SavedResult, as_json, csv_text
 from chatter.studies.pitch_design.families import regeneration
 from chatter.studies.pitch_design.pitch_search import Design
 
@@ -166,19 +166,24 @@ class PitchResult(SavedResult):
         return [*written, path]
 
     def _table(self) -> str:
-        lines = ["rank,name,pitch [deg],lowest_limit [mm],mean_limit [mm],max_pitch_ratio"]
-        for rank, one in enumerate(self.designs, start=1):
-            angles = " ".join(f"{angle:g}" for angle in one.pitch)
-            lines.append(
-                f"{rank},{one.name},{angles},{one.lowest_limit * 1e3:.6g},"
-                f"{one.limits.mean() * 1e3:.6g},{one.max_pitch_ratio:.5g}"
-            )
-        return "\n".join(lines) + "\n"
+        found = self.designs
+        angles = [" ".join(f"{angle:g}" for angle in one.pitch) for one in found]
+        return csv_text(
+            {
+                "rank": (range(1, len(found) + 1), "d"),
+                "name": ([one.name for one in found], ""),
+                "pitch [deg]": (angles, ""),
+                "lowest_limit [mm]": ([one.lowest_limit * 1e3 for one in found], ".6g"),
+                "mean_limit [mm]": ([one.limits.mean() * 1e3 for one in found], ".6g"),
+                "max_pitch_ratio": ([one.max_pitch_ratio for one in found], ".5g"),
+            }
+        )
 
     def _lobes(self) -> str:
-        lines = ["spindle_speed [rpm],critical_depth_before [mm],critical_depth_after [mm]"]
-        for speed, before, after in zip(
-            self.speeds, self.original.limits, self.best.limits, strict=True
-        ):
-            lines.append(f"{rpm(speed):.4f},{before * 1e3:.6g},{after * 1e3:.6g}")
-        return "\n".join(lines) + "\n"
+        return csv_text(
+            {
+                "spindle_speed [rpm]": (rpm(self.speeds), ".4f"),
+                "critical_depth_before [mm]": (self.original.limits * 1e3, ".6g"),
+                "critical_depth_after [mm]": (self.best.limits * 1e3, ".6g"),
+            }
+        )

@@ -16,7 +16,7 @@ from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
 from chatter.description.units import rpm
 from chatter.engine.parallel import Executor
-from chatter.io.result_files import SavedResult, as_json, finite_or_none
+from chatter.io.result_files import SavedResult, as_json, csv_text, finite_or_none
 from chatter.studies.model import fingerprint, patched
 from chatter.studies.result_cache import ResultCache
 from chatter.studies.uncertainty.latin_hypercube import samples
@@ -174,24 +174,30 @@ class Uncertainty(SavedResult):
         }
 
     def _table(self) -> str:
-        lines = [
-            "spindle_speed [rpm],limit_5_percent [mm],limit_50_percent [mm],limit_95_percent [mm],"
-            "probability_of_stability"
-        ]
+        limits = {
+            f"limit_{100.0 * level:.0f}_percent [mm]": (row * 1e3, ".7g")
+            for level, row in zip(LEVELS, self.quantiles(), strict=True)
+        }
         probability = self.probability_at(self.case.cut.axial_depth)
-        for speed, row, share in zip(self.speeds, self.quantiles().T, probability, strict=True):
-            depths = ",".join("" if np.isinf(depth) else f"{depth * 1e3:.7g}" for depth in row)
-            lines.append(f"{rpm(speed):.4f},{depths},{share:.6g}")
-        return "\n".join(lines) + "\n"
+        return csv_text(
+            {
+                "spindle_speed [rpm]": (rpm(self.speeds), ".4f"),
+                **limits,
+                "probability_of_stability": (probability, ".6g"),
+            }
+        )
 
     def _samples(self) -> str:
-        heads = [f"{one.path} [SI]" for one in self.parameters]
-        lines = [",".join([*heads, "limit [mm]", "stable"])]
-        for values, limit, stable in zip(self.values, self.operating, self.stable, strict=True):
-            found = "" if np.isinf(limit) else f"{limit * 1e3:.7g}"
-            cells = [f"{value:.9g}" for value in values]
-            lines.append(",".join([*cells, found, str(bool(stable)).lower()]))
-        return "\n".join(lines) + "\n"
+        return csv_text(
+            {
+                **{
+                    f"{one.path} [SI]": (column, ".9g")
+                    for one, column in zip(self.parameters, self.values.T, strict=True)
+                },
+                "limit [mm]": (self.operating * 1e3, ".7g"),
+                "stable": (self.stable.tolist(), ""),
+            }
+        )
 
 
 def _interval(successes: int, count: int) -> tuple[float, float]:

@@ -152,7 +152,7 @@ def _critical_depth(case: Case, method: str | None, only: tuple[str, ...]) -> Ou
             "critical_depth_mm": summary["critical_depth_mm"],
             "chatter_frequency_Hz": summary["limit"]["chatter_frequency_Hz"],
             "spectral_radius": summary["spectral_radius"],
-            "max_axial_depth_mm": summary["limit"]["searched_to_mm"],
+            "max_axial_depth_mm": summary["limit"]["max_axial_depth_mm"],
         },
         {"verdict": "stable" if summary["stable"] else "chatter"},
     )

@@ -61,7 +61,7 @@ def interrupted_after(count, command, case, out):
 
 def parts_before_the_time_domain(records):
     found = [record for _, record in records]
-    return next(i for i, one in enumerate(found) if isinstance(one, dict) and one.get("time"))
+    return next(i for i, one in enumerate(found) if isinstance(one, dict) and one.get("verification"))
 
 
 @pytest.mark.parametrize("command", ["optimum", "pitch"])
@@ -122,4 +122,4 @@ def test_an_interrupted_run_in_time_is_no_verdict(tmp_path, monkeypatch):
     with pytest.raises(RunError, match="parts of the search are finished"):
         chatter.optimum(end_mill({"optimum": section}), folder=tmp_path)
     kept = [record for _, record in records_in(tmp_path)]
-    assert not any(isinstance(one, dict) and one.get("time") for one in kept)
+    assert not any(isinstance(one, dict) and one.get("verification") for one in kept)

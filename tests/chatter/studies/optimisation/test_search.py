@@ -167,7 +167,7 @@ def test_the_command_writes_a_case_that_others_accept(tmp_path):
     assert answer.exit_code == 0, answer.stderr
     summary = json.loads((out / "summary.json").read_text())
     assert json.loads(answer.stdout) == summary
-    assert summary["best"]["in_time"]["held"]
+    assert summary["best"]["time_domain"]["verified"]
     assert (out / "optimum.png").stat().st_size > 10_000
     head, first = (out / "optimum.csv").read_text().splitlines()[:2]
     assert head.startswith("rank,spindle_speed [rpm],axial_depth [mm]")
