@@ -128,7 +128,7 @@ WORDS = (
 )
 
 #: where old keys of files are named, to be read for one release
-OLD_KEYS = ("chatter/description/renamed_keys.py",)
+OLD_KEYS = ("chatter/description/renamed.py",)
 
 
 @dataclass(frozen=True)

@@ -65,8 +65,8 @@ def _print_modes(result: ModalTest) -> None:
         for mode in summary["modes"]
     ]
     print_table("modes", ["frequency [Hz]", "damping", "mass [kg]", "fit error"], rows)
-    for record in summary["records"]["left_out"]:
-        typer.echo(f"left out {record['record']}: {record['reason']}")
+    for record in summary["records"]["excluded"]:
+        typer.echo(f"excluded {record['record']}: {record['reason']}")
     typer.echo(
         f"synthesis error {summary['fit_error']['maximum']:.2%} of the peak at most, "
         f"{summary['fit_error']['rms']:.2%} rms, {summary['band_Hz'][0]:.0f} to "

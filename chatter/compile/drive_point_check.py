@@ -2,8 +2,8 @@
 
 At a drive point force and motion share point and direction, power can only flow in, and the
 imaginary part of the receptance is never positive. Where it is at a resonance, force and response
-were somewhere else. If they were mirror points of a symmetric structure (the two ends of a
-beam), every mode has the right magnitude and every second one the wrong sign.
+were somewhere else. If they were at opposite ends of a symmetric structure, such as a beam, every
+mode has the right magnitude and every second one the wrong sign.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from dynamics.modal.modes import Mode
 
 NOT_PASSIVE = (
     "power flows out at some resonances, so this is no drive point; the magnitudes of its modes "
-    "are used, which is right where force and response were at mirror points of a symmetric part. "
+    "are used, which is right where force and response were at opposite ends of a symmetric part. "
     "Measure force and response at the same point to be sure"
 )
 #: lines this high, relative to the peak, count as resonance

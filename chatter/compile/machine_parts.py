@@ -151,8 +151,8 @@ def _reduced(section: ImportedSection, name: str) -> ImportedPart:
     whole = imported_structure(
         section.mass, section.stiffness, section.damping, section.nodes, rigid, interpolated
     )
-    places = {point: one.at for point, one in section.point.items()}
-    return reduced_part(name, whole, places, section.rail, section.highest_frequency)
+    positions = {point: one.at for point, one in section.point.items()}
+    return reduced_part(name, whole, positions, section.rail, section.highest_frequency)
 
 
 def _axis(composition: Composition, name: str) -> MachineAxis:

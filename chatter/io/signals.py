@@ -124,7 +124,7 @@ def _frf(path: Path, direction: str) -> Signals:
 
 
 def with_parts(path: Path, signals: Signals) -> Signals:
-    """Real and imaginary part in the place of magnitude and phase."""
+    """Real and imaginary part instead of magnitude and phase."""
     if "magnitude" not in signals or "real" in signals:
         return signals
     if "phase" not in signals:

@@ -108,12 +108,12 @@ def _mode_summary(mode: IdentifiedMode) -> dict:
 
 def _records_summary(hammer: HammerTest | None) -> dict:
     if hammer is None:
-        return {"used": [], "left_out": [], "remarks": []}
+        return {"used": [], "excluded": [], "remarks": []}
     return {
         "used": list(hammer.used),
-        "left_out": [
+        "excluded": [
             {"record": finding.record, "fault": finding.fault, "reason": finding.reason}
-            for finding in hammer.left_out
+            for finding in hammer.excluded
         ],
         "remarks": [
             {"record": finding.record, "fault": finding.fault, "reason": finding.reason}

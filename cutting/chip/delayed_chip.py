@@ -24,18 +24,18 @@ from cutting.process_damping.flank import BareFlank, end_contact, flank_force, s
 from cutting.process_damping.ploughing import PloughingFlank
 from cutting.process_damping.viscous import ViscousFlank
 from cutting.tool.edge_table import (
-    GAUSS_PLACE,
+    GAUSS_POINT,
     EdgeTable,
     direction,
     force_on_tool,
-    place_of,
-    signed_place,
+    signed_bin,
+    spindle_bin,
 )
 
 #: an edge that is this many bins outside the arc has left the cut
 _MARGIN = 2.0
 #: half a span, as a share of the distance between its Gauss points
-_HALF_SPAN = 0.5 / GAUSS_PLACE
+_HALF_SPAN = 0.5 / GAUSS_POINT
 #: a straight edge is looked at this many bins late, so that it is on one side of a jump
 _NUDGE = 1e-6
 
@@ -173,7 +173,7 @@ def _clear_of_air(cut, tooth, piece, low, high):
     """
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     angle = 2.0 * math.pi / cut.edges.bins
-    first, last = middle - GAUSS_PLACE * half, middle + GAUSS_PLACE * half
+    first, last = middle - GAUSS_POINT * half, middle + GAUSS_POINT * half
     s1, c1 = math.sin(first * angle), math.cos(first * angle)
     s2, c2 = math.sin(last * angle), math.cos(last * angle)
     begin, end = low, high
@@ -213,7 +213,7 @@ def _part_of_slice(cut, tooth, piece, low, high, width):
     middle, half = 0.5 * (clear_low + clear_high), 0.5 * (clear_high - clear_low)
     length = 0.5 * share * cut.edges.edge_length[piece]
     for side in range(2):
-        place = middle + (2.0 * side - 1.0) * GAUSS_PLACE * half
+        place = middle + (2.0 * side - 1.0) * GAUSS_POINT * half
         sine, cosine = math.sin(place * angle), math.cos(place * angle)
         chip = _chip(cut, tooth, piece, sine, cosine)
         if chip > 0.0:
@@ -276,8 +276,8 @@ _add_flank_force = by_table(
 @register_jitable(**INLINED)
 def _all_in_air(cut, tooth, turn):
     """Tell whether no part of an edge is in the arc of the cut."""
-    whole, part = place_of(cut.edges, tooth, 0, turn.whole, turn.part)
-    place = signed_place(cut.edges, whole, part)
+    whole, part = spindle_bin(cut.edges, tooth, 0, turn.whole, turn.part)
+    place = signed_bin(cut.edges, whole, part)
     low, high = place + cut.reach[tooth, 0], place + cut.reach[tooth, 1]
     for turns in range(-1, 2):
         shift = turns * cut.edges.bins
@@ -298,8 +298,8 @@ def delayed_forces(group, turn, point):
             continue
         looked_back = False
         for piece in range(pieces):
-            whole, part = place_of(edges, tooth, piece, turn.whole, turn.part)
-            place = signed_place(edges, whole, part)
+            whole, part = spindle_bin(edges, tooth, piece, turn.whole, turn.part)
+            place = signed_bin(edges, whole, part)
             half = edges.half_width[tooth, piece]
             entry, leave = cut.entry[piece], cut.exit[piece]
             straight = half < 0.5 * turn.advance
@@ -396,8 +396,8 @@ def _surfaces_behind(flank, cut, turn, point):  # noqa: ARG001
     for tooth in range(teeth):
         looked_back = False
         for piece in range(pieces):
-            whole, part = place_of(edges, tooth, piece, turn.whole, turn.part)
-            place = signed_place(edges, whole, part)
+            whole, part = spindle_bin(edges, tooth, piece, turn.whole, turn.part)
+            place = signed_bin(edges, whole, part)
             if place < cut.entry[piece] - _MARGIN or place > cut.exit[piece] + _MARGIN:
                 continue
             if cut.helices > 1 or not looked_back:

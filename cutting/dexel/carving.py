@@ -115,9 +115,11 @@ def _cut_what_lies_behind(stock, layer, tooth, family, along, across):
     removed = 0.0
     while stock.queue[layer, tooth, family, 1] > 0:
         at = stock.queue[layer, tooth, family, 0]
-        place = stock.first[family] + stock.pending[layer, tooth, family, at, 0] * stock.spacing
+        coordinate = (
+            stock.first[family] + stock.pending[layer, tooth, family, at, 0] * stock.spacing
+        )
         a = along - stock.pending[layer, tooth, family, at, 1]
-        b = across - place
+        b = across - coordinate
         if a * a + b * b < stock.delay * stock.delay:
             break
         removed += _cut_oldest(stock, layer, tooth, family)
@@ -143,12 +145,12 @@ def _carve_family(stock, layer, tooth, family, ca0, ct0, ea0, et0, ca1, ct1, ea1
     radius = math.sqrt(ra1 * ra1 + rt1 * rt1)
     for i in range(number):
         line = lowest + i if k1 > k0 else highest - i
-        place = first + line * spacing
+        coordinate = first + line * spacing
         # crossing on the arc between E0 and E1: the chord's, then one Newton step
-        u = (place - et0) / (et1 - et0)
+        u = (coordinate - et0) / (et1 - et0)
         ra, rt = ra0 + u * (ra1 - ra0), rt0 + u * (rt1 - rt0)
         bulge = radius / math.sqrt(ra * ra + rt * rt)
-        u += (place - (ct0 + u * (ct1 - ct0) + bulge * rt)) / (et1 - et0)
+        u += (coordinate - (ct0 + u * (ct1 - ct0) + bulge * rt)) / (et1 - et0)
         u = min(max(u, 0.0), 1.0)
         ra, rt = ra0 + u * (ra1 - ra0), rt0 + u * (rt1 - rt0)
         centre = ca0 + u * (ca1 - ca0)
@@ -241,8 +243,8 @@ def _thickness_on_family(stock, layer, family, ca, ct, ea, et):
     air = 0.0  # length of the radius in air before the material
     length0, offset0, thickness0 = 0.0, 0.0, 0.0
     for i in range(reach):
-        place = first + line * spacing
-        pt = place - ct
+        coordinate = first + line * spacing
+        pt = coordinate - ct
         on_circle = math.copysign(math.sqrt(max(radius * radius - pt * pt, 0.0)), ra)
         length = 0.0
         if 0 <= line < stock.lines[family]:
@@ -252,7 +254,7 @@ def _thickness_on_family(stock, layer, family, ca, ct, ea, et):
         thickness = radius - math.sqrt(pa * pa + pt * pt) if length > 0.0 else 0.0
         if i > 0:
             # along the radius, where the stock ends if it does so between the two lines
-            end = max((place - et) * inward - 0.5 * spacing, 0.0) / max(abs(nt), 1e-12)
+            end = max((coordinate - et) * inward - 0.5 * spacing, 0.0) / max(abs(nt), 1e-12)
             begins = length0 == 0.0 and length * abs(nt) > spacing
             ends = length == 0.0 and length0 * abs(nt) > spacing
             if begins:

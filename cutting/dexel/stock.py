@@ -122,9 +122,9 @@ def dexel_stock(
         for (left, right, bottom, top), adds in shapes:
             spans = ((left, right), (bottom, top))
             for family in range(2):
-                place = line_coordinates(stock, family)
+                coordinate = line_coordinates(stock, family)
                 low, high = spans[1 - family]
-                covered = (place >= low) & (place < high)
+                covered = (coordinate >= low) & (coordinate < high)
                 ends = (np.where(covered, spans[family][i], np.nan) for i in range(2))
                 change = unite_spans if adds else subtract_spans
                 change(stock, layer, family, *ends)
@@ -223,21 +223,21 @@ def dexel_remove_path(
         Of the disc, m.
     """
     for family, (a, b) in enumerate((((x0, y0), (x1, y1)), ((y0, x0), (y1, x1)))):
-        place = line_coordinates(stock, family)
-        low, high = _capsule_chord(place, a, b, radius)
+        coordinate = line_coordinates(stock, family)
+        low, high = _capsule_chord(coordinate, a, b, radius)
         subtract_spans(stock, layer, family, low, high)
 
 
 def _capsule_chord(
-    place: NDArray[np.float64], a: tuple[float, float], b: tuple[float, float], radius: float
+    coordinate: NDArray[np.float64], a: tuple[float, float], b: tuple[float, float], radius: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the ends of the chord of a capsule on lines at the transverse coordinate `place`.
+    """Return the ends of the chord of a capsule on lines at the transverse coordinate `coordinate`.
 
     The capsule is convex: its chord is the hull of those of the two discs and of the band.
     """
-    low, high = np.full_like(place, np.inf), np.full_like(place, -np.inf)
+    low, high = np.full_like(coordinate, np.inf), np.full_like(coordinate, -np.inf)
     for centre in (a, b):
-        square = radius**2 - (place - centre[1]) ** 2
+        square = radius**2 - (coordinate - centre[1]) ** 2
         half = np.sqrt(np.maximum(square, 0.0))
         low = np.where(square > 0.0, np.minimum(low, centre[0] - half), low)
         high = np.where(square > 0.0, np.maximum(high, centre[0] + half), high)
@@ -246,7 +246,7 @@ def _capsule_chord(
     if length > 0.0 and across != 0.0:
         for side in (-radius, radius):
             # point of the band's edge on the line, as a fraction of the path
-            fraction = (place - a[1] - side * along / length) / across
+            fraction = (coordinate - a[1] - side * along / length) / across
             point = a[0] + fraction * along - side * across / length
             on = (fraction >= 0.0) & (fraction <= 1.0)
             low = np.where(on, np.minimum(low, point), low)
@@ -294,7 +294,7 @@ def dexel_wall_profile(
     near = np.where(end > level, np.maximum(start, level), np.inf).min(axis=1)
     near = np.where(np.isinf(near), np.nan, near)
     x = np.asarray(x, dtype=np.float64)
-    place = line_coordinates(stock, 1)
+    coordinate = line_coordinates(stock, 1)
     margin = 0.5 * stock.spacing * (1.0 + 1e-9)
-    inside = (x >= place[0] - margin) & (x <= place[-1] + margin)
-    return side * np.where(inside, np.interp(x, place, near), np.nan)
+    inside = (x >= coordinate[0] - margin) & (x <= coordinate[-1] + margin)
+    return side * np.where(inside, np.interp(x, coordinate, near), np.nan)

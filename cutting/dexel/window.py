@@ -74,9 +74,9 @@ def _renumber_waiting_cuts(stock: DexelStock, moved: int) -> None:
     for layer, tooth in np.argwhere(stock.queue[:, :, 1, 1] > 0):
         oldest, waiting = stock.queue[layer, tooth, 1]
         cuts = stock.pending[layer, tooth, 1]
-        places = (oldest + np.arange(waiting)) % ring
-        held = cuts[places, 0] >= 0.0
-        if not held.all():
-            remaining = cuts[places[held]]
-            cuts[places[: len(remaining)]] = remaining
+        entries = (oldest + np.arange(waiting)) % ring
+        kept = cuts[entries, 0] >= 0.0
+        if not kept.all():
+            remaining = cuts[entries[kept]]
+            cuts[entries[: len(remaining)]] = remaining
             stock.queue[layer, tooth, 1, 1] = len(remaining)

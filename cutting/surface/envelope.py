@@ -1,7 +1,7 @@
 """Surface that passing edges leave: the envelope of their arcs.
 
 A wall lies at +y (`side` = +1) or -y (-1) of a tool that moves along x. Each pass of an edge cuts
-an arc about the place of the tool axis at that moment; what stands behind is the furthest reach of
+an arc about the tool axis at that moment; what stands behind is the furthest reach of
 all passes.
 """
 
@@ -17,7 +17,7 @@ from scipy.interpolate import CubicSpline
 Array = NDArray[np.float64]
 
 _TURN = 2.0 * math.pi
-#: steps of the search for the moment at which an edge is at a place along the feed
+#: steps of the search for the moment at which an edge is at a position along the feed
 _STEPS_TO_MOMENT = 2
 #: angle from the wall beyond which no edge is looked at, rad
 _WIDEST_TURN = 0.6
@@ -30,14 +30,14 @@ class ToolMotion:
     ----------
     spindle_angle : (n,) array of float
         Increasing, rad; n >= 4.
-    place : (n, 3) array of float
+    position : (n, 3) array of float
         Of the tool, feed and displacement together, m.
     """
 
-    def __init__(self, spindle_angle: Array, place: Array) -> None:
+    def __init__(self, spindle_angle: Array, position: Array) -> None:
         self.first, self.last = float(spindle_angle[0]), float(spindle_angle[-1])
-        self.place = np.asarray(place, dtype=np.float64)
-        self.at = CubicSpline(spindle_angle, self.place, axis=0)
+        self.position = np.asarray(position, dtype=np.float64)
+        self.at = CubicSpline(spindle_angle, self.position, axis=0)
 
     def passes(self, edge_angle: Array, direction: float, margin: float) -> tuple[Array, NDArray]:
         """Spindle angles at which edges point in a direction.
@@ -93,8 +93,8 @@ class WallPasses:
 
     def reach_at_pass(self, motion: ToolMotion) -> tuple[Array, Array]:
         """Place x and furthest reach (P,) of every pass, m."""
-        place = motion.at(self.angle)
-        return place[:, 0], self.side * place[:, 1] + self.edge(self.radius, place[:, 2])
+        position = motion.at(self.angle)
+        return position[:, 0], self.side * position[:, 1] + self.edge(self.radius, position[:, 2])
 
     def edge(self, radius: Array, lift: Array) -> Array:
         """Radius at a fixed height of an edge of this radius on a tool that has risen, m."""
@@ -111,9 +111,9 @@ def width_of_influence(motion: ToolMotion, passes: WallPasses) -> float:
     gap = float(np.diff(x).max()) if x.size > 1 else 0.0
     lowest = reach.min() - gap**2 / (8.0 * passes.radius.min())
     turned = np.linspace(-_WIDEST_TURN, _WIDEST_TURN, 121)
-    place = motion.at(passes.angle[:, None] + turned)
-    edge = passes.edge(passes.radius[:, None], place[..., 2])
-    highest = (passes.side * place[..., 1] + edge * np.cos(turned)).max(axis=0)
+    position = motion.at(passes.angle[:, None] + turned)
+    edge = passes.edge(passes.radius[:, None], position[..., 2])
+    highest = (passes.side * position[..., 1] + edge * np.cos(turned)).max(axis=0)
     matters = np.abs(turned[highest > lowest])
     widest = matters.max(initial=0.0) + turned[1] - turned[0]
     return max(float(passes.radius.max()) * math.sin(widest), 0.55 * gap)
@@ -150,26 +150,26 @@ def wall_reach(motion: ToolMotion, passes: WallPasses, x: Array, width: float) -
     angle = np.broadcast_to(passes.angle[:, None], index.shape)
     known = (index >= 0) & (index < x.size)
     index, radius, angle = index[known], radius[known], angle[known]
-    place = np.broadcast_to(motion.at(passes.angle)[:, None, :], (*known.shape, 3))[known]
+    position = np.broadcast_to(motion.at(passes.angle)[:, None, :], (*known.shape, 3))[known]
     for _ in range(_STEPS_TO_MOMENT):
-        sine = (x[index] - place[:, 0]) / passes.edge(radius, place[:, 2])
+        sine = (x[index] - position[:, 0]) / passes.edge(radius, position[:, 2])
         turned = passes.side * np.arcsin(np.clip(sine, -0.9, 0.9))
-        place = motion.at(angle + turned)
-    edge = passes.edge(radius, place[:, 2])
-    ahead = np.minimum(np.abs(x[index] - place[:, 0]), edge)
+        position = motion.at(angle + turned)
+    edge = passes.edge(radius, position[:, 2])
+    ahead = np.minimum(np.abs(x[index] - position[:, 0]), edge)
     reach = np.full(x.size, -np.inf)
-    np.maximum.at(reach, index, passes.side * place[:, 1] + np.sqrt(edge**2 - ahead**2))
+    np.maximum.at(reach, index, passes.side * position[:, 1] + np.sqrt(edge**2 - ahead**2))
     return reach
 
 
-def floor_height(x: Array, place: Array, height: Array, corner: float, flat: float) -> Array:
+def floor_height(x: Array, position: Array, height: Array, corner: float, flat: float) -> Array:
     """Floor left by corners that pass over a line along the feed.
 
     Parameters
     ----------
     x : (n,) array of float
         m.
-    place : (P,) array of float
+    position : (P,) array of float
         x of the deepest point of the corner at each pass, m.
     height : (P,) array of float
         Its height, m.
@@ -188,16 +188,16 @@ def floor_height(x: Array, place: Array, height: Array, corner: float, flat: flo
     -----
     Circles of radius r a feed f apart leave cusps of f^2/(8 r).
     """
-    order = np.argsort(place)
-    place, height = place[order], height[order]
+    order = np.argsort(position)
+    position, height = position[order], height[order]
     half = corner if corner > 0.0 else 0.5 * flat
-    middle = place if corner > 0.0 else place - half
+    middle = position if corner > 0.0 else position - half
     first = np.searchsorted(x, middle - half - 1e-12)
     last = np.searchsorted(x, middle + half, side="right")
     floor = np.full(x.size, np.inf)
     # the cusp between neighbours bounds how far an arc matters
-    if corner > 0.0 and place.size > 1:
-        gap = float(np.diff(place).max())
+    if corner > 0.0 and position.size > 1:
+        gap = float(np.diff(position).max())
         reach = math.sqrt(2.0 * corner * np.ptp(height) + gap**2)
         first = np.maximum(first, np.searchsorted(x, middle - reach))
         last = np.minimum(last, np.searchsorted(x, middle + reach, side="right"))

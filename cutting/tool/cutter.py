@@ -143,10 +143,10 @@ class EdgeSlices:
     normal_offset: NDArray[np.float64]
 
 
-Piece = tuple[NDArray[np.float64], ...]
+Part = tuple[NDArray[np.float64], ...]
 
 
-def _corner(cutter: Cutter, top: float, count: int) -> Piece:
+def _corner(cutter: Cutter, top: float, count: int) -> Part:
     """Slices of equal length along the corner arc from the tip to the height `top`."""
     corner = cutter.corner_radius
     bounds = np.linspace(0.0, math.acos(1.0 - top / corner), count + 1)
@@ -157,7 +157,7 @@ def _corner(cutter: Cutter, top: float, count: int) -> Piece:
     return height, thickness, radius, middle, corner * np.diff(bounds)
 
 
-def _straight(cutter: Cutter, bottom: float, top: float, count: int) -> Piece:
+def _straight(cutter: Cutter, bottom: float, top: float, count: int) -> Part:
     """Slices of equal height of the straight part of the edge."""
     bounds = np.linspace(bottom, top, count + 1)
     middle = 0.5 * (bounds[1:] + bounds[:-1])
@@ -228,7 +228,7 @@ def edge_slices(cutter: Cutter, depth: float, counts: tuple[int, int]) -> EdgeSl
     """
     corner, straight = counts
     arc_top = min(depth, corner_height(cutter))
-    parts: list[Piece] = []
+    parts: list[Part] = []
     if corner:
         parts.append(_corner(cutter, arc_top, corner))
     if straight:

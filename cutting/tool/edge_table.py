@@ -13,7 +13,7 @@ from cutting.compiled import INLINED
 from cutting.tool.cutter import EdgeSlices
 
 #: Gauss points of order 2 lie at this share of the half width
-GAUSS_PLACE = 1.0 / math.sqrt(3.0)
+GAUSS_POINT = 1.0 / math.sqrt(3.0)
 
 
 class EdgeTable(NamedTuple):
@@ -36,19 +36,19 @@ class EdgeTable(NamedTuple):
 
 def edge_table(slices: EdgeSlices, bins: int) -> EdgeTable:
     """Lay out edge slices for kernels that count angles in `bins` a turn."""
-    place = np.mod(slices.angle * bins / (2.0 * math.pi), bins)
+    bin_number = np.mod(slices.angle * bins / (2.0 * math.pi), bins)
     # the last bit of an angle must not make a tooth start a turn early
-    near = np.round(place)
-    place = np.where(np.abs(place - near) < 1e-9 * bins, near, place) % bins
-    whole = np.floor(place).astype(np.int64)
-    middle = place * 2.0 * math.pi / bins
-    reach = 0.5 * np.abs(slices.lag) * GAUSS_PLACE
+    near = np.round(bin_number)
+    bin_number = np.where(np.abs(bin_number - near) < 1e-9 * bins, near, bin_number) % bins
+    whole = np.floor(bin_number).astype(np.int64)
+    middle = bin_number * 2.0 * math.pi / bins
+    reach = 0.5 * np.abs(slices.lag) * GAUSS_POINT
     points = np.stack([middle, middle - reach, middle + reach], axis=-1)
     upright = np.abs(slices.immersion - 0.5 * math.pi) < 1e-12
     return EdgeTable(
         bins=bins,
         whole=whole,
-        part=place - whole,
+        part=bin_number - whole,
         half_width=0.5 * np.abs(slices.lag) * bins / (2.0 * math.pi),
         sine=np.sin(points),
         cosine=np.cos(points),
@@ -64,10 +64,10 @@ def edge_table(slices: EdgeSlices, bins: int) -> EdgeTable:
 
 
 @register_jitable(**INLINED)
-def place_of(edges, tooth, piece, whole, part):
-    """Place of the middle of an edge slice at a spindle place: whole bin and fraction."""
-    whole = whole + edges.whole[tooth, piece]
-    part = part + edges.part[tooth, piece]
+def spindle_bin(edges, tooth, slice_index, whole, part):
+    """Bin of the middle of an edge slice at a spindle angle: whole bin and fraction."""
+    whole = whole + edges.whole[tooth, slice_index]
+    part = part + edges.part[tooth, slice_index]
     if part >= 1.0:
         part -= 1.0
         whole += 1
@@ -77,22 +77,22 @@ def place_of(edges, tooth, piece, whole, part):
 
 
 @register_jitable(**INLINED)
-def signed_place(edges, whole, part):
-    """Place as a number that runs on below zero, so that an arc from zero is in one piece."""
+def signed_bin(edges, whole, part):
+    """Bin as a number that runs on below zero, so that an arc from zero is not broken."""
     if whole >= edges.bins - edges.bins // 4:
         return whole - edges.bins + part
     return whole + part
 
 
 @register_jitable(**INLINED)
-def direction(edges, tooth, piece, point, turn):
+def direction(edges, tooth, slice_index, point, turn):
     """Sine and cosine of the angle of a point of the slice (0 middle, 1 and 2 Gauss points)."""
-    s, c = edges.sine[tooth, piece, point], edges.cosine[tooth, piece, point]
+    s, c = edges.sine[tooth, slice_index, point], edges.cosine[tooth, slice_index, point]
     return turn.sine * c + turn.cosine * s, turn.cosine * c - turn.sine * s
 
 
 @register_jitable(**INLINED)
-def force_on_tool(edges, piece, sine, cosine, tangential, radial, axial):
+def force_on_tool(edges, slice_index, sine, cosine, tangential, radial, axial):
     """Force (x, y, z) on the tool from the force on an edge.
 
     Notes
@@ -102,7 +102,7 @@ def force_on_tool(edges, piece, sine, cosine, tangential, radial, axial):
     sin k), with k the axial immersion and p the rotation angle (Altintas and Engin 2001, eq. 12,
     with the axial force counted positive upwards along the axis).
     """
-    sk, ck = edges.sine_immersion[piece], edges.cosine_immersion[piece]
+    sk, ck = edges.sine_immersion[slice_index], edges.cosine_immersion[slice_index]
     in_plane = axial * ck - radial * sk
     return (
         in_plane * sine - tangential * cosine,

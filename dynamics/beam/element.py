@@ -17,7 +17,7 @@ from dynamics.structure.linear_structure import StructureError
 
 # Four points integrate polynomials up to degree seven; the mass needs six.
 _ROOTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
-GAUSS_PLACES, GAUSS_WEIGHTS = 0.5 * (_ROOTS + 1.0), 0.5 * _WEIGHTS
+GAUSS_POSITIONS, GAUSS_WEIGHTS = 0.5 * (_ROOTS + 1.0), 0.5 * _WEIGHTS
 
 ShearFormula = Callable[[float, float], float]
 
@@ -103,7 +103,7 @@ class Segment:
     inner_diameter : float
         Bore, m; 0 for a solid section.
     elements : int
-        Number of elements, at least; places where something is joined add some.
+        Number of elements, at least; positions where something is joined add some.
     shear_coefficient : float or callable
         kappa, or its formula of Poisson's ratio and inner over outer diameter.
     """
@@ -157,8 +157,8 @@ class Segment:
         )
 
 
-def shape_functions(segment: Segment, length: float, place: float) -> NDArray[np.float64]:
-    """Motion (6, 12) of the section at a place between the nodes of an element.
+def shape_functions(segment: Segment, length: float, position: float) -> NDArray[np.float64]:
+    """Motion (6, 12) of the section at a position between the nodes of an element.
 
     Axis along x; per node u, v, w and rotations about x, y, z. Friedman and Kosmatka
     1993; in the x-z plane the slope is minus the rotation about y.
@@ -168,10 +168,10 @@ def shape_functions(segment: Segment, length: float, place: float) -> NDArray[np
     segment : Segment
     length : float
         Of the element, m.
-    place : float
+    position : float
         0 at the first node, 1 at the second.
     """
-    s, phi = place, segment.shear_parameter / length**2
+    s, phi = position, segment.shear_parameter / length**2
     deflection = np.array(
         [
             2 * s**3 - 3 * s**2 - phi * s + 1 + phi,
@@ -201,7 +201,9 @@ def element_mass(segment: Segment, length: float) -> NDArray[np.float64]:
     area, second = segment.area, segment.second_moment
     inertia = segment.material.density * np.array([area] * 3 + [2.0 * second, second, second])
     return _integrated(
-        inertia, length, [shape_functions(segment, length, place) for place in GAUSS_PLACES]
+        inertia,
+        length,
+        [shape_functions(segment, length, position) for position in GAUSS_POSITIONS],
     )
 
 
@@ -220,7 +222,7 @@ def element_stiffness(segment: Segment, length: float) -> NDArray[np.float64]:
         ]
     )
     return _integrated(
-        rigidity, length, [_strains(segment, length, place) for place in GAUSS_PLACES]
+        rigidity, length, [_strains(segment, length, position) for position in GAUSS_POSITIONS]
     )
 
 
@@ -236,9 +238,9 @@ def positive(where: str, what: str, value: float) -> None:
         raise StructureError(f"{where}: {what} is {value}; it must be above 0")
 
 
-def _strains(segment: Segment, length: float, place: float) -> NDArray[np.float64]:
-    """Stretch, two shears, twist and two curvatures (6, 12) at a place of an element."""
-    s, phi = place, segment.shear_parameter / length**2
+def _strains(segment: Segment, length: float, position: float) -> NDArray[np.float64]:
+    """Stretch, two shears, twist and two curvatures (6, 12) at a position of an element."""
+    s, phi = position, segment.shear_parameter / length**2
     shear = np.array([-phi / length, -phi / 2, phi / length, -phi / 2]) / (1 + phi)
     curvature = np.array(
         [6 / length * (2 * s - 1), 6 * s - 4 - phi, -6 / length * (2 * s - 1), 6 * s - 2 + phi]

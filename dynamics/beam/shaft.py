@@ -27,7 +27,7 @@ from dynamics.structure.linear_structure import StructureError
 
 __all__ = ["BeamLine", "Bearing", "Disc", "Material", "Segment", "cowper", "hutchinson"]
 
-# Places closer together than this part of an element share a node: a sliver of an element would
+# Positions closer together than this part of an element share a node: a sliver of an element would
 # spoil the numbers, and the shape functions tell the motion beside a node as well.
 NEAREST_NODES = 0.02
 
@@ -122,12 +122,12 @@ class BeamLine:
     stiffness_damping : float
         Damping matrix over stiffness matrix of the line, s: damping ratio pi f times this.
     stations : sequence of float
-        Further places that get a node, m.
+        Further positions that get a node, m.
 
     Raises
     ------
     StructureError
-        If there is no segment, a place lies off the line, or a direction is not one.
+        If there is no segment, a position lies off the line, or a direction is not one.
     """
 
     name: str
@@ -179,7 +179,7 @@ class BeamLine:
 
     @cached_property
     def nodes(self) -> NDArray[np.float64]:
-        """(nodes,): places of the nodes along the line, m."""
+        """(nodes,): positions of the nodes along the line, m."""
         asked = [item.station for item in (*self.discs, *self.bearings)] + list(self.stations)
         marks = [0.0]
         start = 0.0
@@ -231,7 +231,7 @@ class BeamLine:
                 name=f"{self.name}: {one.name}",
                 first=self.name,
                 second=one.body,
-                at=self.place(one.station),
+                at=self.position(one.station),
                 stiffness=(one.axial, *one.radial, one.torsion, *one.tilt),
                 damping=(
                     one.axial_damping,
@@ -244,24 +244,24 @@ class BeamLine:
             for one in self.bearings
         )
 
-    def place(self, station: float) -> NDArray[np.float64]:
+    def position(self, station: float) -> NDArray[np.float64]:
         """Place (3,) in m on the axis at a station."""
         return self.origin + self._within(station) * self.axes[0]
 
-    def with_nodes_at(self, places: Iterable[ArrayLike]) -> BeamLine:
-        """Same line with nodes at the stations of places (3,) in m."""
-        found = [self._station(place) for place in places]
+    def with_nodes_at(self, positions: Iterable[ArrayLike]) -> BeamLine:
+        """Same line with nodes at the stations of positions (3,) in m."""
+        found = [self._station(position) for position in positions]
         return replace(self, stations=(*self.stations, *found))
 
-    def motion_at(self, place: ArrayLike) -> NDArray[np.float64]:
-        """Displacements and rotations at a place per freedom of the nodes.
+    def motion_at(self, position: ArrayLike) -> NDArray[np.float64]:
+        """Displacements and rotations at a position per freedom of the nodes.
 
-        The section at the place's station moves by the shape functions; a place off the axis
+        The section at the position's station moves by the shape functions; a position off the axis
         moves with it rigidly.
 
         Parameters
         ----------
-        place : (3,) array of float
+        position : (3,) array of float
             m.
 
         Returns
@@ -271,14 +271,16 @@ class BeamLine:
         Raises
         ------
         StructureError
-            If the place lies beyond an end.
+            If the position lies beyond an end.
         """
-        station = self._station(place)
+        station = self._station(position)
         section = self._turned(6).T @ self._own_motion(station)
-        return rigid_motion(np.asarray(place, dtype=np.float64) - self.place(station)) @ section
+        return (
+            rigid_motion(np.asarray(position, dtype=np.float64) - self.position(station)) @ section
+        )
 
-    def _station(self, place: ArrayLike) -> float:
-        where = finite(f'beam "{self.name}"', "place", place, (3,))
+    def _station(self, position: ArrayLike) -> float:
+        where = finite(f'beam "{self.name}"', "position", position, (3,))
         return self._within(float(self.axes[0] @ (where - self.origin)))
 
     def _within(self, station: float) -> float:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from dynamics.control.cascade import DriveController
 from dynamics.control.filters import sampled_response
-from dynamics.control.sampling import delay_response, held_samples_response
+from dynamics.control.sampling import delay_response, sample_and_hold_response
 
 Response = NDArray[np.complex128]
 
@@ -67,7 +67,7 @@ def controller_response(
 
     torque = _torque_per_set_torque(controller, step, f)
     per_set, per_speed = _velocity_controller(controller, f)
-    held = held_samples_response(f, t_v, per_position // per_velocity)
+    held = sample_and_hold_response(f, t_v, per_position // per_velocity)
     per_velocity_set = torque * per_set * held / measuring.transmission
     gain = controller.position.gain * delay_response(f, t_p, position.output_delay)
     per_measured = -per_velocity_set * gain * delay_response(f, t_p, position.measuring)
@@ -116,13 +116,13 @@ def _torque_per_set_torque(
     law = controller.current.input_law(t_c)
     plant = controller.current.plant()
     path = delay_response(f, velocity.sample_time, velocity.output_delay)
-    path = path * held_samples_response(f, t_c, per_velocity // per_current)
+    path = path * sample_and_hold_response(f, t_c, per_velocity // per_current)
     for spec in controller.filters:
         path = path * sampled_response(spec.sampled(t_c), f, t_c)
     regulator = _regulator(controller, f)
     path = path * (law.through + regulator / law.torque_constant)
     path = path * delay_response(f, t_c, current.output_delay) / (1.0 + _loop(controller, f))
-    path = path * held_samples_response(f, step, per_current)
+    path = path * sample_and_hold_response(f, step, per_current)
     return path * (plant.response(f, step) @ plant.torque + plant.feedthrough)
 
 
@@ -138,7 +138,7 @@ def _torque_per_back_emf(
     states = plant.response(f, step)
     dead = delay_response(f, timing.sample_time, timing.output_delay + timing.measuring)
     regulated = _regulator(controller, f) * dead / (1.0 + _loop(controller, f))
-    held = held_samples_response(f, step, controller.steps_per_sample(step)[2])
+    held = sample_and_hold_response(f, step, controller.steps_per_sample(step)[2])
     answer = 1.0 - regulated * held * states[..., 0]
     return -law.back_emf * (states @ plant.torque) * answer
 

@@ -81,7 +81,7 @@ def delay_response(
     return np.exp(-1j * w * sample_time * samples)
 
 
-def held_samples_response(
+def sample_and_hold_response(
     frequencies: ArrayLike, finer: float, count: int
 ) -> NDArray[np.complex128]:
     """Return the response at the same frequency of a hold over count finer samples.

@@ -54,11 +54,11 @@ class DrivenAxis:
             raise StructureError(f"{where}: position is {self.position}; a finite length, in m")
 
     def travel(self, at: ArrayLike | None = None) -> tuple[Term, Term]:
-        """Displacement of the moving against the carrying part along the axis, at a place."""
-        place = self.at if at is None else at
+        """Displacement of the moving against the carrying part along the axis, at a position."""
+        position = self.at if at is None else at
         return (
-            Term(self.moving, self.direction, place),
-            Term(self.carrying, -self.direction, place),
+            Term(self.moving, self.direction, position),
+            Term(self.carrying, -self.direction, position),
         )
 
     def turning(self, part: str, factor: float = 1.0) -> Term:

@@ -37,7 +37,7 @@ TINY = 1e-300
 
 
 @dataclass(frozen=True)
-class Judgement:
+class ModeQuality:
     """What one mode is worth.
 
     Parameters
@@ -144,7 +144,9 @@ def _likeness(model: ModalModel, mode: int) -> NDArray[np.float64]:
     return np.abs(shapes.conj() @ shapes[mode]) ** 2
 
 
-def judge(records: Records, model: ModalModel, mode: int, without: ModalModel) -> Judgement:
+def mode_quality(
+    records: Records, model: ModalModel, mode: int, without: ModalModel
+) -> ModeQuality:
     """Weigh one mode of a model against the model without it.
 
     Parameters
@@ -158,7 +160,7 @@ def judge(records: Records, model: ModalModel, mode: int, without: ModalModel) -
 
     Returns
     -------
-    Judgement
+    ModeQuality
     """
     misfit = max(local_misfit(records, model, mode), LEAST_MISFIT)
     price = parameters_of_a_mode(records) * np.log(2.0 * records.values.size)
@@ -170,7 +172,7 @@ def judge(records: Records, model: ModalModel, mode: int, without: ModalModel) -
     values = np.abs(records.values)
     local = np.max(contribution[near], axis=0) / np.maximum(np.max(values[near], axis=0), TINY)
     local_share = float(np.max(local))
-    return Judgement(
+    return ModeQuality(
         gain,
         local_share,
         peak_share(records, model, mode),

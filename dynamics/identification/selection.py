@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
-from dynamics.identification.mode_quality import inside, judge, without_mode
+from dynamics.identification.mode_quality import inside, mode_quality, without_mode
 from dynamics.identification.refinement import ModalModel, fit_residues, pole_range, refine
 from dynamics.identification.residues import Records
 from dynamics.identification.stabilisation import HIGHEST_DAMPING
@@ -20,8 +20,8 @@ CLEAR_GAIN = 10.0
 #: dampings at which a missing mode is first tried
 TRIAL_DAMPINGS = (0.001, 0.004, 0.015, 0.05, 0.15)
 
-#: places at which a missing mode is tried in one round
-TRIAL_PLACES = 4
+#: frequencies at which a missing mode is tried in one round
+MOST_TRIALS = 4
 
 #: poles that may stand for the modes beyond either end of the lines
 MOST_BEYOND = 2
@@ -57,7 +57,7 @@ def _unsupported(records: Records, model: ModalModel) -> int | None:
     """The mode of least weight that is not supported, None where all are."""
     for mode in _by_contribution(records, model):
         without = without_mode(records, model, mode)
-        first = judge(records, model, mode, without)
+        first = mode_quality(records, model, mode, without)
         distance = _distance(model, mode)
         alone = first.gain > CLEAR_GAIN and distance > 5.0
         if first.supported and (alone or (first.gain > 100.0 * CLEAR_GAIN and distance > 1.5)):
@@ -65,7 +65,7 @@ def _unsupported(records: Records, model: ModalModel) -> int | None:
         if not first.supported:
             return mode
         without = refine(records, without, ROUGH)
-        if not judge(records, model, mode, without).supported:
+        if not mode_quality(records, model, mode, without).supported:
             return mode
     return None
 
@@ -148,7 +148,7 @@ def _by_contribution(records: Records, model: ModalModel) -> list[int]:
 def _best_addition(records: Records, model: ModalModel) -> ModalModel | None:
     """The model with the one more mode that helps most, None where none is supported."""
     for grown, newcomer in _additions(records, model):
-        if judge(records, grown, newcomer, model).supported:
+        if mode_quality(records, grown, newcomer, model).supported:
             return refine(records, grown)
     return None
 
@@ -197,12 +197,12 @@ def _places(records: Records, model: ModalModel) -> list[float]:
     """Frequencies at which the residual stands out most from the noise, Hz."""
     error = (records.values - model.synthesis(records)) / records.noise
     excess = np.sum(np.abs(error) ** 2, axis=1)
-    places: list[float] = []
+    frequencies: list[float] = []
     for width in (1, 5, 21):
         smooth = uniform_filter1d(excess, size=min(width, excess.size), mode="nearest")
         for line in np.argsort(smooth)[::-1]:
             frequency = float(records.frequency[line])
-            if all(abs(frequency - p) > 0.01 * p for p in places):
-                places.append(frequency)
+            if all(abs(frequency - p) > 0.01 * p for p in frequencies):
+                frequencies.append(frequency)
                 break
-    return places[:TRIAL_PLACES]
+    return frequencies[:MOST_TRIALS]

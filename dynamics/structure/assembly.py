@@ -36,7 +36,7 @@ class Assembly:
     columns: Mapping[str, slice]
 
     def motion(self, who: str, part: str, at: ArrayLike) -> NDArray[np.float64]:
-        """Motion (6, n) of a part at a place, m, per freedom; none of the ground.
+        """Motion (6, n) of a part at a position, m, per freedom; none of the ground.
 
         Raises
         ------
@@ -112,15 +112,15 @@ def assembly(
         for what in ("mass", "damping", "stiffness")
     )
     bare = Assembly(LinearStructure(*blocks, points={}), parts, columns)
-    stretches = [joint.stretch(_relative_motion(joint, bare)) for joint in joints]
-    stretches += [bare.row(f'coupling "{one.name}"', one.terms)[None, :] for one in couplings]
+    deformations = [joint.deformation(_relative_motion(joint, bare)) for joint in joints]
+    deformations += [bare.row(f'coupling "{one.name}"', one.terms)[None, :] for one in couplings]
     stiffness = [np.atleast_1d(one.stiffness) for one in (*joints, *couplings)]
     damping = [np.atleast_1d(one.damping) for one in (*joints, *couplings)]
-    _refuse_free_parts(parts, stretches, stiffness, allowed_rigid_motions)
+    _refuse_free_parts(parts, deformations, stiffness, allowed_rigid_motions)
     whole = LinearStructure(
         bare.structure.mass,
-        bare.structure.damping + _over(stretches, damping),
-        bare.structure.stiffness + _over(stretches, stiffness),
+        bare.structure.damping + _over(deformations, damping),
+        bare.structure.stiffness + _over(deformations, stiffness),
         {one.name: bare.motion(f'point "{one.name}"', one.body, one.at) for one in points},
     )
     return Assembly(whole, parts, columns)
@@ -147,10 +147,12 @@ def _with_nodes_where_joined(
     points: Sequence[Point],
     couplings: Sequence[Coupling],
 ) -> list[MeshedPart]:
-    places = [(part, joint.at) for joint in joints for part in (joint.first, joint.second)]
-    places += [(point.body, point.at) for point in points]
-    places += [(term.part, term.at) for one in couplings for term in one.terms]
-    return [beam.with_nodes_at([at for name, at in places if name == beam.name]) for beam in beams]
+    positions = [(part, joint.at) for joint in joints for part in (joint.first, joint.second)]
+    positions += [(point.body, point.at) for point in points]
+    positions += [(term.part, term.at) for one in couplings for term in one.terms]
+    return [
+        beam.with_nodes_at([at for name, at in positions if name == beam.name]) for beam in beams
+    ]
 
 
 def _named(kind: str, items: Iterable) -> dict:
@@ -175,16 +177,16 @@ def _relative_motion(joint: Connector, bare: Assembly) -> NDArray[np.float64]:
     return bare.motion(who, joint.first, joint.at) - bare.motion(who, joint.second, joint.at)
 
 
-def _over(stretches: Sequence[NDArray], rates: Sequence[NDArray]) -> NDArray[np.float64]:
-    if not stretches:
+def _over(deformations: Sequence[NDArray], rates: Sequence[NDArray]) -> NDArray[np.float64]:
+    if not deformations:
         return 0.0
-    rows = np.vstack(stretches)
+    rows = np.vstack(deformations)
     return rows.T @ (np.concatenate(rates)[:, None] * rows)
 
 
 def _refuse_free_parts(
     parts: Mapping[str, Part],
-    stretches: Sequence[NDArray],
+    deformations: Sequence[NDArray],
     stiffness: Sequence[NDArray],
     allowed: int,
 ) -> None:
@@ -195,6 +197,8 @@ def _refuse_free_parts(
         single = part.rigid_motions.shape[1] == 1
         turning += [True] if single else [False] * 3 + [True] * 3
         labels += [f'"{name}" {way}' for way in (("rotation",) if single else DIRECTIONS)]
-    held = [stretch[rate > 0.0] for stretch, rate in zip(stretches, stiffness, strict=True)]
-    rows = np.vstack([*held, np.zeros((1, len(rigid)))]) @ rigid
+    restrained = [
+        deformation[rate > 0.0] for deformation, rate in zip(deformations, stiffness, strict=True)
+    ]
+    rows = np.vstack([*restrained, np.zeros((1, len(rigid)))]) @ rigid
     refuse_free_motion(rows, np.array(turning), labels, allowed)

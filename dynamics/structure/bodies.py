@@ -1,7 +1,7 @@
 """Rigid bodies, the connectors that hold them, and named points on them.
 
 A column, a table or a headstock is a rigid body; guides, joints, feet and bushings are
-connectors with six stiffnesses at a place. Displacements and rotations are small.
+connectors with six stiffnesses at a position. Displacements and rotations are small.
 """
 
 from __future__ import annotations
@@ -40,13 +40,13 @@ class Part(Protocol):
 
     @property
     def rigid_motions(self) -> NDArray[np.float64]:
-        """(n, 6): motions without strain: along and about x, y, z of a place of the part's own.
+        """(n, 6): motions without strain: along and about x, y, z of a position of the part's own.
 
         (n, 1) for what only turns.
         """
 
-    def motion_at(self, place: ArrayLike) -> NDArray[np.float64]:
-        """(6, n): displacements and rotations of the material at a place, per freedom."""
+    def motion_at(self, position: ArrayLike) -> NDArray[np.float64]:
+        """(6, n): displacements and rotations of the material at a position, per freedom."""
 
 
 class MeshedPart(Part, Protocol):
@@ -56,8 +56,8 @@ class MeshedPart(Part, Protocol):
     def connectors(self) -> Sequence[Connector]:
         """The part's own bearings."""
 
-    def with_nodes_at(self, places: Iterable[ArrayLike]) -> MeshedPart:
-        """Same part with nodes at places (3,) in m."""
+    def with_nodes_at(self, positions: Iterable[ArrayLike]) -> MeshedPart:
+        """Same part with nodes at positions (3,) in m."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,14 +131,14 @@ class Body:
         """(6, 6): about the centre of gravity, the body's own freedoms."""
         return np.eye(6)
 
-    def motion_at(self, place: ArrayLike) -> NDArray[np.float64]:
-        """(6, 6): displacements and rotations at a place per freedom of the body."""
-        return rigid_motion(np.asarray(place, dtype=np.float64) - self.centre)
+    def motion_at(self, position: ArrayLike) -> NDArray[np.float64]:
+        """(6, 6): displacements and rotations at a position per freedom of the body."""
+        return rigid_motion(np.asarray(position, dtype=np.float64) - self.centre)
 
 
 @dataclass(frozen=True, eq=False)
 class Connector:
-    """Six springs and dampers between two parts, or a part and ground, at a place.
+    """Six springs and dampers between two parts, or a part and ground, at a position.
 
     Parameters
     ----------
@@ -184,14 +184,14 @@ class Connector:
             raise StructureError(f"{where}: the rows of axes must be perpendicular unit vectors")
         object.__setattr__(self, "axes", axes)
 
-    def stretch(self, relative: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Turn relative motion (6, n) at the place into the connector's own axes."""
+    def deformation(self, relative: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Turn relative motion (6, n) at the position into the connector's own axes."""
         return np.vstack([self.axes @ relative[:3], self.axes @ relative[3:]])
 
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """Named place on a body or beam, moving with it.
+    """Named position on a body or beam, moving with it.
 
     Parameters
     ----------

@@ -19,8 +19,8 @@ from dynamics.reduction.craig_bampton import super_element
 from dynamics.structure.bodies import GROUND, finite, rigid_motion
 from dynamics.structure.linear_structure import LinearStructure, StructureError
 
-#: distance, m, at which a place is a point
-SAME_PLACE = 1e-5
+#: distance, m, at which a position is a point
+SAME_POSITION = 1e-5
 #: of forces in a rigid motion, over what they are sums of
 NO_FORCE = 1e-6
 
@@ -34,7 +34,7 @@ class ImportedPart:
     name : str
     structure : LinearStructure
         Super-element of `reduced_part`: points' six directions in order, modal coordinates.
-    places : mapping of str to (3,) array of float
+    positions : mapping of str to (3,) array of float
         Of all its points, in order, m.
     rail : sequence of str
         Points of a line along which other parts may be joined anywhere.
@@ -47,21 +47,21 @@ class ImportedPart:
 
     name: str
     structure: LinearStructure
-    places: Mapping[str, ArrayLike]
+    positions: Mapping[str, ArrayLike]
     rail: Sequence[str] = ()
 
     def __post_init__(self) -> None:
         where = f'imported part "{self.name}"'
         if self.name == GROUND:
             raise StructureError(f'{where}: "{GROUND}" is what does not move; name it otherwise')
-        places = {
-            name: finite(where, f'place of point "{name}"', place, (3,))
-            for name, place in self.places.items()
+        positions = {
+            name: finite(where, f'position of point "{name}"', position, (3,))
+            for name, position in self.positions.items()
         }
-        object.__setattr__(self, "places", places)
+        object.__setattr__(self, "positions", positions)
         for name in self.rail:
-            if name not in places:
-                known = ", ".join(f'"{one}"' for one in places)
+            if name not in positions:
+                known = ", ".join(f'"{one}"' for one in positions)
                 raise StructureError(
                     f'{where}: rail: there is no point "{name}"; there are {known}'
                 )
@@ -92,27 +92,29 @@ class ImportedPart:
     @cached_property
     def rigid_motions(self) -> NDArray[np.float64]:
         """(n, 6): along and about x, y, z of the first point; modal coordinates rest."""
-        places = list(self.places.values())
+        positions = list(self.positions.values())
         motions = np.zeros((self.structure.size, 6))
-        motions[: 6 * len(places)] = np.vstack([rigid_motion(one - places[0]) for one in places])
+        motions[: 6 * len(positions)] = np.vstack(
+            [rigid_motion(one - positions[0]) for one in positions]
+        )
         return motions
 
-    def motion_at(self, place: ArrayLike) -> NDArray[np.float64]:
-        """Displacements and rotations (6, n) at a place: a point, or beside the rail.
+    def motion_at(self, position: ArrayLike) -> NDArray[np.float64]:
+        """Displacements and rotations (6, n) at a position: a point, or beside the rail.
 
-        Beside the rail the place follows the nearest place on the rail rigidly.
+        Beside the rail the position follows the nearest position on the rail rigidly.
 
         Raises
         ------
         StructureError
-            If the place is no point and there is no rail, or it lies off its ends.
+            If the position is no point and there is no rail, or it lies off its ends.
         """
-        at = np.asarray(place, dtype=np.float64)
-        for name, point in self.places.items():
-            if np.linalg.norm(at - point) <= SAME_PLACE:
+        at = np.asarray(position, dtype=np.float64)
+        for name, point in self.positions.items():
+            if np.linalg.norm(at - point) <= SAME_POSITION:
                 return self.structure.points[name]
         if not self.rail:
-            points = "; ".join(f'"{name}" at {_shown(one)}' for name, one in self.places.items())
+            points = "; ".join(f'"{name}" at {_shown(one)}' for name, one in self.positions.items())
             raise StructureError(
                 f'imported part "{self.name}" has no point at {_shown(at)} m; there are {points}'
             )
@@ -120,11 +122,11 @@ class ImportedPart:
 
     def shifted(self, shift: ArrayLike) -> ImportedPart:
         """Same part elsewhere, shifted by (3,) in m."""
-        moved = {name: place + np.asarray(shift) for name, place in self.places.items()}
-        return replace(self, places=moved)
+        moved = {name: position + np.asarray(shift) for name, position in self.positions.items()}
+        return replace(self, positions=moved)
 
     def _on_rail(self, at: NDArray[np.float64]) -> NDArray[np.float64]:
-        ends = [self.places[name] for name in self.rail]
+        ends = [self.positions[name] for name in self.rail]
         best, chosen = np.inf, None
         for number, (start, end) in enumerate(itertools.pairwise(ends)):
             along = end - start
@@ -134,7 +136,7 @@ class ImportedPart:
             if distance < best:
                 off = abs(share - share_within) * np.linalg.norm(along)
                 beyond = (share < 0.0 and number == 0) or (share > 1.0 and number == len(ends) - 2)
-                best, chosen = distance, (number, share_within, beyond and off > SAME_PLACE)
+                best, chosen = distance, (number, share_within, beyond and off > SAME_POSITION)
         number, share, beyond = chosen
         if beyond:
             raise StructureError(
@@ -149,7 +151,7 @@ class ImportedPart:
 def reduced_part(
     name: str,
     structure: LinearStructure,
-    places: Mapping[str, ArrayLike],
+    positions: Mapping[str, ArrayLike],
     rail: Sequence[str] = (),
     highest: float = np.inf,
 ) -> ImportedPart:
@@ -160,7 +162,7 @@ def reduced_part(
     name : str
     structure : LinearStructure
         Free, with points that have all six directions.
-    places : mapping of str to (3,) array of float
+    positions : mapping of str to (3,) array of float
         m.
     rail : sequence of str
     highest : float
@@ -171,15 +173,15 @@ def reduced_part(
     StructureError
         As for `super_element` and `ImportedPart`.
     """
-    for point in places:
+    for point in positions:
         lacking = ~np.any(structure.points[point] != 0.0, axis=1)
         if np.any(lacking):
             raise StructureError(
                 f'imported part "{name}": point "{point}" lacks displacements or rotations; '
                 "tie it to nodes that are not on one line"
             )
-    return ImportedPart(name, super_element(structure, list(places), highest), places, rail)
+    return ImportedPart(name, super_element(structure, list(positions), highest), positions, rail)
 
 
-def _shown(place: NDArray[np.float64]) -> str:
-    return "(" + ", ".join(f"{part:g}" for part in place) + ")"
+def _shown(position: NDArray[np.float64]) -> str:
+    return "(" + ", ".join(f"{part:g}" for part in position) + ")"

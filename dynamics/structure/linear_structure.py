@@ -98,10 +98,10 @@ class LinearStructure:
         mass, damping, stiffness = (
             _dense(part) for part in (self.mass, self.damping, self.stiffness)
         )
-        for place, line in enumerate(np.atleast_1d(np.asarray(frequency, dtype=np.float64))):
+        for index, line in enumerate(np.atleast_1d(np.asarray(frequency, dtype=np.float64))):
             omega = 2.0 * np.pi * line
             dynamic = stiffness - omega**2 * mass + 1j * omega * damping
-            result[place] = rows @ np.linalg.solve(dynamic, rows.T)
+            result[index] = rows @ np.linalg.solve(dynamic, rows.T)
         return result
 
 

@@ -17,7 +17,9 @@ RANK_TOLERANCE = 1e-9
 NAMED = 0.05
 
 
-def free_motions(held: NDArray[np.float64], turning: NDArray[np.bool_]) -> NDArray[np.float64]:
+def free_motions(
+    restrained: NDArray[np.float64], turning: NDArray[np.bool_]
+) -> NDArray[np.float64]:
     """Motions of parts that strain no spring.
 
     Whatever strains no part is a rigid motion of every part, so the rank of the springs on those
@@ -25,7 +27,7 @@ def free_motions(held: NDArray[np.float64], turning: NDArray[np.bool_]) -> NDArr
 
     Parameters
     ----------
-    held : (springs, n) array of float
+    restrained : (springs, n) array of float
         Stretch of each spring per rigid motion of each part: displacements (m), rotations (rad).
     turning : (n,) array of bool
         Which of them are rotations.
@@ -35,8 +37,8 @@ def free_motions(held: NDArray[np.float64], turning: NDArray[np.bool_]) -> NDArr
     (n, free) array of float
         Rotations times the longest lever. Each motion has a 1 where the others have 0.
     """
-    lever = np.max(np.abs(held[:, turning]), initial=0.0)
-    rows = held / np.where(turning, lever if lever > 0.0 else 1.0, 1.0)
+    lever = np.max(np.abs(restrained[:, turning]), initial=0.0)
+    rows = restrained / np.where(turning, lever if lever > 0.0 else 1.0, 1.0)
     norms = np.linalg.norm(rows, axis=1)
     rows = rows[norms > 0.0] / norms[norms > 0.0, None]
     if not len(rows):
@@ -49,7 +51,7 @@ def free_motions(held: NDArray[np.float64], turning: NDArray[np.bool_]) -> NDArr
 
 
 def refuse_free_motion(
-    held: NDArray[np.float64],
+    restrained: NDArray[np.float64],
     turning: NDArray[np.bool_],
     labels: Sequence[str],
     allowed: int,
@@ -58,7 +60,7 @@ def refuse_free_motion(
 
     Parameters
     ----------
-    held, turning
+    restrained, turning
         As for `free_motions`.
     labels : sequence of str
         Names of the rigid motions, (n,).
@@ -69,7 +71,7 @@ def refuse_free_motion(
     StructureError
         Naming parts and directions.
     """
-    free = free_motions(held, turning)
+    free = free_motions(restrained, turning)
     if free.shape[1] <= allowed:
         return
     motions = [

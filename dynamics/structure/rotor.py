@@ -69,6 +69,6 @@ class Rotor:
         """(1, 1): its angle."""
         return np.ones((1, 1))
 
-    def motion_at(self, place: ArrayLike) -> NDArray[np.float64]:  # noqa: ARG002
-        """(6, 1): rotation about the axis, wherever the place."""
+    def motion_at(self, position: ArrayLike) -> NDArray[np.float64]:  # noqa: ARG002
+        """(6, 1): rotation about the axis, wherever the position."""
         return np.concatenate([np.zeros(3), self.axis])[:, None]

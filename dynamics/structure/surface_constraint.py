@@ -85,7 +85,7 @@ class Nodes:
         rows[:, : size // count] = np.arange(size).reshape(count, -1)
         return cls(names, np.asarray(coordinates, dtype=np.float64), rows)
 
-    def places(self, names: Sequence[int], where: str) -> NDArray[np.int64]:
+    def indices(self, names: Sequence[int], where: str) -> NDArray[np.int64]:
         """Where nodes stand in the table.
 
         Raises
@@ -93,7 +93,7 @@ class Nodes:
         StructureError
             If one is unknown or named twice; the message begins with `where`.
         """
-        known = {int(name): place for place, name in enumerate(self.names)}
+        known = {int(name): index for index, name in enumerate(self.names)}
         if not len(names):
             raise StructureError(f"{where}: no nodes given")
         for name in names:
@@ -169,17 +169,17 @@ def interpolation(point: InterpolatedPoint, nodes: Nodes, size: int) -> NDArray[
         If the nodes do not tell a rotation, being on one line, or a weight is not positive.
     """
     where = f'point "{point.name}"'
-    places = nodes.places(point.nodes, where)
-    weights = np.ones(len(places)) if point.weights is None else point.weights
-    weights = finite(where, "weights", weights, (len(places),))
+    indices = nodes.indices(point.nodes, where)
+    weights = np.ones(len(indices)) if point.weights is None else point.weights
+    weights = finite(where, "weights", weights, (len(indices),))
     if np.any(weights <= 0.0):
         raise StructureError(f"{where}: weights must be above 0")
     at = finite(where, "at", point.at, (3,))
-    rigid = np.vstack([rigid_motion(place - at)[:3] for place in nodes.coordinates[places]])
-    _refuse_narrow(nodes.coordinates[places], where)
+    rigid = np.vstack([rigid_motion(one - at)[:3] for one in nodes.coordinates[indices]])
+    _refuse_narrow(nodes.coordinates[indices], where)
     root = np.sqrt(np.repeat(weights / weights.max(), 3))
     share = np.linalg.pinv(root[:, None] * rigid, rcond=1e-14) * root
-    rows = nodes.rows[places, :3].ravel()
+    rows = nodes.rows[indices, :3].ravel()
     motion = np.zeros((6, size))
     motion[:, rows[rows >= 0]] = share[:, rows >= 0]
     return motion
@@ -228,29 +228,29 @@ def rigid_transformation(
     values = np.concatenate([np.ones(len(kept)), np.array(values)])
     left = len(kept) + 6 * len(surfaces)
     transformation = scipy.sparse.csr_array((values, (rows, columns)), shape=(size, left))
-    first = {rigid.name: len(kept) + 6 * place for place, rigid in enumerate(surfaces)}
+    first = {rigid.name: len(kept) + 6 * index for index, rigid in enumerate(surfaces)}
     return transformation, first
 
 
 def _followers(surface: RigidSurface, nodes: Nodes) -> list[tuple[int, NDArray[np.float64]]]:
     """Row of each freedom of a surface's nodes, and its motion (6,) per freedom of the point."""
     where = f'rigid surface "{surface.name}"'
-    places = nodes.places(surface.nodes, where)
+    indices = nodes.indices(surface.nodes, where)
     at = finite(where, "at", surface.at, (3,))
     found = []
-    for place in places:
-        rows = nodes.rows[place]
+    for index in indices:
+        rows = nodes.rows[index]
         turns = np.any(rows[3:] >= 0)
         for direction, row in enumerate(rows):
             if row < 0 and (direction < 3 or turns):
                 raise StructureError(
-                    f"{where}: node {nodes.names[place]} is held in {DIRECTIONS[direction]} and "
+                    f"{where}: node {nodes.names[index]} is held in {DIRECTIONS[direction]} and "
                     "cannot follow the point"
                 )
-        motion = rigid_motion(nodes.coordinates[place] - at)
+        motion = rigid_motion(nodes.coordinates[index] - at)
         found += [(int(row), line) for row, line in zip(rows, motion, strict=True) if row >= 0]
-    if not np.any(nodes.rows[places, 3:] >= 0):
-        _refuse_narrow(nodes.coordinates[places], where)
+    if not np.any(nodes.rows[indices, 3:] >= 0):
+        _refuse_narrow(nodes.coordinates[indices], where)
     return found
 
 

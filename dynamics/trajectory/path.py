@@ -166,9 +166,9 @@ class Path:
         return position, tangent, curvature
 
 
-def circle(centre: ArrayLike, radius: float, start_angle: float = 0.0, turns: int = 1) -> Path:
-    """Return one full turn; turns -1: clockwise."""
-    return Path((Arc(tuple(centre), radius, start_angle, math.copysign(2.0 * math.pi, turns)),))
+def circle(centre: ArrayLike, radius: float, start_angle: float = 0.0, direction: int = 1) -> Path:
+    """Return one full revolution; direction -1: clockwise."""
+    return Path((Arc(tuple(centre), radius, start_angle, math.copysign(2.0 * math.pi, direction)),))
 
 
 def polyline(points: ArrayLike, fillet_radius: float = 0.0) -> Path:
@@ -196,11 +196,11 @@ def polyline(points: ArrayLike, fillet_radius: float = 0.0) -> Path:
     if lengths.min() <= _ROUNDING * lengths.max():
         raise TrajectoryError(f"polyline: points {lengths.argmin()} and next are the same")
     unit = sides / lengths[:, None]
-    turns = np.arctan2(
+    turning = np.arctan2(
         unit[:-1, 0] * unit[1:, 1] - unit[:-1, 1] * unit[1:, 0], (unit[:-1] * unit[1:]).sum(axis=1)
     )
     cuts = np.zeros(len(corners))
-    cuts[1:-1] = fillet_radius * np.abs(np.tan(0.5 * turns))
+    cuts[1:-1] = fillet_radius * np.abs(np.tan(0.5 * turning))
     short = lengths * (1.0 + _ROUNDING) - cuts[:-1] - cuts[1:]
     if short.min() < 0.0:
         i = int(short.argmin())
@@ -208,7 +208,7 @@ def polyline(points: ArrayLike, fillet_radius: float = 0.0) -> Path:
             f"polyline: fillets of radius {fillet_radius:g} m take {cuts[i] + cuts[i + 1]:g} m of "
             f"side {i}, which is {lengths[i]:g} m long"
         )
-    return Path(_rounded(corners, unit, turns, cuts, fillet_radius, lengths.max()))
+    return Path(_rounded(corners, unit, turning, cuts, fillet_radius, lengths.max()))
 
 
 def square(side: float, fillet_radius: float, centre: ArrayLike = (0.0, 0.0)) -> Path:
@@ -234,7 +234,7 @@ def square(side: float, fillet_radius: float, centre: ArrayLike = (0.0, 0.0)) ->
 def _rounded(
     corners: NDArray[np.float64],
     unit: NDArray[np.float64],
-    turns: NDArray[np.float64],
+    turning: NDArray[np.float64],
     cuts: NDArray[np.float64],
     radius: float,
     size: float,
@@ -243,14 +243,14 @@ def _rounded(
     elements: list[Line | Arc] = []
     begin = corners[0]
     for i, direction in enumerate(unit):
-        turn = turns[i] if i < len(turns) else math.inf
+        turn = turning[i] if i < len(turning) else math.inf
         if abs(turn) <= _ROUNDING:
             continue
         end = corners[i + 1] - cuts[i + 1] * direction
         if math.dist(begin, end) > _ROUNDING * size:
             elements.append(Line(tuple(begin), tuple(end)))
         begin = end
-        if radius > 0.0 and i < len(turns):
+        if radius > 0.0 and i < len(turning):
             sense = math.copysign(1.0, turn)
             inward = sense * np.array([-direction[1], direction[0]])
             angle = math.atan2(-inward[1], -inward[0])

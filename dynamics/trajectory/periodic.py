@@ -129,7 +129,7 @@ class CircleMotion:
         m.
     feed : float
         Along the circle, m/s.
-    turns : float
+    revolutions : float
         How many; negative: clockwise.
     start_angle : float
         rad from the first axis.
@@ -137,31 +137,31 @@ class CircleMotion:
     Raises
     ------
     TrajectoryError
-        If radius or feed are not above 0, or turns is 0.
+        If radius or feed are not above 0, or revolutions is 0.
     """
 
     centre: ArrayLike
     radius: float
     feed: float
-    turns: float = 1.0
+    revolutions: float = 1.0
     start_angle: float = 0.0
 
     def __post_init__(self):
         axes_vector("circle", "centre", self.centre, 2)
         require_positive("circle", "radius", self.radius)
         require_positive("circle", "feed", self.feed)
-        require_positive("circle", "number of turns", abs(self.turns))
+        require_positive("circle", "number of revolutions", abs(self.revolutions))
         if not math.isfinite(self.start_angle):
             raise TrajectoryError(f"circle: start angle is {self.start_angle}; a finite angle, rad")
 
     @property
     def duration(self) -> float:
         """From start to end, s."""
-        return 2.0 * math.pi * abs(self.turns) * self.radius / self.feed
+        return 2.0 * math.pi * abs(self.revolutions) * self.radius / self.feed
 
     def at(self, time: ArrayLike) -> Motion:
         """Return position, velocity and acceleration of both axes at times, s."""
-        w = math.copysign(self.feed / self.radius, self.turns)
+        w = math.copysign(self.feed / self.radius, self.revolutions)
         time = np.asarray(time, dtype=np.float64)
         angle = self.start_angle + w * np.clip(time, 0.0, self.duration)
         outward = self.radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1)

@@ -23,7 +23,7 @@ from chatter.io.formats.universal import (
     Dataset,
     FileUnits,
     file_units,
-    looks_universal,
+    is_universal,
     read_datasets,
 )
 from chatter.io.table import Column, Table
@@ -402,5 +402,5 @@ UFF58 = Format(
     extensions=(".uff", ".unv", ".uf"),
     read_frfs=read_frfs,
     read_signals=read_time_records,
-    recognises=looks_universal,
+    recognises=is_universal,
 )

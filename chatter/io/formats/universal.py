@@ -54,7 +54,7 @@ class FileUnits:
     force: float = 1.0
 
 
-def looks_universal(head: bytes) -> bool:
+def is_universal(head: bytes) -> bool:
     """Tell a universal file by its first lines: -1, then the number of a dataset."""
     lines = head.lstrip(b"\xef\xbb\xbf\r\n\t ").split(b"\n", 3)[:3]
     if lines[0].strip() != b"-1":

@@ -28,7 +28,7 @@ class HammerTest:
         Hz; where force and coherence suffice.
     used : tuple of str
         Names of the records averaged.
-    left_out : tuple of Finding
+    excluded : tuple of Finding
         Faults for which records were left out; a record may have several.
     kept : tuple of Finding
         Faults of records averaged all the same, because they were asked to be kept.
@@ -40,7 +40,7 @@ class HammerTest:
     record_frfs: tuple[Frf, ...]
     usable_band: tuple[float, float]
     used: tuple[str, ...]
-    left_out: tuple[Finding, ...]
+    excluded: tuple[Finding, ...]
     kept: tuple[Finding, ...]
     remarks: tuple[Finding, ...]
 
@@ -110,7 +110,7 @@ def hammer_test(
         record_frfs=tuple(singles),
         usable_band=usable_band(spectra),
         used=names,
-        left_out=tuple(finding for finding in decisive if finding.record in faulty),
+        excluded=tuple(finding for finding in decisive if finding.record in faulty),
         kept=tuple(finding for finding in decisive if finding.record not in faulty),
         remarks=tuple(finding for finding in findings if not finding.is_decisive),
     )

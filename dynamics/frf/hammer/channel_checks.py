@@ -24,7 +24,7 @@ _SPIKE_OVER_NEIGHBOURS = 12.0
 _SIXTH_DIFFERENCE_NORM = float(np.sqrt(1.0 + 2.0 * (225.0 + 36.0 + 1.0) / 400.0))
 #: an overshoot that clipping must have cut off, as a share of the peak
 _CLIPPED_SHARE = 0.015
-#: a stretch of equal values up to this long may be a dropout, samples
+#: a segment of equal values up to this long may be a dropout, samples
 _LONGEST_DROPOUT = 40
 
 
@@ -40,7 +40,7 @@ def channel_findings(record: HammerRecord, hit: Hit) -> list[Finding]:
     Returns
     -------
     list of Finding
-        At most one a channel: a clipped or stuck stretch has edges that look like dropouts.
+        At most one a channel: a clipped or stuck segment has edges that look like dropouts.
     """
     findings = []
     for name in ("force", "response"):
@@ -118,7 +118,7 @@ def _glides(channel: _Channel, start: int, length: int) -> bool:
 
 
 def _jumps(channel: _Channel, start: int, length: int) -> bool:
-    """True where a signal leaves its course at both ends of a stretch, which sticking does not."""
+    """True where a signal leaves its course at both ends of a segment, which sticking does not."""
     signal, reach = channel.signal, 3
     if start < reach or start + length + reach > signal.size:
         return False

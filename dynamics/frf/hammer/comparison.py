@@ -12,9 +12,9 @@ from scipy.stats import chi2
 from dynamics.frf.hammer.consensus import AlignedSet, common_function, predicted, unpredictable
 from dynamics.frf.hammer.hit import NORMAL_MAD
 
-#: lengths of the stretches in which the residual is judged, samples
-STRETCHES = (1, 8, 32, 128, 512)
-#: chance that noise alone exceeds the limit of a stretch
+#: lengths of the segments in which the residual is judged, samples
+SEGMENT_LENGTHS = (1, 8, 32, 128, 512)
+#: chance that noise alone exceeds the limit of a segment
 _CHANCE = 1e-10
 #: share of the largest response below which nothing left over matters
 _LEAST_SHARE = 0.002
@@ -74,7 +74,7 @@ class Excess:
     start, stop : int
         Stretch of the aligned record, samples.
     size : float
-        Largest absolute residual in the stretch.
+        Largest absolute residual in the segment.
     """
 
     ratio: float
@@ -166,7 +166,7 @@ def _peak(correlation: NDArray[np.float64]) -> tuple[float, float]:
 
 
 def _means(values: NDArray[np.float64], length: int) -> NDArray[np.float64]:
-    """Means of every stretch of `length` samples, by its first sample."""
+    """Means of every segment of `length` samples, by its first sample."""
     sums = np.concatenate(([0.0], np.cumsum(values)))
     return np.maximum(sums[length:] - sums[:-length], 0.0) / length
 
@@ -191,7 +191,7 @@ def largest_excess(comparison: Comparison, tolerance: float) -> Excess:
     allowed = tolerance * comparison.envelope + comparison.unpredictable
     allowed += _LEAST_SHARE * float(np.max(comparison.envelope))
     square = comparison.residual**2
-    for length in STRETCHES:
+    for length in SEGMENT_LENGTHS:
         if length > square.size:
             break
         by_chance = float(np.sqrt(chi2.isf(_CHANCE, length) / length)) * _NOISE_MARGIN

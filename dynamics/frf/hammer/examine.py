@@ -63,7 +63,7 @@ def examine_records(records: Sequence[HammerRecord]) -> list[Finding]:
     names = {finding.record for finding in late}
     sound = [(record, hit) for record, hit in sound if record.name not in names]
     findings += findings_against_each_other(sound)
-    order = {record.name: place for place, record in enumerate(records)}
+    order = {record.name: index for index, record in enumerate(records)}
     return sorted(findings, key=lambda finding: order[finding.record])
 
 

@@ -138,7 +138,7 @@ def noise_of(signal: NDArray[np.float64]) -> float:
         level = float(np.median(np.abs(fourth)))
     else:
         blocks = np.median(np.abs(fourth[: count * _BLOCK].reshape(count, _BLOCK)), axis=1)
-        blocks = np.sort(blocks[blocks > 0.0])  # a stuck stretch has no noise to show
+        blocks = np.sort(blocks[blocks > 0.0])  # a stuck segment has no noise to show
         quiet = blocks[: max(1, blocks.size // 2)]
         level = float(np.median(quiet)) if quiet.size else 0.0
     return max(level / NORMAL_MAD, resolution_of(signal) / 3.0)

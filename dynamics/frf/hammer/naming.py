@@ -12,7 +12,7 @@ from dynamics.frf.hammer.findings import Fault, Finding
 from dynamics.frf.hammer.record import HammerRecord
 
 if TYPE_CHECKING:
-    from dynamics.frf.hammer.record_comparison import Judgement
+    from dynamics.frf.hammer.record_comparison import RecordAssessment
 
 #: factors by which a wrong unit or sensitivity scales a channel
 _UNIT_SLIPS = {
@@ -32,16 +32,18 @@ _EXPLAINED = 0.15
 _SLOW = 256
 
 
-def named(record: HammerRecord, aligned: AlignedSet, judgement: Judgement, judges: int) -> Finding:
+def named(
+    record: HammerRecord, aligned: AlignedSet, assessment: RecordAssessment, others: int
+) -> Finding:
     """Name the fault of a record that deviates from the others, with the evidence.
 
     Parameters
     ----------
     record : HammerRecord
     aligned : AlignedSet
-    judgement : Judgement
+    assessment : RecordAssessment
         With a severity above 1.
-    judges : int
+    others : int
         Number of other records it was judged by.
 
     Returns
@@ -49,23 +51,23 @@ def named(record: HammerRecord, aligned: AlignedSet, judgement: Judgement, judge
     Finding
         Decisive where at least two other records agree against it.
     """
-    fault, reason = _fault_and_reason(record, aligned, judgement)
-    if judges < 2:
+    fault, reason = _fault_and_reason(record, aligned, assessment)
+    if others < 2:
         return Finding(
             record.name,
             "not_comparable",
             f"{reason}; with one other record to judge by it cannot be told which is at fault",
             is_decisive=False,
         )
-    if judges == 2:
+    if others == 2:
         reason += " (judged by two records only)"
     return Finding(record.name, fault, reason)
 
 
 def _fault_and_reason(
-    record: HammerRecord, aligned: AlignedSet, judgement: Judgement
+    record: HammerRecord, aligned: AlignedSet, assessment: RecordAssessment
 ) -> tuple[Fault, str]:
-    comparison, limits = judgement.comparison, judgement.limits
+    comparison, limits = assessment.comparison, assessment.limits
     if comparison.misfit > _UNRELATED:
         return "no_coherence", (
             f"the response does not follow the force as in the other records: "
@@ -74,17 +76,17 @@ def _fault_and_reason(
     gain_is_off = abs(comparison.gain - 1.0) > limits.gain
     delay_is_off = abs(comparison.delay) > limits.delay
     if comparison.misfit < max(_EXPLAINED, limits.misfit) and (gain_is_off or delay_is_off):
-        return _gain_or_delay(record, judgement)
-    if judgement.excess.ratio > 1.0:
-        return _local(record, aligned, judgement)
+        return _gain_or_delay(record, assessment)
+    if assessment.excess.ratio > 1.0:
+        return _local(record, aligned, assessment)
     return "unlike_the_others", (
         f"the response differs from what the other records predict by {comparison.misfit:.1%} of "
         f"its root energy (gain {comparison.gain:.3f}, delay {comparison.delay:+.2f} samples)"
     )
 
 
-def _gain_or_delay(record: HammerRecord, judgement: Judgement) -> tuple[Fault, str]:
-    comparison, limits = judgement.comparison, judgement.limits
+def _gain_or_delay(record: HammerRecord, assessment: RecordAssessment) -> tuple[Fault, str]:
+    comparison, limits = assessment.comparison, assessment.limits
     gain, delay = comparison.gain, comparison.delay
     if abs(delay) > limits.delay:
         seconds = abs(delay) / record.sampling_rate
@@ -110,9 +112,11 @@ def _unit_slip(gain: float) -> str:
     return ""
 
 
-def _local(record: HammerRecord, aligned: AlignedSet, judgement: Judgement) -> tuple[Fault, str]:
-    """Name what is left over in one stretch of the record."""
-    comparison, excess = judgement.comparison, judgement.excess
+def _local(
+    record: HammerRecord, aligned: AlignedSet, assessment: RecordAssessment
+) -> tuple[Fault, str]:
+    """Name what is left over in one segment of the record."""
+    comparison, excess = assessment.comparison, assessment.excess
     residual, response = comparison.residual, comparison.response
     near = slice(max(excess.start - _SLOW, 0), excess.stop + _SLOW)
     square = residual[near] ** 2

@@ -52,7 +52,7 @@ class Limits:
 
 
 @dataclass(frozen=True)
-class Judgement:
+class RecordAssessment:
     """A record against the others: how far beyond the limits, and in what."""
 
     comparison: Comparison
@@ -96,11 +96,11 @@ def findings_against_each_other(sound: list[tuple[HammerRecord, Hit]]) -> list[F
         return _undecided(records, difference)
     members = _without_offenders(aligned, members, agreement)
     findings = [_noisy(aligned, row, members) for row in range(len(records))]
-    for row, judgement in enumerate(_judged(aligned, members, agreement)):
-        if findings[row] is not None or judgement.severity <= 1.0:
+    for row, assessment in enumerate(_assessed(aligned, members, agreement)):
+        if findings[row] is not None or assessment.severity <= 1.0:
             continue
-        judges = int(members.sum()) - int(members[row])
-        findings[row] = named(records[row], aligned, judgement, judges)
+        others = int(members.sum()) - int(members[row])
+        findings[row] = named(records[row], aligned, assessment, others)
     return [finding for finding in findings if finding is not None]
 
 
@@ -129,16 +129,18 @@ def _undecided(records: list[HammerRecord], difference: NDArray[np.float64]) -> 
     ]
 
 
-def _judged(aligned: AlignedSet, members: NDArray[np.bool_], agreement: float) -> list[Judgement]:
+def _assessed(
+    aligned: AlignedSet, members: NDArray[np.bool_], agreement: float
+) -> list[RecordAssessment]:
     """Judge every record by the members, itself left out, and by how far those scatter."""
     comparisons = [compare(aligned, row, members) for row in range(members.size)]
-    judgements = []
+    assessments = []
     for row, comparison in enumerate(comparisons):
         others = [comparisons[i] for i in np.flatnonzero(members) if i != row]
         limits = _limits(others, agreement)
         excess = largest_excess(comparison, limits.tolerance)
-        judgements.append(Judgement(comparison, excess, limits))
-    return judgements
+        assessments.append(RecordAssessment(comparison, excess, limits))
+    return assessments
 
 
 def _without_offenders(
@@ -147,10 +149,10 @@ def _without_offenders(
     """Members after the worst offenders have left one by one."""
     members = members.copy()
     while members.sum() > 2:
-        judgements = _judged(aligned, members, agreement)
+        assessments = _assessed(aligned, members, agreement)
         severities = [
-            judgement.severity if member else 0.0
-            for judgement, member in zip(judgements, members, strict=True)
+            assessment.severity if member else 0.0
+            for assessment, member in zip(assessments, members, strict=True)
         ]
         worst = int(np.argmax(severities))
         if severities[worst] <= 1.0:

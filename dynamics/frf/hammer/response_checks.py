@@ -79,8 +79,8 @@ def _no_answer(record: HammerRecord, hit: Hit) -> Finding | None:
     before = record.response[: max(hit.onset - 2, 0)]
     noise = float(np.std(before)) if before.size >= 32 else hit.response.noise
     noise = max(noise, hit.response.noise)
-    stretch = record.response[hit.onset : hit.end + max(64, record.response.size // 8)]
-    peak = float(np.max(np.abs(stretch - hit.response.level)))
+    segment = record.response[hit.onset : hit.end + max(64, record.response.size // 8)]
+    peak = float(np.max(np.abs(segment - hit.response.level)))
     if peak >= _LEAST_PEAK_OVER_NOISE * noise:
         return None
     return Finding(

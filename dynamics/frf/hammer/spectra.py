@@ -250,8 +250,8 @@ def usable_band(spectra: Spectra) -> tuple[float, float]:
     peak = int(np.argmax(np.where(good, spectra.response_power, 0.0)))
     lines = frequency[good]
     wide = np.flatnonzero(lines[1:] > (1.0 + _WIDEST_DIP) * lines[:-1] + 2.0 * frequency[1])
-    place = int(np.searchsorted(lines, frequency[peak]))
-    below, above = wide[wide < place], wide[wide >= place]
+    index = int(np.searchsorted(lines, frequency[peak]))
+    below, above = wide[wide < index], wide[wide >= index]
     first = int(below[-1]) + 1 if below.size else 0
     last = int(above[0]) if above.size else lines.size - 1
     return float(lines[first]), float(lines[last])

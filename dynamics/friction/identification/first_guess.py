@@ -1,4 +1,4 @@
-"""Starting values of a friction law from the linear fit and the way a reversal takes."""
+"""Starting values of a friction law from the linear fit and the distance a reversal takes."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from dynamics.friction.tanh_hysteresis import TanhHysteresis
 _STATIC = 1.2
 
 
-def reversal_way(record: DriveRecord, linear: LinearFriction, low_pass: LowPass) -> float:
-    """Median way after a reversal at which friction changes its sign, m or rad.
+def reversal_distance(record: DriveRecord, linear: LinearFriction, low_pass: LowPass) -> float:
+    """Median distance after a reversal at which friction changes its sign, m or rad.
 
     Raises
     ------
@@ -31,37 +31,37 @@ def reversal_way(record: DriveRecord, linear: LinearFriction, low_pass: LowPass)
     friction = friction - linear.value("offset")
     velocity = low_pass.apply(record.velocity, record.sample_time)
     turns = np.flatnonzero(velocity[1:] * velocity[:-1] < 0.0) + 1
-    ways = []
+    distances = []
     for k, start in enumerate(turns):
         stop = turns[k + 1] if k + 1 < len(turns) else len(velocity)
         against = friction[start:stop] * np.sign(velocity[start]) > 0.0
         if not against[0] and against.any():
-            ways.append(abs(position[start + int(np.argmax(against))] - position[start]))
-    ways = [way for way in ways if way > 0.0]
-    if not ways:
+            distances.append(abs(position[start + int(np.argmax(against))] - position[start]))
+    distances = [distance for distance in distances if distance > 0.0]
+    if not distances:
         raise MeasurementError(
             f"{record.name}: no reversal shows the presliding of friction; record a slow reversal"
         )
-    return float(np.median(ways))
+    return float(np.median(distances))
 
 
-def guess_lugre(linear: LinearFriction, way: float, speed: float) -> LuGre:
+def guess_lugre(linear: LinearFriction, distance: float, speed: float) -> LuGre:
     """LuGre friction with the sliding force of a linear fit.
 
     Parameters
     ----------
     linear : LinearFriction
-    way : float
-        Of `reversal_way`: a Dahl curve crosses zero at g ln 2.
+    distance : float
+        Of `reversal_distance`: a Dahl curve crosses zero at g ln 2.
     speed : float
         Order of magnitude of the Stribeck velocity, m/s or rad/s.
     """
     coulomb = _coulomb(linear)
-    stiffness = coulomb * math.log(2.0) / way
+    stiffness = coulomb * math.log(2.0) / distance
     return LuGre(stiffness, 0.0, _viscous(linear), coulomb, _STATIC * coulomb, speed)
 
 
-def guess_tanh(linear: LinearFriction, way: float, speed: float) -> TanhHysteresis:
+def guess_tanh(linear: LinearFriction, distance: float, speed: float) -> TanhHysteresis:
     """Tanh hysteresis with the sliding force of a linear fit; parameters as `guess_lugre`.
 
     Notes
@@ -71,7 +71,7 @@ def guess_tanh(linear: LinearFriction, way: float, speed: float) -> TanhHysteres
     """
     coulomb, viscous = _coulomb(linear), _viscous(linear)
     slow = 0.1 * math.e * coulomb / speed
-    return TanhHysteresis(coulomb, viscous, slow, 1.0 / speed, math.atanh(0.5) / way)
+    return TanhHysteresis(coulomb, viscous, slow, 1.0 / speed, math.atanh(0.5) / distance)
 
 
 def guess_coulomb_stribeck(linear: LinearFriction, speed: float) -> CoulombStribeck:

@@ -25,7 +25,7 @@ from dynamics.friction.identification.record import DriveRecord
 
 @dataclass(frozen=True)
 class SteadyPoint:
-    """Mean of one stretch at constant speed.
+    """Mean of one segment at constant speed.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class SteadyPoint:
     standard_error : float
         Of the mean effort, allowing for ripple.
     start, end : float
-        Of the stretch, s.
+        Of the segment, s.
     """
 
     velocity: float
@@ -55,7 +55,7 @@ def constant_speed_points(
     minimum_speed: float,
     tolerance: float = 0.05,
 ) -> list[SteadyPoint]:
-    """Find the stretches at constant speed and average their effort.
+    """Find the segments at constant speed and average their effort.
 
     Parameters
     ----------
@@ -63,14 +63,14 @@ def constant_speed_points(
     low_pass : LowPass
         For the velocity that is judged; the effort is averaged as it is.
     minimum_duration : float
-        Of a stretch after settling, s.
+        Of a segment after settling, s.
     settling : float
-        Start of each stretch that is left out, s: presliding after a reversal and the ringing of
+        Start of each segment that is left out, s: presliding after a reversal and the ringing of
         the controller.
     minimum_speed : float
-        Slower stretches are rest, m/s or rad/s.
+        Slower segments are rest, m/s or rad/s.
     tolerance : float
-        Largest deviation of the low-passed speed within a stretch, of the stretch's first speed.
+        Largest deviation of the low-passed speed within a segment, of the segment's first speed.
 
     Returns
     -------
@@ -80,7 +80,7 @@ def constant_speed_points(
     Raises
     ------
     MeasurementError
-        If the record has no such stretch.
+        If the record has no such segment.
     """
     velocity = low_pass.apply(record.velocity, record.sample_time)
     settled = round(settling / record.sample_time)
@@ -95,31 +95,31 @@ def constant_speed_points(
         if abs(reference) < minimum_speed:
             start += max(length, 1) if reference == 0.0 else 1
             continue
-        stretch = slice(start + settled, start + length - blurred)
-        long_enough = (stretch.stop - stretch.start) * record.sample_time >= minimum_duration
+        segment = slice(start + settled, start + length - blurred)
+        long_enough = (segment.stop - segment.start) * record.sample_time >= minimum_duration
         if not long_enough:
             start += 1
             continue
-        points.append(_mean(record, stretch))
+        points.append(_mean(record, segment))
         start += length
     if not points:
         raise MeasurementError(
-            f"{record.name}: no stretch of {minimum_duration:g} s at a speed constant within "
+            f"{record.name}: no segment of {minimum_duration:g} s at a speed constant within "
             f"{100 * tolerance:g} % after {settling:g} s of settling"
         )
     return points
 
 
-def _mean(record: DriveRecord, stretch: slice) -> SteadyPoint:
-    effort = record.effort[stretch]
+def _mean(record: DriveRecord, segment: slice) -> SteadyPoint:
+    effort = record.effort[segment]
     repeats = correlation_length(effort)
     error = float(np.std(effort)) * math.sqrt(2.0 * repeats / len(effort))
     return SteadyPoint(
-        float(np.mean(record.velocity[stretch])),
+        float(np.mean(record.velocity[segment])),
         float(np.mean(effort)),
         error,
-        float(record.time[stretch][0]),
-        float(record.time[stretch][-1]),
+        float(record.time[segment][0]),
+        float(record.time[segment][-1]),
     )
 
 

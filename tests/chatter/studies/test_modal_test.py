@@ -32,7 +32,7 @@ def test_hammer_sets(tmp_path, seed):
     faulty = write_set(tmp_path, seed)
     test = chatter.modes(tmp_path, direction="x")
     # every faulty record found, no good one lost
-    assert {finding.record for finding in test.hammer.left_out} == faulty
+    assert {finding.record for finding in test.hammer.excluded} == faulty
     found = [mode for mode in test.fit.identified if not mode.warning]
     assert len(found) == len(made.CLOSE.modes)
     for mode, (frequency, damping, mass) in zip(found, made.CLOSE.modes, strict=True):
@@ -45,7 +45,7 @@ def test_a_faulty_record_can_be_kept(tmp_path):
     faulty = min(write_set(tmp_path, 0))
     test = chatter.modes(tmp_path, keep=[faulty], direction="x")
     assert faulty in test.hammer.used
-    assert faulty not in {finding.record for finding in test.hammer.left_out}
+    assert faulty not in {finding.record for finding in test.hammer.excluded}
 
 
 def test_unknown_record_to_keep(tmp_path):

@@ -162,7 +162,7 @@ def test_static_deflection_with_shear_is_exact_along_any_axis(axis):
     area, second = np.pi * (0.05**2 - 0.02**2) / 4, np.pi * (0.05**4 - 0.02**4) / 64
     bending, length = 210e9 * second, 0.2
     shear = cowper(0.3, 0.4) * 210e9 / 2.6 * area
-    tip = line.place(length)
+    tip = line.position(length)
     moved = clamped_motion(line, tip, np.concatenate([1e3 * across, np.zeros(3)]))
     expected = 1e3 * (length**3 / (3 * bending) + length / shear)
     np.testing.assert_allclose(moved[:3], expected * across, atol=1e-12 * expected)

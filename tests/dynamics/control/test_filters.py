@@ -16,7 +16,11 @@ from dynamics.control.filters import (
     second_order_sample,
 )
 from dynamics.control.reference_model import ReferenceModel
-from dynamics.control.sampling import ControlError, held_samples_response, zero_order_hold_response
+from dynamics.control.sampling import (
+    ControlError,
+    sample_and_hold_response,
+    zero_order_hold_response,
+)
 
 T = 62.5e-6
 FILTERS = [
@@ -113,7 +117,7 @@ def test_plants_are_discretised_exactly_for_held_input():
 
 def test_hold_of_ever_finer_samples_is_the_continuous_hold():
     f, hold = np.array([30.0, 210.0, 640.0]), 2e-3
-    fine = held_samples_response(f, hold / 4000, 4000)
+    fine = sample_and_hold_response(f, hold / 4000, 4000)
     np.testing.assert_allclose(fine, zero_order_hold_response(f, hold), atol=1e-3)
     assert zero_order_hold_response(0.0, hold) == 1.0
 

@@ -131,7 +131,7 @@ def test_any_polyline_is_run_through_within_its_limits(points, radius, feed, acc
 
 
 def test_circle_motion_is_a_centripetal_acceleration():
-    motion = CircleMotion((0.1, 0.2), 0.05, 0.1, turns=-2.0, start_angle=0.3)
+    motion = CircleMotion((0.1, 0.2), 0.05, 0.1, revolutions=-2.0, start_angle=0.3)
     assert motion.duration == pytest.approx(2 * 2 * math.pi * 0.05 / 0.1)
     moved = motion.at(np.linspace(0, motion.duration, 1001))
     np.testing.assert_allclose(np.linalg.norm(moved.velocity, axis=-1), 0.1, rtol=1e-13)
@@ -257,7 +257,7 @@ def test_whole_cycles_of_duration_need_no_cycle_more():
             "sharp corner at an arc behind element 0",
         ),
         (lambda: Arc((0, 0), 1.0, 0.0, 7.0), "a full turn at most"),
-        (lambda: CircleMotion((0, 0), 1.0, 1.0, turns=0.0), "number of turns"),
+        (lambda: CircleMotion((0, 0), 1.0, 1.0, revolutions=0.0), "number of revolutions"),
         (lambda: ConstantSpeedMove([1.0], [1.0], 1.0), "length"),
         (lambda: contour_error(square(1, 0.1), [1.0, 2.0]), "finite"),
         (lambda: tracking_error(np.zeros((3, 2)), np.zeros((2, 2))), "shape"),

@@ -35,7 +35,7 @@ def level(frf):
 def test_the_faulty_is_left_out_and_the_average_is_right():
     test = hammer_test(with_doubled_gain(records()))
     assert test.used == ("tap1.csv", "tap3.csv", "tap4.csv", "tap5.csv", "tap6.csv")
-    assert [(f.record, f.fault) for f in test.left_out] == [("tap2.csv", "wrong_gain")]
+    assert [(f.record, f.fault) for f in test.excluded] == [("tap2.csv", "wrong_gain")]
     assert level(test.frf) == pytest.approx(1.0, abs=2e-3)
     assert test.kept == test.remarks == ()
 
@@ -45,7 +45,7 @@ def test_keep_overrides():
     test = hammer_test(taps, keep=["tap2.csv"])
     assert len(test.used) == 6
     assert [f.record for f in test.kept] == ["tap2.csv"]
-    assert test.left_out == ()
+    assert test.excluded == ()
     # H1 weighs each record, line by line, by the power of its blow
     lines = test.frf.band(500.0, 1700.0).frequency
     turns = np.exp(-2j * np.pi * np.outer(lines, taps[0].time))
@@ -122,7 +122,7 @@ def test_a_folder_with_a_file_that_cannot_be_read(tmp_path):
     folder = read_hammer_folder(tmp_path)
     test = hammer_test(folder.records, unreadable=folder.unreadable)
     assert test.used == ("tap1.csv", "tap2.csv", "tap3.csv", "tap4.csv")
-    assert [(f.record, f.fault) for f in test.left_out] == [("tap0.csv", "unreadable")]
-    assert "line 2" in test.left_out[0].reason
+    assert [(f.record, f.fault) for f in test.excluded] == [("tap0.csv", "unreadable")]
+    assert "line 2" in test.excluded[0].reason
     with pytest.raises(MeasurementError, match=r"tap0.csv cannot be kept"):
         hammer_test(folder.records, keep=["tap0.csv"], unreadable=folder.unreadable)

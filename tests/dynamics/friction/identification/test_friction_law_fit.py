@@ -14,7 +14,7 @@ from dynamics.friction.identification.dynamic_fit import (
     friction_over_position,
 )
 from dynamics.friction.identification.filtering import LowPass
-from dynamics.friction.identification.first_guess import guess_lugre, guess_tanh, reversal_way
+from dynamics.friction.identification.first_guess import guess_lugre, guess_tanh, reversal_distance
 from dynamics.friction.identification.linear_fit import fit_linear
 from dynamics.friction.lugre import LuGre
 from dynamics.friction.tanh_hysteresis import TanhHysteresis
@@ -46,7 +46,7 @@ def sine_records():
 def test_lugre_is_recovered_from_sine_moves(sine_records):
     """Guess and all: linear fit, way of the reversal, then the whole law."""
     linear = fit_linear(sine_records, low_pass=LOW_PASS, minimum_speed=8e-3)
-    way = reversal_way(sine_records[0], linear, LOW_PASS)
+    way = reversal_distance(sine_records[0], linear, LOW_PASS)
     assert way == pytest.approx(GUIDE.static / GUIDE.bristle_stiffness * math.log(2.0), rel=0.5)
     guess = AxisModel(guess_lugre(linear, way, 1e-2), linear.value("inertia"))
     of_law = ("bristle_stiffness", "viscous", "coulomb", "static", "stribeck_velocity")
@@ -105,7 +105,7 @@ def test_hysteresis_slope_from_a_small_slow_circle():
     record = noisy(t, x, v, force + 200.0 * a, rng, effort_noise=2.0, velocity_noise=1e-6)
     low_pass = LowPass(20.0)
     linear = fit_linear([record], ("coulomb",), low_pass=low_pass, minimum_speed=5e-5)
-    way = reversal_way(record, linear, low_pass)
+    way = reversal_distance(record, linear, low_pass)
     assert way == pytest.approx(math.atanh(0.5) / 1.15e4, rel=0.1)
     slow = guess_tanh(linear, way, 2e-3)
     low = TABLE.viscous, TABLE.low_speed_viscous, 500.0

@@ -92,7 +92,7 @@ def test_constant_stretches_are_found_and_averaged():
         assert point.effort == pytest.approx(effort, abs=0.5)
         assert point.end - point.start >= 0.5
         assert 0.0 < point.standard_error < 1.0
-    with pytest.raises(MeasurementError, match="no stretch of 5 s"):
+    with pytest.raises(MeasurementError, match="no segment of 5 s"):
         constant_speed_points(
             record, low_pass=LowPass(20.0), minimum_duration=5.0, settling=0.1, minimum_speed=5e-3
         )
