@@ -227,7 +227,7 @@ def milling_model(case: Case, structure: Structure | None = None) -> MillingMode
     ----------
     case : Case
     structure : Structure, optional
-        That of the case, where it is known already; it is then not looked at again.
+        That of the case, where it is known already.
 
     Raises
     ------

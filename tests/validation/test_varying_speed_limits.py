@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from chatter.description.case import Case
 from chatter.description.errors import RunError
 from chatter.stability.methods.collocation.element_cut import element_cut
-from chatter.stability.methods.collocation.multipliers import growth_rates
+from chatter.stability.methods.collocation.multipliers import growth_rate_at
 from chatter.stability.methods.collocation.varying_limits import limits_of_varying_speed
 from chatter.stability.model import milling_model
 from chatter.stability.spindle_rotation import (
@@ -101,7 +101,7 @@ def off_at(ratio, shape):
     limit = found.critical_depth[0]
     fitting = element_cut(model, 4e-3, 8, 1.0).with_fit(PeriodFit(tuning=1e-6))
     at = [
-        growth_rates(fitting, np.array([speed]), np.array([limit * by]))[0]
+        growth_rate_at(fitting, np.array([speed]), np.array([limit * by]))[0]
         for by in (0.98, 1.0, 1.02)
     ]
     assert at[0] < 0.0 < at[2]
@@ -125,10 +125,10 @@ def test_a_spindle_that_hardly_turns_is_refused():
     """1212 Hz, an element's wave, at a tooth a second."""
     model = milling_model(varied(2.0, "sine"))
     with pytest.raises(RunError, match=r"15 rpm .* 1.21e\+03 vibrations of 1212 Hz"):
-        growth_rates(element_cut(model, 4e-3), np.array([2.0 * math.pi / 4.0]), np.array([1e-3]))
+        growth_rate_at(element_cut(model, 4e-3), np.array([2.0 * math.pi / 4.0]), np.array([1e-3]))
 
 
 def test_a_variation_that_hardly_repeats_is_refused():
     model = milling_model(varied(0.05, "sine"))
     with pytest.raises(RunError, match=r"speed_variation.frequency: at 0.05 Hz .* constant speeds"):
-        growth_rates(element_cut(model, 4e-3), np.array([200.0]), np.array([1e-3]))
+        growth_rate_at(element_cut(model, 4e-3), np.array([200.0]), np.array([1e-3]))

@@ -16,7 +16,7 @@ from chatter.stability.methods.collocation.error_estimate import checked_limits
 from chatter.stability.methods.collocation.multipliers import (
     FINER,
     evaluated_points,
-    growth_rates,
+    growth_rate_at,
     limit_curve,
     points_of_periods,
 )
@@ -98,4 +98,4 @@ def _limit_error(
     checked = checked_limits(cut, limits.spindle_speed, limits.critical_depth, _CHECKED)
     finer = cut_at(_CHECK[0], _CHECK[1] * resolution[1])
     # at the limit of the finer cut the growth rate is zero: what the search leaves counts too
-    return checked.largest_error(growth_rates(finer, checked.speed, checked.depth))
+    return checked.largest_error(growth_rate_at(finer, checked.speed, checked.depth))

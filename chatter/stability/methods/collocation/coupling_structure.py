@@ -33,7 +33,7 @@ class AssemblyStructure(NamedTuple):
     first_source: NDArray[np.int64]  # of each point (E p + 1,)
     source: NDArray[np.int64]  # element, counted from the period's first; negative before it
     point: NDArray[np.int64]  # the only one that a source needs of its element, or -1
-    memory: int  # elements before the period that are looked back to
+    memory: int  # elements before the period that are referred to
 
 
 @njit(**LEAF_KERNEL)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.stability.methods.collocation.element_cut import ElementCut
-from chatter.stability.methods.collocation.multipliers import growth_rates
+from chatter.stability.methods.collocation.multipliers import growth_rate_at
 
 _ALLOWANCE = 1.1
 
@@ -51,5 +51,5 @@ def checked_limits(
         picked = picked[np.unique(ranks)]
     speed, depth = speeds[picked], limits[picked]
     step = 1e-3 * depth
-    below, above = (growth_rates(cut, speed, depth + s) for s in (-step, step))
+    below, above = (growth_rate_at(cut, speed, depth + s) for s in (-step, step))
     return CheckedLimits(speed, depth, np.maximum(np.abs(above - below) / (2.0 * step), 1e-300))

@@ -63,7 +63,7 @@ class BatchScratch(NamedTuple):
     motion: NDArray[np.float64]  # of all elements (memory + E, q + r, 8)
     force: NDArray[np.float64]  # (E, q, 8)
     state: NDArray[np.float64]  # (2n, 8)
-    following: NDArray[np.float64]  # (2n, 8)
+    next_state: NDArray[np.float64]  # (2n, 8)
 
 
 @njit(**INNER_KERNEL)
@@ -130,17 +130,17 @@ def _delayed_force(assembly, block, e, motion, force):
 
 
 @njit(**LEAF_KERNEL)
-def _free_motion(free, state, following):
+def _free_motion(free, state, next_state):
     """Set what follows (2n, 8) to the state after free motion, free (n, 2, 2, 8)."""
     for mode in range(free.shape[0]):
         a, b = load(state, 2 * mode), load(state, 2 * mode + 1)
         for row in range(2):
             value = load(free, (mode, row, 0)) * a + load(free, (mode, row, 1)) * b
-            store(following, 2 * mode + row, value)
+            store(next_state, 2 * mode + row, value)
 
 
 @njit(**SINGLE_KERNEL)
-def _in_cut(couple, factors, of_state, of_force, to_state, output, state, own, force, following):
+def _in_cut(couple, factors, of_state, of_force, to_state, output, state, own, force, next_state):
     """Advance over an element in the cut; force holds what the earlier motion asks for."""
     rank, size = output.shape
     for k in range(rank):
@@ -156,7 +156,7 @@ def _in_cut(couple, factors, of_state, of_force, to_state, output, state, own, f
     _solve(factors, force)
     _multiply(of_state, state, rank, own)
     _multiply_add(of_force, force, rank, own)
-    _multiply_add(to_state, force, 0, following)
+    _multiply_add(to_state, force, 0, next_state)
 
 
 @njit(**LEAF_KERNEL)
@@ -178,15 +178,15 @@ def apply_batch_monodromy(period, vector, out, scratch):
         _copy(vector, size + e * width, motion[e], 0, width)
     for m in range(assembly.cut.shape[0]):
         e, s = assembly.cut[m], assembly.shape[m]
-        _free_motion(period.free[s], state, scratch.following)
+        _free_motion(period.free[s], state, scratch.next_state)
         if e >= 0:
             _delayed_force(assembly, period.block, e, motion, scratch.force[e])
             _in_cut(
                 period.couple[e], period.factors[e], period.motion_of_state[s],
                 period.motion_of_force[s], period.state_of_force[s], period.output, state,
-                motion[assembly.memory + e], scratch.force[e], scratch.following,
+                motion[assembly.memory + e], scratch.force[e], scratch.next_state,
             )  # fmt: skip
-        _copy(scratch.following, 0, state, 0, size)
+        _copy(scratch.next_state, 0, state, 0, size)
     _copy(state, 0, out, 0, size)
     for e in range(assembly.memory):
         _copy(motion[cuts + e], 0, out, size + e * width, width)

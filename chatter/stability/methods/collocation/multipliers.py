@@ -179,7 +179,7 @@ def converged_multiplier(
     return Multiplier(value, steps, float(error))
 
 
-def growth_rates(
+def growth_rate_at(
     cut: ElementCut, speeds: NDArray[np.float64], depths: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Growth rate at n points per period of the tool, many of which the cut's period may hold.
@@ -221,18 +221,18 @@ def limit_curve(
         `boundary_continuation` for what may be missed between them.
     """
     evaluated = evaluated_points(cut, speeds)
-    growth_at = growth_rates_at(cut, speeds)
+    growth_rate_here = growth_rate_of(cut, speeds)
     # over the long periods of a varying speed the frequency costs more than a multiplier
-    refined = growth_at if varies(cut) else evaluated.growth_rate
+    refined = growth_rate_here if varies(cut) else evaluated.growth_rate
     with kept_threads():
         crossings = continued_crossings(
-            len(speeds), depths, growth_at, tolerance, stride, progress, refined
+            len(speeds), depths, growth_rate_here, tolerance, stride, progress, refined
         )
         steps = points_of_periods(cut, speeds, depths)
         return limits_at(evaluated.at_limits, speeds, crossings, steps)
 
 
-def growth_rates_at(cut: ElementCut, speeds: NDArray[np.float64]) -> GrowthRate:
+def growth_rate_of(cut: ElementCut, speeds: NDArray[np.float64]) -> GrowthRate:
     """Growth rate per period of the tool, as the search for limits asks for it.
 
     Parameters
@@ -242,10 +242,12 @@ def growth_rates_at(cut: ElementCut, speeds: NDArray[np.float64]) -> GrowthRate:
         rad/s.
     """
 
-    def growth_at(points: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
-        return growth_rates(cut, speeds[points], depth)
+    def growth_rate_here(
+        points: NDArray[np.int64], depth: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        return growth_rate_at(cut, speeds[points], depth)
 
-    return growth_at
+    return growth_rate_here
 
 
 def points_of_periods(

@@ -9,7 +9,7 @@ from chatter.stability.boundary_continuation import continued_crossings
 from chatter.stability.brackets import GrowthRate
 from chatter.stability.crossings import moved_crossings
 from chatter.stability.methods.collocation.element_cut import ElementCut
-from chatter.stability.methods.collocation.multipliers import growth_rates_at
+from chatter.stability.methods.collocation.multipliers import growth_rate_of
 
 
 def moved_limits(
@@ -50,7 +50,7 @@ def moved_limits(
     found = [moved[speed == i] for i in range(len(speeds))]
     if gone.size:
         anew = continued_crossings(
-            gone.size, depths, growth_rates_at(cut, speeds[gone]), tolerance, stride=1
+            gone.size, depths, growth_rate_of(cut, speeds[gone]), tolerance, stride=1
         )
         for i, there in zip(gone.tolist(), anew, strict=True):
             found[i] = there

@@ -18,8 +18,8 @@ from chatter.stability.methods.collocation.error_estimate import CheckedLimits, 
 from chatter.stability.methods.collocation.multipliers import (
     FINER,
     evaluated_points,
-    growth_rates,
-    growth_rates_at,
+    growth_rate_at,
+    growth_rate_of,
     points_of_periods,
 )
 from chatter.stability.methods.collocation.nearby_limits import moved_limits
@@ -76,7 +76,7 @@ def limits_of_varying_speed(
     """
     first = cut_at(*_RESOLUTIONS[0]).with_fit(_FIRST_FIT)
     crossings = continued_crossings(
-        len(speeds), depths, growth_rates_at(first, speeds), _FIRST_TOLERANCE, _STRIDE, progress
+        len(speeds), depths, growth_rate_of(first, speeds), _FIRST_TOLERANCE, _STRIDE, progress
     )
     resolutions, periods = list(_RESOLUTIONS), list(_LEAST_PERIODS)
     while True:
@@ -87,7 +87,7 @@ def limits_of_varying_speed(
         finer = cut_at(_CHECK[0], _CHECK[1] * resolutions[0][1]).with_fit(pair[0].arrays.fit)
         # the true ratio lies between two: each has a growth rate there
         of_elements = checked.largest_error(
-            *(growth_rates(one, checked.speed, checked.depth) for one in (finer, pair[0]))
+            *(growth_rate_at(one, checked.speed, checked.depth) for one in (finer, pair[0]))
         )
         of_periods = checked.largest_error(_rates_between(beside(cut, _CHECK_PERIODS), checked))
         if of_elements + of_periods <= tolerance:
@@ -113,7 +113,7 @@ def _between(
     """Limits at the true ratio, between those of the two beside it."""
     fewer, more = (
         moved_limits(
-            crossings, cut, speeds, depths, growth_rates_at(cut, speeds), tolerance, _REACHES
+            crossings, cut, speeds, depths, growth_rate_of(cut, speeds), tolerance, _REACHES
         )
         for cut in pair
     )
@@ -122,5 +122,5 @@ def _between(
 
 def _rates_between(pair: Pair, checked: CheckedLimits) -> NDArray[np.float64]:
     """Growth rate at limits, at the true ratio."""
-    fewer, more = (growth_rates(cut, checked.speed, checked.depth) for cut in pair)
+    fewer, more = (growth_rate_at(cut, checked.speed, checked.depth) for cut in pair)
     return fewer + share_between(pair, checked.speed) * (more - fewer)

@@ -74,11 +74,11 @@ def _motion_over_period(period, vector):
     """Motion of the tool point (steps + 1, r), m; the vector holds that of the last period."""
     steps, size, rank = period.from_left.shape
     motion = np.zeros((steps + 1, rank))
-    state, following = vector[:size].copy(), np.empty(size)
+    state, next_state = vector[:size].copy(), np.empty(size)
     for s in range(steps + 1):
         for k in range(rank):
             for j in range(size):
                 motion[s, k] += period.output[k, j] * state[j]
         if s < steps:
-            advance_step(period, s, vector, state, following)
+            advance_step(period, s, vector, state, next_state)
     return motion

@@ -303,19 +303,19 @@ def _record_motion(output, state, motion):
 
 
 @njit(**SUMMING_KERNEL)
-def advance_step(period, step, vector, state, following):
+def advance_step(period, step, vector, state, next_state):
     """Advance the state over one step; vector holds the motion of the last period after 2n."""
     _, size, rank = period.from_left.shape
     for i in range(size):
         total = 0.0
         for j in range(size):
             total += period.transition[step, i, j] * state[j]
-        following[i] = total
+        next_state[i] = total
     if period.left[step] >= 0:
         base = size + period.left[step] * rank
         for i in range(size):
             for k in range(rank):
-                following[i] += (
+                next_state[i] += (
                     period.from_left[step, i, k] * vector[base + k]
                     + period.from_right[step, i, k] * vector[base + rank + k]
                 )
@@ -323,8 +323,8 @@ def advance_step(period, step, vector, state, following):
             third = size + period.further[step] * rank
             for i in range(size):
                 for k in range(rank):
-                    following[i] += period.from_further[step, i, k] * vector[third + k]
-    state[:] = following
+                    next_state[i] += period.from_further[step, i, k] * vector[third + k]
+    state[:] = next_state
 
 
 @njit(**KERNEL)
@@ -345,14 +345,14 @@ def apply_monodromy(period, vector, out, scratch):
         State, then the motion at the nodes during the last period.
     scratch : tuple of two (2n,) arrays of float
     """
-    state, following = scratch
+    state, next_state = scratch
     steps, size, rank = period.from_left.shape
     state[:] = vector[:size]
     for s in range(steps):
         base = size + period.left[s] * rank
         if period.left[s] >= 0:
             _record_motion(period.output, state, out[base : base + rank])
-        advance_step(period, s, vector, state, following)
+        advance_step(period, s, vector, state, next_state)
         if period.left[s] >= 0:
             _record_motion(period.output, state, out[base + rank : base + 2 * rank])
     out[:size] = state

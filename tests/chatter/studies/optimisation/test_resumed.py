@@ -61,7 +61,9 @@ def interrupted_after(count, command, case, out):
 
 def parts_before_the_time_domain(records):
     found = [record for _, record in records]
-    return next(i for i, one in enumerate(found) if isinstance(one, dict) and one.get("verification"))
+    return next(
+        i for i, one in enumerate(found) if isinstance(one, dict) and one.get("verification")
+    )
 
 
 @pytest.mark.parametrize("command", ["optimum", "pitch"])
