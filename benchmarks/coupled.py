@@ -17,14 +17,12 @@ from pathlib import Path
 # figures of one core: threads of the linear algebra would wait for a busy second one
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-import numpy as np
 from numba.core.runtime import _nrt_python, rtsys
 
 from chatter import Case
-from chatter.engine.machine_loop import advance
-from chatter.simulation.on_machine.setup import set_up_machine
-from chatter.simulation.on_machine.simulate import simulate_on_machine
-from dynamics.machine.loop import Loads
+from chatter.engine.loop import Laws, run
+from chatter.simulation.setup import set_up
+from chatter.simulation.simulate import run_setup
 
 MACHINE = Path(__file__).parents[1] / "examples" / "machine-coupled-milling" / "machine.toml"
 #: simulated time of the cut, s
@@ -67,10 +65,11 @@ def settling(case: Case) -> float:
     """Shortest time that the machine takes to come to speed in the air, s."""
     taken = []
     for _ in range(REPEATS):
-        setup = set_up_machine(case)
-        still = Loads(np.zeros(0, dtype=np.int64), np.zeros((2, 0)))
+        setup = set_up(case)
+        tables = setup.structure.tables
+        laws = Laws(tables.held, (), tables.implicit)
         start = time.thread_time()
-        advance(setup.tables.groups, setup.tables.steps, still, 0, setup.settling)
+        run(laws, tables.bus, 0, 0, setup.structure.settling)
         taken.append(time.thread_time() - start)
     return min(taken)
 
@@ -78,27 +77,26 @@ def settling(case: Case) -> float:
 def measured(chip: str) -> dict:
     """Shortest and median of the runs of a chip."""
     case = face_mill(chip)
-    setup = set_up_machine(case)
-    size = setup.on_machine.machine.structure.size
-    drives = len(setup.on_machine.machine.drives)
-    frictions = len(setup.on_machine.machine.frictions)
+    setup = set_up(case)
+    machine = setup.on_machine.machine
     teeth, slices = setup.slices.angle.shape
     simulated = setup.steps * setup.step
-    simulate_on_machine(case, setup=setup)
+    run_setup(setup)
     in_the_air = settling(case)
     taken, allocated = [], 0
     _nrt_python.memsys_enable_stats()
     for _ in range(REPEATS):
-        setup = set_up_machine(case)
+        setup = set_up(case)
         before = rtsys.get_allocation_stats()
         start = time.thread_time()
-        result = simulate_on_machine(case, setup=setup)
+        result, _ = run_setup(setup)
         taken.append(time.thread_time() - start - in_the_air)
         allocated = max(allocated, rtsys.get_allocation_stats().alloc - before.alloc)
     assert result.complete
     faster = [simulated / one for one in taken]
     print(
-        f"{chip:6} {size} freedoms, {drives} drives, {frictions} frictions, {teeth} inserts of "
+        f"{chip:6} {machine.structure.size} freedoms, {len(machine.drives)} drives, "
+        f"{len(machine.frictions)} frictions, {teeth} inserts of "
         f"{slices} slices, step {setup.step * 1e6:.4g} us: {max(faster):.1f} times real time "
         f"(median {statistics.median(faster):.1f}; aim {AIM[chip]:g}), "
         f"{min(taken) / simulated * setup.step * 1e6:.2f} us a step, "

@@ -26,12 +26,13 @@ import numpy as np
 from numba.core.runtime import _nrt_python, rtsys
 
 from chatter.description.machine.machine_file import MachineFile
-from chatter.engine.machine_loop import Record, run
+from chatter.engine.loop import Laws, run
+from chatter.engine.record import port_record
 from chatter.simulation.virtual_tests.run import RunInputs, run_machine
 from dynamics.friction.lugre import LuGre
 from dynamics.machine.description import Machine
-from dynamics.machine.loop import Loads
 from dynamics.machine.tables import machine_tables
+from dynamics.machine.travel_limit import TravelLimit
 from dynamics.trajectory.periodic import SineMotion
 from dynamics.trajectory.set_points import SetPoints, set_points
 
@@ -225,13 +226,9 @@ def loop_alone(machine: Machine, points: SetPoints | None) -> Callable[[], objec
     """The compiled loop over a run of so many steps; every call goes on where the last ended."""
     count = round(DURATION / STEP)
     tables = machine_tables(machine, STEP, points)
-    groups = tables.groups
-    if machine.drives:
-        injected = np.zeros((count, len(machine.drives)))
-        groups = (groups[0]._replace(injected=injected), *groups[1:])
-    loads = Loads(tables.loads.port, np.zeros((count + 1, 0)))
-    record = Record(count + 1, np.zeros(0, dtype=np.int64), *(np.zeros((0, 0)) for _ in range(3)))
-    return lambda: run(groups, tables.steps, loads, record, 0, 1e5)
+    record = port_record(0, 0, count + 1, count + 1)
+    laws = Laws(tables.held, (TravelLimit(1e5),), tables.implicit, (record,))
+    return lambda: run(laws, tables.bus, 0, 0, count)
 
 
 def allocations(call: Callable[[], object]) -> int:

@@ -29,7 +29,7 @@ from numba import njit
 
 from chatter.description.case import Case
 from chatter.simulation.setup import Setup, set_up
-from chatter.simulation.simulate import simulate
+from chatter.simulation.simulate import run_setup
 from cutting.dexel.carving import dexel_carve, dexel_chip_thickness
 from cutting.dexel.stock import dexel_remove_path, dexel_stock
 from cutting.engagement.immersion import slice_engagement
@@ -200,7 +200,7 @@ def delayed_chip(peak: float) -> list[dict]:
             case = delayed_case(mode, immersion, law)
             setup = set_up(case)
             number = setup.resolution.steps * setup.slices.angle.size
-            taken = timed(lambda case=case: simulate(case))
+            taken = timed(lambda case=case: run_setup(set_up(case)))
             share, operations = engaged_share(setup), counted_operations(law)
             each = taken.shortest * 1e9 / number
             bound = operations / peak * 1e9
@@ -223,7 +223,7 @@ def delayed_chip(peak: float) -> list[dict]:
         f"{TEETH} teeth, {SLICES} slices, {STEPS} steps a turn, {TURNS} turns"
     )
     return show(
-        f"1. Delayed chip: `simulate`, ns a tooth-slice-step (aim {AIM:g}); bound by the peak",
+        f"1. Delayed chip: `run_setup`, ns a tooth-slice-step (aim {AIM:g}); bound by the peak",
         "cut|law|ns|median|of aim|engaged|ns engaged|operations|bound ns|of peak",
         rows,
     )
@@ -400,7 +400,7 @@ def straight_case(steps: int, depth: float) -> Case:
 
 def engine_motion(case: Case) -> np.ndarray:
     """Displacement (samples, 2) by the engine, m."""
-    result = simulate(case)
+    result, _ = run_setup(set_up(case))
     at = np.arange(1, 2 * SAMPLES * PERIODS + 1) * PERIOD / (2 * SAMPLES)
     row = np.round(at / result.time[1]).astype(int)
     return result.displacement[row, :2]
@@ -515,7 +515,7 @@ def delay_equations() -> list[dict]:
     for steps in ENGINE_STEPS:
         case = straight_case(steps, DEPTH)
         assert set_up(case).resolution.steps_a_turn == steps
-        taken = timed(lambda case=case: simulate(case))
+        taken = timed(lambda case=case: run_setup(set_up(case)))
         engine.append((error(engine_motion(case), reference), taken, f"{steps} steps"))
     for tolerance in TOLERANCES:
         taken = timed(lambda rtol=tolerance: jitcdde_motion(integrator, rtol, 1))

@@ -165,7 +165,7 @@ class LiveCase:
         }
         from chatter.simulation.simulate import simulate
 
-        result = simulate(case.patch(wanted), progress=progress)
+        result = simulate(case, wanted, progress)
         summary = result.summary()
         revolutions = result.spindle_angle / (2.0 * math.pi)
         axis = int(np.argmax(np.ptp(result.displacement, axis=0)))

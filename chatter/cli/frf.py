@@ -70,7 +70,7 @@ def frf(
 ) -> None:
     """Frequency responses of a machine: at rest, moving, brake on, control on, in the cut."""
     from chatter.cli.machine_tests import frf_sections
-    from chatter.engine.machine_loop import run
+    from chatter.engine.loop import run
     from chatter.simulation.virtual_tests.from_file import frfs
 
     file = patched_machine(machine, assignments)

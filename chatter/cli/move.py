@@ -31,7 +31,7 @@ def move(
 ) -> None:
     """Move the axes of a machine: tracking error, contour error, torque."""
     from chatter.cli.machine_tests import move_sections
-    from chatter.engine.machine_loop import run
+    from chatter.engine.loop import run
     from chatter.simulation.virtual_tests.from_file import file_move
 
     file = patched_machine(machine, assignments)

@@ -41,7 +41,7 @@ def simulate(
 
     announce_compilation(run)
     with progress_bar("time steps") as progress:
-        result = run_simulation(description, progress)
+        result = run_simulation(description, progress=progress)
     present(
         result,
         output_folder(out, case.stem),

@@ -1,1 +1,16 @@
-"""Compile."""
+"""From a case to flat arrays: tool, forces, structure, machine.
+
+=================== =================================================================
+module              responsibility
+=================== =================================================================
+cutter              tool, force laws and flank of a case
+structure           modes of a case, as given, measured or of a linearised machine
+measured_frf        structure of measured FRFs; `drive_point_check`: signs and passivity
+real_modes          real modes fitted to a receptance
+machine_parts       machine file to an assembled machine
+machine_cut         machine of a case: who feeds, what turns, where the cut acts
+rigid_motion        motion of all freedoms with the axes
+linearised_friction frictions linearised about the motion of a machine, FRFs with them
+linearised_machine  receptance and modes of a machine at the tool point
+=================== =================================================================
+"""

@@ -9,12 +9,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.compile.linearised_friction import linearised_frictions
 from chatter.compile.machine_cut import MachineCut, machine_cut
 from chatter.compile.real_modes import largest_misfit, lines_around, real_modes
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.simulation.virtual_tests.frf import linearised_frictions
-from chatter.simulation.virtual_tests.loop_stability import refuse_unstable_control
 from dynamics.machine.harmonic import receptance
 from dynamics.modal.modes import Mode
 
@@ -108,11 +107,9 @@ def machine_structure(case: Case) -> LinearisedMachine:
     Raises
     ------
     InputError
-        If the machine cannot make the cut, or its control is unstable.
+        If the machine cannot make the cut.
     """
-    cut = machine_cut(case)
-    refuse_unstable_control(cut.machine, cut.file.step)
-    return LinearisedMachine(case, cut)
+    return LinearisedMachine(case, machine_cut(case))
 
 
 def tool_receptance(

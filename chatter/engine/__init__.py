@@ -1,1 +1,15 @@
-"""Engine."""
+"""The time loop: law groups on the ports of a structure, compiled.
+
+============== ======================================================================
+module         responsibility
+============== ======================================================================
+bus            what a step of time offers to every law: ports and clock
+cut            the cut as a law on ports: tool point, path, spindle
+record         what is kept of a run, as laws without force
+dispatch       list of the laws, their two phases `forces` and `commit`
+loop           the one loop: predict, correct, solve frictions, commit
+loop_stability stability of the control loops of a machine, by the same loop
+presets        decorator presets, folder of the compiled code
+parallel       sweeps over points in threads, executor interface
+============== ======================================================================
+"""

@@ -1,146 +1,70 @@
-"""The time loop: structure, law groups and record, compiled."""
+"""The time loop, compiled: laws on the ports of a structure.
+
+A cut on modes, a cut on a machine and a machine alone are the same loop; what differs is the laws
+and the structure behind the ports. A step is predicted with the forces at its beginning held and
+corrected once with the change of those that depend on the motion at its end; frictions are solved
+last, together with the motion.
+"""
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
-import numpy as np
 from numba import njit
-from numba.extending import register_jitable
-from numpy.typing import NDArray
 
-from chatter.engine.dispatch import all_act, all_settle
+from chatter.engine.bus import Clock
+from chatter.engine.dispatch import all_commit, all_forces
 from chatter.engine.presets import TIME_LOOP
-from cutting.chip.tool_point import Turn
-from cutting.compiled import INLINED
-from dynamics.modal.modal_friction import hold, resist
-from dynamics.modal.modal_steps import correct, predict, take_force
-
-#: columns of the record
-COLUMNS = ("Fx", "Fy", "Fz", "x", "y", "z", "torque")
+from dynamics.machine.steps import begin_step, correct, end_step, predict
 
 
-class Prescribed(NamedTuple):
-    """Turn of the spindle and path of the tool axis over a chunk of steps, one row each.
+class Laws(NamedTuple):
+    """Law groups by when in a step their forces are known."""
 
-    The first row is the last step of the chunk before.
-    """
-
-    whole: NDArray[np.int64]  # bin of the spindle, (n+1,)
-    part: NDArray[np.float64]  # fraction of the bin, (n+1,)
-    advance: NDArray[np.float64]  # bins from row to row, (n,)
-    speed: NDArray[np.float64]  # rad/s, (n+1,)
-    x: NDArray[np.float64]  # m, (n+1,)
-    y: NDArray[np.float64]  # m, (n+1,)
-    grip: NDArray[np.float64]  # share of the cutting force that the structure feels, (n+1,)
-
-
-class Record(NamedTuple):
-    """What is kept of a run."""
-
-    stride: int  # steps from row to row
-    rows: NDArray[np.float64]  # (rows, columns)
-
-
-@register_jitable(**INLINED)
-def _turn(prescribed, i, before, advance, angle, step):
-    """Turn of the spindle at a row, with the row before it."""
-    whole, part = prescribed.whole[i], prescribed.part[i]
-    spindle = (whole + part) * angle
-    spindle_before = (prescribed.whole[before] + prescribed.part[before]) * angle
-    return Turn(
-        whole,
-        part,
-        math.sin(spindle),
-        math.cos(spindle),
-        math.sin(spindle_before),
-        math.cos(spindle_before),
-        prescribed.whole[before],
-        prescribed.part[before],
-        advance,
-        prescribed.speed[i],
-        step,
-        prescribed.x[i],
-        prescribed.y[i],
-        prescribed.x[before],
-        prescribed.y[before],
-    )
-
-
-@register_jitable(**INLINED)
-def _clear(point):
-    """Take all forces off the tool point."""
-    for axis in range(3):
-        point.force[axis] = 0.0
-        point.sample[axis] = 0.0
-    point.torque[0] = 0.0
-    point.contact[0] = 0.0
-
-
-@register_jitable(**INLINED)
-def _keep(record, row, point):
-    """Write the tool point into a row of the record."""
-    for axis in range(3):
-        record.rows[row, axis] = point.sample[axis]
-        record.rows[row, 3 + axis] = point.displacement[axis]
-    record.rows[row, 6] = point.torque[0]
+    held: tuple = ()  # at its beginning: drives, constant forces, loads
+    interacting: tuple = ()  # at its end, by the predicted motion: the cut
+    implicit: tuple = ()  # together with the motion: frictions
+    observers: tuple = ()  # never: records
 
 
 @njit(**TIME_LOOP)
-def run(groups, modes, frictions, point, prescribed, record, scratch, first, furthest, bins):
-    """Integrate a chunk of steps.
+def run(laws, bus, first, before, count):
+    """Run a chunk of steps.
 
     Parameters
     ----------
-    groups : tuple of law groups
-    modes : ModalSteps
-    frictions : tuple of Frictions
-        On modes; empty where there are none.
-    point : ToolPoint
-    prescribed : Prescribed
-        Rows 0 .. n; step i leads from row i-1 to row i.
-    record : Record
-    scratch : (modes, 2) array of float
-        Overwritten.
+    laws : Laws
+    bus : StructureSteps
     first : int
-        Number of the step that row 0 stands for; step 0 is the start, where nothing has moved
-        yet and the cut takes hold of the structure.
-    furthest : float
-        Displacement at which the model is left, m.
-    bins : int
-        Of a turn of the spindle.
+        Number of the first step. Before step 0 the structure stays where it is; the last of those
+        steps sets the forces with which it starts.
+    before : int
+        Steps that controllers have run before step 0.
+    count : int
+        Steps to do.
 
     Returns
     -------
     int
-        Steps done; fewer than n where the displacement became too large.
+        Steps done; fewer than asked where a law has left its range.
     """
-    count = prescribed.whole.shape[0] - 1
-    angle = 2.0 * math.pi / bins
-    for i in range(1, count + 1):
-        turn = _turn(prescribed, i, i - 1, prescribed.advance[i - 1], angle, modes.step)
-        for axis in range(3):
-            point.displacement_before[axis] = point.displacement[axis]
-            point.velocity_before[axis] = point.velocity[axis]
-        _clear(point)
-        if first + i > 0:
-            predict(modes, scratch, point)
-            hold(frictions, modes, point)
-        all_act(groups, turn, point)
-        for axis in range(3):
-            point.force[axis] *= prescribed.grip[i]
-        if first + i > 0:
-            correct(modes, scratch, point)
-            resist(frictions, modes, scratch, point)
-        else:
-            take_force(modes, point)
-        reach = max(
-            abs(point.displacement[0]), abs(point.displacement[1]), abs(point.displacement[2])
-        )
-        if not reach <= furthest:
-            return i - 1
-        all_settle(groups, turn, point)
-        if (first + i) % record.stride == 0:
-            _keep(record, (first + i) // record.stride, point)
+    bus.halted[0] = 0
+    for i in range(count):
+        clock = Clock(before + first + i, first + i, i)
+        moves = clock.step >= 0
+        if moves:
+            begin_step(bus)
+            all_forces(laws.held, bus, clock)
+            predict(bus)
+        all_forces(laws.interacting, bus, clock)
+        if moves:
+            correct(bus)
+            all_forces(laws.implicit, bus, clock)
+            all_commit(laws.implicit, bus, clock)
+        all_commit(laws.interacting, bus, clock)
+        if bus.halted[0] != 0:
+            return i
+        all_commit(laws.observers, bus, clock)
+        if moves:
+            end_step(bus)
     return count

@@ -6,8 +6,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from cutting.engagement.immersion import slice_engagement
 from cutting.tool.cutter import Cutter, slice_counts
 from dynamics.modal.modes import Mode
 
@@ -57,9 +60,16 @@ class Resolution:
         return max(1, round(self.turns * self.steps_a_turn))
 
 
-def resolution_of(
-    case: Case, cutter: Cutter, modes: Sequence[Mode], shortest_arc: float
-) -> Resolution:
+def shortest_arc(case: Case, cutter: Cutter) -> float:
+    """Angle within which an edge crosses the cut, with the lag of its helix, rad."""
+    entry, leave = slice_engagement(
+        case.cut.mode, case.width_of_cut, cutter.radius, np.array([cutter.radius])
+    )
+    lag = min(abs(math.tan(helix)) for helix in cutter.helix) * case.cut.axial_depth / cutter.radius
+    return max(float(leave[0] - entry[0]) + lag, 1e-3)
+
+
+def resolution_of(case: Case, cutter: Cutter, modes: Sequence[Mode]) -> Resolution:
     """Choose steps, slices and length of a run.
 
     Parameters
@@ -67,13 +77,11 @@ def resolution_of(
     case : Case
     cutter : Cutter
     modes : sequence of Mode
-    shortest_arc : float
-        Angle within which a tooth crosses the cut, rad.
     """
     section = case.simulation
     steps = section.steps if section and section.steps else None
     if steps is None:
-        steps = steps_a_turn(case, modes, shortest_arc, cutter.pitch)
+        steps = steps_a_turn(case, modes, shortest_arc(case, cutter), cutter.pitch)
     if steps > _MOST_STEPS_A_TURN:
         raise InputError(
             f"{case.name}: simulation.steps: {steps:.3g} steps a revolution would be needed for "

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from io import StringIO
 from pathlib import Path
@@ -12,15 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.description.errors import InputError
 from chatter.description.units import rpm
-from chatter.detection.chatter_detection import Detection, detect_chatter
-from chatter.detection.cut_record import CutRecord
+from chatter.detection.chatter_detection import Detection
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, write_results
 from chatter.simulation.carved_workpiece import carving_notes
 from chatter.simulation.finish import Finish, finish_of
-from chatter.simulation.perturbation.divergence import LARGE_SWING, Divergence, divergence
 from chatter.simulation.setup import Setup
 from cutting.chip.discrete_chip import DiscreteCut
 from cutting.dexel.stock import DexelStock
@@ -28,13 +25,7 @@ from cutting.dexel.stock import DexelStock
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: a record of fewer turns, or of fewer cycles of the lowest mode, is not judged
-_LEAST_TURNS_TO_JUDGE = 8.0
-_LEAST_CYCLES_TO_JUDGE = 12.0
-#: deviations from period to period that are none: a carved wall repeats less well
-_DELAYED, _CARVED = 0.005, 0.03
-#: helix angles within this, rad, are the same
-_SAME_HELIX = 1e-12
+
 #: means are taken over the last whole turns within this share of the run
 _SETTLED_SHARE = 0.5
 
@@ -57,6 +48,10 @@ class SimulationResult:
         False where the run was left early.
     interrupted : bool
         True where that was the user's wish.
+    detection : Detection, optional
+        Chatter or not; None where that cannot be told, or was not asked for (`with_verdict`).
+    why_no_verdict : str
+        Why there is none; empty where there is one.
     """
 
     setup: Setup
@@ -64,6 +59,8 @@ class SimulationResult:
     energy: dict[str, float]
     complete: bool = True
     interrupted: bool = False
+    detection: Detection | None = None
+    why_no_verdict: str = "chatter detection was not asked for"
 
     @property
     def case(self):
@@ -109,102 +106,6 @@ class SimulationResult:
     def turns(self) -> float:
         """Revolutions that were simulated."""
         return float(self.spindle_angle[-1]) / (2.0 * math.pi)
-
-    @cached_property
-    def detection(self) -> Detection | None:
-        """Chatter or not; None where that cannot be told, see `why_no_verdict`."""
-        if self.why_no_verdict:
-            return None
-        if self._divergence is None:
-            return self._detection_of_record
-        if not self._varies and self._divergence.stable:
-            return self._detection_of_record
-        return self._detection_by_perturbation(self._detection_of_record)
-
-    @cached_property
-    def _detection_of_record(self) -> Detection:
-        """Verdict of the record alone: whether the motion repeats."""
-        return detect_chatter(self._cut_record())
-
-    @property
-    def _varies(self) -> bool:
-        return self.setup.spindle.amplitude != 0.0
-
-    @cached_property
-    def why_no_verdict(self) -> str:
-        """Why there is no verdict; empty where there is one."""
-        if not self.setup.modes:
-            return "the tool is rigid"
-        if self.turns < _LEAST_TURNS_TO_JUDGE:
-            return f"fewer than {_LEAST_TURNS_TO_JUDGE:g} revolutions were simulated"
-        slowest = min(mode.frequency for mode in self.setup.modes)
-        if self.time[-1] * slowest < _LEAST_CYCLES_TO_JUDGE:
-            return (
-                f"the run holds fewer than {_LEAST_CYCLES_TO_JUDGE:g} cycles of the lowest mode, "
-                f"{slowest:.4g} Hz"
-            )
-        try:
-            self._cut_record()
-        except InputError as error:
-            return str(error)
-        if self._divergence is not None and not self._divergence.verdict:
-            return self._divergence.reason
-        return ""
-
-    @cached_property
-    def _divergence(self) -> Divergence | None:
-        """How small pushes go on; None where the record alone tells.
-
-        It does at a constant speed, unless it repeats and is so large that teeth leave the cut:
-        chatter that is full may repeat too, above all from turn to turn.
-        """
-        if not self._varies:
-            settled = self.displacement[self.settled]
-            swing = 0.5 * float(np.ptp(settled, axis=0).max())
-            if swing <= LARGE_SWING * self.case.cut.feed_per_tooth or not self._steady:
-                return None
-            if self._detection_of_record.verdict != "stable":
-                return None
-        return divergence(self.case, self.setup.modes)
-
-    @property
-    def _steady(self) -> bool:
-        """Whether the cut is that of [cut] all along, on modes that are known."""
-        structure, section = self.case.structure, self.case.simulation
-        bent = section is not None and section.path is not None
-        on_machine = structure is not None and structure.machine is not None
-        return self.case.stock is None and not bent and not on_machine
-
-    def _cut_record(self) -> CutRecord:
-        cutter, slices = self.setup.cutter, self.setup.slices
-        widest = int(np.argmax(np.ptp(slices.normal_offset, axis=0)))
-        # flutes of different helix are no more alike than teeth out of true
-        known = np.ptp(cutter.helix) <= _SAME_HELIX
-        return CutRecord(
-            time=self.time,
-            spindle_angle=self.spindle_angle,
-            displacements=self.displacement,
-            tooth_angles=np.sort(cutter.tooth_angles),
-            feed_per_tooth=self.case.cut.feed_per_tooth,
-            forces=self.force,
-            runout=slices.normal_offset[:, widest] if known else None,
-            negligible=_CARVED if isinstance(self.setup.groups[0], DiscreteCut) else _DELAYED,
-        )
-
-    def _detection_by_perturbation(self, found: Detection) -> Detection:
-        """Verdict by small pushes, where the record does not tell."""
-        apart = self._divergence
-        assert apart is not None
-        a_turn = math.expm1(min(apart.rate, 50.0))
-        return replace(
-            found,
-            verdict=apart.verdict,
-            confidence=min(1.0, 0.5 + 10.0 * abs(a_turn)),
-            reason=apart.reason,
-            bifurcation="none" if apart.stable else "unknown",
-            chatter_frequency=apart.frequency,
-            growth_rate=apart.rate * self.setup.spindle.speed / (2.0 * math.pi),
-        )
 
     @cached_property
     def finish(self) -> Finish:

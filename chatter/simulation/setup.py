@@ -8,12 +8,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from chatter.compile.cutter import cutter_of, edge_law, flank_table
-from chatter.compile.structure import structure_of
+from chatter.compile.machine_cut import MachineCut
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.plausibility import check_plausible
-from chatter.simulation.resolution import Resolution, resolution_of
-from chatter.simulation.spindle import Spindle, ToolPath, path_of, path_of_last_turn, spindle_of
+from chatter.simulation.resolution import Resolution
+from chatter.simulation.spindle import (
+    Spindle,
+    ToolPath,
+    path_of,
+    path_of_last_revolution,
+    spindle_of,
+)
+from chatter.simulation.structure_in_time import (
+    StructureInTime,
+    modes_in_time,
+    structure_in_time,
+)
 from chatter.simulation.workpiece import TURNS_BEFORE, discrete_cut
 from cutting.chip.delayed_chip import DelayedCut
 from cutting.chip.discrete_chip import DiscreteCut
@@ -21,7 +32,6 @@ from cutting.chip.regeneration import delayed_cut
 from cutting.engagement.immersion import slice_engagement
 from cutting.process_damping.contact import ToolContact
 from cutting.tool.cutter import Cutter, EdgeSlices, edge_slices
-from dynamics.friction.laws import friction_groups
 from dynamics.modal.modes import Mode
 
 #: the model of the chip holds while the tool moves by less than this share of its radius
@@ -30,22 +40,19 @@ _FURTHEST = 0.2
 
 @dataclass(frozen=True)
 class Setup:
-    """What the engine needs to run a case.
+    """What the time loop needs to run a case, once.
 
     Parameters
     ----------
     case : Case
     cutter : Cutter
     slices : EdgeSlices
-    modes : tuple of Mode
-        Empty for a rigid tool.
-    resolution : Resolution
+    structure : StructureInTime
+        It holds the state of one run.
     spindle : Spindle
     path : ToolPath
     groups : tuple
-        Law groups; the cut comes first. They hold the state of one run.
-    frictions : tuple of Frictions
-        On modes; they hold the state of one run.
+        Laws at the tool point; the cut comes first. They hold the state of one run.
     furthest : float
         Displacement at which the run stops, m.
     notes : tuple of str
@@ -56,12 +63,10 @@ class Setup:
     case: Case
     cutter: Cutter
     slices: EdgeSlices
-    modes: tuple[Mode, ...]
-    resolution: Resolution
+    structure: StructureInTime
     spindle: Spindle
     path: ToolPath
     groups: tuple
-    frictions: tuple
     furthest: float
     notes: tuple[str, ...]
     left_behind: tuple = ()
@@ -73,9 +78,34 @@ class Setup:
         return TURNS_BEFORE if carved else 0
 
     @property
+    def modes(self) -> tuple[Mode, ...]:
+        """Modes of the structure; none for a rigid tool."""
+        return self.structure.modes
+
+    @property
+    def resolution(self) -> Resolution:
+        """Steps and slices of the run."""
+        return self.structure.resolution
+
+    @property
     def step(self) -> float:
         """Time step, s."""
-        return 2.0 * math.pi / (self.spindle.speed * self.resolution.steps_a_turn)
+        return self.structure.step
+
+    @property
+    def steps(self) -> int:
+        """Steps of the cut."""
+        return self.structure.steps
+
+    @property
+    def on_machine(self) -> MachineCut | None:
+        """Machine that makes the cut, where there is one."""
+        return self.structure.on_machine
+
+    @property
+    def turned_by_port(self) -> bool:
+        """Whether a spindle of the machine turns the tool, which else turns as prescribed."""
+        return self.on_machine is not None and self.on_machine.spindle is not None
 
 
 def set_up(case: Case, modes: tuple[Mode, ...] | None = None) -> Setup:
@@ -85,7 +115,7 @@ def set_up(case: Case, modes: tuple[Mode, ...] | None = None) -> Setup:
     ----------
     case : Case
     modes : tuple of Mode, optional
-        Of the structure, where they are known already; it is then not looked at again.
+        Of the structure, where they are known already; a machine has its own.
 
     Raises
     ------
@@ -93,12 +123,19 @@ def set_up(case: Case, modes: tuple[Mode, ...] | None = None) -> Setup:
         If a section is missing, or the case holds what cannot be simulated.
     """
     check_case(case)
-    notes: tuple[str, ...] = ()
-    if modes is None:
-        modes, notes = modes_of(case)
     cutter = cutter_of(case)
-    resolution = resolution_of(case, cutter, modes, shortest_arc(case, cutter))
-    return compiled(case, cutter, modes, resolution, notes)
+    return _compiled(case, cutter, structure_in_time(case, cutter, modes))
+
+
+def set_up_on_modes(case: Case, modes: tuple[Mode, ...]) -> Setup:
+    """Compile a case with the delayed chip on modes, as small vibration of it is followed.
+
+    A machine is then taken by the modes of its linearised dynamics.
+    """
+    case = delayed(case)
+    check_case(case)
+    cutter = cutter_of(case)
+    return _compiled(case, cutter, modes_in_time(case, cutter, modes))
 
 
 def delayed(case: Case) -> Case:
@@ -116,14 +153,9 @@ def check_case(case: Case) -> None:
     refuse_teeth_off_the_tool(case)
 
 
-def compiled(
-    case: Case,
-    cutter: Cutter,
-    modes: tuple[Mode, ...],
-    resolution: Resolution,
-    notes: tuple[str, ...],
-) -> Setup:
-    """Compile a case whose resolution is settled."""
+def _compiled(case: Case, cutter: Cutter, structure: StructureInTime) -> Setup:
+    """Compile tool, chip and contact on a structure."""
+    resolution = structure.resolution
     slices = edge_slices(cutter, case.cut.axial_depth, resolution.counts)
     _refuse_crossing_flutes(case, slices)
     _refuse_out_of_reach(case, slices)
@@ -133,12 +165,13 @@ def compiled(
         raise InputError(
             f"{case.name}: simulation.path: a path of its own needs a [stock] to lead through"
         )
+    notes = structure.notes
     if case.tool.axial_error and np.all(slices.immersion > 0.5 * math.pi - 1e-9):
         notes += ("tool.axial_error changes no force: the edge is upright at every height",)
     if case.stock is not None:
         notes += ("the engagement changes along the path; the verdict is that of the whole record",)
     chip = case.simulation.chip if case.simulation else "delay"
-    groups: tuple = (CHIPS[chip](case, cutter, slices, modes, resolution, spindle, path),)
+    groups: tuple = (CHIPS[chip](case, cutter, slices, structure.modes, resolution, spindle, path),)
     if case.contact is not None:
         contact = case.contact
         groups += (ToolContact(contact.stiffness, contact.damping, contact.full_engagement_share),)
@@ -146,38 +179,13 @@ def compiled(
         case=case,
         cutter=cutter,
         slices=slices,
-        modes=modes,
-        resolution=resolution,
+        structure=structure,
         spindle=spindle,
         path=path,
         groups=groups,
-        frictions=_mode_frictions(case),
         furthest=_FURTHEST * cutter.radius,
         notes=notes,
     )
-
-
-def modes_of(case: Case) -> tuple[tuple[Mode, ...], tuple[str, ...]]:
-    """Modes of the structure of a case, and what was assumed of it; none for a rigid tool."""
-    if case.structure is None:
-        return (), ("no [structure]: tool and workpiece are rigid",)
-    structure = structure_of(case)
-    return structure.modes, tuple(structure.notes)
-
-
-def _arcs(case: Case, cutter: Cutter) -> tuple[float, float]:
-    """Entry and exit angle at the full radius, rad."""
-    entry, leave = slice_engagement(
-        case.cut.mode, case.width_of_cut, cutter.radius, np.array([cutter.radius])
-    )
-    return float(entry[0]), float(leave[0])
-
-
-def shortest_arc(case: Case, cutter: Cutter) -> float:
-    """Angle within which an edge crosses the cut, with the lag of its helix, rad."""
-    entry, leave = _arcs(case, cutter)
-    lag = min(abs(math.tan(helix)) for helix in cutter.helix) * case.cut.axial_depth / cutter.radius
-    return max(leave - entry + lag, 1e-3)
 
 
 def refuse_teeth_off_the_tool(case: Case) -> None:
@@ -251,16 +259,9 @@ def _delayed(
         edge_law(case),
         flank_table(case, slices.radius, 2.0 * math.pi / bins),
         bins,
-        path_of_last_turn(spindle, path, bins),
+        path_of_last_revolution(spindle, path, bins),
     )
 
 
 #: name in a case file -> group of the cutting force
 CHIPS = {"delay": _delayed, "dexel": discrete_cut, "voxel": discrete_cut}
-
-
-def _mode_frictions(case: Case) -> tuple:
-    """Tables of the frictions of the modes of a case at rest; ports are numbers of modes."""
-    modes = case.structure.mode if case.structure is not None else ()
-    laws = {i: case.friction[mode.friction].spec() for i, mode in enumerate(modes) if mode.friction}
-    return friction_groups(list(laws.values()), list(laws))

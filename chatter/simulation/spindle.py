@@ -1,4 +1,4 @@
-"""Turn of the spindle and path of the tool over the steps of a run."""
+"""Rotation of the spindle and path of the tool over the steps of a run."""
 
 from __future__ import annotations
 
@@ -9,14 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
-from chatter.engine.loop import Prescribed
+from chatter.engine.cut import PrescribedPath, PrescribedSpindle
 
-_TURN = 2.0 * math.pi
+_REVOLUTION = 2.0 * math.pi
+#: bin of the spindle, fraction of it, and bins from each to the next
+Bins = tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]
 
 
 @dataclass(frozen=True)
 class Spindle:
-    """Prescribed turn: a mean speed, and a variation around it where there is one.
+    """Prescribed rotation: a mean speed, and a variation around it where there is one.
 
     Parameters
     ----------
@@ -43,7 +45,7 @@ class Spindle:
         if self.shape == "triangle":
             wave = 1.0 - np.abs(np.mod(4.0 * cycle + 1.0, 4.0) - 2.0)
         else:
-            wave = np.sin(_TURN * cycle)
+            wave = np.sin(_REVOLUTION * cycle)
         return self.speed * (1.0 + self.amplitude * wave)
 
     def angle_at(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -53,7 +55,7 @@ class Spindle:
         if self.shape == "triangle":
             swing = _triangle_integral(cycle)
         else:
-            swing = (1.0 - np.cos(_TURN * cycle)) / _TURN
+            swing = (1.0 - np.cos(_REVOLUTION * cycle)) / _REVOLUTION
         return self.speed * (time + self.amplitude / self.frequency * swing)
 
 
@@ -107,60 +109,52 @@ def spindle_of(case: Case) -> Spindle:
 def path_of(case: Case) -> ToolPath:
     """Path that a case describes: along x where it gives none."""
     cut = case.cut
-    feed = cut.feed_per_tooth * case.tool.teeth * cut.spindle_speed / _TURN
+    feed = cut.feed_per_tooth * case.tool.teeth * cut.spindle_speed / _REVOLUTION
     given = case.simulation.path if case.simulation else None
     corners = np.array(given if given else [(0.0, 0.0), (1.0, 0.0)], dtype=np.float64)
     return ToolPath(corners, feed)
 
 
-def prescribed(
-    spindle: Spindle,
-    path: ToolPath,
-    bins: int,
-    step: float,
-    first: int,
-    count: int,
-    ramp: int = 0,
-) -> Prescribed:
-    """Turn and path at the steps first .. first + count.
+def counted_bins(number: NDArray[np.int64], bins: int) -> Bins:
+    """Bins at steps that each turn the spindle by one of them.
 
-    Parameters
-    ----------
-    spindle : Spindle
-    path : ToolPath
-    bins : int
-        Of a turn; a step turns the spindle by one of them at its mean speed.
-    step : float
-        s.
-    first, count : int
-    ramp : int
-        Steps over which the structure comes to feel the cutting force; 0 for at once.
+    They are counted, so that the last bit of an angle never moves a bin.
     """
-    number = np.arange(first, first + count + 1)
-    time = number * step
-    if spindle.amplitude == 0.0:
-        # counted, so that the last bit of an angle never moves a bin
-        whole, part = number % bins, np.zeros(number.size)
-        advance = np.ones(number.size - 1)
-    else:
-        place = spindle.angle_at(time) * (bins / _TURN)
-        floor = np.floor(place)
-        whole, part = floor.astype(np.int64) % bins, place - floor
-        advance = np.diff(place)
-    x, y = path.place_at(time)
-    return Prescribed(
-        whole=whole,
-        part=part,
-        advance=advance,
-        speed=spindle.speed_at(time),
-        x=np.ascontiguousarray(x),
-        y=np.ascontiguousarray(y),
-        grip=np.clip(number / ramp, 0.0, 1.0) if ramp else np.ones(number.size),
+    return number % bins, np.zeros(number.size), np.ones(number.size - 1)
+
+
+def bins_at(spindle: Spindle, time: NDArray[np.float64], bins: int) -> Bins:
+    """Bins at any times, s."""
+    place = spindle.angle_at(time) * (bins / _REVOLUTION)
+    floor = np.floor(place)
+    return floor.astype(np.int64) % bins, place - floor, np.diff(place)
+
+
+def prescribed_spindle(
+    spindle: Spindle, time: NDArray[np.float64], at: Bins, bins: int
+) -> PrescribedSpindle:
+    """Rotation of the spindle at the ends of steps, with their times, s, and bins."""
+    whole, part, advance = at
+    angle = (whole + part) * (_REVOLUTION / bins)
+    return PrescribedSpindle(
+        whole, part, np.sin(angle), np.cos(angle), advance, spindle.speed_at(time)
     )
 
 
-def path_of_last_turn(spindle: Spindle, path: ToolPath, bins: int) -> NDArray[np.float64]:
-    """Place (2, bins + 1) of the tool axis at every bin of the turn before the start."""
+def prescribed_path(
+    path: ToolPath, time: NDArray[np.float64], share: NDArray[np.float64] | None = None
+) -> PrescribedPath:
+    """Path of the tool at times, s, and share of the force ramp, which is 1 by default."""
+    x, y = path.place_at(time)
+    return PrescribedPath(
+        np.ascontiguousarray(x),
+        np.ascontiguousarray(y),
+        np.ones(time.size) if share is None else share,
+    )
+
+
+def path_of_last_revolution(spindle: Spindle, path: ToolPath, bins: int) -> NDArray[np.float64]:
+    """Place (2, bins + 1) of the tool axis at every bin of the revolution before the start."""
     behind = np.arange(bins, -1, -1)
-    time = -behind * _TURN / bins / float(spindle.speed_at(np.zeros(1))[0])
+    time = -behind * _REVOLUTION / bins / float(spindle.speed_at(np.zeros(1))[0])
     return path.place_at(time)

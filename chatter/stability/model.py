@@ -15,6 +15,7 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.plausibility import check_plausible
 from chatter.description.units import rpm
+from chatter.engine.loop_stability import refuse_unstable_structure
 from chatter.simulation.setup import refuse_teeth_off_the_tool
 from chatter.stability.averaged_coefficients import AveragedCoefficients, averaged_coefficients
 from chatter.stability.cut_arrays import CutArrays, cut_arrays
@@ -237,7 +238,9 @@ def milling_model(case: Case, structure: Structure | None = None) -> MillingMode
     case.require("tool", "material", "cut", "structure")
     check_plausible(case)
     refuse_teeth_off_the_tool(case)
-    structure = structure_of(case) if structure is None else structure
+    if structure is None:
+        structure = structure_of(case)
+        refuse_unstable_structure(structure)
     cutter = cutter_of(case)
     notes = list(structure.notes)
     flank = _flank(case)

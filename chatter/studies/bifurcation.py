@@ -16,8 +16,10 @@ from chatter.description.progress import Progress, no_progress
 from chatter.engine.parallel import sweep
 from chatter.io.result_files import SavedResult, as_json, finite_or_none
 from chatter.simulation.perturbation.growth_rate import periods_a_turn
-from chatter.simulation.setup import modes_of, set_up
+from chatter.simulation.setup import set_up
 from chatter.simulation.simulate import run_setup
+from chatter.simulation.structure_in_time import modes_of
+from chatter.simulation.verdict import with_verdict
 from dynamics.modal.modes import Mode
 
 #: revolutions of every cut, and those at its end that are kept
@@ -128,7 +130,8 @@ def bifurcation(
     if not (case.simulation and (case.simulation.revolutions or case.simulation.duration)):
         case = case.patch({"simulation.revolutions": _REVOLUTIONS})
     cases = [case.patch({path: value}) for value in values]
-    modes = None if path.startswith("structure") else modes_of(case)[0]
+    on_machine = case.structure is not None and case.structure.machine is not None
+    modes = None if on_machine or path.startswith("structure") else modes_of(case)[0]
     if modes == ():
         raise InputError(f"{case.name}: [structure] is missing; a rigid tool does not vibrate")
 
@@ -144,7 +147,7 @@ def _point(case: Case, path: str, modes: tuple[Mode, ...] | None) -> Bifurcation
     value = float(case.get(path))
     if not result.complete:
         return BifurcationPoint(value, np.zeros((0, 3)), "chatter", "unknown", math.nan)
-    detection = result.detection
+    detection = with_verdict(result).detection
     a_turn = periods_a_turn(result.setup)
     periods = np.arange(math.floor(result.turns * a_turn) + 1) / a_turn
     kept = 2.0 * math.pi * periods[-_KEPT_REVOLUTIONS * a_turn :]

@@ -60,18 +60,18 @@ class DelayedCut(NamedTuple):
 
 
 @register_jitable(**INLINED)
-def _place_now(turn, point):
+def _place_now(rotation, point):
     """Place of the tool against the work, m: path and vibration."""
     u = point.displacement
-    return turn.x + u[0], turn.y + u[1], u[2]
+    return rotation.x + u[0], rotation.y + u[1], u[2]
 
 
 @register_jitable(**INLINED)
-def _motion_since(cut, tooth, piece, turn, now):
+def _motion_since(cut, tooth, piece, rotation, now):
     """Fill the scratch with the motion of the tool since each earlier pass, m."""
     bins = cut.edges.bins
     for k in range(cut.since.shape[0]):
-        place = turn.whole + turn.part - cut.delay[tooth, piece, k]
+        place = rotation.whole + rotation.part - cut.delay[tooth, piece, k]
         if place < 0.0:
             place += bins
         whole = int(place)
@@ -138,12 +138,12 @@ def _chip_since(cut, tooth, piece, sine, cosine, k):
 
 
 @register_jitable(**INLINED)
-def _whole_slice(cut, tooth, piece, turn):
+def _whole_slice(cut, tooth, piece, rotation):
     """Force of a slice that is wholly inside the arc; second value: none of it in the air."""
     total = (0.0, 0.0, 0.0, 0.0, 0.0)
     half = 0.5 * cut.edges.edge_length[piece]
-    s1, c1 = direction(cut.edges, tooth, piece, 1, turn)
-    s2, c2 = direction(cut.edges, tooth, piece, 2, turn)
+    s1, c1 = direction(cut.edges, tooth, piece, 1, rotation)
+    s2, c2 = direction(cut.edges, tooth, piece, 2, rotation)
     sk, ck = cut.edges.sine_immersion[piece], cut.edges.cosine_immersion[piece]
     chip1 = chip2 = at_low = at_high = best = math.inf
     # a loop without branches: most of all the time goes here
@@ -222,12 +222,12 @@ def _part_of_slice(cut, tooth, piece, low, high, width):
 
 
 @register_jitable(**INLINED)
-def _straight_mean(cut, tooth, piece, place, turn):
+def _straight_mean(cut, tooth, piece, place, rotation):
     """Force of a straight edge over the turn of a step, so that a jump keeps its impulse."""
-    half = 0.5 * turn.advance
+    half = 0.5 * rotation.advance
     low = max(place - half, cut.entry[piece])
     high = min(place + half, cut.exit[piece])
-    return _part_of_slice(cut, tooth, piece, low, high, turn.advance)
+    return _part_of_slice(cut, tooth, piece, low, high, rotation.advance)
 
 
 @register_jitable(**INLINED)
@@ -239,17 +239,17 @@ def _outward(cut, tooth, piece, sine, cosine, point):
 
 
 @register_jitable(**INLINED)
-def _on_flank(flank, cut, tooth, piece, turn, point, total):
+def _on_flank(flank, cut, tooth, piece, rotation, point, total):
     """Add the force on the flank of the length of edge that is in the cut."""
     length = total[4]
     if length <= 0.0:
         return total
-    sine, cosine = direction(cut.edges, tooth, piece, 0, turn)
+    sine, cosine = direction(cut.edges, tooth, piece, 0, rotation)
     sk, ck = cut.edges.sine_immersion[piece], cut.edges.cosine_immersion[piece]
     v = point.velocity
     rate = sk * (v[0] * sine + v[1] * cosine) - ck * v[2]
     own = _outward(cut, tooth, piece, sine, cosine, point)
-    speed = turn.speed * cut.edges.radius[cut.edges.radius.shape[0] - 1]
+    speed = rotation.speed * cut.edges.radius[cut.edges.radius.shape[0] - 1]
     ft, fr = flank_force(flank, tooth, piece, own, rate, speed)
     fx, fy, fz = force_on_tool(cut.edges, piece, sine, cosine, ft, fr, 0.0)
     return (
@@ -262,7 +262,7 @@ def _on_flank(flank, cut, tooth, piece, turn, point, total):
 
 
 @register_jitable(**INLINED)
-def _off_flank(flank, cut, tooth, piece, turn, point, total):  # noqa: ARG001
+def _off_flank(flank, cut, tooth, piece, rotation, point, total):  # noqa: ARG001
     """Add nothing: the flank touches nothing."""
     return total
 
@@ -274,9 +274,9 @@ _add_flank_force = by_table(
 
 
 @register_jitable(**INLINED)
-def _all_in_air(cut, tooth, turn):
+def _all_in_air(cut, tooth, rotation):
     """Tell whether no part of an edge is in the arc of the cut."""
-    whole, part = spindle_bin(cut.edges, tooth, 0, turn.whole, turn.part)
+    whole, part = spindle_bin(cut.edges, tooth, 0, rotation.whole, rotation.part)
     place = signed_bin(cut.edges, whole, part)
     low, high = place + cut.reach[tooth, 0], place + cut.reach[tooth, 1]
     for turns in range(-1, 2):
@@ -287,42 +287,42 @@ def _all_in_air(cut, tooth, turn):
 
 
 @register_jitable(**INLINED)
-def delayed_forces(group, turn, point):
+def delayed_forces(group, rotation, point):
     """Add the cutting force on the tool at the motion of the tool point."""
     cut, edges = group, group.edges
-    now = _place_now(turn, point)
+    now = _place_now(rotation, point)
     teeth, pieces = edges.whole.shape
     sx = sy = sz = mx = my = mz = torque = contact = 0.0
     for tooth in range(teeth):
-        if _all_in_air(cut, tooth, turn):
+        if _all_in_air(cut, tooth, rotation):
             continue
         looked_back = False
         for piece in range(pieces):
-            whole, part = spindle_bin(edges, tooth, piece, turn.whole, turn.part)
+            whole, part = spindle_bin(edges, tooth, piece, rotation.whole, rotation.part)
             place = signed_bin(edges, whole, part)
             half = edges.half_width[tooth, piece]
             entry, leave = cut.entry[piece], cut.exit[piece]
-            straight = half < 0.5 * turn.advance
-            blur = 0.5 * turn.advance if straight else half
+            straight = half < 0.5 * rotation.advance
+            blur = 0.5 * rotation.advance if straight else half
             if place + blur < entry or place - blur > leave:
                 continue
             if cut.helices > 1 or not looked_back:
-                _motion_since(cut, tooth, piece if cut.helices > 1 else 0, turn, now)
+                _motion_since(cut, tooth, piece if cut.helices > 1 else 0, rotation, now)
                 looked_back = True
             settled = False
             force = (0.0, 0.0, 0.0, 0.0, 0.0)
             if place - blur >= entry and place + blur <= leave:
-                force, settled = _whole_slice(cut, tooth, piece, turn)
+                force, settled = _whole_slice(cut, tooth, piece, rotation)
             if not settled:
                 # at a jump the limit from the right: one tooth leaves as another one enters
                 seen = place + _NUDGE if straight else place
                 low, high = max(seen - half, entry), min(seen + half, leave)
                 force = _part_of_slice(cut, tooth, piece, low, high, 2.0 * half)
-            force = _add_flank_force(cut.flank, cut, tooth, piece, turn, point, force)
+            force = _add_flank_force(cut.flank, cut, tooth, piece, rotation, point, force)
             mean = force
             if straight and not settled:
-                mean = _straight_mean(cut, tooth, piece, place, turn)
-                mean = _add_flank_force(cut.flank, cut, tooth, piece, turn, point, mean)
+                mean = _straight_mean(cut, tooth, piece, place, rotation)
+                mean = _add_flank_force(cut.flank, cut, tooth, piece, rotation, point, mean)
             sx += force[0]
             sy += force[1]
             sz += force[2]
@@ -354,60 +354,60 @@ def _vibration(point, axis, share, step):
 
 
 @register_jitable(**INLINED)
-def _store_motion(cut, turn, point):
+def _store_motion(cut, rotation, point):
     """Keep the place of the tool at the bins that the spindle has passed in the step."""
     bins = cut.edges.bins
-    crossed = int(turn.part_before + turn.advance)
+    crossed = int(rotation.part_before + rotation.advance)
     for k in range(1, crossed + 1):
-        share = (k - turn.part_before) / turn.advance
-        passed = turn.whole_before + k
+        share = (k - rotation.part_before) / rotation.advance
+        passed = rotation.whole_before + k
         if passed >= bins:
             passed -= bins
         for axis in range(3):
-            place, rate = _vibration(point, axis, share, turn.step)
+            place, rate = _vibration(point, axis, share, rotation.step)
             if axis == 0:
-                place += turn.x_before + share * (turn.x - turn.x_before)
-                rate += turn.x - turn.x_before
+                place += rotation.x_before + share * (rotation.x - rotation.x_before)
+                rate += rotation.x - rotation.x_before
             if axis == 1:
-                place += turn.y_before + share * (turn.y - turn.y_before)
-                rate += turn.y - turn.y_before
+                place += rotation.y_before + share * (rotation.y - rotation.y_before)
+                rate += rotation.y - rotation.y_before
             cut.history[0, passed, axis] = place
-            cut.history[1, passed, axis] = rate / turn.advance
+            cut.history[1, passed, axis] = rate / rotation.advance
 
 
 @register_jitable(**INLINED)
-def _store_surface(cut, tooth, piece, place, turn, point):
+def _store_surface(cut, tooth, piece, place, rotation, point):
     """Let the flank store what surface lies behind the edge now."""
     if place < cut.entry[piece] or place > cut.exit[piece]:
         end_contact(cut.flank, tooth, piece)
         return
-    sine, cosine = direction(cut.edges, tooth, piece, 0, turn)
+    sine, cosine = direction(cut.edges, tooth, piece, 0, rotation)
     own = _outward(cut, tooth, piece, sine, cosine, point)
     # where the edge is in the air the old surface stays, further out than the edge
     store_surface(cut.flank, tooth, piece, own - min(_chip(cut, tooth, piece, sine, cosine), 0.0))
 
 
 @register_jitable(**INLINED)
-def _surfaces_behind(flank, cut, turn, point):  # noqa: ARG001
+def _surfaces_behind(flank, cut, rotation, point):  # noqa: ARG001
     """Let the flank of every edge store what surface lies behind it now."""
     edges = cut.edges
-    now = _place_now(turn, point)
+    now = _place_now(rotation, point)
     teeth, pieces = edges.whole.shape
     for tooth in range(teeth):
         looked_back = False
         for piece in range(pieces):
-            whole, part = spindle_bin(edges, tooth, piece, turn.whole, turn.part)
+            whole, part = spindle_bin(edges, tooth, piece, rotation.whole, rotation.part)
             place = signed_bin(edges, whole, part)
             if place < cut.entry[piece] - _MARGIN or place > cut.exit[piece] + _MARGIN:
                 continue
             if cut.helices > 1 or not looked_back:
-                _motion_since(cut, tooth, piece if cut.helices > 1 else 0, turn, now)
+                _motion_since(cut, tooth, piece if cut.helices > 1 else 0, rotation, now)
                 looked_back = True
-            _store_surface(cut, tooth, piece, place, turn, point)
+            _store_surface(cut, tooth, piece, place, rotation, point)
 
 
 @register_jitable(**INLINED)
-def _no_surfaces(flank, cut, turn, point):
+def _no_surfaces(flank, cut, rotation, point):
     """Store nothing: the flank has no memory."""
 
 
@@ -418,7 +418,7 @@ _store_surfaces = by_table(
 
 
 @register_jitable(**INLINED)
-def delayed_commit(group, turn, point):
+def delayed_commit(group, rotation, point):
     """Remember the motion of the step: what the edges have left behind."""
-    _store_surfaces(group.flank, group, turn, point)
-    _store_motion(group, turn, point)
+    _store_surfaces(group.flank, group, rotation, point)
+    _store_motion(group, rotation, point)

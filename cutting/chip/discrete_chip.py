@@ -55,45 +55,54 @@ def _edge_place(edges, tooth, piece, sine, cosine, motion, x, y):
 
 
 @register_jitable(**INLINED)
-def _step_of_edge(edges, tooth, piece, turn, point):
+def _step_of_edge(edges, tooth, piece, rotation, point):
     """Tool axis and edge before and after the step, m."""
     before = _edge_place(
         edges,
         tooth,
         piece,
-        turn.sine_before,
-        turn.cosine_before,
+        rotation.sine_before,
+        rotation.cosine_before,
         point.displacement_before,
-        turn.x_before,
-        turn.y_before,
+        rotation.x_before,
+        rotation.y_before,
     )
     after = _edge_place(
-        edges, tooth, piece, turn.sine, turn.cosine, point.displacement, turn.x, turn.y
+        edges,
+        tooth,
+        piece,
+        rotation.sine,
+        rotation.cosine,
+        point.displacement,
+        rotation.x,
+        rotation.y,
     )
     return before, after
 
 
 @register_jitable(**INLINED)
-def _thickness(cut, tooth, piece, turn, point):
+def _thickness(cut, tooth, piece, rotation, point):
     """Chip thickness along the normal of the edge, m."""
-    (cx0, cy0, ex0, ey0), (cx1, cy1, ex1, ey1) = _step_of_edge(cut.edges, tooth, piece, turn, point)
+    (cx0, cy0, ex0, ey0), (cx1, cy1, ex1, ey1) = _step_of_edge(
+        cut.edges, tooth, piece, rotation, point
+    )
     radial = chip_thickness(cut.stock, piece, tooth, cx0, cy0, ex0, ey0, cx1, cy1, ex1, ey1)
     return radial * cut.edges.sine_immersion[piece]
 
 
 @register_jitable(**INLINED)
-def discrete_forces(group, turn, point):
+def discrete_forces(group, rotation, point):
     """Add the cutting force on the tool at the motion of the tool point."""
     cut, edges = group, group.edges
     teeth, pieces = edges.whole.shape
     v = point.velocity
-    speed = turn.speed * edges.radius[pieces - 1]
+    speed = rotation.speed * edges.radius[pieces - 1]
     for tooth in range(teeth):
         for piece in range(pieces):
-            chip = _thickness(cut, tooth, piece, turn, point)
+            chip = _thickness(cut, tooth, piece, rotation, point)
             if chip <= 0.0:
                 continue
-            sine, cosine = direction(edges, tooth, piece, 0, turn)
+            sine, cosine = direction(edges, tooth, piece, 0, rotation)
             sk, ck = edges.sine_immersion[piece], edges.cosine_immersion[piece]
             rate = sk * (v[0] * sine + v[1] * cosine) - ck * v[2]
             own = _outward(edges, tooth, piece, sine, cosine, point)
@@ -117,17 +126,17 @@ def _outward(edges, tooth, piece, sine, cosine, point):
 
 
 @register_jitable(**INLINED)
-def _surface_behind(flank, cut, tooth, piece, turn, point):
+def _surface_behind(flank, cut, tooth, piece, rotation, point):
     """Let the flank store what surface lies behind the edge now."""
-    if _thickness(cut, tooth, piece, turn, point) <= 0.0:
+    if _thickness(cut, tooth, piece, rotation, point) <= 0.0:
         end_contact(flank, tooth, piece)
         return
-    sine, cosine = direction(cut.edges, tooth, piece, 0, turn)
+    sine, cosine = direction(cut.edges, tooth, piece, 0, rotation)
     store_surface(flank, tooth, piece, _outward(cut.edges, tooth, piece, sine, cosine, point))
 
 
 @register_jitable(**INLINED)
-def _no_surface(flank, cut, tooth, piece, turn, point):
+def _no_surface(flank, cut, tooth, piece, rotation, point):
     """Store nothing: the flank has no memory."""
 
 
@@ -138,15 +147,15 @@ _store_surface_of_layer = by_table(
 
 
 @register_jitable(**INLINED)
-def discrete_commit(group, turn, point):
+def discrete_commit(group, rotation, point):
     """Carve the workpiece along the motion of the step."""
     cut, edges = group, group.edges
     teeth, pieces = edges.whole.shape
     for tooth in range(teeth):
         for piece in range(pieces):
-            _store_surface_of_layer(cut.flank, cut, tooth, piece, turn, point)
+            _store_surface_of_layer(cut.flank, cut, tooth, piece, rotation, point)
             (cx0, cy0, ex0, ey0), (cx1, cy1, ex1, ey1) = _step_of_edge(
-                edges, tooth, piece, turn, point
+                edges, tooth, piece, rotation, point
             )
             area = carve(cut.stock, piece, tooth, cx0, cy0, ex0, ey0, cx1, cy1, ex1, ey1)
             cut.removed[0] += area * edges.share[piece] * cut.depth

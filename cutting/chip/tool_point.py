@@ -1,4 +1,4 @@
-"""Where the cut meets the machine: the tool point, and the turn of the tool in a step."""
+"""Where the cut meets the machine: the tool point, and the rotation of the tool in a step."""
 
 from __future__ import annotations
 
@@ -21,10 +21,11 @@ class ToolPoint(NamedTuple):
     contact: NDArray[np.float64]  # engaged share of the depth of cut, (1,)
 
 
-class Turn(NamedTuple):
-    """Turn of the spindle and place on the tool path at a step and the one before.
+class Rotation(NamedTuple):
+    """Rotation of the spindle and place on the tool path at a step and the one before.
 
-    Angles are counted in bins, `bins` to a turn: a whole number below `bins` and a part below 1.
+    Angles are counted in bins, `bins` to a revolution: a whole number below `bins` and a part
+    below 1.
     """
 
     whole: int

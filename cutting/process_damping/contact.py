@@ -25,7 +25,7 @@ class ToolContact(NamedTuple):
 
 
 @register_jitable(**INLINED)
-def contact_forces(group, turn, point):  # noqa: ARG001
+def contact_forces(group, rotation, point):  # noqa: ARG001
     """Add the force of the contact on the tool."""
     share = min(1.0, point.contact[0] / group.full_engagement_share)
     for axis in range(2):
@@ -37,5 +37,5 @@ def contact_forces(group, turn, point):  # noqa: ARG001
 
 
 @register_jitable(**INLINED)
-def contact_commit(group, turn, point):
+def contact_commit(group, rotation, point):
     """Remember nothing: the contact has no memory."""

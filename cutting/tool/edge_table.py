@@ -85,10 +85,10 @@ def signed_bin(edges, whole, part):
 
 
 @register_jitable(**INLINED)
-def direction(edges, tooth, slice_index, point, turn):
+def direction(edges, tooth, slice_index, point, rotation):
     """Sine and cosine of the angle of a point of the slice (0 middle, 1 and 2 Gauss points)."""
     s, c = edges.sine[tooth, slice_index, point], edges.cosine[tooth, slice_index, point]
-    return turn.sine * c + turn.cosine * s, turn.cosine * c - turn.sine * s
+    return rotation.sine * c + rotation.cosine * s, rotation.cosine * c - rotation.sine * s
 
 
 @register_jitable(**INLINED)

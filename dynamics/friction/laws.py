@@ -46,7 +46,6 @@ class Frictions(NamedTuple):
     law: NamedTuple  # table of the law; its column `port` says where each acts
     force: NDArray[np.float64]  # held over the last step, N, (n,)
     beyond: NDArray[np.float64]  # by which the law moves further than its port, m, (n,)
-    sweeps: NDArray[np.int64]  # over all of them in this step, (1,)
 
 
 def friction_groups(laws: Sequence[FrictionLaw], ports: Sequence[int]) -> tuple[Frictions, ...]:
@@ -57,5 +56,5 @@ def friction_groups(laws: Sequence[FrictionLaw], ports: Sequence[int]) -> tuple[
         if chosen:
             columns = entry.columns([laws[i] for i in chosen], [ports[i] for i in chosen])
             force, beyond = np.zeros(len(chosen)), np.zeros(len(chosen))
-            groups.append(Frictions(columns, force, beyond, np.zeros(1, dtype=np.int64)))
+            groups.append(Frictions(columns, force, beyond))
     return tuple(groups)

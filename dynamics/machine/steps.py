@@ -1,11 +1,13 @@
 """Exact step of a linear structure under forces on ports: table and kernels.
 
 Ports are the bus: every law reads displacement and velocity of a port and puts a force on it.
-Forces are held over a step (drives, friction), or vary linearly over it (loads, the cut).
+Forces are held over a step (drives, friction), or vary linearly over it (loads, the cut). The state
+is a block of coordinates and pairs; of a structure given by modes, a pair is a mode.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -28,18 +30,20 @@ class StructureSteps(NamedTuple):
     ramp: NDArray[np.float64]  # state per change of a force over the step, (p, s)
     displacement: NDArray[np.float64]  # of the ports, transposed, (s, p)
     velocity: NDArray[np.float64]  # (s, p)
-    moved_by_held: NDArray[np.float64]  # displacements per force held on a row's port, (p, p)
-    sped_by_held: NDArray[np.float64]  # velocities, (p, p)
-    moved_by_ramp: NDArray[np.float64]  # (p, p)
-    sped_by_ramp: NDArray[np.float64]  # (p, p)
+    step_compliance: NDArray[np.float64]  # displacements per force held on a row's port, (p, p)
+    step_mobility: NDArray[np.float64]  # velocities, (p, p)
+    ramp_compliance: NDArray[np.float64]  # the same per change of a force, (p, p)
+    ramp_mobility: NDArray[np.float64]  # (p, p)
     state: NDArray[np.float64]  # (s,)
     after: NDArray[np.float64]  # state at the end of the step, (s,)
     force: NDArray[np.float64]  # held over the step, (p,)
     change: NDArray[np.float64]  # of forces over the step, (p,)
+    next_force: NDArray[np.float64]  # at the end of the step: the next begins with it, (p,)
     u_before: NDArray[np.float64]  # displacement of the ports at its beginning, (p,)
     v_before: NDArray[np.float64]
     u: NDArray[np.float64]  # at its end, (p,)
     v: NDArray[np.float64]
+    halted: NDArray[np.int64]  # 1 where a law has left its range, (1,)
 
 
 def structure_steps(
@@ -61,37 +65,54 @@ def structure_steps(
         Of the freedoms at the start, m/s (rad/s); at rest by default.
     """
     split = blocks(structure, np.asarray(ports, dtype=np.float64).reshape(-1, structure.size))
-    count = split.entry.shape[1]
     transition, first, second = _over_step(split.rate, split.dense, step)
-    held, ramp = first @ split.entry, second @ split.entry
     pairs = range(split.dense, len(split.rate), 2)
     entries = [(0, 0), (0, 1), (1, 0), (1, 1)]
     columns = {
-        "dense": np.ascontiguousarray(transition[: split.dense, : split.dense].T),
+        "dense": transition[: split.dense, : split.dense].T,
         "pairs": np.array(
             [[transition[start + i, start + j] for start in pairs] for i, j in entries]
         ).reshape(4, -1),
-        "held": np.ascontiguousarray(held.T),
-        "ramp": np.ascontiguousarray(ramp.T),
-        "displacement": np.ascontiguousarray(split.displacement.T),
-        "velocity": np.ascontiguousarray(split.velocity.T),
-        "moved_by_held": np.ascontiguousarray((split.displacement @ held).T),
-        "sped_by_held": np.ascontiguousarray((split.velocity @ held).T),
-        "moved_by_ramp": np.ascontiguousarray((split.displacement @ ramp).T),
-        "sped_by_ramp": np.ascontiguousarray((split.velocity @ ramp).T),
+        "held": (first @ split.entry).T,
+        "ramp": (second @ split.entry).T,
+        "displacement": split.displacement.T,
+        "velocity": split.velocity.T,
     }
-    for column in columns.values():
-        column.flags.writeable = False
-    state = np.zeros(len(split.rate)) if velocity is None else split.start @ velocity
-    steps = StructureSteps(
-        step=step,
-        **columns,
-        state=state,
-        after=np.zeros(len(state)),
-        **{name: np.zeros(count) for name in StructureSteps._fields[-6:]},
-    )
-    steps.v[:] = split.velocity @ state
+    steps = steps_of(step, columns)
+    if velocity is not None:
+        steps.state[:] = split.start @ velocity
+    steps.v[:] = split.velocity @ steps.state
     return steps
+
+
+def steps_of(step: float, columns: Mapping[str, NDArray[np.float64]]) -> StructureSteps:
+    """Return a structure at rest by its transition.
+
+    Parameters
+    ----------
+    step : float
+        s.
+    columns : mapping of str to array of float
+        ``dense``, ``pairs``, ``held``, ``ramp``, ``displacement`` and ``velocity`` of the table.
+    """
+    ports, size = columns["held"].shape
+    answers = {
+        f"{force}_{kind}": columns[way] @ columns[motion]
+        for force, way in (("step", "held"), ("ramp", "ramp"))
+        for kind, motion in (("compliance", "displacement"), ("mobility", "velocity"))
+    }
+    fixed = {name: np.ascontiguousarray(part) for name, part in {**columns, **answers}.items()}
+    for column in fixed.values():
+        column.flags.writeable = False
+    signals = ("force", "change", "next_force", "u_before", "v_before", "u", "v")
+    return StructureSteps(
+        step=step,
+        **fixed,
+        state=np.zeros(size),
+        after=np.zeros(size),
+        **{name: np.zeros(ports) for name in signals},
+        halted=np.zeros(1, dtype=np.int64),
+    )
 
 
 def _over_step(
@@ -111,72 +132,70 @@ def _over_step(
 
 
 @register_jitable(**INLINED)
-def begin_step(s):
-    """Take the end of the last step as the beginning of this one, with no forces."""
-    for p in range(s.u.shape[0]):
-        s.u_before[p] = s.u[p]
-        s.v_before[p] = s.v[p]
-        s.force[p] = 0.0
-        s.change[p] = 0.0
+def begin_step(bus):
+    """Take the end of the last step as the beginning of this one, with the forces left by it."""
+    for p in range(bus.u.shape[0]):
+        bus.u_before[p] = bus.u[p]
+        bus.v_before[p] = bus.v[p]
+        bus.force[p] = bus.next_force[p]
+        bus.change[p] = 0.0
 
 
 @register_jitable(**INLINED)
-def move(s):
-    """Motion over the step under the forces gathered so far."""
-    r = s.dense.shape[0]
-    for i in range(s.after.shape[0]):
-        s.after[i] = 0.0
+def predict(bus):
+    """Motion over the step with all forces held."""
+    r = bus.dense.shape[0]
+    for i in range(r):
+        bus.after[i] = 0.0
     for j in range(r):
-        z = s.state[j]
+        z = bus.state[j]
         for i in range(r):
-            s.after[i] += s.dense[j, i] * z
-    for k in range(s.pairs.shape[1]):
-        x, y = s.state[r + 2 * k], s.state[r + 2 * k + 1]
-        s.after[r + 2 * k] = s.pairs[0, k] * x + s.pairs[1, k] * y
-        s.after[r + 2 * k + 1] = s.pairs[2, k] * x + s.pairs[3, k] * y
-    for p in range(s.force.shape[0]):
-        if s.force[p] != 0.0:
-            for i in range(s.after.shape[0]):
-                s.after[i] += s.held[p, i] * s.force[p]
-        if s.change[p] != 0.0:
-            for i in range(s.after.shape[0]):
-                s.after[i] += s.ramp[p, i] * s.change[p]
-    for p in range(s.u.shape[0]):
-        s.u[p] = 0.0
-        s.v[p] = 0.0
-    for i in range(s.after.shape[0]):
-        z = s.after[i]
-        for p in range(s.u.shape[0]):
-            s.u[p] += s.displacement[i, p] * z
-            s.v[p] += s.velocity[i, p] * z
+            bus.after[i] += bus.dense[j, i] * z
+    for k in range(bus.pairs.shape[1]):
+        x, y = bus.state[r + 2 * k], bus.state[r + 2 * k + 1]
+        bus.after[r + 2 * k] = bus.pairs[0, k] * x + bus.pairs[1, k] * y
+        bus.after[r + 2 * k + 1] = bus.pairs[2, k] * x + bus.pairs[3, k] * y
+    for p in range(bus.force.shape[0]):
+        if bus.force[p] != 0.0:
+            for i in range(bus.after.shape[0]):
+                bus.after[i] += bus.held[p, i] * bus.force[p]
+    for p in range(bus.u.shape[0]):
+        bus.u[p] = 0.0
+        bus.v[p] = 0.0
+    for i in range(bus.after.shape[0]):
+        z = bus.after[i]
+        for p in range(bus.u.shape[0]):
+            bus.u[p] += bus.displacement[i, p] * z
+            bus.v[p] += bus.velocity[i, p] * z
 
 
 @register_jitable(**INLINED)
-def _answer(s, p, force, state, displacement, velocity):
+def _answer(bus, p, force, state, displacement, velocity):
     """Add what a force on a port does to state and ports over the step."""
-    for i in range(s.after.shape[0]):
-        s.after[i] += state[p, i] * force
-    for q in range(s.u.shape[0]):
-        s.u[q] += displacement[p, q] * force
-        s.v[q] += velocity[p, q] * force
+    for i in range(bus.after.shape[0]):
+        bus.after[i] += state[p, i] * force
+    for q in range(bus.u.shape[0]):
+        bus.u[q] += displacement[p, q] * force
+        bus.v[q] += velocity[p, q] * force
 
 
 @register_jitable(**INLINED)
-def add_held(s, p, force):
-    """Add a force held over the step, after `move`."""
-    s.force[p] += force
-    _answer(s, p, force, s.held, s.moved_by_held, s.sped_by_held)
+def correct(bus):
+    """Let the forces vary linearly over the step by their changes."""
+    for p in range(bus.change.shape[0]):
+        if bus.change[p] != 0.0:
+            _answer(bus, p, bus.change[p], bus.ramp, bus.ramp_compliance, bus.ramp_mobility)
 
 
 @register_jitable(**INLINED)
-def add_change(s, p, change):
-    """Add a change of a force over the step, after `move`."""
-    s.change[p] += change
-    _answer(s, p, change, s.ramp, s.moved_by_ramp, s.sped_by_ramp)
+def add_held(bus, p, force):
+    """Add a force held over the step, after it was predicted."""
+    bus.force[p] += force
+    _answer(bus, p, force, bus.held, bus.step_compliance, bus.step_mobility)
 
 
 @register_jitable(**INLINED)
-def end_step(s):
+def end_step(bus):
     """Take the state at the end of the step."""
-    for i in range(s.state.shape[0]):
-        s.state[i] = s.after[i]
+    for i in range(bus.state.shape[0]):
+        bus.state[i] = bus.after[i]

@@ -1,29 +1,36 @@
-"""A machine compiled for the time loop: ports in order, structure, law groups."""
+"""A machine, or modes, compiled for the time loop: ports in order, structure, law groups."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.control.drive_table import control_table
+from dynamics.friction.law import FrictionLaw
 from dynamics.friction.laws import friction_groups
 from dynamics.machine.description import Machine
-from dynamics.machine.groups import ConstantForces, ControlledDrives
-from dynamics.machine.loop import Loads
+from dynamics.machine.groups import (
+    ConstantForces,
+    ControlledDrives,
+    Loads,
+    frictions_on_ports,
+)
 from dynamics.machine.steps import StructureSteps, structure_steps
+from dynamics.modal.modal_structure import modal_energy, modal_structure
+from dynamics.modal.modes import Mode
 from dynamics.structure.linear_structure import StructureError
 from dynamics.trajectory.set_points import SetPoints
 
 
-class MachineTables(NamedTuple):
-    """What the time loop of a machine needs."""
+class StructureTables(NamedTuple):
+    """What the time loop needs of a structure: its ports, and what acts on them."""
 
-    steps: StructureSteps
-    groups: tuple
-    loads: Loads  # of no rows yet
+    bus: StructureSteps
+    held: tuple  # laws whose forces are known at the beginning of a step
+    implicit: tuple  # laws that are solved together with the motion
     port: dict[str, int]  # of drives, frictions, loads and outputs by name
 
 
@@ -36,10 +43,10 @@ def machine_tables(
     machine: Machine,
     step: float,
     points: SetPoints | None = None,
-    loads: Mapping[str, NDArray[np.float64]] | None = None,
+    loads: Mapping[str, tuple[NDArray[np.float64], NDArray[np.float64]]] | None = None,
     outputs: Mapping[str, NDArray[np.float64]] | None = None,
     velocity: NDArray[np.float64] | None = None,
-) -> MachineTables:
+) -> StructureTables:
     """Compile a machine, unstrained.
 
     Parameters
@@ -49,8 +56,10 @@ def machine_tables(
         s.
     points : SetPoints, optional
         One column an axis, in the order of `machine.axes`; rest by default.
-    loads, outputs : mapping of str to (n,) array of float
-        Rows of the structure where forces will act, and that will be read.
+    loads : mapping of str to ((n,) array, (steps+1,) array) of float
+        Rows of the structure, and forces on them at the ends of steps, N, linear in between.
+    outputs : mapping of str to (n,) array of float
+        Rows that will be read.
     velocity : (n,) array of float, optional
         Of the structure's freedoms at the start; at rest by default.
 
@@ -66,27 +75,57 @@ def machine_tables(
         raise StructureError(
             f"set points of {points.position.shape[1]} axes; the machine has {len(machine.axes)}"
         )
+    loads = loads or {}
     rows: dict[str, NDArray[np.float64]] = {}
-    for name, row in _rows(machine, loads or {}, outputs or {}):
+    for name, row in _rows(machine, {name: row for name, (row, _) in loads.items()}, outputs or {}):
         if name in rows:
             raise StructureError(f'"{name}" names two places of the machine')
         rows[name] = row
     port = {name: place for place, name in enumerate(rows)}
     matrix = np.array(list(rows.values())).reshape(-1, machine.structure.size)
-    steps = structure_steps(machine.structure, matrix, step, velocity)
-    groups: tuple = friction_groups(
-        [one.law for one in machine.frictions], [port[_friction(one)] for one in machine.frictions]
-    )
+    bus = structure_steps(machine.structure, matrix, step, velocity)
+    held: tuple = ()
+    if machine.drives:
+        held += (_controlled(machine, step, points, port),)
     if machine.preloads:
         places = np.array([port[one.name] for one in machine.preloads], dtype=np.int64)
-        groups = (
-            ConstantForces(places, np.array([one.value for one in machine.preloads])),
-            *groups,
-        )
-    if machine.drives:
-        groups = (_controlled(machine, step, points, port), *groups)
-    chosen = np.array([port[name] for name in loads or {}], dtype=np.int64)
-    return MachineTables(steps, groups, Loads(chosen, np.zeros((1, len(chosen)))), port)
+        held += (ConstantForces(places, np.array([one.value for one in machine.preloads])),)
+    if loads:
+        places = np.array([port[name] for name in loads], dtype=np.int64)
+        force = np.stack([force for _, force in loads.values()], axis=1, dtype=np.float64)
+        held += (Loads(places, force),)
+    frictions = friction_groups(
+        [one.law for one in machine.frictions], [port[_friction(one)] for one in machine.frictions]
+    )
+    implicit = (frictions_on_ports(frictions, bus.step_compliance),) if frictions else ()
+    return StructureTables(bus, held, implicit, port)
+
+
+def modal_tables(
+    modes: Sequence[Mode],
+    step: float,
+    laws: Sequence[FrictionLaw] = (),
+    rubbing: Sequence[int] = (),
+) -> StructureTables:
+    """Compile modes at rest, with frictions on some of them.
+
+    Parameters
+    ----------
+    modes : sequence of Mode
+    step : float
+        s.
+    laws : sequence of FrictionLaw
+    rubbing : sequence of int
+        Mode that each of them acts on.
+    """
+    bus = modal_structure(modes, step, rubbing)
+    port = {f"tool {axis}": place for place, axis in enumerate("xyz")}
+    places = range(len(port), len(port) + len(rubbing))
+    frictions = friction_groups(list(laws), list(places))
+    implicit: tuple = (modal_energy(modes),)
+    if frictions:
+        implicit += (frictions_on_ports(frictions, bus.step_compliance),)
+    return StructureTables(bus, (), implicit, port)
 
 
 def _rows(machine: Machine, loads: Mapping, outputs: Mapping):

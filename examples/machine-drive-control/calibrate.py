@@ -10,9 +10,10 @@ import numpy as np
 from scipy.optimize import least_squares
 
 import chatter
+from chatter.compile.linearised_friction import linearised_frf
 from chatter.compile.machine_parts import assembled_machine
 from chatter.description.machine.machine_file import MachineFile
-from chatter.simulation.virtual_tests.frf import linearised_frf, peaks
+from chatter.simulation.virtual_tests.frf import peaks
 from dynamics.frf.container import Frf
 
 HERE = Path(__file__).parent

@@ -15,11 +15,12 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 import chatter
+from chatter.compile.linearised_friction import linearised_frf
 from chatter.compile.machine_parts import assembled_machine, machine_parts
 from chatter.description.machine.machine_file import MachineFile
 from chatter.plots import style
 from chatter.report.published_against_obtained import Finding, write_findings
-from chatter.simulation.virtual_tests.frf import FrfResult, linearised_frf, peaks
+from chatter.simulation.virtual_tests.frf import FrfResult, peaks
 from chatter.simulation.virtual_tests.move import MovePlan, MoveResult, move_axes
 from dynamics.frf.container import Frf
 from dynamics.structure.assembly import assemble

@@ -15,11 +15,12 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 import chatter
+from chatter.compile.linearised_friction import linearised_frictions
 from chatter.compile.machine_parts import assembled_machine
 from chatter.description.machine.machine_file import MachineFile
 from chatter.plots import style
 from chatter.report.published_against_obtained import Finding, write_findings
-from chatter.simulation.virtual_tests.frf import linearised_frictions, peaks
+from chatter.simulation.virtual_tests.frf import peaks
 from chatter.simulation.virtual_tests.loop_response import (
     LoopResponse,
     LoopSweep,

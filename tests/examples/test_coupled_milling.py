@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import chatter
+from chatter.compile.linearised_friction import linearised_frictions
 from chatter.compile.machine_parts import assembled_machine
-from chatter.simulation.virtual_tests.frf import linearised_frictions, peaks
+from chatter.simulation.virtual_tests.frf import peaks
 from chatter.simulation.virtual_tests.from_file import one_frf
 from dynamics.frf.container import Frf
 from dynamics.machine.harmonic import receptance

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import chatter
+from chatter.compile.linearised_friction import linearised_frf
 from chatter.compile.machine_parts import assembled_machine
-from chatter.simulation.virtual_tests.frf import linearised_frf, peaks
+from chatter.simulation.virtual_tests.frf import peaks
 from dynamics.frf.container import Frf
 from dynamics.receptance.coupling import PointPort
 from dynamics.reduction.modal_truncation import state_space, truncated, undamped_modes

@@ -5,7 +5,7 @@ import pytest
 
 import chatter
 from chatter.compile.machine_parts import assembled_machine
-from chatter.simulation.virtual_tests.loop_stability import least_stable_motion
+from chatter.engine.loop_stability import least_stable_motion
 from dynamics.trajectory.path import square
 from tests.places import EXAMPLES, example_module
 

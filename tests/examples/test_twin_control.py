@@ -5,8 +5,8 @@ import pytest
 
 import chatter
 from chatter.compile.machine_parts import assembled_machine
+from chatter.engine.loop_stability import least_stable_motion
 from chatter.simulation.virtual_tests.frf import peaks
-from chatter.simulation.virtual_tests.loop_stability import least_stable_motion
 from tests.places import EXAMPLES, example_module
 
 EXAMPLE = EXAMPLES / "machine-twin-control"

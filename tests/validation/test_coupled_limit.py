@@ -6,15 +6,11 @@ import pytest
 import chatter
 from chatter import Case
 from chatter.description.machine.machine_file import MachineFile
-from chatter.engine.machine_cut_loop import run_coupled
-from chatter.engine.machine_loop import advance
-from chatter.simulation.on_machine.setup import set_up_machine, tool_side
-from chatter.simulation.on_machine.simulate import _record
+from chatter.simulation.cut_run import CutRun
+from chatter.simulation.setup import set_up
 from chatter.stability.methods.semi_discretization.arrays import milling_arrays
 from chatter.stability.methods.semi_discretization.multipliers import multipliers
 from chatter.stability.model import milling_model
-from cutting.chip.tool_point import tool_point
-from dynamics.machine.loop import Loads
 
 STIFF = 1e11
 JOINT = {"x": 6e7, "y": 9e7, "z": STIFF, "rx": STIFF, "ry": STIFF, "rz": STIFF}
@@ -80,18 +76,15 @@ def case_at(machine, speed, depth=1e-3):
 
 def moved(case, push):
     """Displacement of the tool, pushed as the cut begins, m."""
-    setup = set_up_machine(case)
-    s, groups = setup.tables.steps, setup.tables.groups
-    advance(groups, s, Loads(np.zeros(0, dtype=np.int64), np.zeros((2, 0))), 0, setup.settling)
-    tool, record = tool_side(setup), _record(setup)
-    s.state[:] += push * s.held[tool.port[:2]].sum(axis=0)
+    setup = set_up(case)
+    run, s = CutRun(setup, 1, setup.steps), setup.structure.tables.bus
+    tool = [setup.structure.tables.port[f"tool {axis}"] for axis in "xy"]
+    s.state[:] += push * s.held[tool].sum(axis=0)
     s.u[:] = s.state @ s.displacement
     s.v[:] = s.state @ s.velocity
-    run = (setup.groups, groups, s, tool, tool_point(), record, setup.settling)
-    done = run_coupled(*run, -1, setup.steps + 1, setup.furthest)
-    assert done == setup.steps + 1
-    assert record.stride == 1
-    return record.cut[:, 3:5], setup
+    assert run.steps(setup.steps) == setup.steps
+    assert setup.resolution.stride == 1
+    return run.rows[1:, 3:5], setup
 
 
 def growth(case):

@@ -14,8 +14,9 @@ import chatter
 from chatter.description.case import Case
 from chatter.description.progress import no_progress
 from chatter.simulation.perturbation.divergence import divergence
-from chatter.simulation.perturbation.growth_rate import delayed, motion_of
-from chatter.simulation.setup import modes_of, set_up
+from chatter.simulation.perturbation.growth_rate import motion_of
+from chatter.simulation.setup import delayed, set_up
+from chatter.simulation.structure_in_time import modes_of
 from chatter.stability.model import milling_model
 from chatter.stability.registry import COLLOCATION
 

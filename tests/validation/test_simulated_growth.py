@@ -13,7 +13,7 @@ import chatter
 from chatter.description.case import Case
 from chatter.description.progress import no_progress
 from chatter.simulation.perturbation.growth_rate import growth_of
-from chatter.simulation.setup import modes_of
+from chatter.simulation.structure_in_time import modes_of
 from chatter.stability.methods.time_domain.critical_depths import time_limit_curve
 from chatter.stability.model import milling_model
 from chatter.stability.registry import COLLOCATION

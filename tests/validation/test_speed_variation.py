@@ -12,8 +12,9 @@ import pytest
 from chatter.description.case import Case
 from chatter.description.progress import no_progress
 from chatter.simulation.perturbation.divergence import divergence
-from chatter.simulation.perturbation.growth_rate import delayed, motion_of
-from chatter.simulation.setup import modes_of, set_up
+from chatter.simulation.perturbation.growth_rate import motion_of
+from chatter.simulation.setup import delayed, set_up
+from chatter.simulation.structure_in_time import modes_of
 from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.methods.collocation.multipliers import converged_multiplier, multipliers
 from chatter.stability.model import milling_model

@@ -30,7 +30,8 @@ from chatter.explain.residuals.variables import (
 )
 from chatter.explain.selection.fitting import Parameter
 from chatter.explain.selection.prior import with_priors
-from chatter.simulation.simulate import simulate
+from chatter.simulation.setup import set_up
+from chatter.simulation.simulate import run_setup
 
 _FORCES = ("Fx", "Fy", "Fz")
 _DISPLACEMENTS = ("x", "y", "z")
@@ -95,7 +96,7 @@ class Milling(Kind):
         """Simulated signals at the samples of a run."""
         at = run.signals["time"] - run.signals["time"][0]
         revolutions = float(at[-1]) * case.cut.spindle_speed / (2.0 * math.pi) + _BEYOND
-        result = simulate(case.patch({"simulation.revolutions": revolutions}))
+        result, _ = run_setup(set_up(case.patch({"simulation.revolutions": revolutions})))
         columns = {
             **dict(zip(_FORCES, result.force.T, strict=True)),
             **dict(zip(_DISPLACEMENTS, result.displacement.T, strict=True)),

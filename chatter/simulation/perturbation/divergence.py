@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from chatter.description.case import Case
 from chatter.simulation.perturbation.lyapunov import Exponents
 from chatter.simulation.perturbation.perturbed_runs import follow
-from chatter.simulation.setup import set_up
+from chatter.simulation.setup import set_up_on_modes
 from dynamics.modal.modes import Mode
 
 #: half the range of a motion, as a share of the feed per tooth, from which on teeth may leave the
@@ -127,7 +127,7 @@ def divergence(case: Case, modes: tuple[Mode, ...]) -> Divergence:
 
 def _lengths(case: Case, modes: tuple[Mode, ...]) -> tuple[int, int, float]:
     """Turns in which the cut takes hold and that are watched, and turns of a period."""
-    setup = set_up(case, modes)
+    setup = set_up_on_modes(case, modes)
     bins = setup.resolution.steps_a_turn
     a_second = setup.spindle.speed / (2.0 * math.pi)
     slowest = max(1.0 / (mode.damping * mode.natural_frequency) for mode in setup.modes)

@@ -1,4 +1,4 @@
-"""Runs that are followed turn by turn: from rest, or as the cut takes hold of the structure."""
+"""Runs that are followed revolution by revolution: from rest, or through a force ramp."""
 
 from __future__ import annotations
 
@@ -6,16 +6,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
-from chatter.engine.loop import COLUMNS, Record, run
-from chatter.simulation.setup import delayed, set_up
-from chatter.simulation.spindle import prescribed
-from cutting.chip.tool_point import tool_point
-from dynamics.modal.modal_steps import modal_steps
+from chatter.simulation.cut_run import CutRun
+from chatter.simulation.setup import Setup, set_up_on_modes
 from dynamics.modal.modes import Mode
 
 
-def share_held(done: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Share of the cutting force that the structure feels when a share of the time is over.
+def displace_modes(setup: Setup, size: float) -> None:
+    """Displace every mode of a cut on modes, m; frictions on them do not see that as motion."""
+    bus = setup.structure.tables.bus
+    bus.state[0::2] += size
+    rubbing = len("xyz")
+    bus.u[rubbing:] += size
+
+
+def force_share(done: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Share of the cutting force that the structure feels when a share of the force ramp is over.
 
     It begins and ends with no slope and no curvature, so that the tool keeps to its forced
     motion: what a jump in the slope would shake loose is all that later grows.
@@ -25,52 +30,34 @@ def share_held(done: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 class FollowedRun:
-    """Run with the delayed chip that goes on by a turn of the mean speed at a time.
+    """Run with the delayed chip that goes on by a revolution of the mean speed at a time.
 
     Parameters
     ----------
     case : Case
     modes : tuple of Mode
         Of its structure.
-    taking_hold : int
-        Turns in which the cut takes hold of the structure; 0 for at once.
+    ramp : int
+        Revolutions of the force ramp; 0 for none.
     """
 
-    def __init__(self, case: Case, modes: tuple[Mode, ...], taking_hold: int) -> None:
-        self.setup = set_up(delayed(case), modes)
+    def __init__(self, case: Case, modes: tuple[Mode, ...], ramp: int) -> None:
+        self.setup = set_up_on_modes(case, modes)
         self.bins = self.setup.resolution.steps_a_turn
-        self.modes = modal_steps(self.setup.modes, self.setup.step)
-        self._point = tool_point()
-        self._scratch = np.zeros((len(self.setup.modes), 2))
-        self._hold = taking_hold * self.bins
-        self._done = -1
-        state = (self.modes.state, self.modes.force)
-        self._state = _arrays((self.setup.groups, state, self.setup.frictions, self._point))
+        self._ramp = ramp * self.bins
+        self._run = CutRun(self.setup, 1, self.bins)
+        tables = self.setup.structure.tables
+        state = (self.setup.groups, tables.bus, tables.implicit[1:], self._run.point)
+        self._state = _arrays(state)
 
-    def turn(self) -> NDArray[np.float64] | None:
-        """Go on by a turn; displacement (bins, 3), m, or None where the model is left."""
-        setup, bins, done = self.setup, self.bins, self._done
-        way = prescribed(setup.spindle, setup.path, bins, setup.step, done, bins)
-        if self._hold:
-            numbers = np.arange(done, done + bins + 1)
-            way = way._replace(grip=share_held(numbers / self._hold))
-        # the record of a turn begins anew; only the very first step is another one than all others
-        first = min(done, 0)
-        record = Record(1, np.zeros((bins + 1, len(COLUMNS))))
-        did = run(
-            setup.groups,
-            self.modes,
-            setup.frictions,
-            self._point,
-            way,
-            record,
-            self._scratch,
-            first,
-            setup.furthest,
-            bins,
-        )
-        self._done += did
-        return record.rows[first + 1 : first + 1 + bins, 3:6] if did == bins else None
+    def revolve(self) -> NDArray[np.float64] | None:
+        """Go on by a revolution; displacement (bins, 3), m, or None where the model is left."""
+        begin = self._run.done
+        share = None if not self._ramp else lambda number: force_share(number / self._ramp)
+        # the record of a revolution begins anew
+        self._run.record(1, begin + 1, self.bins - 1)
+        done = self._run.steps(begin + self.bins, share)
+        return self._run.rows[:, 3:6] if done == begin + self.bins else None
 
     def come_closer(self, leader: FollowedRun, factor: float) -> None:
         """Scale the difference of the whole state from that of a leading run by a factor."""
@@ -82,9 +69,9 @@ class FollowedRun:
                 closer = led[apart] + factor * (own[apart] - led[apart])
                 own[apart] = np.where(np.isfinite(closer), closer, led[apart])
 
-    def push(self, size: float) -> None:
+    def displace(self, size: float) -> None:
         """Displace every mode, m."""
-        self.modes.state[:, 0] += size
+        displace_modes(self.setup, size)
 
 
 def _arrays(held: object) -> list[NDArray]:

@@ -13,6 +13,7 @@ taken for stable by them alone: small pushes tell how vibration grew before.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,13 +22,11 @@ from numpy.typing import NDArray
 from chatter.description.case import Case
 from chatter.detection.bifurcation_type import bifurcation_of, bifurcation_of_multiplier
 from chatter.detection.chatter_frequency import strongest_line
-from chatter.engine.loop import COLUMNS, Record, run
+from chatter.simulation.cut_run import CutRun
 from chatter.simulation.perturbation.divergence import LARGE_SWING, divergence
-from chatter.simulation.setup import Setup, delayed, set_up
-from chatter.simulation.spindle import prescribed
-from cutting.chip.tool_point import tool_point
+from chatter.simulation.perturbation.followed_run import displace_modes
+from chatter.simulation.setup import Setup, set_up_on_modes
 from cutting.edge_segments.segments import period_angle
-from dynamics.modal.modal_steps import modal_steps
 from dynamics.modal.modes import Mode
 
 #: periods in which the cut takes hold, and periods that are watched after that, at the least
@@ -105,7 +104,7 @@ def growth_of(case: Case, modes: tuple[Mode, ...]) -> Growth:
     InputError
         If the case cannot be simulated.
     """
-    setup = set_up(delayed(case), modes)
+    setup = set_up_on_modes(case, modes)
     period = setup.resolution.steps_a_turn // periods_a_turn(setup) * setup.step
     slowest = max(1.0 / (mode.damping * mode.natural_frequency) for mode in setup.modes)
     wanted = max(_RAMP_PERIODS + _WATCHED_PERIODS, math.ceil(_TIME_CONSTANTS * slowest / period))
@@ -131,7 +130,7 @@ def growth_of(case: Case, modes: tuple[Mode, ...]) -> Growth:
         return found
     if apart.rate <= 0.0:
         # neither grows nor dies out for certain
-        slower = _periods(set_up(delayed(case), modes), _SLOWER * ramp, _SLOWER * ramp + count)
+        slower = _periods(set_up_on_modes(case, modes), _SLOWER * ramp, _SLOWER * ramp + count)
         if not _as_large(slower[_SLOWER * ramp :], watched):
             return found
     return replace(_full_chatter(watched, period), frequency=apart.frequency)
@@ -189,25 +188,15 @@ def motion_of(
     push : float
         Displacement of every mode at the start, m.
     """
-    modes = modal_steps(setup.modes, setup.step)
-    modes.state[:, 0] = push
-    record = Record(1, np.zeros((steps + 1, len(COLUMNS))))
-    bins = setup.resolution.steps_a_turn
-    turns = prescribed(setup.spindle, setup.path, bins, setup.step, -1, steps + 1, ramp)
-    scratch = np.zeros((len(setup.modes), 2))
-    done = run(
-        setup.groups,
-        modes,
-        setup.frictions,
-        tool_point(),
-        turns,
-        record,
-        scratch,
-        -1,
-        setup.furthest,
-        bins,
-    )
-    return record.rows[:, 3:6], done
+    displace_modes(setup, push)
+    run = CutRun(setup, 1, steps)
+    done = run.steps(steps, linear_ramp(ramp) if ramp else None)
+    return run.rows[:, 3:6], done + 1
+
+
+def linear_ramp(steps: int) -> Callable[[NDArray[np.int64]], NDArray[np.float64]]:
+    """Force ramp that ends after a number of steps."""
+    return lambda number: np.clip(number / steps, 0.0, 1.0)
 
 
 def _fit_of(periods: NDArray[np.float64], feed: float) -> slice | None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.simulation.perturbation.followed_run import share_held
+from chatter.simulation.perturbation.followed_run import force_share
 
 Array = NDArray[np.float64]
 
@@ -197,7 +197,7 @@ class Exponents:
             Largest of all turns while the cut takes hold; nan where none is small.
         """
         turns = min(self.hold, len(self.swing))
-        share = share_held((np.arange(turns) + 1.0) / max(self.hold, 1))
+        share = force_share((np.arange(turns) + 1.0) / max(self.hold, 1))
         swing = self.swing[:turns]
         shown = (share > _SHOWN_SHARE) & (swing < small)
         return float((swing[shown] / share[shown]).max()) if shown.any() else math.nan

@@ -56,18 +56,18 @@ def follow(case: Case, modes: tuple[Mode, ...], hold: int, watch: int, period: f
         Of the variation, turns.
     """
     leader, pushed, rest = (FollowedRun(case, modes, turns) for turns in (hold, hold, 0))
-    rubs = bool(leader.setup.frictions)
+    rubs = leader.setup.structure.rubs
     push = (_RUBBING_PUSH if rubs else _PUSH) * case.cut.feed_per_tooth
     gone = (_GONE if rubs else _ROUNDING) * push
     frequencies = [mode.frequency for mode in leader.setup.modes]
     a_second = leader.setup.spindle.speed / (2.0 * math.pi)
     stride = _stride(leader.bins, a_second / max(frequencies))
     least = 2.0 * math.pi * min(frequencies) * leader.setup.step * _STILL
-    pushed.push(push)
+    pushed.displace(push)
     turns: list[_Turn] = []
     scale, left = 0.0, False
     for number in range(hold + watch):
-        motion, beside, other = leader.turn(), pushed.turn(), rest.turn()
+        motion, beside, other = leader.revolve(), pushed.revolve(), rest.revolve()
         if motion is None or beside is None:
             left = True
             break
@@ -93,7 +93,7 @@ def follow(case: Case, modes: tuple[Mode, ...], hold: int, watch: int, period: f
         pushed.come_closer(leader, 1.0 / by)
         scale += math.log(by)
         if number < hold:
-            pushed.push((-1.0) ** number * _RENEWED * push)
+            pushed.displace((-1.0) ** number * _RENEWED * push)
     columns = zip(*turns, strict=True) if turns else ((),) * len(_Turn._fields)
     of = dict(zip(_Turn._fields, columns, strict=True))
     numbers = ("size", "distance", "scale", "from_rest", "swing")

@@ -1,12 +1,13 @@
-"""Virtual tests of a machine: run in time, frequency responses, moves.
+"""Virtual tests of a machine that moves alone.
 
-=============== ====================================================================
-module          responsibility
-=============== ====================================================================
-engine          the compiled time loop
-run             a machine run in chunks, its signals
-loop_stability  control loops judged before anything runs
-rigid_motion    what the axes' motion does to every port
-move            a trajectory: tracking and contour error
-=============== ====================================================================
+============= =======================================================================
+module        responsibility
+============= =======================================================================
+run           a machine run in time, its signals
+move          a trajectory: tracking and contour error
+virtual_tests FRFs by tests in time: blows, chirps, multisines, torques
+loop_response response of the control loops
+frf           FRFs of a machine: linearised and by tests. `frf_peaks`: their peaks
+from_file     FRFs and moves as a machine file asks for them
+============= =======================================================================
 """

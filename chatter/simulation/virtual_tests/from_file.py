@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.compile.linearised_friction import linearised_frf
 from chatter.compile.machine_parts import assembled_machine
 from chatter.description.errors import InputError
 from chatter.description.machine.frequency_response import (
@@ -20,8 +21,8 @@ from chatter.description.machine.frequency_response import (
 from chatter.description.machine.machine_file import MachineFile
 from chatter.description.machine.move import MoveSection
 from chatter.description.progress import Progress, no_progress
-from chatter.simulation.virtual_tests.frf import FrfCurve, FrfResult, linearised_frf
-from chatter.simulation.virtual_tests.loop_stability import refuse_unstable_control
+from chatter.engine.loop_stability import refuse_unstable_control
+from chatter.simulation.virtual_tests.frf import FrfCurve, FrfResult
 from chatter.simulation.virtual_tests.move import MovePlan, MoveResult, move_axes
 from chatter.simulation.virtual_tests.virtual_tests import FrfTest, frf_by_test
 from dynamics.frf.container import Frf

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from chatter.compile.rigid_motion import rigid_motion
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
+from chatter.engine.loop_stability import refuse_unstable_control
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, write_results
-from chatter.simulation.virtual_tests.loop_stability import refuse_unstable_control
 from chatter.simulation.virtual_tests.run import MachineRun, RunInputs, run_machine
 from dynamics.machine.description import Drive, Machine
 from dynamics.trajectory.contour import contour_error

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 
 from chatter.description.errors import InputError, RunError
 from chatter.description.progress import Progress, no_progress
-from chatter.engine.machine_loop import Record, run
+from chatter.engine.loop import Laws, run
+from chatter.engine.record import port_record
 from dynamics.control.sampling import ControlError
 from dynamics.machine.description import Machine
 from dynamics.machine.groups import ControlledDrives
-from dynamics.machine.loop import Loads
-from dynamics.machine.tables import MachineTables, machine_tables
+from dynamics.machine.tables import machine_tables
+from dynamics.machine.travel_limit import TravelLimit
 from dynamics.structure.linear_structure import StructureError
 from dynamics.trajectory.set_points import SetPoints
 
@@ -106,37 +107,38 @@ def run_machine(
         raise InputError(f"the run of {inputs.duration:g} s is shorter than a step of {step:g} s")
     _check_lengths(machine, inputs, total)
     try:
-        tables = machine_tables(
-            machine,
-            step,
-            inputs.points,
-            {name: row for name, (row, _) in inputs.loads.items()},
-            inputs.outputs,
-        )
+        tables = machine_tables(machine, step, inputs.points, inputs.loads, inputs.outputs)
     except (StructureError, ControlError) as error:
         raise InputError(str(error)) from error
-    parts: list[Record] = []
-    done = 0
-    interrupted = False
+    stride = inputs.stride
+    record = port_record(total // stride, len(tables.port), stride, stride)
+    laws = Laws(
+        _with_injected(tables.held, machine, inputs.injected, total),
+        (TravelLimit(_FURTHEST),),
+        tables.implicit,
+        (record,),
+    )
+    done, interrupted = 0, False
     try:
         while done < total:
             count = min(_STEPS_A_CHUNK, total - done)
-            record = _record(tables, done, count, inputs.stride)
-            groups = _with_injected(tables.groups, machine, inputs.injected, done, count)
-            loads = Loads(tables.loads.port, _chunk_of_loads(inputs, done, count))
-            made = run(groups, tables.steps, loads, record, done, _FURTHEST)
-            rows = (done + made) // inputs.stride - done // inputs.stride
-            parts.append(Record(inputs.stride, record.port, *(a[:rows] for a in record[2:])))
-            done += made
+            ran = run(laws, tables.bus, done, 0, count)
+            done += ran
             progress(done, total)
-            if made < count:
+            if ran < count:
                 raise RunError(
                     f"after {done * step:.4g} s the machine has run away: a control loop is "
                     "unstable, or a force pushes an axis that nothing holds"
                 )
     except KeyboardInterrupt:
         interrupted = True
-    return _collected(tables, parts, step, inputs.stride, interrupted)
+    rows = done // stride
+    signals = {
+        what: {name: getattr(record, what)[:rows, place] for name, place in tables.port.items()}
+        for what in ("displacement", "velocity", "force")
+    }
+    time = step * stride * np.arange(1, rows + 1)
+    return MachineRun(time, **signals, interrupted=interrupted)
 
 
 def _check_lengths(machine: Machine, inputs: RunInputs, total: int) -> None:
@@ -159,45 +161,15 @@ def _check_lengths(machine: Machine, inputs: RunInputs, total: int) -> None:
             raise InputError(f'drive "{name}": {len(torque)} torques injected over {total} steps')
 
 
-def _record(tables: MachineTables, done: int, count: int, stride: int) -> Record:
-    ports = np.arange(len(tables.port), dtype=np.int64)
-    rows = (done + count) // stride - done // stride
-    shape = (rows, len(ports))
-    return Record(stride, ports, np.empty(shape), np.empty(shape), np.empty(shape))
-
-
-def _chunk_of_loads(inputs: RunInputs, done: int, count: int) -> NDArray[np.float64]:
-    chunk = np.empty((count + 1, len(inputs.loads)))
-    for column, (_, force) in enumerate(inputs.loads.values()):
-        chunk[:, column] = force[done : done + count + 1]
-    return chunk
-
-
-def _with_injected(
-    groups: Sequence, machine: Machine, injected: Mapping, done: int, count: int
-) -> tuple:
-    torque = np.zeros((count, len(machine.drives)))
+def _with_injected(held: tuple, machine: Machine, injected: Mapping, total: int) -> tuple:
+    """Laws with the torques of a test over all steps."""
+    if not injected:
+        return held
+    torque = np.zeros((total, len(machine.drives)))
     for column, drive in enumerate(machine.drives):
         if drive.name in injected:
-            torque[:, column] = injected[drive.name][done : done + count]
+            torque[:, column] = injected[drive.name]
     return tuple(
         group._replace(injected=torque) if isinstance(group, ControlledDrives) else group
-        for group in groups
+        for group in held
     )
-
-
-def _collected(
-    tables: MachineTables, parts: Sequence[Record], step: float, stride: int, interrupted: bool
-) -> MachineRun:
-    columns = {
-        what: np.concatenate([getattr(part, what) for part in parts])
-        if parts
-        else np.empty((0, len(tables.port)))
-        for what in ("displacement", "velocity", "force")
-    }
-    count = len(columns["force"])
-    signals = {
-        what: {name: values[:, place] for name, place in tables.port.items()}
-        for what, values in columns.items()
-    }
-    return MachineRun(step * stride * np.arange(1, count + 1), **signals, interrupted=interrupted)

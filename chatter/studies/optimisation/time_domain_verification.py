@@ -25,6 +25,7 @@ from chatter.engine.parallel import one_thread, worker_count
 from chatter.simulation.result import SimulationResult
 from chatter.simulation.setup import set_up
 from chatter.simulation.simulate import run_setup
+from chatter.simulation.verdict import with_verdict
 from chatter.stability.model import MillingModel
 from chatter.studies.optimisation.candidate import Candidate, Verification, max_usage
 from chatter.studies.optimisation.limits import LIMITED, Limits
@@ -170,7 +171,6 @@ def verification_of(
     Parameters
     ----------
     model : MillingModel
-        A machine is taken by its modes at the tool point.
     limits : Limits
     candidate : Candidate
     progress : callable, optional
@@ -183,10 +183,10 @@ def verification_of(
     """
     here = case_at(model.case, candidate.point).patch({"simulation": None, "stock": None})
     setup = set_up(here, _modes(model, here))
-    result, done = run_setup(setup, progress)
+    result, _ = run_setup(setup, progress)
     if result.interrupted:
         raise KeyboardInterrupt
-    verdict = "chatter" if done < setup.resolution.steps else _verdict(result)
+    verdict = "chatter" if not result.complete else _verdict(result)
     found = _measured(result)
     within = [
         abs(found[LIMITED[key]]) <= most * (1.0 + TOLERANCE)
@@ -196,14 +196,20 @@ def verification_of(
     return Verification(verdict, **found, verified=verdict == "stable" and all(within))
 
 
-def _modes(model: MillingModel, here: Case) -> tuple[Mode, ...]:
-    """Modes at the speed of a cut; those of the search where they cannot depend on it."""
+def _modes(model: MillingModel, here: Case) -> tuple[Mode, ...] | None:
+    """Modes at the speed of a cut; those of the search where they cannot depend on it.
+
+    A machine has its own.
+    """
+    if here.structure.machine is not None:
+        return None
     slopes = any(mode.frequency_slope for mode in here.structure.mode)
     return structure_of(here).modes if slopes else model.structure.modes
 
 
 def _verdict(result: SimulationResult) -> str:
-    return "not judged" if result.detection is None else result.detection.verdict
+    detection = with_verdict(result).detection
+    return "not judged" if detection is None else detection.verdict
 
 
 def _measured(result: SimulationResult) -> dict[str, float]:

@@ -255,9 +255,12 @@ def _frf(model: Model, method: str | None, only: tuple[str, ...]) -> Outcome:
 def _case_frfs(case: Case) -> list[tuple[str, str, str, Any, Any]]:
     """FRFs of the tool against the workpiece that are not zero."""
     from chatter.compile.structure import structure_of
+    from chatter.engine.loop_stability import refuse_unstable_structure
 
     case.require("structure")
-    lines, values = structure_of(case).receptance()
+    structure = structure_of(case)
+    refuse_unstable_structure(structure)
+    lines, values = structure.receptance()
     return [
         (f"tool {axis}", "receptance", "m/N", lines, values[:, k, k])
         for k, axis in enumerate("xyz")

@@ -13,7 +13,7 @@ from numba import njit
 from chatter import Case
 from chatter.description.errors import RunError
 from chatter.engine.loop import run as compiled
-from chatter.engine.presets import DRIVER
+from chatter.engine.presets import TIME_LOOP
 from chatter.simulation.setup import set_up
 from chatter.simulation.simulate import run_setup, simulate
 
@@ -240,7 +240,7 @@ def test_interrupt_between_chunks_leaves_the_next_run_as_it_was():
         if done > 0:
             raise KeyboardInterrupt
 
-    part = simulate(given, interrupt)
+    part = simulate(given, progress=interrupt)
     assert part.interrupted
     assert 0 < part.turns < 100
     assert np.array_equal(part.rows, whole.rows[: len(part.rows)])
@@ -250,7 +250,9 @@ def test_interrupt_between_chunks_leaves_the_next_run_as_it_was():
 
 def test_progress_counts_to_the_end():
     seen = []
-    simulate(case(simulation={"revolutions": 100, "steps": 720}), lambda *at: seen.append(at))
+    simulate(
+        case(simulation={"revolutions": 100, "steps": 720}), progress=lambda *at: seen.append(at)
+    )
     assert len(seen) >= 3
     assert seen[-1] == (72000, 72000)
     assert [done for done, _ in seen] == sorted(done for done, _ in seen)
@@ -275,7 +277,7 @@ def test_numbers_and_counts_do_not_compile_again():
 def test_the_loop_counts_no_references():
     # cached code cannot be looked at: compile it anew
     simulate(case())
-    fresh = njit(**{**DRIVER, "cache": False}, _nrt=False)(compiled.py_func)
+    fresh = njit(**{**TIME_LOOP, "cache": False})(compiled.py_func)
     fresh.compile(compiled.signatures[0])
     (code,) = fresh.inspect_llvm().values()
     assert "NRT_incref" not in code

@@ -6,7 +6,7 @@ import scipy.linalg
 import scipy.optimize
 
 from dynamics.machine.blocks import blocks
-from dynamics.machine.steps import begin_step, end_step, move, structure_steps
+from dynamics.machine.steps import begin_step, correct, end_step, predict, structure_steps
 from dynamics.structure.linear_structure import LinearStructure
 
 
@@ -119,7 +119,8 @@ def stepped(structure, ports, forces, step, start):
         begin_step(s)
         s.force[:] = before
         s.change[:] = after - before
-        move(s)
+        predict(s)
+        correct(s)
         end_step(s)
         moved.append([s.u.copy(), s.v.copy()])
     return np.array(moved)

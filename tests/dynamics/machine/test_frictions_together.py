@@ -14,9 +14,8 @@ from dynamics.friction.coulomb_stribeck import CoulombStribeck
 from dynamics.friction.lugre import LuGre, lugre_energy, lugre_force
 from dynamics.friction.tanh_hysteresis import TanhHysteresis, tanh_force, tanh_stored
 from dynamics.machine.description import Friction, Machine
-from dynamics.machine.groups import all_drive, all_resist, all_settle
-from dynamics.machine.loop import machine_step
-from dynamics.machine.steps import begin_step, end_step, move
+from dynamics.machine.groups import friction_commit, friction_forces
+from dynamics.machine.steps import begin_step, correct, end_step, predict
 from dynamics.machine.tables import machine_tables
 from dynamics.structure.linear_structure import LinearStructure
 
@@ -64,19 +63,34 @@ def all_of(machine):
     return {f"q{i}": row for i, row in enumerate(np.eye(machine.structure.size))}
 
 
+def begin(tables):
+    """Predict a step, and solve for its frictions."""
+    begin_step(tables.bus)
+    predict(tables.bus)
+    correct(tables.bus)
+    for group in tables.implicit:
+        friction_forces(group, tables.bus, None)
+
+
+def end(tables):
+    for group in tables.implicit:
+        friction_commit(group, tables.bus, None)
+    end_step(tables.bus)
+
+
 class Energy:
     """Kinetic and potential energy of a machine, and what its frictions store."""
 
     def __init__(self, machine, tables):
         self.machine, self.tables = machine, tables
         places = [tables.port[name] for name in all_of(machine)]
-        self.u, self.v = (lambda: tables.steps.u[places]), (lambda: tables.steps.v[places])
+        self.u, self.v = (lambda: tables.bus.u[places]), (lambda: tables.bus.v[places])
         self.tanh_stored = 0.0
 
-    def settle(self):
-        """To be called before a step's motion is settled."""
-        s = self.tables.steps
-        for group in self.tables.groups:
+    def note(self):
+        """To be called before a step ends."""
+        s = self.tables.bus
+        for group in self.tables.implicit[0].by_law:
             if isinstance(self.machine.frictions[0].law, TanhHysteresis):
                 for i, p in enumerate(group.law.port):
                     motion = s.u[p] - s.u_before[p] + group.beyond[i]
@@ -86,7 +100,7 @@ class Energy:
         u, v, structure = self.u(), self.v(), self.machine.structure
         energy = 0.5 * (v @ structure.mass @ v + u @ structure.stiffness @ u)
         if isinstance(self.machine.frictions[0].law, LuGre):
-            law = self.tables.groups[0].law
+            law = self.tables.implicit[0].by_law[0].law
             energy += sum(lugre_energy(law, i) for i in range(len(law.port)))
         return energy + self.tanh_stored
 
@@ -95,17 +109,10 @@ def energies(machine, step, velocity, count):
     tables = machine_tables(machine, step, outputs=all_of(machine), velocity=velocity)
     book = Energy(machine, tables)
     course = [book.total()]
-    s, groups = tables.steps, tables.groups
-    for number in range(count):
-        begin_step(s)
-        all_drive(groups, s, number, 0)
-        move(s)
-        for _ in range(40):
-            if not all_resist(groups, s):
-                break
-        book.settle()
-        all_settle(groups, s)
-        end_step(s)
+    for _ in range(count):
+        begin(tables)
+        book.note()
+        end(tables)
         course.append(book.total())
     return np.array(course)
 
@@ -148,15 +155,15 @@ def test_carriages_of_a_slide_against_the_joint_problem(name):
     machine = slide([LAWS[name], other[name], LAWS[name], other[name]])
     step = 2e-4
     tables = machine_tables(machine, step, velocity=np.array([0.004, 0.0, 0.05]))
-    s, groups, no_loads = tables.steps, tables.groups, tables.loads
-    no_loads = no_loads._replace(force=np.zeros((2, 0)))
+    s, groups = tables.bus, tables.implicit[0].by_law
     law, compared = groups[0].law, 0
-    for number in range(30):
+    for _ in range(30):
         before = copy.deepcopy(law)
         u_before = s.u.copy()
         held_before = s.state.copy()
-        machine_step(groups, s, no_loads, number, 0)
-        g = s.moved_by_held
+        begin(tables)
+        end(tables)
+        g = s.step_compliance
         # without friction: the step made again with no forces
         free = structure_motion(machine, step, held_before, s)
 
@@ -176,10 +183,10 @@ def test_carriages_of_a_slide_against_the_joint_problem(name):
 
 def structure_motion(machine, step, state, s):
     """Displacements of the ports at the end of a step without forces, from a state."""
-    steps = machine_tables(machine, step).steps
+    steps = machine_tables(machine, step).bus
     steps.state[:] = state
     begin_step(steps)
-    move(steps)
+    predict(steps)
     return steps.u
 
 
@@ -192,10 +199,10 @@ def test_internal_friction_keeps_momentum(name):
     machine = Machine(structure, (), frictions, (), (), None)
     tables = machine_tables(machine, 1e-4, outputs=all_of(machine), velocity=np.array([0.2, 0.0]))
     places = [tables.port["q0"], tables.port["q1"]]
-    loads = tables.loads._replace(force=np.zeros((2, 0)))
-    for number in range(600):
-        machine_step(tables.groups, tables.steps, loads, number, 0)
-        v = tables.steps.v[places]
+    for _ in range(600):
+        begin(tables)
+        end(tables)
+        v = tables.bus.v[places]
         assert 3.0 * v[0] + 7.0 * v[1] == pytest.approx(0.6, rel=1e-12)
     # Coulomb friction alone stops them after 0.2 m/s * 2.1 kg / F, less than 10 ms
     swing = {"lugre": 0.02, "tanh": 0.02, "dry": 1e-9}[name]
@@ -208,8 +215,8 @@ def test_friction_of_a_moving_block_takes_its_kinetic_energy():
     structure = LinearStructure(np.array([[5.0]]), np.zeros((1, 1)), np.zeros((1, 1)), {})
     machine = Machine(structure, (), (Friction("floor", law, np.ones(1)),), (), (), None)
     tables = machine_tables(machine, 1e-4, velocity=np.array([0.3]))
-    loads = tables.loads._replace(force=np.zeros((2, 0)))
-    for number in range(400):
-        machine_step(tables.groups, tables.steps, loads, number, 0)
-    assert tables.steps.u[0] == pytest.approx(0.3**2 * 5.0 / (2.0 * 60.0), rel=1e-4)
-    assert tables.steps.v[0] == pytest.approx(0.0, abs=1e-12)
+    for _ in range(400):
+        begin(tables)
+        end(tables)
+    assert tables.bus.u[0] == pytest.approx(0.3**2 * 5.0 / (2.0 * 60.0), rel=1e-4)
+    assert tables.bus.v[0] == pytest.approx(0.0, abs=1e-12)

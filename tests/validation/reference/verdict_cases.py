@@ -17,7 +17,7 @@ import numpy as np
 import chatter
 from chatter import Case
 from chatter.simulation.perturbation.growth_rate import growth_of
-from chatter.simulation.setup import modes_of
+from chatter.simulation.structure_in_time import modes_of
 
 FILE = Path(__file__).with_suffix(".json")
 #: records whose spectral radius a tooth lies this close to one are left out

@@ -5,13 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from chatter import Case
+from chatter.compile.rigid_motion import rigid_motion
 from chatter.description.machine.machine_file import MachineFile
-from chatter.engine.machine_cut_loop import run_coupled
-from chatter.engine.machine_loop import advance
-from chatter.simulation.on_machine.setup import set_up_machine, tool_side
-from chatter.simulation.on_machine.simulate import _record
-from cutting.chip.tool_point import tool_point
-from dynamics.machine.loop import Loads
+from chatter.simulation.cut_run import CutRun
+from chatter.simulation.setup import set_up
 from dynamics.machine.tables import machine_tables
 from dynamics.structure.spring_coupling import Term
 
@@ -114,32 +111,28 @@ def stepped(case, count, outputs=None):
 
     `outputs` are names of (part, direction, at).
     """
-    setup = set_up_machine(case)
+    setup = set_up(case)
     on = setup.on_machine
     rows = {f"tool {axis}": row for axis, row in zip("xyz", on.tool, strict=True)}
     if on.spindle is not None:
         rows["tool turn"] = on.spindle
     for name, (part, direction, at) in (outputs or {}).items():
         rows[name] = on.machine.row(name, [Term(part, np.array(direction, float), np.array(at))])
-    old = setup.tables
-    points = next((group.points for group in old.groups if hasattr(group, "points")), None)
+    points = next(
+        (law.points for law in setup.structure.tables.held if hasattr(law, "points")), None
+    )
     start = np.zeros(on.machine.structure.size)
     if on.spindle_axis is not None:
-        from chatter.compile.rigid_motion import rigid_motion
-
         start = rigid_motion(on.machine, {on.spindle_axis: on.sense * setup.spindle.speed})
     tables = machine_tables(on.machine, setup.step, points, {}, rows, start)
-    setup = replace(setup, tables=tables)
-    s, machine = tables.steps, tables.groups
-    advance(machine, s, Loads(np.zeros(0, dtype=np.int64), np.zeros((2, 0))), 0, setup.settling)
-    tool, point, record = tool_side(setup), tool_point(), _record(setup)
+    setup = replace(setup, structure=replace(setup.structure, tables=tables), furthest=1.0)
+    run, s = CutRun(setup, 1, count), tables.bus
     kept = {name: np.empty((count + 1, len(s.u))) for name in ("u", "v", "held")}
     force, torque = np.empty((count + 1, 3)), np.empty(count + 1)
-    for done in range(-1, count):
-        args = (setup.groups, machine, s, tool, point, record, setup.settling, done, 1, 1.0)
-        assert run_coupled(*args) == 1
-        kept["u"][done + 1], kept["v"][done + 1], kept["held"][done + 1] = s.u, s.v, s.force
-        force[done + 1], torque[done + 1] = tool.force, tool.torque[0]
+    for step in range(count + 1):
+        assert run.steps(step) == step
+        kept["u"][step], kept["v"][step], kept["held"][step] = s.u, s.v, s.force
+        force[step], torque[step] = run.point.force, run.point.torque[0]
     named = {
         what: {name: values[:, place] for name, place in tables.port.items()}
         for what, values in kept.items()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from chatter.simulation.on_machine.setup import set_up_machine
+from chatter.simulation.setup import set_up
 from tests.chatter.simulation.on_machine.coupled_machines import (
     body,
     cut_case,
@@ -142,7 +142,7 @@ def test_a_free_machine_keeps_its_momentum(tmp_path):
 def residual(path, parts):
     """What the energy balance misses over two turns, against the work of the cut, J."""
     case = case_of(path, parts)
-    on = set_up_machine(case).on_machine
+    on = set_up(case).on_machine
     structure = on.machine.structure
     told = outputs()
     order = freedoms(on.machine, told)

@@ -6,7 +6,7 @@ import pytest
 
 import chatter
 from chatter.description.errors import InputError
-from chatter.simulation.on_machine.setup import set_up_machine
+from chatter.simulation.setup import set_up
 from tests.chatter.simulation.on_machine.coupled_machines import cut_case, spindle, written
 from tests.chatter.simulation.on_machine.test_feed import slide
 
@@ -14,7 +14,7 @@ from tests.chatter.simulation.on_machine.test_feed import slide
 def refused(folder, machine, structure=None, **given):
     path = written(folder, machine)
     with pytest.raises(InputError) as error:
-        set_up_machine(cut_case({"machine": str(path), **(structure or {})}, **given))
+        set_up(cut_case({"machine": str(path), **(structure or {})}, **given))
     return str(error.value)
 
 
@@ -80,7 +80,7 @@ def test_keys_of_a_machine_without_one(key):
 
 def test_a_machine_file_that_is_not_there():
     with pytest.raises(InputError) as error:
-        set_up_machine(cut_case({"machine": "nowhere.toml"}))
+        set_up(cut_case({"machine": "nowhere.toml"}))
     assert "nowhere.toml" in str(error.value)
 
 
@@ -98,8 +98,8 @@ def test_no_time_to_come_to_the_feed(tmp_path):
     # where there is little, axes come to the feed in what there is
     path = written(tmp_path, slide(True))
     case = cut_case({"machine": str(path), "settling": 0.1})
-    setup = set_up_machine(case)
-    points = setup.tables.groups[0].points
+    setup = set_up(case)
+    points = setup.structure.tables.held[0].points
     cycle = points.steps * setup.step
     # feed of 0.1 mm by four teeth and 50 turns a second
     speed = abs(points.velocity[:, 0])

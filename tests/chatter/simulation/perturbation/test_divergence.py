@@ -9,10 +9,10 @@ import pytest
 import chatter
 from chatter.io.shipped_examples import example
 from chatter.simulation.perturbation.divergence import divergence
-from chatter.simulation.perturbation.followed_run import FollowedRun, share_held
+from chatter.simulation.perturbation.followed_run import FollowedRun, force_share
 from chatter.simulation.perturbation.growth_rate import growth_of
 from chatter.simulation.perturbation.lyapunov import Exponents
-from chatter.simulation.setup import modes_of
+from chatter.simulation.structure_in_time import modes_of
 
 #: a variation so weak that the cut is that of a constant speed
 WEAK = {"cut.speed_variation": {"amplitude": 1e-6, "frequency": "250 Hz"}}
@@ -70,7 +70,7 @@ def test_a_period_that_cannot_be_watched_is_not_judged(case):
 
 
 def test_the_cut_takes_hold_without_a_jerk():
-    share = share_held(np.linspace(-0.1, 1.1, 1201))
+    share = force_share(np.linspace(-0.1, 1.1, 1201))
     assert share[0] == 0.0
     assert share[-1] == 1.0
     assert share[600] == pytest.approx(0.5)
@@ -83,10 +83,10 @@ def test_a_difference_is_scaled_as_a_whole(case):
     modes = modes_of(case)[0]
     runs = [FollowedRun(case, modes, 0) for _ in range(3)]
     for run, push in zip(runs, (0.0, 1e-9, 1e-11), strict=True):
-        run.push(push)
-        run.turn()
+        run.displace(push)
+        run.revolve()
     runs[1].come_closer(runs[0], 1e-2)
-    leader, closer, less = (run.turn() for run in runs)
+    leader, closer, less = (run.revolve() for run in runs)
     assert np.abs(closer - less).max() < 1e-4 * np.abs(less - leader).max()
 
 

@@ -172,13 +172,12 @@ def test_tanh_hysteresis_by_its_rate_equation():
 
 def struck(machine, step, duration, speed):
     """Displacement after a start at speed, by the kernels as plain Python."""
-    from dynamics.machine.loop import machine_step
+    from chatter.engine.loop import Laws, run
     from dynamics.machine.tables import machine_tables
 
     tables = machine_tables(machine, step, velocity=np.array([speed]))
-    loads = tables.loads._replace(force=np.zeros((2, 0)))
-    course = []
+    laws, course = Laws(tables.held, (), tables.implicit), []
     for number in range(round(duration / step)):
-        machine_step(tables.groups, tables.steps, loads, number, 0)
-        course.append(tables.steps.u[0])
+        run.py_func(laws, tables.bus, number, 0, 1)
+        course.append(tables.bus.u[0])
     return np.array(course)

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from chatter.compile.linearised_friction import linearised_frf
 from chatter.description.errors import InputError
-from chatter.simulation.virtual_tests.frf import FrfCurve, FrfResult, linearised_frf, peaks
+from chatter.simulation.virtual_tests.frf import FrfCurve, FrfResult, peaks
 from chatter.simulation.virtual_tests.run import RunInputs, run_machine
 from chatter.simulation.virtual_tests.virtual_tests import FrfTest, frf_by_test
 from dynamics.frf.container import Frf

@@ -6,7 +6,7 @@ import pytest
 from chatter.compile.machine_parts import assembled_machine
 from chatter.description.errors import InputError
 from chatter.description.machine.machine_file import load_machine
-from chatter.simulation.virtual_tests.loop_stability import (
+from chatter.engine.loop_stability import (
     least_stable_motion,
     refuse_unstable_control,
 )

@@ -13,15 +13,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.compile.linearised_machine import LinearisedMachine
 from chatter.description.errors import InputError
-from chatter.engine.machine_loop import advance
+from chatter.engine.loop import Laws, run
 from dynamics.control.cascade import DriveController
 from dynamics.control.current_loop import RegulatedMotor
 from dynamics.control.sampling import ControlError
 from dynamics.machine.description import Machine
 from dynamics.machine.groups import ControlledDrives
-from dynamics.machine.loop import Loads
-from dynamics.machine.tables import MachineTables, machine_tables
+from dynamics.machine.tables import StructureTables, machine_tables
 from dynamics.structure.linear_structure import StructureError
 
 #: growth, 1/s, below which a motion counts as neutral: that of an axis nothing brings back
@@ -84,12 +84,12 @@ def least_stable_motion(machine: Machine, step: float) -> LoopMotion | None:
         tables = machine_tables(linear, step)
     except (StructureError, ControlError) as error:
         raise InputError(str(error)) from error
-    drives = tables.groups[0]
+    drives = tables.held[0]
     period = _common_period(drives)
     transition = _map_over(tables, drives, period)
     # what nothing ever changes stays at zero, and what nothing reads is no motion
     still = np.all(transition == np.eye(len(transition)), axis=1)
-    still |= _unread(transition, len(tables.steps.state))
+    still |= _unread(transition, len(tables.bus.state))
     multipliers, vectors = np.linalg.eig(transition[~still][:, ~still])
     decisive = int(np.argmax(np.abs(multipliers)))
     motion = np.zeros(len(transition), dtype=np.complex128)
@@ -120,6 +120,12 @@ def refuse_unstable_control(machine: Machine, step: float) -> None:
     )
 
 
+def refuse_unstable_structure(structure: object) -> None:
+    """Refuse a linearised machine whose control loops are unstable; other structures have none."""
+    if isinstance(structure, LinearisedMachine):
+        refuse_unstable_control(structure.cut.machine, structure.cut.file.step)
+
+
 def without_limits(controller: DriveController) -> DriveController:
     """Same controller without limits and resolution: its linear counterpart."""
     current = controller.current
@@ -146,31 +152,32 @@ def _common_period(drives: ControlledDrives) -> int:
     return period
 
 
-def _states(tables: MachineTables, drives: ControlledDrives) -> list[NDArray[np.float64]]:
+def _states(tables: StructureTables, drives: ControlledDrives) -> list[NDArray[np.float64]]:
     """Flat views of everything that is remembered from step to step."""
     control = drives.control
     return [
-        tables.steps.state,
+        tables.bus.state,
         control.state.reshape(-1),
         control.history.reshape(-1),
         control.filter_state.reshape(-1),
     ]
 
 
-def _map_over(tables: MachineTables, drives: ControlledDrives, period: int) -> NDArray[np.float64]:
+def _map_over(
+    tables: StructureTables, drives: ControlledDrives, period: int
+) -> NDArray[np.float64]:
     states = _states(tables, drives)
     sizes = [state.size for state in states]
     transition = np.empty((sum(sizes), sum(sizes)))
-    loads = Loads(tables.loads.port, np.zeros((2, 0)))
-    column = 0
+    laws, column = Laws(tables.held), 0
     for chosen, size in zip(states, sizes, strict=True):
         for place in range(size):
             for state in states:
                 state[:] = 0.0
             chosen[place] = 1.0
-            tables.steps.u[:] = tables.steps.state @ tables.steps.displacement
-            tables.steps.v[:] = tables.steps.state @ tables.steps.velocity
-            advance(tables.groups, tables.steps, loads, 0, period)
+            tables.bus.u[:] = tables.bus.state @ tables.bus.displacement
+            tables.bus.v[:] = tables.bus.state @ tables.bus.velocity
+            run(laws, tables.bus, 0, 0, period)
             transition[:, column] = np.concatenate(states)
             column += 1
     return transition
@@ -190,7 +197,7 @@ def _unread(transition: NDArray[np.float64], structure: int) -> NDArray[np.bool_
 
 
 def _heard(
-    tables: MachineTables, drives: ControlledDrives, motion: NDArray[np.float64], growth: float
+    tables: StructureTables, drives: ControlledDrives, motion: NDArray[np.float64], growth: float
 ) -> tuple[float, int]:
     """Strongest frequency of a motion, Hz, at the drive that puts the most work into it."""
     start = 0
@@ -198,20 +205,20 @@ def _heard(
     for state in states:
         state[:] = motion[start : start + state.size].reshape(state.shape)
         start += state.size
-    tables.steps.u[:] = tables.steps.state @ tables.steps.displacement
-    tables.steps.v[:] = tables.steps.state @ tables.steps.velocity
+    tables.bus.u[:] = tables.bus.state @ tables.bus.displacement
+    tables.bus.v[:] = tables.bus.state @ tables.bus.velocity
     # what is linear may be scaled at each step, so that no growth leaves the numbers
-    kept = math.exp(-growth * tables.steps.step)
-    loads = Loads(tables.loads.port, np.zeros((2, 0)))
+    kept = math.exp(-growth * tables.bus.step)
+    laws = Laws(tables.held)
     speed = np.empty((_HEARD, len(drives.port)))
     work = np.zeros(len(drives.port))
     for i in range(_HEARD):
-        advance(tables.groups, tables.steps, loads, i, 1)
-        speed[i] = tables.steps.v[drives.port]
-        way = tables.steps.u[drives.port] - tables.steps.u_before[drives.port]
-        work += tables.steps.force[drives.port] * way
-        for state in (*states, tables.steps.u, tables.steps.v):
+        run(laws, tables.bus, i, 0, 1)
+        speed[i] = tables.bus.v[drives.port]
+        way = tables.bus.u[drives.port] - tables.bus.u_before[drives.port]
+        work += tables.bus.force[drives.port] * way
+        for state in (*states, tables.bus.u, tables.bus.v):
             state *= kept
     place = int(np.argmax(work))
     lines = np.abs(np.fft.rfft(np.hanning(_HEARD) * speed[:, place]))
-    return float(np.argmax(lines) / (_HEARD * tables.steps.step)), place
+    return float(np.argmax(lines) / (_HEARD * tables.bus.step)), place

@@ -1,24 +1,31 @@
-"""A case on a machine compiled for the time loop."""
+"""The structure of a case in the time domain: modes, or a machine with its drives and frictions."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.compile.cutter import cutter_of
 from chatter.compile.machine_cut import MachineCut, machine_cut
+from chatter.compile.rigid_motion import rigid_motion
+from chatter.compile.structure import structure_of
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.engine.machine_cut_loop import ToolSide
-from chatter.simulation.resolution import LARGEST_LAG, Resolution, turns_of
-from chatter.simulation.setup import Setup, check_case, compiled, shortest_arc
-from chatter.simulation.virtual_tests.loop_stability import refuse_unstable_control
+from chatter.engine.loop_stability import refuse_unstable_control
+from chatter.simulation.resolution import (
+    LARGEST_LAG,
+    Resolution,
+    resolution_of,
+    shortest_arc,
+    turns_of,
+)
+from chatter.simulation.spindle import path_of
 from cutting.tool.cutter import Cutter, slice_counts
 from dynamics.control.sampling import ControlError
-from dynamics.machine.tables import MachineTables, machine_tables
+from dynamics.machine.tables import StructureTables, machine_tables, modal_tables
+from dynamics.modal.modes import Mode
 from dynamics.structure.linear_structure import StructureError
 from dynamics.trajectory.set_points import SetPoints
 
@@ -32,92 +39,120 @@ _SETTLING, _SPEEDING_UP, _LEAST_SPEEDING_UP = 1.0, 0.3, 0.05
 _MOST_ROWS = 200_000
 
 
-@dataclass(frozen=True, kw_only=True)
-class MachineSetup(Setup):
-    """What the loop of machine and cut needs.
+@dataclass(frozen=True, eq=False)
+class StructureInTime:
+    """What stands behind the ports of the time loop, at rest, and its steps.
 
     Parameters
     ----------
-    on_machine : MachineCut
-    tables : MachineTables
-    machine_step : float
+    modes : tuple of Mode
+        Empty for a rigid tool; of a machine those of its structure, for resolution and pictures.
+    resolution : Resolution
+    step : float
         Time step, s.
+    steps : int
+        Of the cut.
+    tables : StructureTables
+        They hold the state of one run.
+    notes : tuple of str
+    on_machine : MachineCut, optional
+        Where a machine makes the cut.
     settling : int
-        Steps of the machine before the cut.
+        Steps that it runs in the air before.
     """
 
-    on_machine: MachineCut
-    tables: MachineTables
-    machine_step: float
-    settling: int
+    modes: tuple[Mode, ...]
+    resolution: Resolution
+    step: float
+    steps: int
+    tables: StructureTables
+    notes: tuple[str, ...] = ()
+    on_machine: MachineCut | None = None
+    settling: int = 0
 
     @property
-    def step(self) -> float:
-        """Time step, s."""
-        return self.machine_step
-
-    @property
-    def steps(self) -> int:
-        """Steps of the cut."""
-        a_turn = 2.0 * math.pi / self.spindle.speed
-        return max(1, round(self.resolution.turns * a_turn / self.machine_step))
+    def rubs(self) -> bool:
+        """Whether there is friction on modes."""
+        return self.on_machine is None and len(self.tables.implicit) > 1
 
 
-def set_up_machine(case: Case, on_machine: MachineCut | None = None) -> MachineSetup:
-    """Compile a case whose structure is a machine.
+def structure_in_time(
+    case: Case, cutter: Cutter, modes: tuple[Mode, ...] | None = None
+) -> StructureInTime:
+    """Compile the structure of a case for the time domain.
 
     Parameters
     ----------
     case : Case
-    on_machine : MachineCut, optional
-        Where it is known already.
+    cutter : Cutter
+    modes : tuple of Mode, optional
+        Of the structure, where they are known already; a machine has its own.
 
     Raises
     ------
     InputError
-        If the case cannot be simulated or the machine cannot make the cut.
+        If the structure cannot be read or the machine cannot make the cut.
     """
-    check_case(case)
+    if case.structure is not None and case.structure.machine is not None:
+        return machine_in_time(case, cutter)
+    notes: tuple[str, ...] = ()
+    if modes is None:
+        modes, notes = modes_of(case)
+    return modes_in_time(case, cutter, modes, notes)
+
+
+def modes_of(case: Case) -> tuple[tuple[Mode, ...], tuple[str, ...]]:
+    """Modes of the structure of a case, and what was assumed of it; none for a rigid tool."""
+    if case.structure is None:
+        return (), ("no [structure]: tool and workpiece are rigid",)
+    structure = structure_of(case)
+    return structure.modes, tuple(structure.notes)
+
+
+def modes_in_time(
+    case: Case, cutter: Cutter, modes: tuple[Mode, ...], notes: tuple[str, ...] = ()
+) -> StructureInTime:
+    """Compile modes with the frictions on them."""
+    resolution = resolution_of(case, cutter, modes)
+    step = 2.0 * math.pi / (case.cut.spindle_speed * resolution.steps_a_turn)
+    given = case.structure.mode if case.structure is not None else ()
+    frictions = {
+        place: case.friction[mode.friction].spec()
+        for place, mode in enumerate(given)
+        if mode.friction
+    }
+    tables = modal_tables(modes, step, tuple(frictions.values()), tuple(frictions))
+    return StructureInTime(tuple(modes), resolution, step, resolution.steps, tables, notes)
+
+
+def machine_in_time(case: Case, cutter: Cutter) -> StructureInTime:
+    """Compile the machine of a case, its axes to be at the feed when the cut begins."""
     if case.cut.speed_variation is not None:
         raise InputError(
             f"{case.name}: cut.speed_variation: the spindle of a machine turns as its drive lets it"
         )
     if case.simulation is not None and case.simulation.path is not None:
         raise InputError(f"{case.name}: simulation.path: a machine is fed along a straight line")
-    cut = machine_cut(case) if on_machine is None else on_machine
-    cutter = cutter_of(case)
+    cut = machine_cut(case)
     step = _step(case, cut, cutter)
     refuse_unstable_control(cut.machine, step)
     modes = cut.modes()
     resolution = _resolution(case, cutter, modes, step)
-    notes = _notes(cut)
-    base = compiled(case, cutter, modes, resolution, notes)
+    speed = case.cut.spindle_speed
     before = round(_time_before(case, cut) / step)
-    feed = base.path.feed
-    duration = before * step + _length(base, step)
-    points = _set_points(cut, feed, case.cut.spindle_speed, duration, before * step)
-    tables = _tables(cut, case, step, points)
-    known = {field.name: getattr(base, field.name) for field in fields(Setup)}
-    return MachineSetup(**known, on_machine=cut, tables=tables, machine_step=step, settling=before)
-
-
-def tool_side(setup: MachineSetup) -> ToolSide:
-    """Where the cut meets the machine as it stands, at the beginning of the cut."""
-    port, s = setup.tables.port, setup.tables.steps
-    places = np.array([port[f"tool {axis}"] for axis in "xyz"], dtype=np.int64)
-    turning = [port["tool turn"]] if setup.on_machine.spindle is not None else []
-    feed = np.array([setup.path.feed, 0.0, 0.0])
-    return ToolSide(
-        port=places,
-        spindle=np.array(turning, dtype=np.int64),
-        origin=s.u[places].copy(),
-        feed=feed,
-        carried=feed if setup.on_machine.feeds else np.zeros(3),
-        speed=setup.spindle.speed,
-        angle=float(s.u[turning[0]]) if turning else 0.0,
-        bins=setup.resolution.steps_a_turn,
-        force=np.zeros(3),
-        torque=np.zeros(1),
+    duration = resolution.turns * 2.0 * math.pi / speed
+    points = _set_points(
+        cut, path_of(case).feed, speed, (before + 10) * step + duration, before * step
+    )
+    return StructureInTime(
+        modes,
+        resolution,
+        step,
+        max(1, round(duration / step)),
+        _tables(cut, case, step, points),
+        _notes(cut),
+        cut,
+        before,
     )
 
 
@@ -163,10 +198,6 @@ def _resolution(case: Case, cutter: Cutter, modes: tuple, step: float) -> Resolu
     return Resolution(bins, (corner, straight), turns, max(1, math.ceil(steps / _MOST_ROWS)))
 
 
-def _length(base: Setup, step: float) -> float:
-    return base.resolution.turns * 2.0 * math.pi / base.spindle.speed + 10.0 * step
-
-
 def _set_points(
     cut: MachineCut, feed: float, speed: float, duration: float, before: float
 ) -> SetPoints:
@@ -197,7 +228,7 @@ def _set_points(
     return SetPoints(*columns, round(cycle / cut.file.step))
 
 
-def _tables(cut: MachineCut, case: Case, step: float, points: SetPoints) -> MachineTables:
+def _tables(cut: MachineCut, case: Case, step: float, points: SetPoints) -> StructureTables:
     outputs = {f"tool {axis}": row for axis, row in zip("xyz", cut.tool, strict=True)}
     if cut.spindle is not None:
         outputs["tool turn"] = cut.spindle
@@ -213,8 +244,6 @@ def _tables(cut: MachineCut, case: Case, step: float, points: SetPoints) -> Mach
 
 def _start(cut: MachineCut, speed: float) -> NDArray[np.float64]:
     """Velocity of the freedoms with the spindle at speed and all else at rest."""
-    from chatter.compile.rigid_motion import rigid_motion
-
     if cut.spindle_axis is None:
         return np.zeros(cut.machine.structure.size)
     return rigid_motion(cut.machine, {cut.spindle_axis: cut.sense * speed})

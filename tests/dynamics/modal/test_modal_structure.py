@@ -1,12 +1,17 @@
 """The exact step of a modal model against closed-form motion."""
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from dynamics.modal.modal_steps import correct, modal_steps, predict, stored_energy, take_force
+from dynamics.machine.steps import begin_step, correct, end_step, predict
+from dynamics.modal.modal_structure import (
+    modal_energy,
+    modal_energy_forces,
+    modal_structure,
+    stored_energy,
+)
 from dynamics.modal.modes import Mode
 
 MODE = Mode(120.0, 0.03, 0.8, (1.0, 0.0, 0.0), "tool")
@@ -15,23 +20,40 @@ STIFFNESS = MASS * OMEGA**2
 DAMPED = OMEGA * math.sqrt(1.0 - ZETA**2)
 
 
-def tool_point():
-    return SimpleNamespace(**{name: np.zeros(3) for name in ("displacement", "velocity", "force")})
+class Modes:
+    """Modes on the ports of the tool point, their energy, and a step under forces on it."""
+
+    def __init__(self, modes, step):
+        self.bus, self.account = modal_structure(modes, step), modal_energy(modes)
+        self.shape = self.account.shape
+
+    @property
+    def state(self):
+        return self.bus.state.reshape(-1, 2)
+
+    @property
+    def energy(self):
+        return self.account.energy
+
+    def step(self, force):
+        begin_step(self.bus)
+        predict(self.bus)
+        self.bus.change[:3] = force - self.bus.next_force[:3]
+        correct(self.bus)
+        modal_energy_forces(self.account, self.bus, None)
+        self.bus.next_force[:3] = force
+        end_step(self.bus)
 
 
 def march(modes, forces):
     """Displacement and velocity (n, 3) under forces (n, 3) at the steps."""
-    point, before = tool_point(), np.zeros_like(modes.state)
-    point.force[:] = forces[0]
-    take_force(modes, point)
+    modes.bus.next_force[:3] = forces[0]
     place, rate = np.zeros(forces.shape), np.zeros(forces.shape)
     place[0] = modes.shape.T @ modes.state[:, 0]
     rate[0] = modes.shape.T @ modes.state[:, 1]
     for i in range(1, len(forces)):
-        predict(modes, before, point)
-        point.force[:] = forces[i]
-        correct(modes, before, point)
-        place[i], rate[i] = point.displacement, point.velocity
+        modes.step(forces[i])
+        place[i], rate[i] = modes.bus.u[:3], modes.bus.v[:3]
     return place, rate
 
 
@@ -57,7 +79,7 @@ def ramp_response(t):
 # up to four turns of the oscillation within one step
 @pytest.mark.parametrize("step", [1e-5, 3.7e-4, 5e-3, 3.3e-2])
 def test_free_decay_is_exact(step):
-    modes = modal_steps([MODE], step)
+    modes = Modes([MODE], step)
     modes.state[0] = 2e-5, -0.04
     t = step * np.arange(40)
     place, _ = march(modes, np.zeros((40, 3)))
@@ -68,7 +90,7 @@ def test_free_decay_is_exact(step):
 @pytest.mark.parametrize("step", [1e-5, 3.7e-4, 5e-3, 3.3e-2])
 def test_step_response_is_exact(step):
     t = step * np.arange(50)
-    place, _ = march(modal_steps([MODE], step), np.tile([1.0, 0.0, 0.0], (50, 1)))
+    place, _ = march(Modes([MODE], step), np.tile([1.0, 0.0, 0.0], (50, 1)))
     wanted = step_response(t)
     assert np.all(np.abs(place[:, 0] - wanted) < 1e-12 * np.abs(wanted).max())
 
@@ -76,7 +98,7 @@ def test_step_response_is_exact(step):
 @pytest.mark.parametrize("step", [1e-5, 3.7e-4, 5e-3, 3.3e-2])
 def test_ramp_response_is_exact(step):
     t = step * np.arange(50)
-    place, rate = march(modal_steps([MODE], step), np.outer(t, [1.0, 0.0, 0.0]))
+    place, rate = march(Modes([MODE], step), np.outer(t, [1.0, 0.0, 0.0]))
     wanted = ramp_response(t)
     assert np.all(np.abs(place[:, 0] - wanted) < 2e-12 * np.abs(wanted).max())
     # the velocity to a ramp is the step response
@@ -90,9 +112,9 @@ def test_step_size_does_not_matter_for_a_piecewise_linear_force():
         Mode(77.0, 0.2, 2.0, (0.0, 0.0, 1.0), "tool"),
     ]
     knots = np.array([[0, 0, 0], [40, -10, 5], [10, 30, -9], [0, 0, 0], [0, 0, 0], [-7, 5, 1]])
-    coarse, _ = march(modal_steps(modes, 2e-3), knots.astype(float))
+    coarse, _ = march(Modes(modes, 2e-3), knots.astype(float))
     fine = np.array([np.interp(np.arange(0, 5.0001, 1 / 64), np.arange(6), k) for k in knots.T]).T
-    dense, _ = march(modal_steps(modes, 2e-3 / 64), fine)
+    dense, _ = march(Modes(modes, 2e-3 / 64), fine)
     assert np.all(np.abs(coarse - dense[::64]) < 1e-12 * np.abs(dense).max())
 
 
@@ -102,7 +124,7 @@ def test_direction_enters_twice_and_side_does_not_count():
     force = np.array([3.0, -2.0, 5.0])
     slow = np.linspace(0.0, 1.0, 4001)[:, None] * force
     for side in ("tool", "workpiece"):
-        modes = modal_steps([Mode(50.0, 0.4, 1.0, tuple(direction), side)], 5e-4)
+        modes = Modes([Mode(50.0, 0.4, 1.0, tuple(direction), side)], 5e-4)
         place, _ = march(modes, np.vstack([slow, np.tile(force, (2000, 1))]))
         wanted = direction * (direction @ force) / (2.0 * math.pi * 50.0) ** 2
         assert np.allclose(place[-1], wanted, rtol=1e-9)
@@ -111,38 +133,38 @@ def test_direction_enters_twice_and_side_does_not_count():
 def test_modes_add_up():
     pair = [MODE, Mode(300.0, 0.02, 0.5, (1.0, 0.0, 0.0), "workpiece")]
     forces = np.outer(np.sin(np.arange(200) * 0.1), [10.0, 0.0, 0.0])
-    together, _ = march(modal_steps(pair, 2e-4), forces)
-    alone = sum(march(modal_steps([mode], 2e-4), forces)[0] for mode in pair)
+    together, _ = march(Modes(pair, 2e-4), forces)
+    alone = sum(march(Modes([mode], 2e-4), forces)[0] for mode in pair)
     assert np.allclose(together, alone, rtol=0.0, atol=1e-14 * np.abs(together).max() + 1e-18)
 
 
 def test_no_modes_at_all():
-    place, _ = march(modal_steps([], 1e-4), np.ones((5, 3)))
+    place, _ = march(Modes([], 1e-4), np.ones((5, 3)))
     assert np.all(place == 0.0)
 
 
 def test_prediction_holds_the_force():
-    modes, point, before = modal_steps([MODE], 4e-4), tool_point(), np.zeros((1, 2))
-    point.force[0] = 1.0
-    take_force(modes, point)
-    predict(modes, before, point)
-    assert point.displacement[0] == pytest.approx(step_response(4e-4), rel=1e-12)
-    assert np.all(before == 0.0)
+    bus = modal_structure([MODE], 4e-4)
+    bus.next_force[0] = 1.0
+    begin_step(bus)
+    predict(bus)
+    assert bus.u[0] == pytest.approx(step_response(4e-4), rel=1e-12)
+    assert np.all(bus.state == 0.0)
 
 
 def test_free_vibration_loses_what_the_damper_takes():
-    modes = modal_steps([MODE], 2e-5)
+    modes = Modes([MODE], 2e-5)
     modes.state[0] = 1e-4, 0.0
     march(modes, np.zeros((2001, 3)))
     work, dissipated = modes.energy
     assert work == 0.0
     start = 0.5 * STIFFNESS * 1e-8
-    assert start - stored_energy(modes) == pytest.approx(dissipated, rel=1e-8)
+    assert start - stored_energy(modes.account, modes.bus) == pytest.approx(dissipated, rel=1e-8)
     assert 0.5 * start < dissipated < start
 
 
 def test_work_of_a_constant_force_is_force_times_way():
-    modes = modal_steps([MODE], 1e-4)
+    modes = Modes([MODE], 1e-4)
     place, _ = march(modes, np.tile([2.0, 0.0, 0.0], (777, 1)))
     assert modes.energy[0] == pytest.approx(2.0 * place[-1, 0], rel=1e-12)
 
@@ -153,7 +175,7 @@ def test_work_at_resonance_is_that_of_the_damper():
     a_period = 2.0 * math.pi / OMEGA / 200
     periods = 100
     phase = 2.0 * math.pi * np.arange(200 * periods + 1) / 200
-    modes = modal_steps([MODE], a_period)
+    modes = Modes([MODE], a_period)
     march(modes, np.outer(np.sin(phase), [5.0, 0.0, 0.0]))
     before = modes.energy.copy()
     march(modes, np.outer(np.sin(phase[: 200 * 10 + 1]), [5.0, 0.0, 0.0]))
@@ -166,12 +188,12 @@ def test_work_at_resonance_is_that_of_the_damper():
 def energy_error(steps):
     """Relative imbalance of a smooth forced motion over a fixed time in so many steps."""
     pair = [MODE, Mode(300.0, 0.02, 0.5, (0.6, 0.8, 0.0), "workpiece")]
-    modes = modal_steps(pair, 0.02 / steps)
+    modes = Modes(pair, 0.02 / steps)
     t = np.linspace(0.0, 0.02, steps + 1)
     force = np.outer(np.sin(900.0 * t) + t * 50.0, [10.0, 7.0, 0.0])
     march(modes, force)
     work, dissipated = modes.energy
-    return abs(work - dissipated - stored_energy(modes)) / work
+    return abs(work - dissipated - stored_energy(modes.account, modes.bus)) / work
 
 
 def test_energy_balances_to_fourth_order():

@@ -1,0 +1,192 @@
+"""A run of what was set up: chunks of steps, between which the stock follows the tool."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.progress import Progress, no_progress
+from chatter.engine.cut import CutOnPorts, PrescribedSpindle, SpindleOnPort
+from chatter.engine.loop import Laws, run
+from chatter.engine.record import COLUMNS, CutRecord, PortRecord, port_record
+from chatter.simulation.carved_workpiece import FollowingStock
+from chatter.simulation.setup import Setup
+from chatter.simulation.spindle import (
+    bins_at,
+    counted_bins,
+    prescribed_path,
+    prescribed_spindle,
+)
+from chatter.simulation.workpiece import STEPS_A_CHUNK, follows, reach_of, steps_a_chunk
+from cutting.chip.discrete_chip import DiscreteCut
+from cutting.chip.tool_point import tool_point
+from cutting.dexel.stock import DexelStock
+from dynamics.machine.tables import modal_tables
+
+
+class CutRun:
+    """Steps of a cut from rest; a machine has run in the air before, until it has its feed.
+
+    Parameters
+    ----------
+    setup : Setup
+        For one run: it holds the state.
+    stride : int
+        Steps from one row of the records to the next.
+    steps : int
+        Of the whole run, for the size of its records.
+
+    Attributes
+    ----------
+    done : int
+        Steps done; -1 before the start has been evaluated.
+    rows : (n, 7) array of float
+        Record at the tool point.
+    ports : PortRecord or None
+        Record of the ports of a machine.
+    angle : float
+        Of the spindle where the cut begins, rad; of a machine that turns it.
+    """
+
+    def __init__(self, setup: Setup, stride: int, steps: int) -> None:
+        self.setup = setup
+        self.interrupted = False
+        self.stock = _following_stock(setup)
+        self.bus = setup.structure.tables.bus
+        self.point = tool_point()
+        self.ports: PortRecord | None = None
+        if setup.on_machine is not None:
+            self.ports = port_record(steps // stride + 1, len(self.bus.u), stride, 0)
+        self.record(stride, 0, steps)
+        self._run_in_the_air()
+        port = setup.structure.tables.port
+        self._port = np.array([port[f"tool {axis}"] for axis in "xyz"], dtype=np.int64)
+        self._origin = self.bus.u[self._port]
+        if setup.turned_by_port:
+            self.angle = float(self.bus.u[port["tool turn"]])
+        self.done = -1
+        self._carve_before()
+
+    def record(self, stride: int, first: int, steps: int) -> None:
+        """Begin a record of the tool point, from a step on over so many."""
+        self.rows = np.zeros((steps // stride + 1, len(COLUMNS)))
+        ports = () if self.ports is None else (self.ports,)
+        self._observers = (CutRecord(stride, first, self.point, self.rows), *ports)
+
+    def _run_in_the_air(self) -> None:
+        """Let a machine come to its feed."""
+        structure = self.setup.structure
+        if structure.settling:
+            laws = Laws(structure.tables.held, (), structure.tables.implicit)
+            run(laws, self.bus, 0, 0, structure.settling)
+
+    def _carve_before(self) -> None:
+        """Carve the workpiece with the tool at rest for the turns before the start."""
+        setup = self.setup
+        if not setup.turns_before:
+            return
+        if setup.on_machine is not None:
+            # the tool turns and is fed as prescribed, whatever the machine does
+            rigid = replace(
+                setup.structure,
+                modes=(),
+                tables=modal_tables((), setup.step),
+                on_machine=None,
+                settling=0,
+            )
+            self.stock = CutRun(replace(setup, structure=rigid), 1, 0).stock
+            return
+        self.done -= setup.turns_before * setup.resolution.steps_a_turn
+        self.steps(-1)
+        setup.groups[0].removed[0] = 0.0
+
+    def steps(
+        self,
+        last: int,
+        share: Callable[[NDArray[np.int64]], NDArray[np.float64]] | None = None,
+        progress: Progress = no_progress,
+    ) -> int:
+        """Go on to a step and return the number of the last one done.
+
+        Parameters
+        ----------
+        last : int
+        share : callable, optional
+            Force ramp: share of the cutting force that the structure feels at steps by their
+            numbers (n,); 1 by default.
+        progress : callable
+            Called with (done, total) steps.
+        """
+        tables, before = self.setup.structure.tables, self.setup.structure.settling
+        while self.done < last:
+            count = min(self._chunk, last - self.done)
+            laws = Laws(tables.held, (self._cut(count, share),), tables.implicit, self._observers)
+            try:
+                ran = run(laws, self.bus, self.done, before, count)
+                self.done += ran
+                progress(self.done, last)
+            except KeyboardInterrupt:
+                self.interrupted = True
+                break
+            if ran < count:
+                break
+        return self.done
+
+    @property
+    def _chunk(self) -> int:
+        """Steps between two moves of the stock."""
+        if self.stock is None:
+            return STEPS_A_CHUNK
+        return steps_a_chunk(self.setup.case, self.setup.slices, self.setup.resolution)
+
+    def _cut(
+        self, count: int, share: Callable[[NDArray[np.int64]], NDArray[np.float64]] | None
+    ) -> CutOnPorts:
+        """Cut over the next steps."""
+        setup = self.setup
+        number = np.arange(self.done, self.done + count + 1)
+        time = number * setup.step
+        path = prescribed_path(setup.path, time, None if share is None else share(number))
+        groups = setup.groups
+        if self.stock is not None:
+            groups = (self.stock.follow(float(path.x[0])), *groups[1:])
+        return CutOnPorts(
+            laws=groups,
+            spindle=self._spindle(number, time),
+            path=path,
+            point=self.point,
+            port=self._port,
+            origin=self._origin,
+            carried=_carried(setup),
+            furthest=setup.furthest if setup.modes or setup.on_machine else math.inf,
+        )
+
+    def _spindle(
+        self, number: NDArray[np.int64], time: NDArray[np.float64]
+    ) -> PrescribedSpindle | SpindleOnPort:
+        setup, bins = self.setup, self.setup.resolution.steps_a_turn
+        if setup.turned_by_port:
+            turning = setup.structure.tables.port["tool turn"]
+            return SpindleOnPort(turning, self.angle, bins)
+        if setup.on_machine is None and setup.spindle.amplitude == 0.0:
+            return prescribed_spindle(setup.spindle, time, counted_bins(number, bins), bins)
+        return prescribed_spindle(setup.spindle, time, bins_at(setup.spindle, time, bins), bins)
+
+
+def _carried(setup: Setup) -> NDArray[np.float64]:
+    """Feed of the tool by the axes of a machine, m/s; what they do not carry is prescribed."""
+    carried = setup.on_machine is not None and bool(setup.on_machine.feeds)
+    return np.array([setup.path.feed if carried else 0.0, 0.0, 0.0])
+
+
+def _following_stock(setup: Setup) -> FollowingStock | None:
+    """Stock that follows the tool; None where it is held as a whole, or there is none."""
+    cut = setup.groups[0]
+    if not (isinstance(cut, DiscreteCut) and follows(setup.case, setup.path)):
+        return None
+    size = cut.stock.spacing if isinstance(cut.stock, DexelStock) else cut.stock.cell
+    return FollowingStock(setup.case, cut, reach_of(setup.case, setup.cutter, setup.slices, size))

@@ -1,0 +1,111 @@
+"""Chatter or not: by the record of a simulated cut, and by perturbed runs where need be."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+
+from chatter.description.errors import InputError
+from chatter.detection.chatter_detection import Detection, detect_chatter
+from chatter.detection.cut_record import CutRecord
+from chatter.simulation.perturbation.divergence import LARGE_SWING, Divergence, divergence
+from chatter.simulation.result import SimulationResult
+from cutting.chip.discrete_chip import DiscreteCut
+
+#: a record of fewer revolutions, or of fewer cycles of the lowest mode, is not judged
+_LEAST_REVOLUTIONS = 8.0
+_LEAST_CYCLES = 12.0
+#: deviations from period to period that are none: a carved wall repeats less well
+_DELAYED, _CARVED = 0.005, 0.03
+#: helix angles within this, rad, are the same
+_SAME_HELIX = 1e-12
+
+Result = TypeVar("Result", bound=SimulationResult)
+
+
+def with_verdict(result: Result) -> Result:
+    """Result with the answer whether its cut chatters.
+
+    Notes
+    -----
+    The record alone tells at a constant speed, unless it repeats and is so large that teeth leave
+    the cut: chatter that is full may repeat too, above all from revolution to revolution. There,
+    and under a varying speed, further runs follow how a small perturbation of the motion goes on.
+    """
+    detection, why_not = _detected(result)
+    return replace(result, detection=detection, why_no_verdict=why_not)
+
+
+def _detected(result: SimulationResult) -> tuple[Detection | None, str]:
+    if not result.setup.modes:
+        return None, "the tool is rigid"
+    if result.turns < _LEAST_REVOLUTIONS:
+        return None, f"fewer than {_LEAST_REVOLUTIONS:g} revolutions were simulated"
+    slowest = min(mode.frequency for mode in result.setup.modes)
+    if result.time[-1] * slowest < _LEAST_CYCLES:
+        return (
+            None,
+            f"the run holds fewer than {_LEAST_CYCLES:g} cycles of the lowest mode, "
+            f"{slowest:.4g} Hz",
+        )
+    try:
+        record = _cut_record(result)
+    except InputError as error:
+        return None, str(error)
+    found = detect_chatter(record)
+    varies = result.setup.spindle.amplitude != 0.0
+    if not varies and not (found.verdict == "stable" and _large(result) and _steady(result)):
+        return found, ""
+    perturbed = divergence(result.case, result.setup.modes)
+    if not perturbed.verdict:
+        return None, perturbed.reason
+    if not varies and perturbed.stable:
+        return found, ""
+    return _by_perturbation(perturbed, found, result.setup.spindle.speed), ""
+
+
+def _large(result: SimulationResult) -> bool:
+    """Whether the motion is so large that teeth may leave the cut."""
+    swing = 0.5 * float(np.ptp(result.displacement[result.settled], axis=0).max())
+    return swing > LARGE_SWING * result.case.cut.feed_per_tooth
+
+
+def _steady(result: SimulationResult) -> bool:
+    """Whether the cut is that of [cut] all along, on modes that are known."""
+    section = result.case.simulation
+    bent = section is not None and section.path is not None
+    return result.case.stock is None and not bent and result.setup.on_machine is None
+
+
+def _cut_record(result: SimulationResult) -> CutRecord:
+    cutter, slices = result.setup.cutter, result.setup.slices
+    widest = int(np.argmax(np.ptp(slices.normal_offset, axis=0)))
+    # flutes of different helix are no more alike than teeth out of true
+    known = np.ptp(cutter.helix) <= _SAME_HELIX
+    return CutRecord(
+        time=result.time,
+        spindle_angle=result.spindle_angle,
+        displacements=result.displacement,
+        tooth_angles=np.sort(cutter.tooth_angles),
+        feed_per_tooth=result.case.cut.feed_per_tooth,
+        forces=result.force,
+        runout=slices.normal_offset[:, widest] if known else None,
+        negligible=_CARVED if isinstance(result.setup.groups[0], DiscreteCut) else _DELAYED,
+    )
+
+
+def _by_perturbation(perturbed: Divergence, found: Detection, speed: float) -> Detection:
+    """Verdict by a small perturbation, where the record does not tell."""
+    a_revolution = math.expm1(min(perturbed.rate, 50.0))
+    return replace(
+        found,
+        verdict=perturbed.verdict,
+        confidence=min(1.0, 0.5 + 10.0 * abs(a_revolution)),
+        reason=perturbed.reason,
+        bifurcation="none" if perturbed.stable else "unknown",
+        chatter_frequency=perturbed.frequency,
+        growth_rate=perturbed.rate * speed / (2.0 * math.pi),
+    )
