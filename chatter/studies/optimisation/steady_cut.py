@@ -229,21 +229,21 @@ class SteadyModel:
         reach = _furthest(taylor, slices.radius * sk) + slices.normal_offset
         cut = self.model.case.cut
         feed = cut.feed_per_tooth * tooth
-        point = feed * np.mod(passing, _REVOLUTION) / _REVOLUTION
+        position = feed * np.mod(passing, _REVOLUTION) / _REVOLUTION
         if self.stride == tooth:
             # cusps between arcs of one height have a mean of a twelfth of f^2/2R
             return reach[:, 0] - sk * (feed / tooth) ** 2 / (24.0 * slices.radius)
-        return _mean_envelope(reach, point, feed, sk / (2.0 * slices.radius))
+        return _mean_envelope(reach, position, feed, sk / (2.0 * slices.radius))
 
 
-def _mean_envelope(reach: Array, point: Array, feed: float, curvature: Array) -> Array:
+def _mean_envelope(reach: Array, position: Array, feed: float, curvature: Array) -> Array:
     """Mean along the feed (n, L) of the highest of parabolas, m.
 
     Parameters
     ----------
     reach : (n, N, L) array of float
         Top of the arc that each tooth leaves, m.
-    point : (N, L) array of float
+    position : (N, L) array of float
         Where along the feed of a turn, m.
     feed : float
         Of a turn, m.
@@ -253,7 +253,7 @@ def _mean_envelope(reach: Array, point: Array, feed: float, curvature: Array) ->
     along = (np.arange(_POINTS_ALONG) + 0.5) / _POINTS_ALONG * feed
     highest = np.full((reach.shape[0], reach.shape[2], _POINTS_ALONG), -np.inf)
     for tooth in range(reach.shape[1]):
-        apart = np.abs(along - point[tooth][:, None])
+        apart = np.abs(along - position[tooth][:, None])
         # a tooth comes by again a turn later; the nearest of its arcs is the highest
         apart = np.minimum(apart, feed - apart)
         arc = reach[:, tooth, :, None] - curvature[:, None] * apart**2

@@ -90,11 +90,11 @@ def _where(study: WhatIf, index: int) -> str:
 
 def _ends(study: WhatIf, index: int) -> tuple[int, int]:
     """Points at both ends of a variation, others at their first value."""
-    index = {point.indices: k for k, point in enumerate(study.points)}
+    number = {point.indices: k for k, point in enumerate(study.points)}
     start = [0] * len(study.variations)
     end = list(start)
     end[index] = len(study.variations[index].values) - 1
-    return index[tuple(start)], index[tuple(end)]
+    return number[tuple(start)], number[tuple(end)]
 
 
 def _others(study: WhatIf, index: int) -> str:
