@@ -1,24 +1,20 @@
-"""What a search for pitch angles has found: designs, pictures, files."""
+"""Result of a pitch design: designs, picture, files."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.units import rpm
-from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, write_results
+from chatter.io.result_files import SavedResult, as_json, csv_text
 from chatter.studies.pitch_design.families import regeneration
-from chatter.studies.pitch_design.search import Design
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from chatter.studies.pitch_design.pitch_search import Design
 
 Array = NDArray[np.float64]
 
@@ -49,36 +45,39 @@ class FamilyCurve:
 
 
 @dataclass(frozen=True, eq=False)
-class PitchResult:
+class PitchResult(SavedResult):
     """Pitch angles for a range of speeds.
 
     Parameters
     ----------
     case : Case
     goal : str
-    largest_chip : float
+    max_pitch_ratio : float
         That was allowed, in units of the mean.
-    deepest : float
-        Depth to which limits were looked for, m.
-    standing : Design
+    max_depth : float
+        Depth to which limits were searched, m.
+    original : Design
         That of the case.
     designs : tuple of Design
         Best first, that of the case among them; their limits are those at `speeds`.
     curves : tuple of FamilyCurve
         Their limits are those at the coarser speeds of the search.
     chatter_frequency, design_speed : float
-        What the rule uses: the chatter frequency of the evenly spaced tool where its limit is
+        What the rule uses: the chatter frequency of the uniform-pitch tool where its limit is
         lowest, Hz, and the middle of the speeds, rad/s.
     speeds : (m,) array of float
         rad/s.
     notes : tuple of str
     """
 
+    drawn_by: ClassVar[str] = "plots.pitch_design.plot_pitch"
+    picture: ClassVar[str] = "pitch.png"
+
     case: Case
     goal: str
-    largest_chip: float
-    deepest: float
-    standing: Design
+    max_pitch_ratio: float
+    max_depth: float
+    original: Design
     designs: tuple[Design, ...]
     curves: tuple[FamilyCurve, ...]
     chatter_frequency: float
@@ -94,7 +93,7 @@ class PitchResult:
     @property
     def is_better(self) -> bool:
         """Whether the best design is another than that of the case."""
-        return self.best.pitch != self.standing.pitch
+        return self.best.pitch != self.original.pitch
 
     @property
     def best_case(self) -> Case:
@@ -106,14 +105,14 @@ class PitchResult:
         return {
             "title": self.case.title,
             "goal": self.goal,
-            "largest_chip_allowed": self.largest_chip,
+            "max_pitch_ratio_allowed": self.max_pitch_ratio,
             "spindle_speeds_rpm": [float(rpm(end)) for end in self.speeds[[0, -1]]],
-            "searched_to_mm": self.deepest * 1e3,
+            "max_axial_depth_mm": self.max_depth * 1e3,
             "better_than_the_case": self.is_better,
             "best": self._design(self.best),
             "designs": [self._design(one) for one in self.designs],
             "lowest_limit_mm": {
-                "before": self.standing.lowest_limit * 1e3,
+                "before": self.original.lowest_limit * 1e3,
                 "after": self.best.lowest_limit * 1e3,
             },
             "rule": {
@@ -133,60 +132,58 @@ class PitchResult:
             "pitch_deg": list(one.pitch),
             "lowest_limit_mm": one.lowest_limit * 1e3,
             "mean_limit_mm": float(one.limits.mean()) * 1e3,
-            "largest_chip": one.largest_chip,
+            "max_pitch_ratio": one.max_pitch_ratio,
             "regeneration_left": regeneration(np.radians(one.pitch), self.design_speed, frequency),
         }
 
-    def told(self) -> list[str]:
+    def sentences(self) -> list[str]:
         """Sentences for the terminal."""
         low, high = rpm(self.speeds[[0, -1]])
         angles = ", ".join(f"{angle:g}" for angle in self.best.pitch)
-        before, after = self.standing.lowest_limit * 1e3, self.best.lowest_limit * 1e3
+        before, after = self.original.lowest_limit * 1e3, self.best.lowest_limit * 1e3
         lines = [
             f"pitch {angles} deg: lowest limit from {low:.0f} to {high:.0f} rpm "
             f"{after:.4g} mm, with that of the case {before:.4g} mm",
-            f"largest chip of a tooth {self.best.largest_chip:.3g} of the mean",
+            f"largest pitch ratio {self.best.max_pitch_ratio:.3g} of the mean",
         ]
         if not self.is_better:
             lines.append("no pitch within the bounds is better than that of the case")
         return lines
 
-    def plot(self) -> Figure:
-        """Return lobes before and after, and the limit over the difference of pitch."""
-        return presentation("plots.pitch_design").plot_pitch(self)
-
-    def save(self, folder: str | Path) -> list[Path]:
-        """Write pitch.csv, lobes.csv, summary.json, pitch.png and case-pitch.toml.
-
-        Returns
-        -------
-        list of Path
-            What was written.
-        """
-        texts = {
+    def texts(self) -> dict[str, str]:
+        """Content of pitch.csv, lobes.csv and summary.json."""
+        return {
             "pitch.csv": self._table(),
             "lobes.csv": self._lobes(),
             "summary.json": as_json(self.summary()),
         }
-        written = write_results(folder, texts, {"pitch.png": self.plot()})
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write pitch.csv, lobes.csv, summary.json, pitch.png and case-pitch.toml."""
         path = Path(folder) / "case-pitch.toml"
+        written = super().save(folder)
         self.best_case.save(path)
         return [*written, path]
 
     def _table(self) -> str:
-        lines = ["rank,name,pitch [deg],lowest_limit [mm],mean_limit [mm],largest_chip"]
-        for rank, one in enumerate(self.designs, start=1):
-            angles = " ".join(f"{angle:g}" for angle in one.pitch)
-            lines.append(
-                f"{rank},{one.name},{angles},{one.lowest_limit * 1e3:.6g},"
-                f"{one.limits.mean() * 1e3:.6g},{one.largest_chip:.5g}"
-            )
-        return "\n".join(lines) + "\n"
+        found = self.designs
+        angles = [" ".join(f"{angle:g}" for angle in one.pitch) for one in found]
+        return csv_text(
+            {
+                "rank": (range(1, len(found) + 1), "d"),
+                "name": ([one.name for one in found], ""),
+                "pitch [deg]": (angles, ""),
+                "lowest_limit [mm]": ([one.lowest_limit * 1e3 for one in found], ".6g"),
+                "mean_limit [mm]": ([one.limits.mean() * 1e3 for one in found], ".6g"),
+                "max_pitch_ratio": ([one.max_pitch_ratio for one in found], ".5g"),
+            }
+        )
 
     def _lobes(self) -> str:
-        lines = ["spindle_speed [rpm],critical_depth_before [mm],critical_depth_after [mm]"]
-        for speed, before, after in zip(
-            self.speeds, self.standing.limits, self.best.limits, strict=True
-        ):
-            lines.append(f"{rpm(speed):.4f},{before * 1e3:.6g},{after * 1e3:.6g}")
-        return "\n".join(lines) + "\n"
+        return csv_text(
+            {
+                "spindle_speed [rpm]": (rpm(self.speeds), ".4f"),
+                "critical_depth_before [mm]": (self.original.limits * 1e3, ".6g"),
+                "critical_depth_after [mm]": (self.best.limits * 1e3, ".6g"),
+            }
+        )

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,23 +16,22 @@ from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
 from chatter.description.units import rpm
 from chatter.engine.parallel import Executor
-from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, finite_or_none, write_results
+from chatter.io.result_files import SavedResult, as_json, csv_text, finite_or_none
 from chatter.studies.model import fingerprint, patched
 from chatter.studies.result_cache import ResultCache
-from chatter.studies.uncertainty.confidence import wilson_interval
-from chatter.studies.uncertainty.parameters import UncertainParameter, correlation_of, parameters_of
-from chatter.studies.uncertainty.propagation import (
-    Net,
+from chatter.studies.uncertainty.latin_hypercube import samples
+from chatter.studies.uncertainty.sample_limits import (
+    Grid,
     SampleLimits,
     check_counts,
     sample_limits,
-    shared_net,
+    shared_grid,
 )
-from chatter.studies.uncertainty.sampling import samples
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from chatter.studies.uncertainty.uncertain_parameters import (
+    UncertainParameter,
+    correlation_of,
+    parameters_of,
+)
 
 Array = NDArray[np.float64]
 
@@ -43,7 +42,7 @@ _CONVERGENCE_ROWS = 12
 
 
 @dataclass(frozen=True, eq=False)
-class Uncertainty:
+class Uncertainty(SavedResult):
     """Limits of all samples.
 
     Parameters
@@ -60,10 +59,13 @@ class Uncertainty:
         Limit at the speed of the cut, m.
     stable : (n,) array of bool
         Whether the cut is.
-    searched_to : float
-        m.
+    max_depth : float
+        Deepest that was searched, m.
     seed : int
     """
+
+    drawn_by: ClassVar[str] = "plots.uncertainty.plot_uncertainty"
+    picture: ClassVar[str] = "uncertainty.png"
 
     case: Case
     parameters: tuple[UncertainParameter, ...]
@@ -72,7 +74,7 @@ class Uncertainty:
     limits: Array
     operating: Array
     stable: NDArray[np.bool_]
-    searched_to: float
+    max_depth: float
     seed: int
 
     @property
@@ -83,7 +85,7 @@ class Uncertainty:
     @property
     def interval(self) -> tuple[float, float]:
         """95 % confidence interval of that probability, from the number of samples."""
-        return wilson_interval(int(self.stable.sum()), len(self.stable))
+        return _interval(int(self.stable.sum()), len(self.stable))
 
     def quantiles(self, levels: Sequence[float] = LEVELS) -> Array:
         """Quantiles (levels, m) of the limit at every speed, m."""
@@ -97,12 +99,11 @@ class Uncertainty:
         """Probability (m,) that the first limit lies above a depth (m), at every speed."""
         return np.mean(self.limits > depth, axis=0)
 
-    def convergence(self) -> tuple[NDArray[np.int64], Array, Array]:
-        """Numbers of samples (n,), probability from the first of them (n,) and interval (n, 2)."""
-        count = np.arange(1, len(self.stable) + 1)
-        so_far = np.cumsum(self.stable)
-        ends = [wilson_interval(int(k), int(n)) for k, n in zip(so_far, count, strict=True)]
-        return count, so_far / count, np.array(ends)
+    def convergence(self, counts: NDArray[np.int64]) -> tuple[Array, Array]:
+        """Probability (n,) from the first samples, of each of some counts, and interval (n, 2)."""
+        stable = np.cumsum(self.stable)[counts - 1]
+        pairs = zip(stable.tolist(), counts.tolist(), strict=True)
+        return stable / counts, np.array([_interval(*pair) for pair in pairs])
 
     def shares(self) -> dict[str, float | None]:
         """Share of each parameter in the variance of the limit of the cut, to first order.
@@ -123,8 +124,8 @@ class Uncertainty:
         cut, known = self.case.cut, np.isfinite(self.operating)
         limit = self.operating[known] * 1e3
         names = [f"{100.0 * level:.0f}_percent" for level in LEVELS]
-        count, share, ends = self.convergence()
-        rows = np.unique(np.geomspace(1, count[-1], _CONVERGENCE_ROWS).round().astype(int)) - 1
+        counts = np.unique(np.geomspace(1, len(self.stable), _CONVERGENCE_ROWS).round().astype(int))
+        shares, intervals = self.convergence(counts)
         return {
             "title": self.case.title,
             "samples": len(self.stable),
@@ -153,63 +154,69 @@ class Uncertainty:
                 "standard_deviation": float(limit.std(ddof=1)) if limit.size > 1 else None,
                 "samples_without_limit": int((~known).sum()),
             },
-            "searched_to_mm": self.searched_to * 1e3,
+            "max_axial_depth_mm": self.max_depth * 1e3,
             "convergence": [
                 {
-                    "samples": int(count[k]),
-                    "probability": float(share[k]),
-                    "confidence_interval_95": ends[k].tolist(),
+                    "samples": int(count),
+                    "probability": float(share),
+                    "confidence_interval_95": interval.tolist(),
                 }
-                for k in rows
+                for count, share, interval in zip(counts, shares, intervals, strict=True)
             ],
         }
 
-    def plot(self) -> Figure:
-        """Return the band of lobes as a matplotlib figure."""
-        return presentation("plots.uncertainty").plot_uncertainty(self)
-
-    def save(self, folder: str | Path) -> list[Path]:
-        """Write uncertainty.csv, samples.csv, summary.json and uncertainty.png.
-
-        Returns
-        -------
-        list of Path
-            What was written.
-        """
-        texts = {
+    def texts(self) -> dict[str, str]:
+        """Content of uncertainty.csv, samples.csv and summary.json."""
+        return {
             "uncertainty.csv": self._table(),
             "samples.csv": self._samples(),
             "summary.json": as_json(self.summary()),
         }
-        return write_results(folder, texts, {"uncertainty.png": self.plot()})
 
     def _table(self) -> str:
-        lines = [
-            "spindle_speed [rpm],limit_5_percent [mm],limit_50_percent [mm],limit_95_percent [mm],"
-            "probability_of_stability"
-        ]
+        limits = {
+            f"limit_{100.0 * level:.0f}_percent [mm]": (row * 1e3, ".7g")
+            for level, row in zip(LEVELS, self.quantiles(), strict=True)
+        }
         probability = self.probability_at(self.case.cut.axial_depth)
-        for speed, row, share in zip(self.speeds, self.quantiles().T, probability, strict=True):
-            depths = ",".join("" if np.isinf(depth) else f"{depth * 1e3:.7g}" for depth in row)
-            lines.append(f"{rpm(speed):.4f},{depths},{share:.6g}")
-        return "\n".join(lines) + "\n"
+        return csv_text(
+            {
+                "spindle_speed [rpm]": (rpm(self.speeds), ".4f"),
+                **limits,
+                "probability_of_stability": (probability, ".6g"),
+            }
+        )
 
     def _samples(self) -> str:
-        heads = [f"{one.path} [SI]" for one in self.parameters]
-        lines = [",".join([*heads, "limit [mm]", "stable"])]
-        for values, limit, stable in zip(self.values, self.operating, self.stable, strict=True):
-            found = "" if np.isinf(limit) else f"{limit * 1e3:.7g}"
-            cells = [f"{value:.9g}" for value in values]
-            lines.append(",".join([*cells, found, str(bool(stable)).lower()]))
-        return "\n".join(lines) + "\n"
+        return csv_text(
+            {
+                **{
+                    f"{one.path} [SI]": (column, ".9g")
+                    for one, column in zip(self.parameters, self.values.T, strict=True)
+                },
+                "limit [mm]": (self.operating * 1e3, ".7g"),
+                "stable": (self.stable.tolist(), ""),
+            }
+        )
+
+
+def _interval(successes: int, count: int) -> tuple[float, float]:
+    """95 % confidence interval of a probability (Wilson 1927), from independent trials.
+
+    Samples of a Latin hypercube spread less.
+    """
+    from scipy.stats import binomtest
+
+    low, high = binomtest(successes, count).proportion_ci(method="wilson")
+    return float(low), float(high)
 
 
 def _quantiles(limits: Array, levels: Sequence[float]) -> Array:
     """Quantiles along the samples; between a finite and an infinite limit lies an infinite one."""
     ordered = np.sort(limits, axis=0)
-    place = np.asarray(levels) * (len(limits) - 1)
-    below, above = np.floor(place).astype(int), np.ceil(place).astype(int)
-    share = (place - below)[:, None]
+    index = np.asarray(levels) * (len(limits) - 1)
+    below, above = np.floor(index).astype(int), np.ceil(index).astype(int)
+    share = (index - below)[:, None]
     low, high = ordered[below], ordered[above]
     between = np.full(low.shape, np.inf)
     known = np.isfinite(high)
@@ -267,51 +274,36 @@ def uncertainty(
     check_counts(count, speeds, seed)
     parameters = parameters_of(case)
     correlation = correlation_of(case, parameters)
-    net = shared_net(case, speeds)
+    grid = shared_grid(case, speeds)
     values = samples(parameters, count, seed, correlation)
-    found = _all_limits(case, parameters, values, net, method, folder, progress, resumed, cluster)
-    return Uncertainty(
-        case=case,
-        parameters=parameters,
-        values=values,
-        speeds=net.speeds,
-        limits=np.array([one.limits for one in found]),
-        operating=np.array([one.operating for one in found]),
-        stable=np.array([one.stable for one in found]),
-        searched_to=float(net.depths[-1]),
-        seed=seed,
-    )
-
-
-def _all_limits(
-    case: Case,
-    parameters: Sequence[UncertainParameter],
-    values: Array,
-    net: Net,
-    method: str | None,
-    folder: str | Path | None,
-    progress: Progress,
-    resumed: Callable[[int, int], None] | None,
-    cluster: str | Executor | None,
-) -> list[SampleLimits]:
-    """Limits of every sample, those finished before read from the folder."""
-    inputs = (fingerprint(case), method or "", repr(net.speeds.tolist()), repr(net.depths[-1]))
     paths = tuple(one.path for one in parameters)
-    limits_of_sample = partial(_one_sample, case, paths, net, method)
+    limits_of_sample = partial(_sample_record, case, paths, grid, method)
     numbered = [(number, row.tolist()) for number, row in enumerate(values, start=1)]
-    with ResultCache(folder, *inputs) as cache:
+    inputs = (method or "", repr(grid.speeds.tolist()), repr(grid.depths[-1]))
+    with ResultCache(folder, "uncertainty", fingerprint(case), *inputs) as cache:
         keys = [cache.key(repr(row)) for _, row in numbered]
         before = cache.finished(keys)
         if before and resumed is not None:
             resumed(before, len(keys))
         records = cache.evaluate(limits_of_sample, numbered, keys, "samples", cluster, progress)
-    return [SampleLimits.from_record(record) for record in records]
+    found = [SampleLimits(**record) for record in records]
+    return Uncertainty(
+        case=case,
+        parameters=parameters,
+        values=values,
+        speeds=grid.speeds,
+        limits=np.array([one.limits for one in found]),
+        operating=np.array([one.operating for one in found]),
+        stable=np.array([one.stable for one in found]),
+        max_depth=float(grid.depths[-1]),
+        seed=seed,
+    )
 
 
-def _one_sample(
+def _sample_record(
     case: Case,
     paths: tuple[str, ...],
-    net: Net,
+    grid: Grid,
     method: str | None,
     sample: tuple[int, list[float]],
 ) -> dict:
@@ -319,6 +311,6 @@ def _one_sample(
     number, values = sample
     patch = dict(zip(paths, values, strict=True))
     try:
-        return sample_limits(patched(case, patch), net, method).record()
+        return asdict(sample_limits(patched(case, patch), grid, method))
     except InputError as error:
         raise InputError([f"sample {number}: {text}" for text in error.messages]) from None

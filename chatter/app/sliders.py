@@ -19,7 +19,7 @@ _MOST_TEETH = 12
 
 
 @dataclass(frozen=True)
-class Parameter:
+class Slider:
     """A slider.
 
     Parameters
@@ -51,7 +51,7 @@ class Parameter:
     view: bool = False
 
     def as_json(self) -> dict[str, Any]:
-        """Return what the page is told."""
+        """Return the slider as the page takes it."""
         return asdict(self)
 
     def text(self, value: float) -> Any:
@@ -61,25 +61,19 @@ class Parameter:
         return f"{value:.7g} {self.unit}" if self.unit else float(f"{value:.7g}")
 
 
-def view_parameters(speeds: tuple[float, float], depth: float) -> tuple[Parameter, ...]:
+def diagram_sliders(speeds: tuple[float, float], depth: float) -> tuple[Slider, ...]:
     """Ranges of the diagram: speeds in rad/s, depth in m."""
     low, high = (_rounded(rpm(speed)) for speed in speeds)
     deep, unit = _rounded(depth * 1e3), "rpm"
     group = "Diagram"
     return (
-        Parameter(
-            "lobes.speeds.from", group, "lowest speed", unit, low, 0.2 * low, high, view=True
-        ),
-        Parameter(
-            "lobes.speeds.to", group, "highest speed", unit, high, low, 2.0 * high, view=True
-        ),
-        Parameter(
-            "lobes.depths.to", group, "deepest", "mm", deep, 0.05 * deep, 5.0 * deep, view=True
-        ),
+        Slider("lobes.speeds.from", group, "lowest speed", unit, low, 0.2 * low, high, view=True),
+        Slider("lobes.speeds.to", group, "highest speed", unit, high, low, 2.0 * high, view=True),
+        Slider("lobes.depths.to", group, "deepest", "mm", deep, 0.05 * deep, 5.0 * deep, view=True),
     )
 
 
-def case_parameters(case: Case) -> tuple[Parameter, ...]:
+def case_sliders(case: Case) -> tuple[Slider, ...]:
     """Sliders for what the case has.
 
     Parameters
@@ -96,25 +90,23 @@ def case_parameters(case: Case) -> tuple[Parameter, ...]:
     )
 
 
-def _of_cut(case: Case) -> Iterator[Parameter]:
+def _of_cut(case: Case) -> Iterator[Slider]:
     cut, group = case.cut, "Cut"
     speed, depth = _rounded(rpm(cut.spindle_speed)), _rounded(cut.axial_depth * 1e3)
-    yield Parameter(
+    yield Slider(
         "cut.spindle_speed", group, "spindle speed", "rpm", speed, 0.1 * speed, 4.0 * speed
     )
-    yield Parameter("cut.axial_depth", group, "axial depth", "mm", depth, 0.02 * depth, 8.0 * depth)
+    yield Slider("cut.axial_depth", group, "axial depth", "mm", depth, 0.02 * depth, 8.0 * depth)
     if cut.mode != "slot":
         width, widest = _rounded(cut.radial_depth * 1e3), _rounded(case.tool.diameter * 1e3)
-        yield Parameter(
-            "cut.radial_depth", group, "radial depth", "mm", width, 0.01 * widest, widest
-        )
+        yield Slider("cut.radial_depth", group, "radial depth", "mm", width, 0.01 * widest, widest)
     if _feed_matters(case):
         feed = _rounded(cut.feed_per_tooth * 1e3)
         most = min(5.0 * feed, 20.0)
-        yield Parameter("cut.feed_per_tooth", group, "feed per tooth", "mm", feed, 0.1 * feed, most)
+        yield Slider("cut.feed_per_tooth", group, "feed per tooth", "mm", feed, 0.1 * feed, most)
     if cut.speed_variation is not None:
         varied, path = cut.speed_variation, "cut.speed_variation"
-        yield Parameter(
+        yield Slider(
             f"{path}.amplitude", group, "speed variation", "", varied.amplitude, 0.001, 0.5
         )
         yield _around(
@@ -130,24 +122,24 @@ def _feed_matters(case: Case) -> bool:
     return force_law(case, 0.0).slope_power.exponent != 0.0 or ploughs or uneven
 
 
-def _of_tool(case: Case) -> Iterator[Parameter]:
+def _of_tool(case: Case) -> Iterator[Slider]:
     tool, group = case.tool, "Tool"
     listed = (tool.pitch, tool.radial_error, tool.axial_error)
     each_alike = all(given is None for given in listed) and not isinstance(tool.helix, tuple)
     if each_alike:
         most = max(_MOST_TEETH, 2 * tool.teeth)
-        yield Parameter("tool.teeth", group, "teeth", "", tool.teeth, 1, most, whole=True)
+        yield Slider("tool.teeth", group, "teeth", "", tool.teeth, 1, most, whole=True)
     if not isinstance(tool.helix, tuple) and tool.kind != "inserted":
         angle = _rounded(math.degrees(tool.helix))
         low, high = min(0.0, angle), max(60.0, angle)
-        yield Parameter("tool.helix", group, "helix", "deg", angle, low, high)
+        yield Slider("tool.helix", group, "helix", "deg", angle, low, high)
     if tool.runout is not None:
         offset = _rounded(tool.runout.offset * 1e6)
         most = max(4.0 * offset, 20.0)
-        yield Parameter("tool.runout.offset", group, "runout", "um", offset, 0.0, most)
+        yield Slider("tool.runout.offset", group, "runout", "um", offset, 0.0, most)
 
 
-def _of_material(case: Case) -> Iterator[Parameter]:
+def _of_material(case: Case) -> Iterator[Slider]:
     material, group = case.material, "Material"
     if material.law == "oblique":
         yield _around("material.shear_stress", group, "shear stress", "MPa", material.shear_stress)
@@ -155,7 +147,7 @@ def _of_material(case: Case) -> Iterator[Parameter]:
             angle = _rounded(math.degrees(getattr(material, key)))
             label = key.replace("_", " ")
             ends = min(low, angle), max(high, angle)
-            yield Parameter(f"material.{key}", group, label, "deg", angle, *ends)
+            yield Slider(f"material.{key}", group, label, "deg", angle, *ends)
         return
     if material.Ktc is None:
         return
@@ -163,19 +155,19 @@ def _of_material(case: Case) -> Iterator[Parameter]:
     yield _around("material.Ktc", group, "Ktc", "MPa", material.Ktc)
     radial = _rounded(material.Krc * 1e-6)
     low, high = min(0.0, 2.0 * radial), max(tangential, 2.0 * radial)
-    yield Parameter("material.Krc", group, "Krc", "MPa", radial, low, high)
+    yield Slider("material.Krc", group, "Krc", "MPa", radial, low, high)
     if material.exponent is not None:
-        yield Parameter("material.exponent", group, "exponent", "", material.exponent, 0.1, 1.0)
+        yield Slider("material.exponent", group, "exponent", "", material.exponent, 0.1, 1.0)
 
 
-def _of_structure(case: Case) -> Iterator[Parameter]:
-    for place, mode in enumerate(case.structure.mode[:_MOST_MODES]):
-        path, group = f"structure.mode[{place}]", f"Mode {place + 1}, {_direction(mode)}"
+def _of_structure(case: Case) -> Iterator[Slider]:
+    for index, mode in enumerate(case.structure.mode[:_MOST_MODES]):
+        path, group = f"structure.mode[{index}]", f"Mode {index + 1}, {_direction(mode)}"
         yield _around(f"{path}.frequency", group, "frequency", "Hz", mode.frequency, factor=2.0)
         damping = _rounded(mode.damping)
         low, high = 0.2 * damping, min(5.0 * damping, 0.9)
         high = max(high, damping)
-        yield Parameter(
+        yield Slider(
             f"{path}.damping", group, "damping ratio", "", damping, low, high, logarithmic=True
         )
         if mode.stiffness is not None:
@@ -191,13 +183,13 @@ def _direction(mode: Any) -> str:
     return f"{mode.side} {along}"
 
 
-def _of_process(case: Case) -> Iterator[Parameter]:
+def _of_process(case: Case) -> Iterator[Slider]:
     given, contact, group = case.process_damping, case.contact, "Process damping and contact"
     if given is not None and given.coefficient is not None:
         value = _rounded(given.coefficient * 1e-3)
         most = max(4.0 * value, 100.0)
         path = "process_damping.coefficient"
-        yield Parameter(path, group, "process damping", "N/mm", value, 0.0, most)
+        yield Slider(path, group, "process damping", "N/mm", value, 0.0, most)
     if given is not None and given.indentation_force is not None:
         path = "process_damping.indentation_force"
         yield _around(path, group, "indentation force", "N/mm^3", given.indentation_force)
@@ -205,7 +197,7 @@ def _of_process(case: Case) -> Iterator[Parameter]:
         value = _rounded(contact.stiffness * 1e-6)
         most = max(4.0 * value, 1.0)
         path = "contact.stiffness"
-        yield Parameter(path, group, "contact stiffness", "N/um", value, 0.0, most)
+        yield Slider(path, group, "contact stiffness", "N/um", value, 0.0, most)
 
 
 #: unit -> dimension, for the factor to SI
@@ -220,18 +212,18 @@ _DIMENSION = {
 
 def _around(
     path: str, group: str, label: str, unit: str, value: float, factor: float = 4.0
-) -> Parameter:
+) -> Slider:
     """Slider on a logarithmic scale from 1/factor to factor times a value in SI."""
     shown_value = _rounded(value / unit_factor(unit, _DIMENSION[unit]))
     low, high = shown_value / factor, shown_value * factor
-    return Parameter(path, group, label, unit, shown_value, low, high, logarithmic=True)
+    return Slider(path, group, label, unit, shown_value, low, high, logarithmic=True)
 
 
 def _rounded(value: float) -> float:
     return float(f"{value:.7g}")
 
 
-def checked_values(given: Any, parameters: Mapping[str, Parameter]) -> dict[str, float]:
+def checked_values(given: Any, sliders: Mapping[str, Slider]) -> dict[str, float]:
     """Values that a page sent, by path.
 
     Raises
@@ -243,11 +235,11 @@ def checked_values(given: Any, parameters: Mapping[str, Parameter]) -> dict[str,
         raise InputError("values: a table of paths and numbers is wanted")
     values, problems = {}, []
     for path, value in given.items():
-        parameter = parameters.get(path)
-        if parameter is None:
+        slider = sliders.get(path)
+        if slider is None:
             problems.append(f"{formatted(path)} is no slider of this page")
             continue
-        problem = _problem(parameter, value)
+        problem = _problem(slider, value)
         if problem:
             problems.append(problem)
         else:
@@ -257,17 +249,17 @@ def checked_values(given: Any, parameters: Mapping[str, Parameter]) -> dict[str,
     return values
 
 
-def _problem(parameter: Parameter, value: Any) -> str:
+def _problem(slider: Slider, value: Any) -> str:
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
     if not number or not abs(value) < 1e300:
-        return f"{parameter.path}: {formatted(value)} is no number"
-    slack = 1e-6 * max(abs(parameter.low), abs(parameter.high))
-    if not parameter.low - slack <= value <= parameter.high + slack:
-        unit = f" {parameter.unit}" if parameter.unit else ""
+        return f"{slider.path}: {formatted(value)} is no number"
+    slack = 1e-6 * max(abs(slider.low), abs(slider.high))
+    if not slider.low - slack <= value <= slider.high + slack:
+        unit = f" {slider.unit}" if slider.unit else ""
         return (
-            f"{parameter.path}: {value:g}{unit} is out of range; "
-            f"{parameter.low:g} to {parameter.high:g}{unit} is allowed"
+            f"{slider.path}: {value:g}{unit} is out of range; "
+            f"{slider.low:g} to {slider.high:g}{unit} is allowed"
         )
-    if parameter.whole and value != int(value):
-        return f"{parameter.path}: {value:g} is no whole number"
+    if slider.whole and value != int(value):
+        return f"{slider.path}: {value:g} is no whole number"
     return ""

@@ -18,7 +18,7 @@ class SupersededError(Exception):
     """A newer request of the same page and kind has come, or the server ends."""
 
 
-class Latest:
+class NewestRequest:
     """Runs one computation at a time; those that a newer request supersedes are given up.
 
     Parameters

@@ -22,8 +22,8 @@ from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.search_range import maximum_depth, spindle_speeds
 from chatter.studies.model import fingerprint
 from chatter.studies.pitch_design.families import families
-from chatter.studies.pitch_design.result import FamilyCurve, PitchResult
-from chatter.studies.pitch_design.search import DIFFERENCES, MOST_MOVES, Design, PitchSearch
+from chatter.studies.pitch_design.pitch_result import FamilyCurve, PitchResult
+from chatter.studies.pitch_design.pitch_search import DIFFERENCES, MAX_MOVES, Design, PitchSearch
 from chatter.studies.result_cache import ResultCache
 
 Array = NDArray[np.float64]
@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 _DEPTHS = 40
 #: speeds at which the designs are ranked, to one of the search
 FINER = 5
-#: differences of the rule that are told
+#: differences of the rule that are reported
 _RULE_COUNT = 8
 
 
@@ -77,38 +77,38 @@ def _designed(case: Case, cache: ResultCache, progress: Progress) -> PitchResult
     model = milling_model(case)
     wide, fine = _speeds(case, section)
     kinds = families(case.tool.teeth)
-    total = len(kinds) * DIFFERENCES + MOST_MOVES + 1
+    total = len(kinds) * DIFFERENCES + MAX_MOVES + 1
     done = iter(range(1, 10 * total))
     search = PitchSearch(
         case, wide, _depths(case, section, model), section.goal, section.max_pitch_ratio,
         lambda: progress(min(next(done), total), total), cache,
     )  # fmt: skip
-    standing = search.design("the case", np.degrees(pitch_angles(case)))
+    original = search.design("the case", np.degrees(pitch_angles(case)))
     even = search.design("even", np.full(case.tool.teeth, 360.0 / case.tool.teeth))
     slowest = float(wide[even.limits.argmin()])
-    heard = _chatter_frequency(case, search, even, slowest)
+    frequency = _chatter_frequency(case, search, even, slowest)
     middle = 0.5 * float(wide[0] + wide[-1])
     curves = []
     for kind in kinds:
         differences, designs = search.of_family(kind)
-        rule = kind.cancelling(case.tool.teeth, middle, heard, _RULE_COUNT)
+        rule = kind.cancelling(case.tool.teeth, middle, frequency, _RULE_COUNT)
         curves.append(
             FamilyCurve(kind.name, differences, tuple(designs), rule[rule <= differences[-1]])
         )
     start = max((one for curve in curves for one in curve.designs), key=lambda one: one.score)
     free = search.improved(start)
-    designs = _distinct([free, *(curve.best for curve in curves), standing])
+    designs = _distinct([free, *(curve.best for curve in curves), original])
     ranked = _ranked_on(search, designs, fine)
     progress(total, total)
     return PitchResult(
         case=case,
         goal=section.goal,
-        largest_chip=section.max_pitch_ratio,
-        deepest=float(search.depths[-1]),
-        standing=next(one for one in ranked if one.pitch == standing.pitch),
+        max_pitch_ratio=section.max_pitch_ratio,
+        max_depth=float(search.depths[-1]),
+        original=next(one for one in ranked if one.pitch == original.pitch),
         designs=ranked,
         curves=tuple(curves),
-        chatter_frequency=heard / (2.0 * math.pi),
+        chatter_frequency=frequency / (2.0 * math.pi),
         design_speed=middle,
         speeds=fine,
         notes=model.notes,
@@ -137,12 +137,12 @@ def _speeds(case: Case, section: PitchDesign) -> tuple[Array, Array]:
 def _depths(case: Case, section: PitchDesign, model: MillingModel) -> Array:
     if section.depths is not None:
         return np.linspace(0.0, section.depths.to, section.depths.count + 1)[1:]
-    deepest = maximum_depth(case, zero_order_of(model, spindle_speeds(case)))
-    return np.linspace(0.0, deepest, _DEPTHS + 1)[1:]
+    max_depth = maximum_depth(case, zero_order_of(model, spindle_speeds(case)))
+    return np.linspace(0.0, max_depth, _DEPTHS + 1)[1:]
 
 
 def _chatter_frequency(case: Case, search: PitchSearch, even: Design, speed: float) -> float:
-    """Chatter frequency of the evenly spaced tool where its limit is lowest, rad/s."""
+    """Chatter frequency of the uniform-pitch tool where its limit is lowest, rad/s."""
     depth = even.lowest_limit
     model = milling_model(case.patch({"tool.pitch": None}))
     cut = element_cut(model, float(search.depths[-1]))

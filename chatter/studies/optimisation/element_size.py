@@ -13,20 +13,21 @@ from chatter.stability.model import MillingModel
 
 Array = NDArray[np.float64]
 
-#: chatter waves in an element that are tried, the most first
+#: chatter wavelengths in an element that are tried, the most first
 _TRIED = (6.0, 4.0, 3.0, 2.0, 1.4)
-#: growth (logarithm of the spectral radius) may be off by this much: limits move by less than 1e-3
+#: permitted error of the growth rate (logarithm of the spectral radius): limits move by less than
+#: 1e-3
 _ERROR = 2e-5
 #: speeds and depths at which it is compared
 _SPEEDS, _DEPTHS = 6, 5
 _SMALLEST = 1e-30
 
 
-def most_waves(model: MillingModel, speeds: Array, depths: Array) -> float:
-    """Largest number of waves in an element at which stability is the same as for every day.
+def max_wavelengths(model: MillingModel, speeds: Array, depths: Array) -> float:
+    """Largest number of wavelengths in an element at which stability is the same as for every day.
 
     The elements for every day resolve the fastest mode. Where slower ones decide, as on a machine
-    whose highest modes hardly take part, far longer elements give the same; that is looked at, at
+    whose highest modes hardly take part, far longer elements give the same; that is evaluated, at
     points spread over all speeds and depths.
 
     Parameters
@@ -43,19 +44,19 @@ def most_waves(model: MillingModel, speeds: Array, depths: Array) -> float:
         )
     )
 
-    def growth(waves: float) -> Array:
-        cut = element_cut(model, float(depths[-1]), wavelengths=waves)
+    def growth_rate(wavelengths: float) -> Array:
+        cut = element_cut(model, float(depths[-1]), wavelengths=wavelengths)
         found = np.abs(collocation.multipliers(cut, speed, depth))
         return np.log(np.maximum(found, _SMALLEST))
 
-    known = growth(RESOLUTION[1])
-    for waves in _TRIED:
-        if np.all(np.abs(growth(waves) - known) <= _ERROR):
-            return waves
+    known = growth_rate(RESOLUTION[1])
+    for wavelengths in _TRIED:
+        if np.all(np.abs(growth_rate(wavelengths) - known) <= _ERROR):
+            return wavelengths
     return RESOLUTION[1]
 
 
-def telling(models: Sequence[MillingModel]) -> list[MillingModel]:
+def extreme_models(models: Sequence[MillingModel]) -> list[MillingModel]:
     """Of models of one case with other values, those whose fast modes differ most.
 
     Parameters
@@ -77,12 +78,12 @@ def telling(models: Sequence[MillingModel]) -> list[MillingModel]:
         if not modes:
             return 0.0
         lively = [1.0 / (mode.stiffness * mode.damping) for mode in modes]
-        fastest = max(range(len(modes)), key=lambda place: modes[place].frequency)
+        fastest = max(range(len(modes)), key=lambda index: modes[index].frequency)
         return lively[fastest] / max(lively)
 
     if not models:
         return []
     shares = [share(model) for model in models]
     fastest = int(np.argmax([highest(model) for model in models]))
-    places = {fastest, int(np.argmax(shares)), int(np.argmin(shares))}
-    return [models[place] for place in sorted(places)]
+    chosen = {fastest, int(np.argmax(shares)), int(np.argmin(shares))}
+    return [models[index] for index in sorted(chosen)]

@@ -1,24 +1,19 @@
-"""What a search for the best cut has found: candidates, pictures, files."""
+"""Result of a process optimisation: candidates, picture, files."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import ClassVar
 
 from chatter.description.case import Case
 from chatter.description.units import rpm
-from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, finite_or_none, write_results
-from chatter.studies.optimisation.candidate import Candidate, case_at
+from chatter.io.result_files import SavedResult, as_json, csv_text, finite_or_none
+from chatter.studies.optimisation.candidate import Candidate
 from chatter.studies.optimisation.exclusion import Exclusion, why_nothing
 from chatter.studies.optimisation.limits import Limits
-from chatter.studies.optimisation.search import Place
-from chatter.studies.optimisation.speed_depth_slice import Sheet
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from chatter.studies.optimisation.operating_point import OperatingPoint, case_at
+from chatter.studies.optimisation.speed_depth_slice import SpeedDepthSlice
 
 #: m^3/s in cm^3/min
 _PER_MINUTE = 6e7
@@ -29,15 +24,10 @@ _QUANTILE = {
     "max_deflection": ("deflection_um", 1e6),
     "max_surface_error": ("surface_error_um", 1e6),
 }
-_COLUMNS = (
-    "rank,spindle_speed [rpm],axial_depth [mm],radial_depth [mm],feed_per_tooth [mm],"
-    "removal_rate [cm^3/min],power [kW],torque [N m],deflection [um],surface_error [um],"
-    "limit_depth [mm],probability_of_stability,probability,active,verdict_in_time,held_in_time"
-)
 
 
 @dataclass(frozen=True, eq=False)
-class Optimum:
+class Optimum(SavedResult):
     """Best cuts within the limits of a case.
 
     Parameters
@@ -46,24 +36,27 @@ class Optimum:
     limits : Limits
     candidates : tuple of Candidate
         Those that hold in the time domain first, highest removal rate first.
-    over_widths : tuple of Place
-        Best place of the coarse net at every width that has one.
-    sheet : Sheet
-        All speeds and depths at the width and feed of the best cut.
+    over_radial_depths : tuple of OperatingPoint
+        Best point of the coarse grid at every radial depth that has one.
+    grid_slice : SpeedDepthSlice
+        All speeds and depths at the radial depth and feed of the best cut.
     exclusions : tuple of Exclusion
-        What each limit excludes of the coarse net.
+        What each limit excludes of the coarse grid.
     points : int
-        Of the coarse net.
+        Of the coarse grid.
     samples, seed : int
         Of what is uncertain; no samples where nothing is.
     notes : tuple of str
     """
 
+    drawn_by: ClassVar[str] = "plots.optimum.plot_optimum"
+    picture: ClassVar[str] = "optimum.png"
+
     case: Case
     limits: Limits
     candidates: tuple[Candidate, ...]
-    over_widths: tuple[Place, ...]
-    sheet: Sheet
+    over_radial_depths: tuple[OperatingPoint, ...]
+    grid_slice: SpeedDepthSlice
     exclusions: tuple[Exclusion, ...]
     points: int
     samples: int
@@ -73,13 +66,15 @@ class Optimum:
     @property
     def best(self) -> Candidate | None:
         """The best cut; None where no cut keeps all limits."""
-        held = [one for one in self.candidates if one.time is None or one.time.held]
-        return held[0] if held else None
+        verified = [
+            one for one in self.candidates if one.verification is None or one.verification.verified
+        ]
+        return verified[0] if verified else None
 
     @property
     def best_case(self) -> Case | None:
         """The case with the best cut written in; None where there is none."""
-        return None if self.best is None else case_at(self.case, self.best.place)
+        return None if self.best is None else case_at(self.case, self.best.point)
 
     @property
     def why_nothing(self) -> str:
@@ -88,7 +83,7 @@ class Optimum:
             return ""
         if self.candidates:
             return "no candidate of the linear search holds all limits in the time domain"
-        if self.over_widths:
+        if self.over_radial_depths:
             return (
                 "no cut is stable and keeps all limits with a probability of "
                 f"{self.limits.confidence:.3g}"
@@ -112,26 +107,26 @@ class Optimum:
             "searched": {
                 "spindle_speeds_rpm": _ends(rpm(self.limits.speeds)),
                 "axial_depths_mm": _ends(self.limits.depths * 1e3),
-                "radial_depths_mm": _ends(self.limits.widths * 1e3),
+                "radial_depths_mm": _ends(self.limits.radial_depths * 1e3),
                 "feeds_per_tooth_mm": _ends(self.limits.feeds * 1e3),
                 "points": self.points,
             },
             "excluded_share": {one.limit: one.excluded for one in self.exclusions},
-            "over_widths": [_place(place) for place in self.over_widths],
+            "over_radial_depths": [_point_summary(point) for point in self.over_radial_depths],
             "samples": self.samples,
             "seed": self.seed,
             "notes": list(self.notes),
         }
 
-    def told(self) -> list[str]:
+    def sentences(self) -> list[str]:
         """Sentences for the terminal; none where there is no best cut, see `why_nothing`."""
         if self.best is None:
             return []
         best = self.best
-        place, known = best.place, best.probability
+        point, known = best.point, best.probability
         lines = [
-            f"{rpm(place.spindle_speed):.5g} rpm, {place.axial_depth * 1e3:.4g} mm deep, "
-            f"{place.radial_depth * 1e3:.4g} mm wide, {place.feed_per_tooth * 1e3:.4g} mm a tooth: "
+            f"{rpm(point.spindle_speed):.5g} rpm, {point.axial_depth * 1e3:.4g} mm deep, "
+            f"{point.radial_depth * 1e3:.4g} mm wide, {point.feed_per_tooth * 1e3:.4g} mm a tooth: "
             f"{best.removal_rate * _PER_MINUTE:.4g} cm^3/min",
             f"{best.power * 1e-3:.3g} kW, {best.torque:.3g} N m, deflection "
             f"{best.deflection * 1e6:.3g} um, surface error {best.surface_error * 1e6:.3g} um",
@@ -147,21 +142,13 @@ class Optimum:
         lines.append(f"limited by {limited}")
         return lines
 
-    def plot(self) -> Figure:
-        """Return the picture of the search as a matplotlib figure."""
-        return presentation("plots.optimum").plot_optimum(self)
+    def texts(self) -> dict[str, str]:
+        """Content of optimum.csv and summary.json."""
+        return {"optimum.csv": self._table(), "summary.json": as_json(self.summary())}
 
     def save(self, folder: str | Path) -> list[Path]:
-        """Write optimum.csv, summary.json, optimum.png and, where there is one, case-optimum.toml.
-
-        Returns
-        -------
-        list of Path
-            What was written.
-        """
-        texts = {"optimum.csv": self._table(), "summary.json": as_json(self.summary())}
-        written = write_results(folder, texts, {"optimum.png": self.plot()})
-        path = Path(folder) / "case-optimum.toml"
+        """Write optimum.csv, summary.json, optimum.png and, of an optimum, case-optimum.toml."""
+        written, path = super().save(folder), Path(folder) / "case-optimum.toml"
         if self.best_case is not None:
             self.best_case.save(path)
             return [*written, path]
@@ -170,52 +157,54 @@ class Optimum:
         return written
 
     def _table(self) -> str:
-        lines = [_COLUMNS]
-        for rank, one in enumerate(self.candidates, start=1):
-            place, time = one.place, one.time
-            limit = f"{one.limit_depth * 1e3:.7g}" if math.isfinite(one.limit_depth) else ""
-            cells = [
-                f"{rank}",
-                f"{rpm(place.spindle_speed):.8g}",
-                f"{place.axial_depth * 1e3:.7g}",
-                f"{place.radial_depth * 1e3:.7g}",
-                f"{place.feed_per_tooth * 1e3:.7g}",
-                f"{one.removal_rate * _PER_MINUTE:.7g}",
-                f"{one.power * 1e-3:.7g}",
-                f"{one.torque:.7g}",
-                f"{one.deflection * 1e6:.7g}",
-                f"{one.surface_error * 1e6:.7g}",
-                limit,
-                "" if one.probability is None else f"{one.probability.stable:.6g}",
-                "" if one.probability is None else f"{one.probability.value:.6g}",
-                " ".join(name.replace(" ", "-") for name in one.active),
-                "" if time is None else time.verdict,
-                "" if time is None else str(time.held).lower(),
-            ]
-            lines.append(",".join(cells))
-        return "\n".join(lines) + "\n"
+        found = self.candidates
+        points = [one.point for one in found]
+        known = [one.probability for one in found]
+        checks = [one.verification for one in found]
+        rates = [one.removal_rate * _PER_MINUTE for one in found]
+        active = [" ".join(name.replace(" ", "-") for name in one.active) for one in found]
+        return csv_text(
+            {
+                "rank": (range(1, len(found) + 1), "d"),
+                "spindle_speed [rpm]": ([rpm(one.spindle_speed) for one in points], ".8g"),
+                "axial_depth [mm]": ([one.axial_depth * 1e3 for one in points], ".7g"),
+                "radial_depth [mm]": ([one.radial_depth * 1e3 for one in points], ".7g"),
+                "feed_per_tooth [mm]": ([one.feed_per_tooth * 1e3 for one in points], ".7g"),
+                "removal_rate [cm^3/min]": (rates, ".7g"),
+                "power [kW]": ([one.power * 1e-3 for one in found], ".7g"),
+                "torque [N m]": ([one.torque for one in found], ".7g"),
+                "deflection [um]": ([one.deflection * 1e6 for one in found], ".7g"),
+                "surface_error [um]": ([one.surface_error * 1e6 for one in found], ".7g"),
+                "critical_depth [mm]": ([one.critical_depth * 1e3 for one in found], ".7g"),
+                "probability_of_stability": ([one and one.stable for one in known], ".6g"),
+                "probability": ([one and one.value for one in known], ".6g"),
+                "active": (active, ""),
+                "time_domain_verdict": ([one and one.verdict for one in checks], ""),
+                "time_domain_verified": ([one and one.verified for one in checks], ""),
+            }
+        )
 
 
 def _ends(values) -> list[float]:
     return [float(values[0]), float(values[-1])]
 
 
-def _place(place: Place) -> dict:
+def _point_summary(point: OperatingPoint) -> dict:
     return {
-        "spindle_speed_rpm": rpm(place.spindle_speed),
-        "axial_depth_mm": place.axial_depth * 1e3,
-        "radial_depth_mm": place.radial_depth * 1e3,
-        "feed_per_tooth_mm": place.feed_per_tooth * 1e3,
-        "removal_rate_cm3_per_min": place.removal_rate * _PER_MINUTE,
+        "spindle_speed_rpm": rpm(point.spindle_speed),
+        "axial_depth_mm": point.axial_depth * 1e3,
+        "radial_depth_mm": point.radial_depth * 1e3,
+        "feed_per_tooth_mm": point.feed_per_tooth * 1e3,
+        "removal_rate_cm3_per_min": point.removal_rate * _PER_MINUTE,
     }
 
 
 def _summary_of(one: Candidate) -> dict:
-    known, time = one.probability, one.time
+    known, verification = one.probability, one.verification
     return {
-        **_place(one.place),
+        **_point_summary(one.point),
         **_numbers(one),
-        "limit_depth_mm": finite_or_none(one.limit_depth * 1e3),
+        "critical_depth_mm": finite_or_none(one.critical_depth * 1e3),
         "usage": {key: finite_or_none(value) for key, value in one.usage.items()},
         "active": list(one.active),
         "probability_of_stability": None if known is None else known.stable,
@@ -224,9 +213,13 @@ def _summary_of(one: Candidate) -> dict:
         "at_confidence": None
         if known is None
         else {_QUANTILE[key][0]: _scaled(key, value) for key, value in known.quantiles.items()},
-        "in_time": None
-        if time is None
-        else {"verdict": time.verdict, "held": time.held, **_numbers(time)},
+        "time_domain": None
+        if verification is None
+        else {
+            "verdict": verification.verdict,
+            "verified": verification.verified,
+            **_numbers(verification),
+        },
     }
 
 

@@ -1,4 +1,4 @@
-"""What a page asks for: diagrams, simulated points and cases, as JSON knows them."""
+"""A case on the page: diagrams, simulated points and case files for values of its sliders."""
 
 from __future__ import annotations
 
@@ -10,20 +10,27 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.app.followed import followed_limits
-from chatter.app.parameters import Parameter, case_parameters, checked_values, view_parameters
+from chatter.app.sliders import Slider, case_sliders, checked_values, diagram_sliders
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress
 from chatter.description.units import from_rpm, rpm
+from chatter.stability.limit_curve import LimitCurve
+from chatter.stability.methods.collocation import multipliers as collocation
+from chatter.stability.methods.collocation.element_cut import element_cut
+from chatter.stability.methods.collocation.varying_speed import LOOSE_FIT
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
-from chatter.stability.model import milling_model
+from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.registry import chosen_method, fixed_steps
 from chatter.stability.search_range import maximum_depth, spindle_speeds
 
-#: stage -> speeds, depths of the net
+#: stage -> speeds, depths of the grid
 STAGES = {"coarse": (120, 24), "fine": (200, 50)}
-_POINTS_SHOWN = 700
+_DRAWN_POINTS = 700
+#: points per element and wavelengths of the highest mode in one, enough for a picture
+_POINTS, _WAVELENGTHS = 6, 1.0
+_TOLERANCE = 5e-3
+_STRIDE = 8
 
 
 class LiveCase:
@@ -51,10 +58,10 @@ class LiveCase:
         self.case = case
         model = milling_model(case)
         speeds = spindle_speeds(case)
-        deepest = maximum_depth(case, zero_order_of(model, speeds))
-        self.view = view_parameters((float(speeds[0]), float(speeds[-1])), deepest)
-        self.sliders = (*self.view, *case_parameters(case))
-        self.by_path: dict[str, Parameter] = {one.path: one for one in self.sliders}
+        max_depth = maximum_depth(case, zero_order_of(model, speeds))
+        self.view = diagram_sliders((float(speeds[0]), float(speeds[-1])), max_depth)
+        self.sliders = (*self.view, *case_sliders(case))
+        self.by_path: dict[str, Slider] = {one.path: one for one in self.sliders}
 
     def setup(self) -> dict[str, Any]:
         """What the page shows before anything is moved."""
@@ -62,7 +69,7 @@ class LiveCase:
             "title": self.case.title or self.case.name,
             "name": self.case.name.rsplit("/", 1)[-1],
             "method": self.method,
-            "parameters": [one.as_json() for one in self.sliders],
+            "sliders": [one.as_json() for one in self.sliders],
         }
 
     def patched(self, given: Any) -> tuple[Case, dict[str, float]]:
@@ -87,7 +94,7 @@ class LiveCase:
     def diagram(self, given: Any, stage: str, progress: Progress) -> dict[str, Any]:
         """Limits over spindle speed, coarse or fine.
 
-        Parameters
+        Sliders
         ----------
         given : mapping
             Values of sliders.
@@ -100,16 +107,16 @@ class LiveCase:
         case, view = self.patched(given)
         speed_count, depth_count = STAGES[stage]
         span = (from_rpm(view["lobes.speeds.from"]), from_rpm(view["lobes.speeds.to"]))
-        deepest = view["lobes.depths.to"] * 1e-3
+        max_depth = view["lobes.depths.to"] * 1e-3
         model = milling_model(case)
         steps = fixed_steps(case)
         speeds = np.linspace(*span, speed_count)
-        depths = np.linspace(0.0, deepest, depth_count + 1)[1:]
+        depths = np.linspace(0.0, max_depth, depth_count + 1)[1:]
         follows = stage == "coarse" and self.method == "collocation" and not model.depends_on_speed
-        limits_of = followed_limits if follows else self._method.limits
+        limits_of = _coarse_limits if follows else self._method.limits
         curve = limits_of(model, speeds, depths, steps, progress)
         cut = case.cut
-        to_operating = np.linspace(0.0, 1.02 * max(cut.axial_depth, deepest), depth_count + 1)[1:]
+        to_operating = np.linspace(0.0, 1.02 * max(cut.axial_depth, max_depth), depth_count + 1)[1:]
         at = np.array([cut.spindle_speed])
         operating = limits_of(model, at, to_operating, steps, progress)
         below = int((operating.crossings[0] < cut.axial_depth).sum())
@@ -121,7 +128,7 @@ class LiveCase:
             "chatter_frequency_Hz": _numbers(curve.chatter_frequency),
             "bifurcation": list(curve.bifurcation),
             "natural_frequencies_Hz": [mode.frequency for mode in model.structure.modes],
-            "deepest_mm": deepest * 1e3,
+            "max_axial_depth_mm": max_depth * 1e3,
             "lowest": {
                 "depth_mm": _number(float(curve.critical_depth[lowest]) * 1e3),
                 "spindle_speed_rpm": rpm(float(curve.spindle_speed[lowest])),
@@ -160,11 +167,11 @@ class LiveCase:
 
         result = simulate(case, wanted, progress)
         summary = result.summary()
-        turned = result.spindle_angle / (2.0 * math.pi)
+        revolutions = result.spindle_angle / (2.0 * math.pi)
         axis = int(np.argmax(np.ptp(result.displacement, axis=0)))
-        shown = _envelope(turned, result.displacement[:, axis] * 1e6)
-        whole = np.searchsorted(turned, np.arange(0.0, math.floor(turned[-1]) + 0.5))
-        whole = whole[whole < len(turned)]
+        envelope = _envelope(revolutions, result.displacement[:, axis] * 1e6)
+        whole = np.searchsorted(revolutions, np.arange(0.0, math.floor(revolutions[-1]) + 0.5))
+        whole = whole[whole < len(revolutions)]
         return {
             "spindle_speed_rpm": speed_rpm,
             "axial_depth_mm": depth_mm,
@@ -174,9 +181,9 @@ class LiveCase:
             "peak_resultant_N": summary["peak_resultant_N"],
             "mean_power_W": summary["power"]["mean_W"],
             "direction": "xyz"[axis],
-            **shown,
-            "once_a_turn": {
-                "turns": _numbers(turned[whole]),
+            **envelope,
+            "once_per_revolution": {
+                "revolutions": _numbers(revolutions[whole]),
                 "um": _numbers(result.displacement[whole, axis] * 1e6),
             },
             "notes": summary["notes"],
@@ -216,12 +223,12 @@ def _removal(case: Case) -> float:
 
 
 def _envelope(x: NDArray[np.float64], y: NDArray[np.float64]) -> dict[str, list[float | None]]:
-    """Lowest and highest value in each of a few stretches, so that no peak is lost."""
-    stretches = np.array_split(np.arange(len(x)), min(_POINTS_SHOWN, len(x)))
+    """Lowest and highest value in each of a few intervals, so that no peak is lost."""
+    intervals = np.array_split(np.arange(len(x)), min(_DRAWN_POINTS, len(x)))
     return {
-        "turns": _numbers(np.array([x[part[0]] for part in stretches])),
-        "lowest_um": _numbers(np.array([y[part].min() for part in stretches])),
-        "highest_um": _numbers(np.array([y[part].max() for part in stretches])),
+        "revolutions": _numbers(np.array([x[part[0]] for part in intervals])),
+        "lowest_um": _numbers(np.array([y[part].min() for part in intervals])),
+        "highest_um": _numbers(np.array([y[part].max() for part in intervals])),
     }
 
 
@@ -232,3 +239,24 @@ def _numbers(values: NDArray[np.float64]) -> list[float | None]:
 def _number(value: float) -> float | None:
     """Value as the page shows it; None where there is none."""
     return float(f"{value:.7g}") if math.isfinite(value) else None
+
+
+def _coarse_limits(
+    model: MillingModel,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    steps: int | None,  # noqa: ARG001  (the signature of a method)
+    progress: Progress,
+) -> LimitCurve:
+    """Limits to 0.5 %, by continuation of the boundary: quick enough for a moving slider.
+
+    Parameters
+    ----------
+    model : MillingModel
+    speeds, depths : array of float
+        rad/s, m.
+    progress : callable
+        May raise to give up.
+    """
+    cut = element_cut(model, float(depths[-1]), _POINTS, _WAVELENGTHS).with_fit(LOOSE_FIT)
+    return collocation.limit_curve(cut, speeds, depths, progress, _TOLERANCE, _STRIDE)

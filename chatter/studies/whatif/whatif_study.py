@@ -1,35 +1,34 @@
-"""A what-if study and its result."""
+"""`whatif`: a case or machine with values changed, the points of the study, and its result."""
 
 from __future__ import annotations
 
 import csv
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from functools import partial
 from io import StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
-from chatter.description.errors import InputError
+from chatter.description.errors import InputError, RunError
 from chatter.description.progress import Progress, no_progress
 from chatter.engine.parallel import Executor
-from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, write_results
-from chatter.studies.whatif import summary as telling
+from chatter.io.result_files import SavedResult, as_json
+from chatter.studies.model import fingerprint, patched
+from chatter.studies.result_cache import ResultCache
 from chatter.studies.whatif.design import AS_GIVEN, DesignPoint, Layout, chosen_layout, points_of
-from chatter.studies.whatif.measures import Measure, Outcome, measure_of
-from chatter.studies.whatif.points import Resumed, no_report, outcomes_of
+from chatter.studies.whatif.measures import Curve, Measure, Outcome, measure_of
+from chatter.studies.whatif.summary import sentences
 from chatter.studies.whatif.variation import Variation, read_variation, variation
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from matplotlib.figure import Figure
-
     from chatter.studies.model import Model
 
 
 @dataclass(frozen=True)
-class WhatIf:
+class WhatIf(SavedResult):
     """Result of a study.
 
     Parameters
@@ -46,6 +45,9 @@ class WhatIf:
     outcomes : tuple of Outcome
     """
 
+    drawn_by: ClassVar[str] = "plots.whatif.plot_whatif"
+    picture: ClassVar[str] = "whatif.png"
+
     model: Model
     variations: tuple[Variation, ...]
     layout: Layout
@@ -54,10 +56,9 @@ class WhatIf:
     points: tuple[DesignPoint, ...]
     outcomes: tuple[Outcome, ...]
 
-    @property
     def sentences(self) -> list[str]:
         """What changed, by how much."""
-        return telling.sentences(self)
+        return sentences(self)
 
     def values(self, key: str | None = None) -> list[float | None]:
         """Number of a key at every point; that which is shown by default."""
@@ -82,23 +83,12 @@ class WhatIf:
                 }
                 for point, outcome in zip(self.points, self.outcomes, strict=True)
             ],
-            "changes": self.sentences,
+            "changes": self.sentences(),
         }
 
-    def plot(self) -> Figure:
-        """Return the picture of the study as a matplotlib figure."""
-        return presentation("plots.whatif").plot_whatif(self)
-
-    def save(self, folder: str | Path) -> list[Path]:
-        """Write whatif.csv, summary.json and whatif.png.
-
-        Returns
-        -------
-        list of Path
-            What was written.
-        """
-        texts = {"whatif.csv": self._table(), "summary.json": as_json(self.summary())}
-        return write_results(folder, texts, {"whatif.png": self.plot()})
+    def texts(self) -> dict[str, str]:
+        """Content of whatif.csv and summary.json."""
+        return {"whatif.csv": self._table(), "summary.json": as_json(self.summary())}
 
     def _table(self) -> str:
         """One row a point: values of the paths, then words and numbers."""
@@ -110,21 +100,21 @@ class WhatIf:
         writer.writerow([*heads, *words, *numbers])
         for point, outcome in zip(self.points, self.outcomes, strict=True):
             given = [
-                _cell(one, place) for one, place in zip(self.variations, point.places, strict=True)
+                _cell(one, index) for one, index in zip(self.variations, point.indices, strict=True)
             ]
-            told = [outcome.words.get(key, "") for key in words]
+            words_found = [outcome.words.get(key, "") for key in words]
             found = [outcome.numbers.get(key) for key in numbers]
             cells = ["" if one is None else f"{one:.9g}" for one in found]
-            writer.writerow([*given, *told, *cells])
+            writer.writerow([*given, *words_found, *cells])
         return text.getvalue()
 
 
-def _cell(one: Variation, place: int | None) -> str:
-    if place is None:
+def _cell(one: Variation, index: int | None) -> str:
+    if index is None:
         return AS_GIVEN
     if one.numbers is None:
-        return one.values[place].label
-    return f"{one.numbers[place]:.9g}"
+        return one.values[index].label
+    return f"{one.numbers[index]:.9g}"
 
 
 def whatif(
@@ -139,7 +129,7 @@ def whatif(
     only: Sequence[str] = (),
     folder: str | Path | None = None,
     progress: Progress = no_progress,
-    resumed: Resumed = no_report,
+    resumed: Callable[[int, int], None] | None = None,
     cluster: str | Executor | None = None,
 ) -> WhatIf:
     """Ask what would change if values of a case or machine were others.
@@ -187,15 +177,43 @@ def whatif(
     variations = _variations(model, vary, count)
     layout = chosen_layout(variations, tornado)
     measure = measure_of(result, model)
-    shown = quantity or next(iter(measure.quantities))
-    if shown not in measure.quantities:
+    key = quantity or next(iter(measure.quantities))
+    if key not in measure.quantities:
         known = ", ".join(measure.quantities)
-        raise InputError(f'--quantity "{shown}" is not known; {measure.name} has {known}')
+        raise InputError(f'--quantity "{key}" is not known; {measure.name} has {known}')
     points = points_of(variations, layout)
-    outcomes = outcomes_of(
-        model, points, measure, method, tuple(only), folder, progress, resumed, cluster
-    )
-    return WhatIf(model, variations, layout, measure, shown, points, tuple(outcomes))
+    models = [patched(model, point.patch) for point in points]
+    evaluate = partial(_record, measure.name, method, tuple(only))
+    with ResultCache(folder, measure.name, method or "", ",".join(only)) as cache:
+        keys = [cache.key(fingerprint(each)) for each in models]
+        before = cache.finished(keys)
+        if before and resumed is not None:
+            resumed(before, len(points))
+        records = cache.evaluate(evaluate, models, keys, "points", cluster, progress)
+    if all(record["failure"] for record in records):
+        messages, failure = records[0]["input_errors"], records[0]["failure"]
+        raise InputError(messages) if messages else RunError(failure)
+    outcomes = tuple(_outcome(record) for record in records)
+    return WhatIf(model, variations, layout, measure, key, points, outcomes)
+
+
+def _record(
+    measure: str, method: str | None, only: tuple[str, ...], model: Model
+) -> dict[str, Any]:
+    """Record of a point, with what is wrong with its input."""
+    messages: tuple[str, ...] = ()
+    try:
+        outcome = measure_of(measure, model).evaluate(model, method, only)
+    except InputError as error:
+        outcome, messages = Outcome(failure=str(error)), error.messages
+    except RunError as error:
+        outcome = Outcome(failure=str(error))
+    return {**asdict(outcome), "input_errors": messages}
+
+
+def _outcome(record: dict[str, Any]) -> Outcome:
+    curves = tuple(Curve(**curve) for curve in record["curves"])
+    return Outcome(record["numbers"], record["words"], curves, record["failure"], record["units"])
 
 
 def _variations(

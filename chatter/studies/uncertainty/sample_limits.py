@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,12 +15,12 @@ from chatter.stability.model import milling_model
 from chatter.stability.registry import chosen_method, fixed_steps
 from chatter.stability.search_range import maximum_depth, spindle_speeds
 
-#: depths looked at before limits are refined
-_NET = 32
+#: depths of the grid on which limits are bracketed
+_DEPTHS = 32
 
 
 @dataclass(frozen=True)
-class Net:
+class Grid:
     """Speeds and depths that all samples share.
 
     Parameters
@@ -54,23 +53,8 @@ class SampleLimits:
     operating: float
     stable: bool
 
-    def record(self) -> dict:
-        """As JSON knows it."""
-        return {
-            "limits": [value if math.isfinite(value) else None for value in self.limits],
-            "operating": self.operating if math.isfinite(self.operating) else None,
-            "stable": self.stable,
-        }
 
-    @classmethod
-    def from_record(cls, record: dict) -> SampleLimits:
-        """Read what `record` wrote."""
-        limits = [math.inf if value is None else value for value in record["limits"]]
-        operating = record["operating"]
-        return cls(limits, math.inf if operating is None else operating, record["stable"])
-
-
-def shared_net(case: Case, speed_count: int) -> Net:
+def shared_grid(case: Case, speed_count: int) -> Grid:
     """Speeds and depths from the case with its mean values.
 
     Raises
@@ -81,17 +65,17 @@ def shared_net(case: Case, speed_count: int) -> Net:
     model = milling_model(case)
     wide = spindle_speeds(case)
     speeds = np.linspace(float(wide[0]), float(wide[-1]), speed_count)
-    deepest = maximum_depth(case, zero_order_of(model, wide))
-    return Net(speeds, np.linspace(0.0, deepest, _NET + 1)[1:])
+    max_depth = maximum_depth(case, zero_order_of(model, wide))
+    return Grid(speeds, np.linspace(0.0, max_depth, _DEPTHS + 1)[1:])
 
 
-def sample_limits(case: Case, net: Net, method: str | None) -> SampleLimits:
+def sample_limits(case: Case, grid: Grid, method: str | None) -> SampleLimits:
     """Limits of one sample at the shared speeds and at the speed of its cut.
 
     Parameters
     ----------
     case : Case
-    net : Net
+    grid : Grid
     method : str, optional
         Of stability.
 
@@ -103,11 +87,11 @@ def sample_limits(case: Case, net: Net, method: str | None) -> SampleLimits:
     chosen = chosen_method(case, method)
     model = milling_model(case)
     steps = fixed_steps(case)
-    curve = chosen.limits(model, net.speeds, net.depths, steps, no_progress)
+    curve = chosen.limits(model, grid.speeds, grid.depths, steps, no_progress)
     cut = case.cut
-    depths = net.depths
+    depths = grid.depths
     if cut.axial_depth > 0.98 * depths[-1]:
-        depths = np.linspace(0.0, 1.02 * cut.axial_depth, _NET + 1)[1:]
+        depths = np.linspace(0.0, 1.02 * cut.axial_depth, _DEPTHS + 1)[1:]
     operating = chosen.limits(model, np.array([cut.spindle_speed]), depths, steps, no_progress)
     below = operating.crossings[0] < cut.axial_depth
     return SampleLimits(

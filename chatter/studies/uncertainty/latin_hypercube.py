@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.studies.uncertainty.parameters import UncertainParameter
+from chatter.studies.uncertainty.uncertain_parameters import UncertainParameter
 
 BLOCK = 50
 

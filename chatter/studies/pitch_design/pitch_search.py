@@ -21,12 +21,12 @@ from chatter.studies.result_cache import ResultCache
 Array = NDArray[np.float64]
 
 #: angles are whole multiples of this, deg
-GRAIN = 0.1
-#: differences of a family that are looked at
+RESOLUTION = 0.1
+#: differences of a family that are evaluated
 DIFFERENCES = 16
 #: what is moved from one pitch to another, deg, and evaluations at most
 _STEPS = (6.0, 3.0, 1.5, 0.7, 0.3)
-MOST_MOVES = 60
+MAX_MOVES = 60
 #: a gain below this share is none
 _LEAST_GAIN = 1e-3
 #: weight of the mean limit against the lowest, where that is alike
@@ -59,7 +59,7 @@ class Design:
         return float(self.limits.min())
 
     @property
-    def largest_chip(self) -> float:
+    def max_pitch_ratio(self) -> float:
         """Chip of the tooth that takes most, in units of the mean."""
         return max(self.pitch) * len(self.pitch) / 360.0
 
@@ -86,14 +86,14 @@ GOALS: dict[str, Callable[[Array, Array], float]] = {
 }
 
 
-def in_grains(pitch: Sequence[float]) -> tuple[float, ...]:
-    """Angles (deg) as multiples of the grain that make a turn."""
-    parts = np.asarray(pitch) / GRAIN
+def rounded_pitch(pitch: Sequence[float]) -> tuple[float, ...]:
+    """Angles (deg) as multiples of the resolution that make a revolution."""
+    parts = np.asarray(pitch) / RESOLUTION
     whole = np.floor(parts + 1e-6).astype(int)
-    missing = round(360.0 / GRAIN) - int(whole.sum())
+    missing = round(360.0 / RESOLUTION) - int(whole.sum())
     order = np.argsort(-(parts - whole), kind="stable")
     whole[order[:missing]] += 1
-    return tuple(round(float(part) * GRAIN, 6) for part in whole)
+    return tuple(round(float(part) * RESOLUTION, 6) for part in whole)
 
 
 class PitchSearch:
@@ -103,10 +103,10 @@ class PitchSearch:
     ----------
     case : Case
     speeds, depths : (n,), (m,) arrays of float
-        rad/s and net of depths, m.
+        rad/s and grid of depths, m.
     goal : str
         Key of `GOALS`.
-    largest_chip : float
+    max_pitch_ratio : float
         Largest pitch, in units of the mean; the smallest is 2 less this.
     evaluated : callable
         Called after every evaluation.
@@ -120,12 +120,12 @@ class PitchSearch:
         speeds: Array,
         depths: Array,
         goal: str,
-        largest_chip: float,
+        max_pitch_ratio: float,
         evaluated: Callable[[], None],
         cache: ResultCache,
     ) -> None:
         self.case, self.speeds, self.depths = case, speeds, depths
-        self.goal, self.largest_chip, self.evaluated = GOALS[goal], largest_chip, evaluated
+        self.goal, self.max_pitch_ratio, self.evaluated = GOALS[goal], max_pitch_ratio, evaluated
         self.teeth, self._cache = case.tool.teeth, cache
         self._known: dict[tuple[float, ...], Array] = {}
 
@@ -135,16 +135,16 @@ class PitchSearch:
 
         def compute() -> list[float]:
             model = milling_model(self.case.patch({"tool.pitch": angles}))
-            deepest = float(self.depths[-1])
-            found = first_limits(element_cut(model, deepest), speeds, self.depths)
-            return np.minimum(found, deepest).tolist()
+            max_depth = float(self.depths[-1])
+            found = first_limits(element_cut(model, max_depth), speeds, self.depths)
+            return np.minimum(found, max_depth).tolist()
 
         inputs = (angles, speeds.tolist())
         return np.array(self._cache.record("limits", inputs, compute), dtype=np.float64)
 
     def design(self, name: str, pitch: Sequence[float]) -> Design:
         """Design of pitch angles (deg), computed once."""
-        angles = in_grains(pitch)
+        angles = rounded_pitch(pitch)
         if angles not in self._known:
             self._known[angles] = self.limits(angles, self.speeds)
         self.evaluated()
@@ -154,12 +154,12 @@ class PitchSearch:
     def may_be(self, pitch: Sequence[float]) -> bool:
         """Whether all pitch angles (deg) are within the bounds of the chip."""
         shares = np.asarray(pitch) * self.teeth / 360.0
-        allowed = self.largest_chip + 1e-9
+        allowed = self.max_pitch_ratio + 1e-9
         return bool(shares.max() <= allowed and shares.min() >= 2.0 - allowed)
 
     def of_family(self, family: Family) -> tuple[Array, list[Design]]:
         """Differences, rad, and designs of a family up to the bounds of the chip."""
-        widest = (self.largest_chip - 1.0) * 2.0 * math.pi / self.teeth
+        widest = (self.max_pitch_ratio - 1.0) * 2.0 * math.pi / self.teeth
         differences = np.linspace(0.0, widest / family.widest(self.teeth), DIFFERENCES)
         designs = [
             self.design(family.name, np.degrees(family.angles(self.teeth, float(difference))))
@@ -169,7 +169,7 @@ class PitchSearch:
 
     def improved(self, start: Design) -> Design:
         """Best design on the way from a start, moving angle from one pitch to another."""
-        best, left = start, MOST_MOVES
+        best, left = start, MAX_MOVES
         for step in _STEPS:
             pairs = list(itertools.permutations(range(self.teeth), 2))
             unsuccessful = 0
