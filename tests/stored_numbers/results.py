@@ -14,8 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import chatter
-from chatter import explain as measured
-from stored_numbers.cases import StoredCase
+from tests.stored_numbers.cases import StoredCase
 
 RPM = 30.0 / math.pi
 
@@ -104,7 +103,7 @@ def lobes(stored: StoredCase) -> Readings:
         "chatter frequencies": Reading(_numbers(limits.chatter_frequency), "Hz"),
         "bifurcations": Reading(_spread(limits.bifurcation)),
         "changes of stability": Reading([len(one) for one in _spread(limits.crossings)]),
-        "searched to": Reading(1e3 * float(result.deepest), "mm"),
+        "searched to": Reading(1e3 * float(result.max_depth[0]), "mm"),
         "zeroth-order depths": Reading(_numbers(1e3 * result.zero_order.critical_depth), "mm"),
         "depth at the operating speed": Reading(
             1e3 * float(result.operating.critical_depth[0]), "mm"
@@ -123,9 +122,9 @@ def lobes_over(stored: StoredCase) -> Readings:
     """Limit depth over a value of the case."""
     result = chatter.lobes_over(_case(stored), **stored.arguments)
     return {
-        "values": Reading(_numbers(result.x)),
-        "critical depths": Reading(_numbers(1e3 * result.critical_depth), "mm"),
-        "chatter frequencies": Reading(_numbers(result.chatter_frequency), "Hz"),
+        "values": Reading(_numbers(result.axis.values)),
+        "critical depths": Reading(_numbers(1e3 * result.limits.critical_depth), "mm"),
+        "chatter frequencies": Reading(_numbers(result.limits.chatter_frequency), "Hz"),
     }
 
 
@@ -341,7 +340,7 @@ def modes(stored: StoredCase) -> Readings:
 
 def compare(stored: StoredCase) -> Readings:
     """Error of the declared case against a measurement."""
-    told = measured.compare(measured.read_measurement(stored.file)).summary()
+    told = chatter.compare(stored.file).summary()
     runs = _spread(told["runs"], 6)
     return {
         "kind": Reading(told["kind"]),
@@ -354,7 +353,7 @@ def compare(stored: StoredCase) -> Readings:
 
 def explain(stored: StoredCase) -> Readings:
     """Verdict on a measurement, the effects named and the errors before and after."""
-    told = measured.explain(measured.read_measurement(stored.file)).summary()
+    told = chatter.explain(stored.file).summary()
     effects, error = told["effects"], told["error"]
     found = {
         "verdict": Reading(told["verdict"]),

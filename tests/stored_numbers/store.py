@@ -10,7 +10,7 @@ from typing import Any
 
 import tomlkit
 
-from stored_numbers.results import Reading
+from tests.stored_numbers.results import Reading
 
 FILE = Path(__file__).parent / "numbers.toml"
 _HEADER = """\

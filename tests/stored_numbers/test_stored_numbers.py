@@ -2,9 +2,9 @@
 
 import pytest
 
-from stored_numbers import store
-from stored_numbers.cases import stored_cases
-from stored_numbers.results import readings
+from tests.stored_numbers import store
+from tests.stored_numbers.cases import stored_cases
+from tests.stored_numbers.results import readings
 
 CASES = stored_cases()
 STORED = store.read()

@@ -15,9 +15,9 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from stored_numbers import store
-from stored_numbers.cases import stored_cases
-from stored_numbers.results import Readings, readings
+from tests.stored_numbers import store
+from tests.stored_numbers.cases import stored_cases
+from tests.stored_numbers.results import Readings, readings
 
 
 def updated(old: store.Entries, now: Readings, reason: str) -> store.Entries:
