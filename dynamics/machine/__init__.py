@@ -5,7 +5,8 @@ module       responsibility
 ============ =======================================================================
 description  parts, axes and frictions -> `Machine` in a condition (control, brake)
 blocks       coordinates in which the free motion of the structure is cheap and exact
-steps        any structure on its ports over a step: table and kernels (the bus)
+steps        a structure on its ports over a step: table and kernels (the bus)
+ports        what every structure on ports answers, modes too
 groups       laws on the bus: controlled drives, constant forces, loads, frictions
 travel_limit where a run halts
 tables       `Machine`, or modes -> tables for the time loop

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from dynamics.machine.steps import begin_step, correct, end_step, predict
+from dynamics.machine.ports import correct, predict
+from dynamics.machine.steps import begin_step, end_step
 from dynamics.modal.modal_structure import (
     modal_energy,
     modal_energy_forces,
