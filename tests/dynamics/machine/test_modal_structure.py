@@ -11,6 +11,7 @@ from dynamics.machine.modal_structure import (
     modal_structure,
     stored_energy,
 )
+from dynamics.machine.ports import correct, predict
 from dynamics.machine.steps import begin_step, correct, end_step, predict
 from dynamics.modal.modes import Mode
 
