@@ -49,10 +49,10 @@ if TYPE_CHECKING:
     from chatter.studies.diagram_over_axes import lobes as lobes
     from chatter.studies.diagram_over_axes import lobes_over as lobes_over
     from chatter.studies.modal_test import modes as modes
-    from chatter.studies.optimisation.study import optimum as optimum
-    from chatter.studies.pitch_design.study import pitch as pitch
-    from chatter.studies.uncertainty.study import uncertainty as uncertainty
-    from chatter.studies.whatif.study import whatif as whatif
+    from chatter.studies.optimisation.process_optimisation import optimum as optimum
+    from chatter.studies.pitch_design.pitch_design import pitch as pitch
+    from chatter.studies.uncertainty.monte_carlo import uncertainty as uncertainty
+    from chatter.studies.whatif.whatif_study import whatif as whatif
 
 __version__ = "0.1.0"
 
@@ -71,13 +71,13 @@ _PUBLIC = {
     "lobes": "chatter.studies.diagram_over_axes",
     "lobes_over": "chatter.studies.diagram_over_axes",
     "modes": "chatter.studies.modal_test",
-    "optimum": "chatter.studies.optimisation.study",
+    "optimum": "chatter.studies.optimisation.process_optimisation",
     "move": "chatter.simulation.virtual_tests.from_file",
-    "pitch": "chatter.studies.pitch_design.study",
+    "pitch": "chatter.studies.pitch_design.pitch_design",
     "schema": "chatter.stability.case_schema",
     "simulate": "chatter.simulation.simulate",
-    "uncertainty": "chatter.studies.uncertainty.study",
-    "whatif": "chatter.studies.whatif.study",
+    "uncertainty": "chatter.studies.uncertainty.monte_carlo",
+    "whatif": "chatter.studies.whatif.whatif_study",
 }
 
 __all__ = sorted([*_PUBLIC, "explain"])

@@ -34,18 +34,18 @@ def _laws(laws: Iterable) -> str:
     return _table(["law", "what it is", "keys"], rows)
 
 
-def force_laws() -> str:
-    """Force laws of `[material]`."""
-    from chatter.description.laws import FORCE_LAWS
-
-    return _laws(FORCE_LAWS)
-
-
 def friction_laws() -> str:
     """Friction laws of `[friction.NAME]`."""
     from chatter.description.laws import FRICTION_LAWS
 
     return _laws(FRICTION_LAWS)
+
+
+def force_laws() -> str:
+    """Force laws of `[material]`."""
+    from chatter.description.laws import FORCE_LAWS
+
+    return _laws(FORCE_LAWS)
 
 
 def methods() -> str:

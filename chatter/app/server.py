@@ -13,8 +13,8 @@ from importlib.resources import files
 from typing import Any
 from urllib.parse import urlsplit
 
-from chatter.app.answers import STAGES, LiveCase
-from chatter.app.latest import Latest, SupersededError
+from chatter.app.live_case import STAGES, LiveCase
+from chatter.app.newest_request import NewestRequest, SupersededError
 from chatter.description.errors import InputError, RunError
 
 ADDRESS = "127.0.0.1"
@@ -78,8 +78,8 @@ class LiveServer(ThreadingHTTPServer):
             raise InputError(f"--port {port}: cannot be served on ({reason})") from None
         self.live = live
         self.token = secrets.token_urlsafe(24)
-        self.diagrams = Latest(_LONGEST_DIAGRAM)
-        self.simulations = Latest(_LONGEST_SIMULATION)
+        self.diagrams = NewestRequest(_LONGEST_DIAGRAM)
+        self.simulations = NewestRequest(_LONGEST_SIMULATION)
 
     @property
     def url(self) -> str:

@@ -108,7 +108,7 @@ def _over_paths(
 
 def _serve(description: Case, method: str | None, port: int, no_browser: bool) -> None:
     """Serve the page until Ctrl-C."""
-    from chatter.app.answers import LiveCase
+    from chatter.app.live_case import LiveCase
     from chatter.app.server import LiveServer
     from chatter.description.progress import no_progress
 

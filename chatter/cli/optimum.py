@@ -1,4 +1,4 @@
-"""`chatter optimum CASE`: the best speed, depth and width within the limits."""
+"""`chatter optimum CASE`: the best speed, depth and radial depth within the limits."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def optimum(
 ) -> None:
     """Find the cut with the highest removal rate within the limits of [optimum]."""
     description = patched_case(case, assignments)
-    from chatter.studies.optimisation.study import optimum as run_optimum
+    from chatter.studies.optimisation.process_optimisation import optimum as run_optimum
 
     announce_compilation()
     folder = output_folder(out, case.stem)

@@ -22,7 +22,7 @@ def pitch(
 ) -> None:
     """Find pitch angles that raise the limits over the speeds of [pitch_design]."""
     description = patched_case(case, assignments)
-    from chatter.studies.pitch_design.study import pitch as run_pitch
+    from chatter.studies.pitch_design.pitch_design import pitch as run_pitch
 
     announce_compilation()
     folder = output_folder(out, case.stem)

@@ -55,15 +55,15 @@ def present(
     print_written(written)
 
 
-class Told(Saved, Protocol):
+class WithSentences(Saved, Protocol):
     """A result that has its own sentences."""
 
-    def told(self) -> list[str]:
+    def sentences(self) -> list[str]:
         """Sentences for the terminal."""
         ...
 
 
-def print_sentences(result: Told) -> None:
+def print_sentences(result: WithSentences) -> None:
     """Print the sentences of a result."""
-    for line in result.told():
+    for line in result.sentences():
         print_line(line)

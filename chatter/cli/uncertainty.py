@@ -21,7 +21,7 @@ from chatter.cli.progress import announce_compilation, announce_resumed, progres
 from chatter.cli.results import present
 
 if TYPE_CHECKING:
-    from chatter.studies.uncertainty.study import Uncertainty
+    from chatter.studies.uncertainty.monte_carlo import Uncertainty
 
 
 def uncertainty(
@@ -37,7 +37,7 @@ def uncertainty(
 ) -> None:
     """Propagate values such as "1650 +- 80 MPa" to a band of lobes and a probability."""
     description = patched_case(case, assignments)
-    from chatter.studies.uncertainty.study import uncertainty as run_uncertainty
+    from chatter.studies.uncertainty.monte_carlo import uncertainty as run_uncertainty
 
     announce_compilation()
     folder = output_folder(out, case.stem)

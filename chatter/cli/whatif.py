@@ -10,14 +10,12 @@ import typer
 
 from chatter.cli.options import Assignments, Cluster, Json, Method, OutputFolder, output_folder
 from chatter.cli.progress import announce_compilation, announce_resumed, progress_bar
-from chatter.cli.results import present
+from chatter.cli.results import present, print_sentences
 from chatter.description.assignments import parse_assignments
 from chatter.description.errors import InputError
-from chatter.report.console import print_line
 
 if TYPE_CHECKING:
-    from chatter.studies.whatif.presets import ReadyStudy
-    from chatter.studies.whatif.study import WhatIf
+    from chatter.studies.whatif.preset_studies import PresetStudy
 
 
 def whatif(
@@ -74,7 +72,7 @@ def whatif(
     folder = output_folder(out, f"{name}-{study}" if study else name)
     if chosen is not None:
         model = _fitted(chosen, lambda: patched(model, chosen.settings))
-    from chatter.studies.whatif.study import whatif as run_whatif
+    from chatter.studies.whatif.whatif_study import whatif as run_whatif
 
     announce_compilation()
     with progress_bar("points") as progress:
@@ -95,25 +93,20 @@ def whatif(
                 cluster=cluster,
             ),
         )
-    present(found, folder, json=json, words=_print_answer)
+    present(found, folder, json=json, words=print_sentences)
 
 
-def _print_answer(found: WhatIf) -> None:
-    for sentence in found.sentences:
-        print_line(sentence)
-
-
-def _chosen(study: str | None, vary: list[str] | None) -> ReadyStudy | None:
+def _chosen(study: str | None, vary: list[str] | None) -> PresetStudy | None:
     if study is None:
         return None
     if vary:
         raise InputError("--study and --vary are both given; a study has its own paths and values")
-    from chatter.studies.whatif.presets import ready_study
+    from chatter.studies.whatif.preset_studies import preset_study
 
-    return ready_study(study)
+    return preset_study(study)
 
 
-def _fitted(chosen: ReadyStudy | None, make):
+def _fitted(chosen: PresetStudy | None, make):
     """Result of a function; errors of a study on another file say what it was made for."""
     try:
         return make()
@@ -125,9 +118,9 @@ def _fitted(chosen: ReadyStudy | None, make):
 
 
 def _list_studies() -> None:
-    from chatter.studies.whatif.presets import STUDIES
+    from chatter.studies.whatif.preset_studies import preset_studies
 
-    for one in STUDIES.values():
+    for one in preset_studies().values():
         typer.echo(f"{one.name}: {one.question}")
         typer.echo(f"    chatter whatif --study {one.name}      (example {one.example})")
         for each in one.vary:

@@ -31,7 +31,7 @@ def bifurcation_of_multiplier(multiplier: complex) -> str:
 
 
 def bifurcation_of(
-    values: NDArray[np.float64], line: ChatterLine, growth: float, noise: float
+    values: NDArray[np.float64], line: ChatterLine, growth_rate: float, noise: float
 ) -> tuple[str, int]:
     """Name the bifurcation of a motion that does not repeat from period to period.
 
@@ -41,7 +41,7 @@ def bifurcation_of(
         The later part of the record.
     line : ChatterLine
         Of the same values.
-    growth : float
+    growth_rate : float
         Logarithm of the growth a period.
     noise : float
         Rms of the noise of one sample.
@@ -55,7 +55,7 @@ def bifurcation_of(
     drift = abs(math.pi - line.rotation) * count
     if drift < _DRIFT or (drift < 2.0 * math.pi and _only_alternates(values, noise)):
         return "flip", 2
-    if abs(growth) * count > _STEADY:
+    if abs(growth_rate) * count > _STEADY:
         return "hopf", 0
     for period in range(2, min(_LONGEST, count // 3) + 1):
         if _unexplained(values, period, noise) < _UNEXPLAINED:

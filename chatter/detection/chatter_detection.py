@@ -12,7 +12,12 @@ from numpy.typing import NDArray
 from chatter.detection.bifurcation_type import bifurcation_of
 from chatter.detection.chatter_frequency import strongest_line
 from chatter.detection.cut_record import CutRecord
-from chatter.detection.deviations import Deviations, deviations_of, growth_of, slowest_growth
+from chatter.detection.deviations import (
+    Deviations,
+    deviations_of,
+    growth_rate_of,
+    slowest_growth_rate,
+)
 from chatter.detection.period_doubling import doubling_within_revolution
 from chatter.detection.poincare_sections import (
     Periods,
@@ -163,15 +168,15 @@ def detect_chatter(record: CutRecord) -> Detection:
     )
 
 
-def _motion(periods: Periods, noise: float, growth: float) -> _Motion:
+def _motion(periods: Periods, noise: float, growth_rate: float) -> _Motion:
     """Fit the chatter motion in the later half of the record."""
     later = periods.values[len(periods.values) // 2 :]
-    line = strongest_line(later, growth)
-    bifurcation, period = bifurcation_of(later, line, growth, noise)
+    line = strongest_line(later, growth_rate)
+    bifurcation, period = bifurcation_of(later, line, growth_rate, noise)
     if period > 0:
         # a closed orbit has its lines exactly at multiples of 1/period
         order = max(round(line.rotation * period / (2.0 * math.pi)), 1)
-        line = strongest_line(later, growth, 2.0 * math.pi * order / period)
+        line = strongest_line(later, growth_rate, 2.0 * math.pi * order / period)
     frequency = line.cycles / periods.period
     return _Motion(bifurcation, period, frequency, line.share, periods.per_revolution)
 
@@ -204,21 +209,21 @@ def _trend_of(deviations: Deviations, periods: Periods, negligible: float) -> _T
     level = float(np.sqrt(np.mean(sizes[-quarter:] ** 2))) / spread
     if deviations.rank == 0:
         return _Trend(0.0, floor, -math.inf, 0.0, -math.inf, -math.inf, 0.0)
-    slope, error = growth_of(sizes[len(sizes) // 2 :])
+    slope, error = growth_rate_of(sizes[len(sizes) // 2 :])
     first = float(np.sqrt(np.mean(sizes[:quarter] ** 2))) / spread
     whole = math.log(max(level, 1e-300) / max(first, 1e-300)) / (len(sizes) - quarter)
-    slowest, misfit = slowest_growth(deviations.rows[len(sizes) // 2 :])
+    slowest, misfit = slowest_growth_rate(deviations.rows[len(sizes) // 2 :])
     return _Trend(level, floor, slope, error, whole, slowest, misfit)
 
 
 def _decide(trend: _Trend, periods: Periods) -> tuple[str, float, str]:
-    growth, error = trend.slope * periods.per_revolution, trend.error * periods.per_revolution
+    growth_rate, error = trend.slope * periods.per_revolution, trend.error * periods.per_revolution
     of_what = _unit(periods.per_revolution)
     if trend.level < trend.floor and _grows(trend, len(periods.values)):
         return (
             "chatter", 0.7,
             f"the deviation from {of_what} to {of_what} is but {trend.level:.2%} of the rms of the "
-            f"motion, but it grows by {math.expm1(growth):.1%} per revolution",
+            f"motion, but it grows by {math.expm1(growth_rate):.1%} per revolution",
         )  # fmt: skip
     if trend.level < trend.floor:
         sure = 1.0 - 0.4 * trend.level / trend.floor
@@ -227,18 +232,18 @@ def _decide(trend: _Trend, periods: Periods) -> tuple[str, float, str]:
             f"the motion repeats from {of_what} to {of_what} within {trend.level:.2%} of its rms",
         )  # fmt: skip
     decays = _decays(trend, periods.per_revolution)
-    away = abs(growth - _SUSTAINED) / (0.01 + 2.0 * error)
+    away = abs(growth_rate - _SUSTAINED) / (0.01 + 2.0 * error)
     sure = 0.5 + 0.5 * min(1.0, max(away, 0.0 if decays else trend.level))
     if decays:
         return (
             "stable", sure,
-            f"the deviation from {of_what} to {of_what} decays by {-math.expm1(growth):.1%} per "
-            "revolution",
+            f"the deviation from {of_what} to {of_what} decays by {-math.expm1(growth_rate):.1%} "
+            "per revolution",
         )  # fmt: skip
     return (
         "chatter", sure,
         f"the deviation from {of_what} to {of_what} stays at {trend.level:.1%} of the rms of the "
-        f"motion, with a change of {math.expm1(growth):+.1%} per revolution",
+        f"motion, with a change of {math.expm1(growth_rate):+.1%} per revolution",
     )  # fmt: skip
 
 
@@ -277,11 +282,11 @@ def _metrics(
         "off_harmonic_share": float(off / about_mean) if about_mean > 0.0 else 0.0,
         "deviation": trend.level,
         "deviation_floor": trend.floor,
-        "growth_per_revolution": trend.slope * periods.per_revolution,
-        "growth_error_per_revolution": trend.error * periods.per_revolution,
+        "growth_rate_per_revolution": trend.slope * periods.per_revolution,
+        "growth_rate_error_per_revolution": trend.error * periods.per_revolution,
         "noise": deviations.noise * periods.scale,
-        "slowest_growth_per_revolution": trend.slowest * periods.per_revolution,
-        "whole_growth_per_revolution": trend.whole * periods.per_revolution,
+        "slowest_growth_rate_per_revolution": trend.slowest * periods.per_revolution,
+        "whole_growth_rate_per_revolution": trend.whole * periods.per_revolution,
         "misfit": trend.misfit,
         "rank": float(deviations.rank),
         "line_share": share,

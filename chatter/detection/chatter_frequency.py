@@ -29,7 +29,7 @@ class ChatterLine(NamedTuple):
 
 
 def strongest_line(
-    values: NDArray[np.float64], growth: float = 0.0, rotation: float | None = None
+    values: NDArray[np.float64], growth_rate: float = 0.0, rotation: float | None = None
 ) -> ChatterLine:
     """Fit one rotating motion to the change from period to period.
 
@@ -42,7 +42,7 @@ def strongest_line(
     Parameters
     ----------
     values : (periods, points, k) array of float
-    growth : float
+    growth_rate : float
         Logarithm of the growth a period.
     rotation : float, optional
         rad a period, where it is known; fitted otherwise.
@@ -62,8 +62,8 @@ def strongest_line(
     right = scores.T @ centred / singular[:kept, None] ** 2
     total = float(np.sum(scores**2))
     if rotation is None:
-        rotation = _rotation(scores, growth)
-    base = _columns(rotation, growth, count)
+        rotation = _rotation(scores, growth_rate)
+    base = _columns(rotation, growth_rate, count)
     # at a doubled period the sine vanishes and must not be fitted
     coefficients, *_ = np.linalg.lstsq(base, scores, rcond=_WEAK_COLUMN)
     share = 1.0 - float(np.sum((scores - base @ coefficients) ** 2)) / total
@@ -77,16 +77,16 @@ def strongest_line(
     return ChatterLine(rotation, float(cycles), share, float(strength[strongest]))
 
 
-def _columns(rotation: float, growth: float, count: int) -> NDArray[np.float64]:
+def _columns(rotation: float, growth_rate: float, count: int) -> NDArray[np.float64]:
     period = np.arange(count) - 0.5 * count
-    swell = np.exp(growth * (period - period[-1]))
+    swell = np.exp(growth_rate * (period - period[-1]))
     return np.stack(
         [np.ones(count), swell * np.cos(rotation * period), swell * np.sin(rotation * period)],
         axis=1,
     )
 
 
-def _rotation(scores: NDArray[np.float64], growth: float) -> float:
+def _rotation(scores: NDArray[np.float64], growth_rate: float) -> float:
     """Angle of the rotation that leaves the least unexplained."""
     count = len(scores)
     padded = _PADDING * count
@@ -96,7 +96,7 @@ def _rotation(scores: NDArray[np.float64], growth: float) -> float:
     start = step * int(np.argmax(power))
 
     def negative_explained(rotation: float) -> float:
-        base, _ = np.linalg.qr(_columns(rotation, growth, count))
+        base, _ = np.linalg.qr(_columns(rotation, growth_rate, count))
         return -float(np.sum((base.T @ scores) ** 2))
 
     reach = 0.6 * _PADDING * step

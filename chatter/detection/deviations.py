@@ -71,7 +71,7 @@ def directions_of(matrix: NDArray[np.float64]) -> tuple[NDArray, NDArray]:
     return left[:, ::-1], np.sqrt(np.maximum(squares[::-1], 0.0))
 
 
-def growth_of(sizes: NDArray[np.float64]) -> tuple[float, float]:
+def growth_rate_of(sizes: NDArray[np.float64]) -> tuple[float, float]:
     """Slope of the logarithm of the sizes a period, and its standard error."""
     place = np.arange(len(sizes), dtype=float)
     place -= place.mean()
@@ -82,7 +82,7 @@ def growth_of(sizes: NDArray[np.float64]) -> tuple[float, float]:
     return slope, error
 
 
-def slowest_growth(rows: NDArray[np.float64]) -> tuple[float, float]:
+def slowest_growth_rate(rows: NDArray[np.float64]) -> tuple[float, float]:
     """Logarithm of the magnitude of the multiplier that decays least, a period, and the misfit.
 
     A linear map from each row to the next is fitted to the strongest directions of the rows

@@ -108,6 +108,17 @@ def worker_count() -> int:
     return max(1, os.cpu_count() or 1)
 
 
+@contextmanager
+def _interruptible() -> Iterator[None]:
+    """Pass on Ctrl-C that comes while compiled code returns to Python, which hides it."""
+    try:
+        yield
+    except SystemError as error:
+        if isinstance(error.__cause__, KeyboardInterrupt):
+            raise KeyboardInterrupt from None
+        raise
+
+
 def sweep(
     function: Callable[[NDArray[np.int64]], Result],
     count: int,
@@ -141,7 +152,8 @@ def sweep(
     results: list[Result] = []
     if len(chunks) == 1:
         # a thread would take longer to start
-        results.append(function(chunks[0]))
+        with _interruptible():
+            results.append(function(chunks[0]))
         progress(count, count)
         return results
     with _threads() as pool:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from chatter.io.presentation import presentation
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -20,6 +22,23 @@ def finite_or_none(value: float) -> float | None:
 def as_json(summary: Mapping) -> str:
     """Text of a summary; refuses nan and inf, which JSON does not know."""
     return json.dumps(summary, indent=2, allow_nan=False) + "\n"
+
+
+def csv_text(columns: Mapping[str, tuple[Iterable[Any], str]]) -> str:
+    """CSV of columns: heading -> values and their format; empty where a value is none or no number.
+
+    Texts and truth values stand as they are; none of them may hold a comma.
+    """
+    cells = [[_cell(value, form) for value in values] for values, form in columns.values()]
+    return "\n".join(",".join(row) for row in (columns, *zip(*cells, strict=True))) + "\n"
+
+
+def _cell(value: Any, form: str) -> str:
+    if isinstance(value, str):
+        return value
+    if isinstance(value, bool):
+        return str(value).lower()
+    return format(value, form) if value is not None and math.isfinite(value) else ""
 
 
 def write_results(
@@ -45,3 +64,31 @@ def write_results(
     for name, figure in pictures.items():
         figure.savefig(folder / name)
     return [folder / name for name in (*texts, *pictures)]
+
+
+class SavedResult:
+    """A result that draws itself and writes its files: base of results, which give their texts."""
+
+    #: module of pictures and function in it, such as "plots.whatif.plot_whatif"
+    drawn_by: ClassVar[str]
+    #: file name of the picture
+    picture: ClassVar[str]
+
+    def texts(self) -> Mapping[str, str]:
+        """Content of each file of text, by its name."""
+        raise NotImplementedError
+
+    def plot(self) -> Figure:
+        """Return the picture of the result as a matplotlib figure."""
+        module, _, function = self.drawn_by.rpartition(".")
+        return getattr(presentation(module), function)(self)
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write all texts and the picture into a folder.
+
+        Returns
+        -------
+        list of Path
+            What was written.
+        """
+        return write_results(folder, self.texts(), {self.picture: self.plot()})

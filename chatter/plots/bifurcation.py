@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from chatter.studies.bifurcation import BifurcationDiagram
 
 #: dimension -> unit of the axis and factor from SI
-_SHOWN = {
+_UNITS = {
     "length": ("mm", 1e3),
     "angular_speed": ("rpm", rpm(1.0)),
     "angle": ("deg", 180.0 / math.pi),
@@ -32,10 +32,10 @@ _STILL = 1e-3
 
 
 def plot_bifurcation(diagram: BifurcationDiagram) -> Figure:
-    """Plot once-per-period displacement over the value that varies."""
+    """Plot Poincaré sections of the displacement over the value that varies."""
     unit, factor = _axis_unit(diagram.path)
     sizes = [
-        max(np.abs(point.once_a_period[:, axis]).max(initial=0.0) for point in diagram.points)
+        max(np.abs(point.poincare_section[:, axis]).max(initial=0.0) for point in diagram.points)
         for axis in range(3)
     ]
     moving = [axis for axis in range(3) if sizes[axis] > _STILL * max(sizes)] or [0]
@@ -43,7 +43,7 @@ def plot_bifurcation(diagram: BifurcationDiagram) -> Figure:
     panels = figure.subplots(len(moving), 1, sharex=True, squeeze=False)[:, 0]
     for panel, axis in zip(panels, moving, strict=True):
         for point in diagram.points:
-            motion = point.once_a_period[:, axis] * 1e6
+            motion = point.poincare_section[:, axis] * 1e6
             panel.plot(
                 np.full(motion.size, point.value * factor),
                 motion,
@@ -52,7 +52,7 @@ def plot_bifurcation(diagram: BifurcationDiagram) -> Figure:
                 markersize=2.5,
                 color=_COLOURS.get(point.verdict, GREY),
             )
-        panel.set_ylabel(f"{'xyz'[axis]} once a period [µm]")
+        panel.set_ylabel(f"{'xyz'[axis]} at the Poincaré section [µm]")
         finish(panel)
     for verdict, colour in _COLOURS.items():
         panels[0].plot([], [], linestyle="none", marker=".", color=colour, label=verdict)
@@ -66,4 +66,4 @@ def plot_bifurcation(diagram: BifurcationDiagram) -> Figure:
 
 def _axis_unit(path: str) -> tuple[str, float]:
     field = field_at(Case, parse_path(path))
-    return _SHOWN.get(field.dimension, ("SI", 1.0)) if field else ("", 1.0)
+    return _UNITS.get(field.dimension, ("SI", 1.0)) if field else ("", 1.0)

@@ -1,4 +1,4 @@
-"""Picture of a search for the best cut: what limits it over speed and depth, and over width."""
+"""Picture of a process optimisation: limits over speed and depth, removal over radial depth."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from chatter.description.units import rpm
 from chatter.plots import style
 
 if TYPE_CHECKING:
-    from chatter.studies.optimisation.result import Optimum
+    from chatter.studies.optimisation.optimum import Optimum
 
 _PER_MINUTE = 6e7
 _FILL_ROWS = 800
@@ -31,7 +31,7 @@ _BOUNDARIES = {
 
 
 def plot_optimum(found: Optimum) -> Figure:
-    """Draw the limits over speed and depth at the best width, and the removal rate over width.
+    """Draw the limits over speed and depth at the best radial depth, and the removal rate.
 
     Parameters
     ----------
@@ -41,40 +41,40 @@ def plot_optimum(found: Optimum) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    over_widths = found.limits.widths.size > 1
-    figure = style.new_figure(9.0, 8.4 if over_widths else 6.0)
+    over_radial_depths = found.limits.radial_depths.size > 1
+    figure = style.new_figure(9.0, 8.4 if over_radial_depths else 6.0)
     grid = figure.add_gridspec(
-        2 if over_widths else 1, 1, height_ratios=[2.4, 1.0][: 1 + over_widths]
+        2 if over_radial_depths else 1, 1, height_ratios=[2.4, 1.0][: 1 + over_radial_depths]
     )
     axes = figure.add_subplot(grid[0])
-    draw_sheet(axes, found)
+    draw_slice(axes, found)
     axes.set_title(_title(found), loc="left", pad=52.0)
-    if over_widths:
-        draw_widths(figure.add_subplot(grid[1]), found)
+    if over_radial_depths:
+        draw_radial_depths(figure.add_subplot(grid[1]), found)
     return figure
 
 
 def _title(found: Optimum) -> str:
-    cut = found.sheet.case
+    cut = found.grid_slice.case
     at = f"{cut.width_of_cut * 1e3:.4g} mm wide, {cut.cut.feed_per_tooth * 1e3:.4g} mm a tooth"
-    name = found.case.title or "Best cut"
+    name = found.case.title or "Process optimisation"
     return f"{name}\n{at}" if found.best else f"{name}\nno cut keeps all limits; shown: {at}"
 
 
-def draw_sheet(axes: Axes, found: Optimum) -> None:
+def draw_slice(axes: Axes, found: Optimum) -> None:
     """Draw stable depths, what the margins leave, boundaries of the limits, and the best cut."""
-    sheet = found.sheet
-    speed, depth = rpm(sheet.speeds), sheet.depths * 1e3
+    grid_slice = found.grid_slice
+    speed, depth = rpm(grid_slice.speeds), grid_slice.depths * 1e3
     top = _top(found)
     _fill(axes, found, top)
-    rate = sheet.removal_rate * _PER_MINUTE
+    rate = grid_slice.removal_rate * _PER_MINUTE
     lines = axes.contour(
         speed, depth, rate, levels=_levels(rate[depth <= top]), colors=[style.GREY],
         linewidths=0.6, alpha=0.8,
     )  # fmt: skip
     axes.clabel(lines, fmt="%g", fontsize=7.0)
     handles = [_handle(style.GREY, "-", "removal rate [cm³/min]")]
-    for key, usage in sheet.usage.items():
+    for key, usage in grid_slice.usage.items():
         name, colour, line = _BOUNDARIES[key]
         known = np.ma.masked_invalid(usage)
         shown = known[depth <= top]
@@ -115,14 +115,14 @@ def _elsewhere(known: np.ma.MaskedArray, shown: np.ma.MaskedArray) -> str:
 
 def _top(found: Optimum) -> float:
     """Highest depth shown, mm: what is stable somewhere, not the whole search."""
-    rows = found.sheet.kept.any(axis=1)
-    highest = found.sheet.depths[rows].max() if rows.any() else found.sheet.depths[-1]
-    return float(min(1.3 * highest, found.sheet.depths[-1])) * 1e3
+    rows = found.grid_slice.kept.any(axis=1)
+    highest = found.grid_slice.depths[rows].max() if rows.any() else found.grid_slice.depths[-1]
+    return float(min(1.3 * highest, found.grid_slice.depths[-1])) * 1e3
 
 
 def _fill(axes: Axes, found: Optimum, top: float) -> None:
     """Fill stable and unstable depths; over them where all limits are kept."""
-    stable, sheet = found.sheet.stable, found.sheet
+    stable, grid_slice = found.grid_slice.stable, found.grid_slice
     depth = (np.arange(_FILL_ROWS) + 0.5) * top / _FILL_ROWS
     passed = np.array([np.searchsorted(c, depth * 1e-3) % 2 for c in stable.crossings]).T
     axes.pcolormesh(
@@ -130,10 +130,10 @@ def _fill(axes: Axes, found: Optimum, top: float) -> None:
         cmap=ListedColormap([style.STABLE_FILL, style.UNSTABLE_FILL]), vmin=0, vmax=1,
         shading="nearest", rasterized=True, zorder=0.4,
     )  # fmt: skip
-    # the net of the sheet is coarser than the limits: nothing beyond them counts as kept
-    row = _nearest(sheet.depths * 1e3, depth)
-    column = _nearest(sheet.speeds, stable.speeds)
-    kept = sheet.feasible[np.ix_(row, column)] & (passed == 0)
+    # the grid of the slice is coarser than the limits: nothing beyond them counts as kept
+    row = _nearest(grid_slice.depths * 1e3, depth)
+    column = _nearest(grid_slice.speeds, stable.speeds)
+    kept = grid_slice.feasible[np.ix_(row, column)] & (passed == 0)
     if kept.any():
         axes.pcolormesh(
             rpm(stable.speeds), depth, np.ma.masked_where(~kept, np.ones(kept.shape)),
@@ -143,9 +143,9 @@ def _fill(axes: Axes, found: Optimum, top: float) -> None:
     axes.plot(rpm(stable.speeds), first, color=style.BLUE, linewidth=1.2, zorder=1.5)
 
 
-def _nearest(places: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Index of the nearest of some ascending places to each wanted one."""
-    return np.abs(places[:, None] - wanted[None, :]).argmin(axis=0)
+def _nearest(values: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Index of the nearest of some ascending values to each wanted one."""
+    return np.abs(values[:, None] - wanted[None, :]).argmin(axis=0)
 
 
 def _levels(rate: np.ndarray) -> np.ndarray:
@@ -162,48 +162,48 @@ def _handle(colour: str, line: str, label: str) -> Line2D:
 
 def _mark_candidates(axes: Axes, found: Optimum) -> list[Line2D]:
     handles = [_handle(style.BLUE, "-", "limit of stability")]
-    here = found.sheet.case.width_of_cut
+    here = found.grid_slice.case.width_of_cut
     others = [
-        one.place
+        one.point
         for one in found.candidates
-        if one is not found.best and math.isclose(one.place.radial_depth, here, rel_tol=0.02)
+        if one is not found.best and math.isclose(one.point.radial_depth, here, rel_tol=0.02)
     ]
     if others:
         handles += axes.plot(
-            [rpm(place.spindle_speed) for place in others],
-            [place.axial_depth * 1e3 for place in others],
+            [rpm(point.spindle_speed) for point in others],
+            [point.axial_depth * 1e3 for point in others],
             "o", color="white", markeredgecolor=style.BLUE, markersize=7, zorder=5,
             label="runner-up",
         )  # fmt: skip
     if found.best is not None:
-        place = found.best.place
+        point = found.best.point
         handles += axes.plot(
-            rpm(place.spindle_speed), place.axial_depth * 1e3, "*", color=style.GREEN,
+            rpm(point.spindle_speed), point.axial_depth * 1e3, "*", color=style.GREEN,
             markeredgecolor="black", markersize=16, zorder=6, linestyle="none", clip_on=False,
-            label=f"best: {place.removal_rate * _PER_MINUTE:.4g} cm³/min",
+            label=f"optimum: {point.removal_rate * _PER_MINUTE:.4g} cm³/min",
         )  # fmt: skip
     return handles
 
 
-def draw_widths(axes: Axes, found: Optimum) -> None:
+def draw_radial_depths(axes: Axes, found: Optimum) -> None:
     """Draw the highest removal rate over the radial depth."""
-    widths = [place.radial_depth * 1e3 for place in found.over_widths]
-    rates = [place.removal_rate * _PER_MINUTE for place in found.over_widths]
+    radial_depths = [point.radial_depth * 1e3 for point in found.over_radial_depths]
+    rates = [point.removal_rate * _PER_MINUTE for point in found.over_radial_depths]
     axes.plot(
-        widths,
+        radial_depths,
         rates,
         ".-",
         color=style.BLUE,
-        label="best of the coarse net, before the last checks",
+        label="best of the coarse grid, before verification",
     )
     if found.best is not None:
-        place = found.best.place
+        point = found.best.point
         axes.plot(
-            place.radial_depth * 1e3, place.removal_rate * _PER_MINUTE, "*", color=style.GREEN,
+            point.radial_depth * 1e3, point.removal_rate * _PER_MINUTE, "*", color=style.GREEN,
             markeredgecolor="black", markersize=16, linestyle="none", clip_on=False,
-            label="best cut",
+            label="optimum",
         )  # fmt: skip
-    axes.set_xlim(found.limits.widths[0] * 1e3, found.limits.widths[-1] * 1e3)
+    axes.set_xlim(found.limits.radial_depths[0] * 1e3, found.limits.radial_depths[-1] * 1e3)
     axes.set_ylim(bottom=0.0)
     axes.margins(x=0.02)
     axes.set_xlabel("radial depth [mm]")

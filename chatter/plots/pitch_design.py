@@ -12,7 +12,7 @@ from chatter.description.units import rpm
 from chatter.plots import style
 
 if TYPE_CHECKING:
-    from chatter.studies.pitch_design.result import PitchResult
+    from chatter.studies.pitch_design.pitch_result import PitchResult
 
 _COLOURS = {"alternating": style.ORANGE, "linear": "#CC79A7"}
 
@@ -40,13 +40,13 @@ def draw_limits(axes: Axes, found: PitchResult) -> None:
     """Draw the first limit over speed before and after; where none was found the line ends."""
     speed = rpm(found.speeds)
     curves = (
-        ("before", found.standing, style.GREY),
+        ("before", found.original, style.GREY),
         ("after", found.best, style.BLUE),
     )
     for name, design, colour in curves:
         limits = design.limits
         angles = ", ".join(f"{angle:g}" for angle in design.pitch)
-        known = np.where(limits < found.deepest, limits * 1e3, np.nan)
+        known = np.where(limits < found.max_depth, limits * 1e3, np.nan)
         axes.plot(speed, known, color=colour, linewidth=1.6, label=f"{name}: {angles} deg")
         lowest = float(limits.min()) * 1e3
         axes.axhline(lowest, color=colour, linewidth=0.9, linestyle=(0, (4, 2)))
@@ -57,7 +57,7 @@ def draw_limits(axes: Axes, found: PitchResult) -> None:
     axes.set_xlim(speed[0], speed[-1])
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("spindle speed [rpm]")
-    axes.set_ylabel("limit of the axial depth [mm]")
+    axes.set_ylabel("critical depth [mm]")
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, fontsize=8.0, frameon=False)
     style.finish(axes)
 
@@ -77,6 +77,6 @@ def draw_families(axes: Axes, found: PitchResult) -> None:
     )  # fmt: skip
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("difference between neighbouring pitch angles [deg]")
-    axes.set_ylabel("lowest limit [mm]")
+    axes.set_ylabel("lowest critical depth [mm]")
     axes.legend(loc="best", fontsize=8.0, frameon=False, ncols=2)
     style.finish(axes)

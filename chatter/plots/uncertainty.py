@@ -12,11 +12,13 @@ from chatter.description.units import rpm
 from chatter.plots import style
 
 if TYPE_CHECKING:
-    from chatter.studies.uncertainty.study import Uncertainty
+    from chatter.studies.uncertainty.monte_carlo import Uncertainty
 
 _BINS = 24
+#: numbers of samples at which the convergence is drawn
+_CONVERGENCE_POINTS = 60
 #: samples drawn as thin lines
-_SHOWN_SAMPLES = 25
+_DRAWN_SAMPLES = 25
 
 
 def plot_uncertainty(found: Uncertainty) -> Figure:
@@ -38,13 +40,13 @@ def plot_uncertainty(found: Uncertainty) -> Figure:
 def draw_band(axes: Axes, found: Uncertainty) -> None:
     """Draw quantiles of the limit over speed, and the cut with its probability."""
     speed, cut = rpm(found.speeds), found.case.cut
-    top = max(found.searched_to, 1.05 * cut.axial_depth) * 1e3
+    top = max(found.max_depth, 1.05 * cut.axial_depth) * 1e3
     low, middle, high = found.quantiles() * 1e3
     axes.fill_between(
         speed, np.minimum(low, top), np.minimum(high, top), color=style.BLUE, alpha=0.22,
         linewidth=0.0, label="5 to 95 % of the limits",
     )  # fmt: skip
-    for row in found.limits[:_SHOWN_SAMPLES] * 1e3:
+    for row in found.limits[:_DRAWN_SAMPLES] * 1e3:
         axes.plot(speed, _finite(row), color=style.BLUE, linewidth=0.35, alpha=0.35)
     axes.plot(speed, _finite(middle), color=style.BLUE, linewidth=1.8, label="median limit")
     ends = found.interval
@@ -59,14 +61,14 @@ def draw_band(axes: Axes, found: Uncertainty) -> None:
         zorder=5,
     )
     axes.set_xlim(speed[0], speed[-1])
-    axes.set_ylim(0.0, _shown_to(found, high, top))
+    axes.set_ylim(0.0, _highest_depth(found, high, top))
     axes.set_xlabel("spindle speed [rpm]")
     axes.set_ylabel("axial depth [mm]")
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, fontsize=8.5, frameon=False)
     style.finish(axes)
 
 
-def _shown_to(found: Uncertainty, high: np.ndarray, top: float) -> float:
+def _highest_depth(found: Uncertainty, high: np.ndarray, top: float) -> float:
     if not np.isfinite(high).all():
         return top
     return min(top, 1.1 * max(float(high.max()), found.case.cut.axial_depth * 1e3))
@@ -92,7 +94,7 @@ def draw_distribution(axes: Axes, found: Uncertainty) -> None:
         ha="right", va="top", fontsize=7.5,
     )  # fmt: skip
     missing = len(found.operating) - limit.size
-    beyond = f" ({missing} samples above {found.searched_to * 1e3:.3g} mm)" if missing else ""
+    beyond = f" ({missing} samples above {found.max_depth * 1e3:.3g} mm)" if missing else ""
     axes.set_xlabel(f"limit at {rpm(found.case.cut.spindle_speed):.0f} rpm [mm]{beyond}")
     axes.set_ylabel("samples")
     style.finish(axes)
@@ -100,7 +102,8 @@ def draw_distribution(axes: Axes, found: Uncertainty) -> None:
 
 def draw_convergence(axes: Axes, found: Uncertainty) -> None:
     """Draw the probability of a stable cut over the number of samples."""
-    count, share, ends = found.convergence()
+    count = np.unique(np.linspace(1, len(found.stable), _CONVERGENCE_POINTS).round().astype(int))
+    share, ends = found.convergence(count)
     axes.fill_between(
         count, ends[:, 0], ends[:, 1], color=style.ORANGE, alpha=0.3, linewidth=0.0,
         label="95 % confidence",

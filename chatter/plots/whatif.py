@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 
 from chatter.description.units import rpm
 from chatter.plots import style
-from chatter.studies.whatif import summary as telling
+from chatter.studies.whatif.summary import ranked, title_of, unit_of, value_text
 
 if TYPE_CHECKING:
-    from chatter.studies.whatif.study import WhatIf
+    from chatter.studies.whatif.whatif_study import WhatIf
 
 _LONGEST_LABEL = 60
 _MOST_TICKS = 10
@@ -37,9 +37,9 @@ def _title(study: WhatIf) -> str:
 
 def _quantity_label(study: WhatIf) -> str:
     quantity = study.measure.quantities[study.quantity]
-    found = [telling.unit_of(quantity, one, study.quantity) for one in study.outcomes]
+    found = [unit_of(quantity, one, study.quantity) for one in study.outcomes]
     unit = next((f" [{one}]" for one in found if one), "")
-    return telling.title_of(study, quantity) + unit.replace("[um]", "[µm]")
+    return title_of(study, quantity) + unit.replace("[um]", "[µm]")
 
 
 def _colours(count: int) -> list:
@@ -58,8 +58,8 @@ def _overlay(study: WhatIf) -> Figure:
     figure.suptitle(f"{_title(study)}: {study.measure.name}", fontsize=11.0, x=0.01, ha="left")
     axes = figure.subplots(count, 1, squeeze=False)[:, 0]
     colours = _colours(len(study.points))
-    for place, (panel, name) in enumerate(panels):
-        _draw_curves(axes[place], study, panel, name, colours)
+    for index, (panel, name) in enumerate(panels):
+        _draw_curves(axes[index], study, panel, name, colours)
     if panels:
         axes[0].legend(
             title=path.path, fontsize=8.0, title_fontsize=8.0, frameon=False,
@@ -111,8 +111,8 @@ def _draw_numbers(axes: Axes, study: WhatIf, colours: list) -> None:
     x = np.arange(len(one.values)) if numbers is None else np.array(numbers)
     y = np.array([np.nan if value is None else value for value in study.values()])
     axes.plot(x, y, color=style.GREY, linewidth=1.0, zorder=1)
-    for place, colour in enumerate(colours):
-        axes.plot(x[place], y[place], "o", color=colour, markeredgecolor="black", markersize=7)
+    for index, colour in enumerate(colours):
+        axes.plot(x[index], y[index], "o", color=colour, markeredgecolor="black", markersize=7)
     missing = np.isnan(y)
     if missing.any():
         top = np.nanmax(y) if not missing.all() else 1.0
@@ -136,10 +136,10 @@ def _mark_verdicts(axes: Axes, study: WhatIf, x: np.ndarray, y: np.ndarray) -> N
     verdicts = [outcome.words.get("verdict", "") for outcome in study.outcomes]
     if len(set(verdicts)) < 2:
         return
-    for place, verdict in enumerate(verdicts):
-        if np.isfinite(y[place]):
+    for index, verdict in enumerate(verdicts):
+        if np.isfinite(y[index]):
             axes.annotate(
-                verdict, (x[place], y[place]), xytext=(0, 8), textcoords="offset points",
+                verdict, (x[index], y[index]), xytext=(0, 8), textcoords="offset points",
                 ha="center", fontsize=7.5,
             )  # fmt: skip
 
@@ -180,16 +180,16 @@ def _heat_map(study: WhatIf) -> Figure:
 
 def _ticks(axis: object, one: object) -> None:
     step = -(-len(one.values) // _MOST_TICKS)
-    places = range(0, len(one.values), step)
-    axis.set_ticks(list(places), [one.values[k].label[: _LONGEST_LABEL // 2] for k in places])
+    indices = range(0, len(one.values), step)
+    axis.set_ticks(list(indices), [one.values[k].label[: _LONGEST_LABEL // 2] for k in indices])
 
 
 def _write_values(axes: Axes, study: WhatIf, values: np.ndarray) -> None:
     """Values in their fields; stable and chatter where the verdict differs."""
     finite = values[np.isfinite(values)]
     middle = 0.5 * (finite.min() + finite.max()) if finite.size else 0.0
-    for place, outcome in enumerate(study.outcomes):
-        row, column = divmod(place, values.shape[1])
+    for index, outcome in enumerate(study.outcomes):
+        row, column = divmod(index, values.shape[1])
         value = values[row, column]
         if np.isfinite(value):
             text, colour = f"{value:.3g}", "black" if value > middle else "white"
@@ -202,15 +202,15 @@ def _write_values(axes: Axes, study: WhatIf, values: np.ndarray) -> None:
 def _tornado(study: WhatIf) -> Figure:
     quantity = study.measure.quantities[study.quantity]
     base = study.values()[0]
-    order = list(telling.ranked(study))
+    order = list(ranked(study))
     figure = style.new_figure(9.0, 2.0 + 0.55 * len(order))
     axes = figure.subplots()
-    for row, place in enumerate(reversed(order)):
+    for row, index in enumerate(reversed(order)):
         if base is not None:
-            _draw_swing(axes, study, place, row)
+            _draw_swing(axes, study, index, row)
     if base is not None:
         axes.axvline(base, color="black", linewidth=1.0)
-        text = telling.value_text(quantity, study.outcomes[0], study.quantity)
+        text = value_text(quantity, study.outcomes[0], study.quantity)
         axes.set_title(f"{_title(study)}; as given: {text}", fontsize=10.0, loc="left")
     axes.set_yticks(range(len(order)), [study.variations[k].path for k in reversed(order)])
     axes.set_xlabel(_quantity_label(study))
@@ -225,13 +225,13 @@ def _tornado(study: WhatIf) -> Figure:
 _ENDS = ((style.BLUE, "low value"), (style.ORANGE, "high value"))
 
 
-def _draw_swing(axes: Axes, study: WhatIf, place: int, row: int) -> None:
+def _draw_swing(axes: Axes, study: WhatIf, index: int, row: int) -> None:
     """Bars of one path; in two lanes where both ends lie on the same side."""
     values = study.values()
-    base, low, high = values[0], values[1 + 2 * place], values[2 + 2 * place]
+    base, low, high = values[0], values[1 + 2 * index], values[2 + 2 * index]
     known = low is not None and high is not None
     same_side = known and (low - base) * (high - base) > 0.0
-    one = study.variations[place]
+    one = study.variations[index]
     ends = ((low, one.values[0].label, 0.15), (high, one.values[-1].label, -0.15))
     for (value, label, lane), (colour, _) in zip(ends, _ENDS, strict=True):
         if value is None:

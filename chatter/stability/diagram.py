@@ -120,7 +120,7 @@ class StabilityMap:
             "notes": list(self.notes),
         }
 
-    def told(self) -> list[str]:
+    def sentences(self) -> list[str]:
         """Return sentences for the terminal."""
         radius = self.spectral_radius
         return [
@@ -286,7 +286,7 @@ class StabilityDiagram:
             "chatter_frequency_Hz": finite_or_none(float(self.limits.chatter_frequency[index])),
         }
 
-    def told(self) -> list[str]:
+    def sentences(self) -> list[str]:
         """Return sentences for the terminal."""
         lines, summary = _report_of(self.excluded), self.summary()
         for name in ("lowest_limit", "highest_limit"):

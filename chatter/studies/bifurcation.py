@@ -1,12 +1,11 @@
-"""Bifurcation diagram: once-per-period points of simulated cuts over a value of the case."""
+"""Bifurcation diagram: Poincaré sections of simulated cuts over a value of the case."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +14,7 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
 from chatter.engine.parallel import sweep
-from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, finite_or_none, write_results
+from chatter.io.result_files import SavedResult, as_json, finite_or_none
 from chatter.simulation.perturbation.growth_rate import periods_a_turn
 from chatter.simulation.setup import set_up
 from chatter.simulation.simulate import run_setup
@@ -24,12 +22,9 @@ from chatter.simulation.structure_in_time import modes_of
 from chatter.simulation.verdict import with_verdict
 from dynamics.modal.modes import Mode
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-#: turns of every cut, and turns at its end that are kept
-_TURNS = 200.0
-_KEPT_TURNS = 60
+#: revolutions of every cut, and those at its end that are kept
+_REVOLUTIONS = 200.0
+_KEPT_REVOLUTIONS = 60
 
 
 @dataclass(frozen=True)
@@ -40,9 +35,9 @@ class BifurcationPoint:
     ----------
     value : float
         Of the path that varies, SI.
-    once_a_period : (k, 3) array of float
-        Displacement when a tooth is at +y, m, over the last turns: every tooth where all are
-        alike, else the first one; empty where the tool left the range of the model.
+    poincare_section : (k, 3) array of float
+        Displacement when a tooth is at +y, m, over the last revolutions: every tooth of a
+        uniform tool, else the first one; empty where the tool left the range of the model.
     verdict : str
         "stable" or "chatter".
     bifurcation : str
@@ -51,14 +46,14 @@ class BifurcationPoint:
     """
 
     value: float
-    once_a_period: NDArray[np.float64]
+    poincare_section: NDArray[np.float64]
     verdict: str
     bifurcation: str
     chatter_frequency: float
 
 
 @dataclass(frozen=True)
-class BifurcationDiagram:
+class BifurcationDiagram(SavedResult):
     """Points of all cuts.
 
     Parameters
@@ -68,6 +63,9 @@ class BifurcationDiagram:
         Dotted path of the value that varies.
     points : tuple of BifurcationPoint
     """
+
+    drawn_by: ClassVar[str] = "plots.bifurcation.plot_bifurcation"
+    picture: ClassVar[str] = "bifurcation.png"
 
     case: Case
     path: str
@@ -90,28 +88,14 @@ class BifurcationDiagram:
             ],
         }
 
-    def plot(self) -> Figure:
-        """Return the diagram as a matplotlib figure."""
-        return presentation("plots.bifurcation").plot_bifurcation(self)
-
-    def save(self, folder: str | Path) -> list[Path]:
-        """Write bifurcation.csv, bifurcation.png and summary.json.
-
-        Returns
-        -------
-        list of Path
-            What was written.
-        """
-        return write_results(
-            folder,
-            {"bifurcation.csv": self._table(), "summary.json": as_json(self.summary())},
-            {"bifurcation.png": self.plot()},
-        )
+    def texts(self) -> dict[str, str]:
+        """Content of bifurcation.csv and summary.json."""
+        return {"bifurcation.csv": self._table(), "summary.json": as_json(self.summary())}
 
     def _table(self) -> str:
         lines = [f"{self.path} [SI],x [um],y [um],z [um],verdict"]
         for point in self.points:
-            for x, y, z in point.once_a_period * 1e6:
+            for x, y, z in point.poincare_section * 1e6:
                 lines.append(f"{point.value:.9g},{x:.6g},{y:.6g},{z:.6g},{point.verdict}")
         return "\n".join(lines) + "\n"
 
@@ -144,7 +128,7 @@ def bifurcation(
     if len(values) == 0:
         raise InputError(f"{case.name}: {path}: no values are given for the bifurcation diagram")
     if not (case.simulation and (case.simulation.revolutions or case.simulation.duration)):
-        case = case.patch({"simulation.revolutions": _TURNS})
+        case = case.patch({"simulation.revolutions": _REVOLUTIONS})
     cases = [case.patch({path: value}) for value in values]
     on_machine = case.structure is not None and case.structure.machine is not None
     modes = None if on_machine or path.startswith("structure") else modes_of(case)[0]
@@ -166,7 +150,7 @@ def _point(case: Case, path: str, modes: tuple[Mode, ...] | None) -> Bifurcation
     detection = with_verdict(result).detection
     a_turn = periods_a_turn(result.setup)
     periods = np.arange(math.floor(result.turns * a_turn) + 1) / a_turn
-    kept = 2.0 * math.pi * periods[-_KEPT_TURNS * a_turn :]
+    kept = 2.0 * math.pi * periods[-_KEPT_REVOLUTIONS * a_turn :]
     points = np.stack(
         [np.interp(kept, result.spindle_angle, column) for column in result.displacement.T], axis=1
     )
@@ -178,7 +162,7 @@ def _point(case: Case, path: str, modes: tuple[Mode, ...] | None) -> Bifurcation
 
 
 def _spread(point: BifurcationPoint) -> float:
-    """Largest extent of the once-per-revolution points, m."""
-    if len(point.once_a_period) == 0:
+    """Largest extent of the Poincaré section, m."""
+    if len(point.poincare_section) == 0:
         return 0.0
-    return float(np.ptp(point.once_a_period, axis=0).max())
+    return float(np.ptp(point.poincare_section, axis=0).max())

@@ -1,7 +1,7 @@
 """Result cache: records of the finished parts of a study, so that an interrupted one goes on.
 
-A record is what JSON knows, and its key is a hash of all that it depends on. diskcache keeps the
-records in SQLite, as text: nothing that lies on disk is ever unpickled.
+A record is what JSON knows, with nan and inf, and its key is a hash of all that it depends on.
+diskcache keeps the records in SQLite, as text: nothing that lies on disk is ever unpickled.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ class ResultCache:
 
     def __setitem__(self, key: str, record: Any) -> None:
         """Keep a record; it is on disk when this returns."""
-        self._records[key] = json.dumps(record, allow_nan=False)
+        self._records[key] = json.dumps(record)
 
     @property
     def _is_new(self) -> bool:

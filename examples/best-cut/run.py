@@ -14,7 +14,7 @@ HERE = Path(__file__).parent
 def main(out: Path) -> list[Path]:
     """Search, print what limits the best cut, return what was written."""
     found = chatter.optimum(chatter.load(HERE / "case.toml"), samples=100)
-    for line in found.told():
+    for line in found.sentences():
         print(line)
     return found.save(out)
 

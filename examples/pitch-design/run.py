@@ -15,7 +15,7 @@ HERE = Path(__file__).parent
 def main(out: Path) -> list[Path]:
     """Search, print the angles, return what was written."""
     found = chatter.pitch(chatter.load(HERE / "case.toml"))
-    for line in found.told():
+    for line in found.sentences():
         print(line)
     return found.save(out)
 

@@ -14,6 +14,8 @@ from tests.places import ROOT
 
 PACKAGE = ROOT / "tests" / "plugin" / "made_up_laws"
 ENTRY_POINTS = """\
+[chatter.force_laws]
+root = made_up_laws.force_law:LAW
 [chatter.friction_laws]
 arctan-coulomb = made_up_laws.friction_law:LAW
 [chatter.stability_methods]
@@ -23,7 +25,14 @@ tilted_guide = made_up_laws.effect:EFFECT
 [chatter.formats]
 labbook = made_up_laws.file_format:FORMAT
 """
-CASE = f"""{TOOL_OF_922_HERTZ}friction = "guide"
+ROOT_LAW = """\
+law = "root"
+specific_force = "600 MPa"
+force_ratio = 0.3333333333
+h0 = "0.1 mm"
+"""
+LINEAR_LAW = 'Ktc = "600 MPa"\nKrc = "200 MPa"\n'
+CASE = f"""{TOOL_OF_922_HERTZ.replace(LINEAR_LAW, ROOT_LAW)}friction = "guide"
 
 [friction.guide]
 law = "arctan-coulomb"
@@ -68,6 +77,15 @@ def run(site):
     return chatter
 
 
+EXPONENTIAL_LAW = """\
+law = "exponential"
+Ktc = "600 MPa"
+Krc = "200 MPa"
+h0 = "0.1 mm"
+exponent = 0.5
+"""
+
+
 @pytest.fixture
 def folder(tmp_path):
     (tmp_path / "case.toml").write_text(CASE)
@@ -85,6 +103,24 @@ def test_lobes_and_check_take_the_method(run, folder):
     checked = json.loads(run(folder, "check", "case.toml"))
     plain = json.loads(run(folder, "check", "case.toml", "--method", "zero-order"))
     assert checked["critical_depth_mm"] == pytest.approx(0.8 * plain["critical_depth_mm"])
+
+
+def test_the_force_law_is_that_of_the_package(run, folder):
+    """The root law is the exponential law of exponent 0.5, in the limits and in the cut."""
+    text = CASE.replace(ROOT_LAW, EXPONENTIAL_LAW)
+    assert text != CASE
+    (folder / "exponential.toml").write_text(text)
+    method = ("--method", "collocation")
+    found, expected = (
+        json.loads(run(folder, "check", name, *method))["critical_depth_mm"]
+        for name in ("case.toml", "exponential.toml")
+    )
+    assert found == pytest.approx(expected, rel=1e-6)
+    found, expected = (
+        json.loads(run(folder, "simulate", name, "--out", name[:-5], "--json"))["peak_force_N"]
+        for name in ("case.toml", "exponential.toml")
+    )
+    assert found == pytest.approx(expected, rel=1e-6)
 
 
 def test_simulate_takes_the_friction_law(run, folder):

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from chatter.description.case import Case
-from chatter.studies.whatif.study import whatif
+from chatter.studies.whatif.whatif_study import whatif
 
 RPM = math.pi / 30.0
 TEETH = 4
@@ -110,7 +110,7 @@ def test_turning_at_low_speed_has_no_limit_with_process_damping():
         "critical depth",
     )
     assert study.values() == [None, None]
-    assert any("above 1.5 mm" in sentence for sentence in study.sentences)
+    assert any("above 1.5 mm" in sentence for sentence in study.sentences())
 
 
 def test_low_speed_stability_rises_with_the_coefficient_as_the_exact_solution_does():

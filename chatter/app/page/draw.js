@@ -84,74 +84,74 @@ class Plot {
   }
 }
 
-// Unstable stretches of depth at a speed: pairs of crossings, the last open above.
-function stretches(crossings, top) {
+// Unstable intervals of depth at a speed: pairs of crossings, the last open above.
+function intervals(crossings, top) {
   const found = [];
   for (let k = 0; k < crossings.length; k += 2) found.push([crossings[k], k + 1 < crossings.length ? crossings[k + 1] : top]);
   return found;
 }
 
-function drawLobes(canvas, told, simulated) {
-  const speeds = told.spindle_speed_rpm, top = told.deepest_mm;
+function drawLobes(canvas, answer, simulated) {
+  const speeds = answer.spindle_speed_rpm, top = answer.max_axial_depth_mm;
   const plot = new Plot(canvas, [speeds[0], speeds[speeds.length - 1]], [0, top], "spindle speed [rpm]", "axial depth [mm]");
   plot.ground(STABLE);
   const above = top * 1.1;
   plot.inside(pen => {
     pen.fillStyle = UNSTABLE;
-    for (let i = 0; i + 1 < speeds.length; i++) fillBetween(plot, told, i, above);
+    for (let i = 0; i + 1 < speeds.length; i++) fillBetween(plot, answer, i, above);
   });
   plot.axes();
   plot.inside(pen => {
     pen.lineWidth = 1.8; pen.lineCap = "round";
-    for (let i = 0; i + 1 < speeds.length; i++) edgesBetween(plot, told, i);
-    const at = told.operating;
+    for (let i = 0; i + 1 < speeds.length; i++) edgesBetween(plot, answer, i);
+    const at = answer.operating;
     plot.disc(plot.x(at.spindle_speed_rpm), plot.y(at.axial_depth_mm), 6, at.stable ? GREEN : RED, "#fff");
     if (simulated) plot.disc(plot.x(simulated.spindle_speed_rpm), plot.y(simulated.axial_depth_mm), 7, null, simulated.colour || INK);
   });
   return plot;
 }
 
-function fillBetween(plot, told, i, above) {
-  const pen = plot.pen, speeds = told.spindle_speed_rpm;
-  const a = told.crossings_mm[i], b = told.crossings_mm[i + 1];
+function fillBetween(plot, answer, i, above) {
+  const pen = plot.pen, speeds = answer.spindle_speed_rpm;
+  const a = answer.crossings_mm[i], b = answer.crossings_mm[i + 1];
   const x0 = plot.x(speeds[i]), x1 = plot.x(speeds[i + 1]), middle = (x0 + x1) / 2;
   if (a.length === b.length) {
-    const right = stretches(b, above);
-    stretches(a, above).forEach(([low, high], k) => {
+    const right = intervals(b, above);
+    intervals(a, above).forEach(([low, high], k) => {
       pen.beginPath();
       pen.moveTo(x0, plot.y(low)); pen.lineTo(x1 + 0.6, plot.y(right[k][0]));
       pen.lineTo(x1 + 0.6, plot.y(right[k][1])); pen.lineTo(x0, plot.y(high)); pen.fill();
     });
     return;
   }
-  // stretches begin, end or join between the two speeds: nobody knows where
+  // intervals begin, end or join between the two speeds: nobody knows where
   for (const [crossings, from, to] of [[a, x0, middle], [b, middle, x1]])
-    for (const [low, high] of stretches(crossings, above))
+    for (const [low, high] of intervals(crossings, above))
       pen.fillRect(from, plot.y(high), to - from + 0.6, plot.y(low) - plot.y(high));
 }
 
-function edgesBetween(plot, told, i) {
-  const a = told.crossings_mm[i], b = told.crossings_mm[i + 1], speeds = told.spindle_speed_rpm;
+function edgesBetween(plot, answer, i) {
+  const a = answer.crossings_mm[i], b = answer.crossings_mm[i + 1], speeds = answer.spindle_speed_rpm;
   if (a.length !== b.length && Math.min(a.length, b.length) === 0) {
     // the edge of a lobe, or the end of one at the top of the diagram, somewhere between the two
     const [deep, x] = a.length ? [a[0], plot.x(speeds[i])] : [b[0], plot.x(speeds[i + 1])];
     const middle = (plot.x(speeds[i]) + plot.x(speeds[i + 1])) / 2;
-    plot.pen.strokeStyle = told.bifurcation[a.length ? i : i + 1] === "flip" ? RED : BLUE;
+    plot.pen.strokeStyle = answer.bifurcation[a.length ? i : i + 1] === "flip" ? RED : BLUE;
     plot.line(x, plot.y(deep), middle, plot.y(deep));
-    plot.line(middle, plot.y(deep), middle, plot.y(told.deepest_mm));
+    plot.line(middle, plot.y(deep), middle, plot.y(answer.max_axial_depth_mm));
     return;
   }
   const same = a.length === b.length ? a.length : 1;
   for (let k = 0; k < same; k++) {
-    const flip = k === 0 && told.bifurcation[i] === "flip" && told.bifurcation[i + 1] === "flip";
+    const flip = k === 0 && answer.bifurcation[i] === "flip" && answer.bifurcation[i + 1] === "flip";
     plot.pen.strokeStyle = flip ? RED : BLUE;
     plot.line(plot.x(speeds[i]), plot.y(a[k]), plot.x(speeds[i + 1]), plot.y(b[k]));
   }
 }
 
-function drawFrequency(canvas, told) {
-  const speeds = told.spindle_speed_rpm, heard = told.chatter_frequency_Hz;
-  const known = heard.filter(value => value !== null);
+function drawFrequency(canvas, answer) {
+  const speeds = answer.spindle_speed_rpm, frequencies = answer.chatter_frequency_Hz;
+  const known = frequencies.filter(value => value !== null);
   let low = known.length ? Math.min(...known) : 0, high = known.length ? Math.max(...known) : 1;
   const room = Math.max(0.12 * (high - low), 0.02 * high);
   low = Math.max(0, low - room); high += room;
@@ -159,27 +159,27 @@ function drawFrequency(canvas, told) {
   plot.axes();
   plot.inside(pen => {
     pen.setLineDash([2, 3]); pen.strokeStyle = GREY; pen.lineWidth = 1;
-    for (const natural of told.natural_frequencies_Hz) plot.line(MARGIN.left, plot.y(natural), plot.right, plot.y(natural));
+    for (const natural of answer.natural_frequencies_Hz) plot.line(MARGIN.left, plot.y(natural), plot.right, plot.y(natural));
     pen.setLineDash([]);
-    heard.forEach((value, i) => {
-      if (value !== null) plot.disc(plot.x(speeds[i]), plot.y(value), 2, told.bifurcation[i] === "flip" ? RED : BLUE);
+    frequencies.forEach((value, i) => {
+      if (value !== null) plot.disc(plot.x(speeds[i]), plot.y(value), 2, answer.bifurcation[i] === "flip" ? RED : BLUE);
     });
   });
   return plot;
 }
 
-function drawMotion(canvas, told) {
-  const turns = told.turns, last = turns.length - 1;
-  const high = Math.max(...told.highest_um), low = Math.min(...told.lowest_um), room = 0.06 * (high - low) || 1;
-  const plot = new Plot(canvas, [0, turns[last]], [low - room, high + room], "turns of the spindle", `displacement ${told.direction} [µm]`);
+function drawMotion(canvas, answer) {
+  const revolutions = answer.revolutions, last = revolutions.length - 1;
+  const high = Math.max(...answer.highest_um), low = Math.min(...answer.lowest_um), room = 0.06 * (high - low) || 1;
+  const plot = new Plot(canvas, [0, revolutions[last]], [low - room, high + room], "revolutions of the spindle", `displacement ${answer.direction} [µm]`);
   plot.axes();
   plot.inside(pen => {
     pen.fillStyle = "#9cc4de";
     pen.beginPath();
-    pen.moveTo(plot.x(turns[0]), plot.y(told.highest_um[0]));
-    for (let i = 1; i <= last; i++) pen.lineTo(plot.x(turns[i]), plot.y(told.highest_um[i]));
-    for (let i = last; i >= 0; i--) pen.lineTo(plot.x(turns[i]), plot.y(told.lowest_um[i]));
+    pen.moveTo(plot.x(revolutions[0]), plot.y(answer.highest_um[0]));
+    for (let i = 1; i <= last; i++) pen.lineTo(plot.x(revolutions[i]), plot.y(answer.highest_um[i]));
+    for (let i = last; i >= 0; i--) pen.lineTo(plot.x(revolutions[i]), plot.y(answer.lowest_um[i]));
     pen.closePath(); pen.fill(); pen.strokeStyle = BLUE; pen.lineWidth = 0.6; pen.stroke();
-    told.once_a_turn.turns.forEach((turn, i) => plot.disc(plot.x(turn), plot.y(told.once_a_turn.um[i]), 1.9, RED));
+    answer.once_per_revolution.revolutions.forEach((at, i) => plot.disc(plot.x(at), plot.y(answer.once_per_revolution.um[i]), 1.9, RED));
   });
 }

@@ -3,7 +3,7 @@
 const el = id => document.getElementById(id);
 const page = Math.random().toString(36).slice(2, 12);
 const STEPS = 1000;
-let parameters = [], values = {}, diagram = null, plot = null, simulated = null;
+let sliders = [], values = {}, diagram = null, plot = null, simulated = null;
 
 async function ask(path, body, signal) {
   const answer = await fetch(path, {
@@ -11,14 +11,14 @@ async function ask(path, body, signal) {
     body: JSON.stringify({ page, values: moved(), ...body }), signal,
   });
   if (answer.ok) return answer;
-  const told = await answer.json();
-  const error = new Error(told.errors.join("\n"));
+  const refusal = await answer.json();
+  const error = new Error(refusal.errors.join("\n"));
   error.superseded = answer.status === 409;
   throw error;
 }
 
 function moved() {
-  return Object.fromEntries(parameters.filter(p => values[p.path] !== p.value).map(p => [p.path, values[p.path]]));
+  return Object.fromEntries(sliders.filter(p => values[p.path] !== p.value).map(p => [p.path, values[p.path]]));
 }
 
 function showErrors(text) { el("errors").hidden = !text; el("errors").textContent = text || ""; }
@@ -40,7 +40,7 @@ function clamp(p, value) { return Math.min(p.high, Math.max(p.low, p.whole ? Mat
 function makeSliders() {
   const box = el("sliders");
   let group = null;
-  for (const p of parameters) {
+  for (const p of sliders) {
     if (p.group !== group) {
       group = p.group;
       box.append(Object.assign(document.createElement("h2"), { textContent: group }));
@@ -81,7 +81,7 @@ function set(p, value) {
 let busy = null, waiting = false;
 
 function changed() {
-  if (!parameters.length) return;
+  if (!sliders.length) return;
   if (simulated) { simulated.colour = "#9aa5b1"; el("simulation").style.opacity = 0.5; }
   // a coarse answer is nearly there; a fine one is given up
   if (busy && busy.stage === "coarse") { waiting = true; return; }
@@ -95,9 +95,9 @@ async function compute(stage) {
   const started = performance.now();
   let failed = false;
   try {
-    const told = await (await ask("diagram", { stage }, mine.stop.signal)).json();
+    const answer = await (await ask("diagram", { stage }, mine.stop.signal)).json();
     if (busy !== mine) return;
-    diagram = told;
+    diagram = answer;
     showErrors("");
     redraw();
     el("status").textContent = `${stage}: ${Math.round(performance.now() - started)} ms`;
@@ -117,7 +117,7 @@ function redraw() {
   if (!diagram) return;
   plot = drawLobes(el("lobes"), diagram, simulated);
   drawFrequency(el("frequency"), diagram);
-  if (simulated && simulated.turns) drawMotion(el("motion"), simulated);
+  if (simulated && simulated.revolutions) drawMotion(el("motion"), simulated);
   const at = diagram.operating, low = diagram.lowest;
   const limit = at.critical_depth_mm === null ? "none found" : `${at.critical_depth_mm.toPrecision(4)} mm`;
   const removal = at.spindle_speed_rpm * at.axial_depth_mm * diagram.removal_rate_per_mm_rpm;
@@ -151,10 +151,10 @@ el("lobes").addEventListener("mousemove", event => {
   const crossings = diagram.crossings_mm[i], unstable = crossings.filter(c => c < depth).length % 2 === 1;
   // a coarse diagram knows it at every third speed
   const near = [0, -1, 1, -2, 2].map(k => diagram.chatter_frequency_Hz[i + k]);
-  const heard = crossings.length ? near.find(value => value !== null && value !== undefined) ?? null : null;
+  const frequency = crossings.length ? near.find(value => value !== null && value !== undefined) ?? null : null;
   tip.textContent = `${speed.toFixed(0)} rpm, ${depth.toPrecision(3)} mm: ${unstable ? "chatter" : "stable"}\n`
     + (crossings.length ? `limit ${crossings[0].toPrecision(4)} mm` : "no limit found")
-    + (heard === null ? "" : `\nchatter frequency ${heard.toFixed(1)} Hz (${diagram.bifurcation[i].replace("hopf", "Hopf")})`);
+    + (frequency === null ? "" : `\nchatter frequency ${frequency.toFixed(1)} Hz (${diagram.bifurcation[i].replace("hopf", "Hopf")})`);
   const left = event.offsetX > plot.width - 250;
   tip.style.left = left ? "" : `${event.offsetX + 14}px`;
   tip.style.right = left ? `${plot.width - event.offsetX + 14}px` : "";
@@ -176,15 +176,15 @@ el("lobes").addEventListener("click", async event => {
   text.textContent = "";
   redraw();
   try {
-    const told = await (await ask("simulation", point)).json();
+    const answer = await (await ask("simulation", point)).json();
     if (simulated !== mine) return;
-    simulated = { ...told, colour: told.verdict === "stable" ? GREEN : told.verdict === "chatter" ? RED : INK };
-    title.className = told.verdict;
-    const heard = told.chatter_frequency_Hz === null ? "" : ` at ${told.chatter_frequency_Hz.toFixed(1)} Hz`;
-    title.textContent = `Simulated: ${told.verdict}${heard}, at ${told.spindle_speed_rpm.toFixed(0)} rpm and ${told.axial_depth_mm.toPrecision(3)} mm`;
-    const reason = told.reason.charAt(0).toUpperCase() + told.reason.slice(1);
-    text.textContent = `${reason}. Peak force ${told.peak_resultant_N.toPrecision(3)} N, mean power ${told.mean_power_W.toPrecision(3)} W. `
-      + `Band: range of the motion; dots: once a turn. ${told.seconds.toFixed(2)} s.`;
+    simulated = { ...answer, colour: answer.verdict === "stable" ? GREEN : answer.verdict === "chatter" ? RED : INK };
+    title.className = answer.verdict;
+    const frequency = answer.chatter_frequency_Hz === null ? "" : ` at ${answer.chatter_frequency_Hz.toFixed(1)} Hz`;
+    title.textContent = `Simulated: ${answer.verdict}${frequency}, at ${answer.spindle_speed_rpm.toFixed(0)} rpm and ${answer.axial_depth_mm.toPrecision(3)} mm`;
+    const reason = answer.reason.charAt(0).toUpperCase() + answer.reason.slice(1);
+    text.textContent = `${reason}. Peak force ${answer.peak_resultant_N.toPrecision(3)} N, mean power ${answer.mean_power_W.toPrecision(3)} W. `
+      + `Band: range of the motion; dots: once per revolution. ${answer.seconds.toFixed(2)} s.`;
   } catch (error) {
     if (simulated !== mine || error.superseded) return;
     title.className = "chatter";
@@ -198,7 +198,7 @@ el("lobes").addEventListener("click", async event => {
 
 // --- buttons -------------------------------------------------------------------------------
 el("reset").addEventListener("click", () => {
-  for (const p of parameters) { values[p.path] = p.value; p.show(); }
+  for (const p of sliders) { values[p.path] = p.value; p.show(); }
   showErrors("");
   changed();
 });
@@ -215,13 +215,13 @@ el("save").addEventListener("click", async () => {
 window.addEventListener("resize", redraw);
 
 async function start() {
-  const told = await (await fetch("setup")).json();
-  parameters = told.parameters;
-  for (const p of parameters) values[p.path] = p.value;
-  el("title").textContent = told.title;
-  document.title = `${told.title} - chatter`;
-  el("method").textContent = `stability by ${told.method}`;
-  document.body.dataset.name = told.name;
+  const answer = await (await fetch("setup")).json();
+  sliders = answer.sliders;
+  for (const p of sliders) values[p.path] = p.value;
+  el("title").textContent = answer.title;
+  document.title = `${answer.title} - chatter`;
+  el("method").textContent = `stability by ${answer.method}`;
+  document.body.dataset.name = answer.name;
   makeSliders();
   compute("coarse");
 }

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 
-from chatter.description.case import Case
 from chatter.stability.model import MillingModel
 from chatter.studies.optimisation.limits import Limits
-from chatter.studies.optimisation.search import Place, rounded
-from chatter.studies.optimisation.speed_depth_slice import STABILITY, Sheet, sheet_of
-from chatter.studies.optimisation.width_and_feed import at_width_and_feed, model_at
+from chatter.studies.optimisation.operating_point import OperatingPoint, model_with, rounded
+from chatter.studies.optimisation.speed_depth_slice import (
+    STABILITY,
+    SpeedDepthSlice,
+    evaluated_slice,
+)
 
 #: a limit is active if it would not be held at a depth larger by this share
 DEEPER = 0.02
@@ -47,7 +50,7 @@ class Probability:
 
 
 @dataclass(frozen=True)
-class TimeCheck:
+class Verification:
     """The same cut simulated in the time domain.
 
     Parameters
@@ -55,7 +58,7 @@ class TimeCheck:
     verdict : str
     power, torque, deflection, surface_error : float
         SI; nan where the run shows none.
-    held : bool
+    verified : bool
         Stable, and every limit held within the tolerance of the comparison.
     """
 
@@ -64,7 +67,7 @@ class TimeCheck:
     torque: float
     deflection: float
     surface_error: float
-    held: bool
+    verified: bool
 
 
 @dataclass(frozen=True)
@@ -73,10 +76,10 @@ class Candidate:
 
     Parameters
     ----------
-    place : Place
+    point : OperatingPoint
     power, torque, deflection, surface_error : float
         Of the steady cut.
-    limit_depth : float
+    critical_depth : float
         At which stability ends above it, at its own speed; inf where that was not found.
     usage : dict
         Share of every limit that is used, the depth that the margins leave among them; nan where
@@ -85,32 +88,42 @@ class Candidate:
         Limits that would not be held at a depth 2 % larger, and ends of ranges.
     probability : Probability or None
         None where nothing is uncertain.
-    time : TimeCheck or None
+    verification : Verification or None
         None where it was not simulated.
     """
 
-    place: Place
+    point: OperatingPoint
     power: float
     torque: float
     deflection: float
     surface_error: float
-    limit_depth: float
+    critical_depth: float
     usage: dict[str, float]
     active: tuple[str, ...]
     probability: Probability | None = None
-    time: TimeCheck | None = None
+    verification: Verification | None = None
 
     @property
     def removal_rate(self) -> float:
         """Volume removed per time, m^3/s."""
-        return self.place.removal_rate
+        return self.point.removal_rate
 
+    def record(self) -> dict[str, Any]:
+        """Record of the result cache."""
+        return asdict(self)
 
-def case_at(case: Case, place: Place) -> Case:
-    """Case with a cut written in."""
-    return at_width_and_feed(case, place.radial_depth, place.feed_per_tooth).patch(
-        {"cut.spindle_speed": place.spindle_speed, "cut.axial_depth": place.axial_depth}
-    )
+    @classmethod
+    def from_record(cls, record: dict[str, Any]) -> Candidate:
+        """Read what `record` returned."""
+        known, checked = record["probability"], record["verification"]
+        values = {
+            **record,
+            "point": OperatingPoint(*record["point"]),
+            "active": tuple(record["active"]),
+            "probability": known and Probability(**{**known, "interval": tuple(known["interval"])}),
+            "verification": checked and Verification(**checked),
+        }
+        return cls(**values)
 
 
 def max_usage(candidate: Candidate) -> float:
@@ -118,59 +131,63 @@ def max_usage(candidate: Candidate) -> float:
     return max((value for value in candidate.usage.values() if not math.isnan(value)), default=0.0)
 
 
-def candidate_at(model: MillingModel, limits: Limits, place: Place) -> Candidate:
-    """Candidate at a place, in round numbers; a little less deep where rounding needs it."""
-    exact = place
+def candidate_at(model: MillingModel, limits: Limits, point: OperatingPoint) -> Candidate:
+    """Candidate at a point, in round numbers; a little less deep where rounding needs it."""
+    exact = point
     for _ in range(_MOST_TIMES):
-        place = rounded(exact)
-        here = model_at(model, place.radial_depth, place.feed_per_tooth)
-        sheet = _point(here, limits, place)
-        if sheet.feasible[0, 0]:
+        point = rounded(exact)
+        here = model_with(model, point.radial_depth, point.feed_per_tooth)
+        grid_slice = _slice_at(here, limits, point)
+        if grid_slice.feasible[0, 0]:
             break
         exact = exact._replace(axial_depth=exact.axial_depth * (1.0 - _GIVEN_BACK))
-    rate = float(sheet.removal_rate[0, 0])
-    return _read(sheet, limits, place._replace(removal_rate=rate))
+    rate = float(grid_slice.removal_rate[0, 0])
+    return _read(grid_slice, limits, point._replace(removal_rate=rate))
 
 
-def _point(here: MillingModel, limits: Limits, place: Place) -> Sheet:
-    """Sheet of the cut itself, of one a little deeper, and of deeper ones to find its limit."""
-    speeds = np.array([place.spindle_speed])
-    depths = place.axial_depth * np.array([1.0, 1.0 + DEEPER, *_DEEPER_STILL])
-    return sheet_of(here, limits, speeds, depths, limits.looked_at(speeds))
+def _slice_at(here: MillingModel, limits: Limits, point: OperatingPoint) -> SpeedDepthSlice:
+    """Slice of the cut itself, of one a little deeper, and of deeper ones to find its limit."""
+    speeds = np.array([point.spindle_speed])
+    depths = point.axial_depth * np.array([1.0, 1.0 + DEEPER, *_DEEPER_STILL])
+    return evaluated_slice(here, limits, speeds, depths, limits.evaluation_speeds(speeds))
 
 
-def _read(sheet: Sheet, limits: Limits, place: Place) -> Candidate:
-    depth, speed = place.axial_depth, place.spindle_speed
-    kept = _end_above(sheet.stable.within(speed, limits.depth_margin, limits.speed_margin), depth)
-    end = _end_above(sheet.stable.within(speed, 0.0, 0.0), depth)
-    usage = {STABILITY: depth / kept if kept < sheet.stable.deepest else math.nan}
-    usage |= {key: float(values[0, 0]) for key, values in sheet.usage.items()}
-    active = [key for key, held in sheet.held.items() if not held[1, 0]]
+def _read(grid_slice: SpeedDepthSlice, limits: Limits, point: OperatingPoint) -> Candidate:
+    depth, speed = point.axial_depth, point.spindle_speed
+    kept = _end_above(
+        grid_slice.stable.within(speed, limits.depth_margin, limits.speed_margin), depth
+    )
+    end = _end_above(grid_slice.stable.within(speed, 0.0, 0.0), depth)
+    usage = {STABILITY: depth / kept if kept < grid_slice.stable.max_depth else math.nan}
+    usage |= {key: float(values[0, 0]) for key, values in grid_slice.usage.items()}
+    active = [key for key, held in grid_slice.satisfied.items() if not held[1, 0]]
     return Candidate(
-        place=place,
-        power=float(sheet.cuts.power[0, 0]),
-        torque=float(sheet.cuts.torque[0, 0]),
-        deflection=float(sheet.cuts.deflection[0, 0]),
-        surface_error=float(sheet.cuts.surface_error[0, 0]),
-        limit_depth=end if end < sheet.stable.deepest else math.inf,
+        point=point,
+        power=float(grid_slice.cuts.power[0, 0]),
+        torque=float(grid_slice.cuts.torque[0, 0]),
+        deflection=float(grid_slice.cuts.deflection[0, 0]),
+        surface_error=float(grid_slice.cuts.surface_error[0, 0]),
+        critical_depth=end if end < grid_slice.stable.max_depth else math.inf,
         usage=usage,
-        active=(*active, *_ends_of_ranges(limits, place)),
+        active=(*active, *_ends_of_ranges(limits, point)),
     )
 
 
-def _end_above(stretches: np.ndarray, depth: float) -> float:
-    above = stretches[stretches[:, 1] >= depth * (1.0 - 1e-9), 1]
+def _end_above(intervals: np.ndarray, depth: float) -> float:
+    above = intervals[intervals[:, 1] >= depth * (1.0 - 1e-9), 1]
     return float(above.min()) if above.size else math.nan
 
 
-def _ends_of_ranges(limits: Limits, place: Place) -> list[str]:
-    """Ranges whose end keeps a place from more."""
+def _ends_of_ranges(limits: Limits, point: OperatingPoint) -> list[str]:
+    """Ranges whose end keeps a point from more."""
     ranges = (
-        ("speeds.to", place.spindle_speed, limits.speeds),
-        ("depths.to", place.axial_depth, limits.depths),
-        ("widths.to", place.radial_depth, limits.widths),
-        ("feeds.to", place.feed_per_tooth, limits.feeds),
+        ("speeds.to", point.spindle_speed, limits.speeds),
+        ("depths.to", point.axial_depth, limits.depths),
+        ("radial_depths.to", point.radial_depth, limits.radial_depths),
+        ("feeds.to", point.feed_per_tooth, limits.feeds),
     )
     return [
-        name for name, value, net in ranges if net.size > 1 and value >= net[-1] * (1.0 - _AT_END)
+        name
+        for name, value, grid in ranges
+        if grid.size > 1 and value >= grid[-1] * (1.0 - _AT_END)
     ]

@@ -1,4 +1,4 @@
-"""What keeps a search from finding anything: which limits exclude how much of the coarse net."""
+"""What keeps a search from finding anything: which limits exclude how much of the coarse grid."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from chatter.studies.optimisation.speed_depth_slice import STABILITY, Sheet
+from chatter.studies.optimisation.speed_depth_slice import STABILITY, SpeedDepthSlice
 
 _UNIT = {
     "max_power": ("power", 1e-3, "kW"),
@@ -19,7 +19,7 @@ _UNIT = {
 
 @dataclass(frozen=True)
 class Exclusion:
-    """What one limit does to the coarse net.
+    """What one limit does to the coarse grid.
 
     Parameters
     ----------
@@ -44,15 +44,18 @@ class Exclusion:
         return self.excluded >= 1.0
 
 
-def exclusions(sheets: Sequence[Sheet]) -> tuple[Exclusion, ...]:
-    """Tell of every limit what it excludes of the coarse net."""
-    held = {name: np.stack([sheet.held[name] for sheet in sheets]) for name in sheets[0].held}
+def exclusions(grid_slices: Sequence[SpeedDepthSlice]) -> tuple[Exclusion, ...]:
+    """What each limit excludes of the coarse grid."""
+    held = {
+        name: np.stack([grid_slice.satisfied[name] for grid_slice in grid_slices])
+        for name in grid_slices[0].satisfied
+    }
     return tuple(
         Exclusion(
             limit=name,
             excluded=float(1.0 - here.mean()),
             alone=int((_all_but(held, name) & ~here).sum()),
-            smallest=_smallest(sheets, name),
+            smallest=_smallest(grid_slices, name),
         )
         for name, here in held.items()
     )
@@ -63,11 +66,11 @@ def _all_but(held: dict[str, np.ndarray], name: str) -> np.ndarray:
     return np.logical_and.reduce(others) if others else np.ones_like(held[name])
 
 
-def _smallest(sheets: Sequence[Sheet], name: str) -> str:
+def _smallest(grid_slices: Sequence[SpeedDepthSlice], name: str) -> str:
     if name == STABILITY:
         return ""
     field, factor, unit = _UNIT[name]
-    values = np.stack([np.abs(getattr(sheet.cuts, field)) for sheet in sheets])
+    values = np.stack([np.abs(getattr(grid_slice.cuts, field)) for grid_slice in grid_slices])
     known = values[np.isfinite(values)]
     return f"{known.min() * factor:.4g} {unit}" if known.size else ""
 
@@ -76,13 +79,13 @@ def why_nothing(found: Sequence[Exclusion]) -> str:
     """Say in a sentence or two what excludes everything."""
     alone = [one for one in found if one.excludes_all]
     if alone:
-        told = "; ".join(
+        report = "; ".join(
             f"{one.limit} is held nowhere"
             + (f" (smallest where the cut is stable: {one.smallest})" if one.smallest else "")
             for one in alone
         )
-        return f"no cut of the net keeps all limits: {told}"
+        return f"no cut of the grid keeps all limits: {report}"
     near = max(found, key=lambda one: one.alone)
     shares = ", ".join(f"{one.limit} excludes {one.excluded:.1%}" for one in found)
     hint = f"; without {near.limit}, {near.alone} points would be left" if near.alone else ""
-    return f"no cut of the net keeps all limits together: {shares}{hint}"
+    return f"no cut of the grid keeps all limits together: {shares}{hint}"

@@ -1,4 +1,4 @@
-"""What a cut may use: speeds, depths, widths, feeds, and the limits of [optimum]."""
+"""What a cut may use: speeds, depths, radial depths, feeds, and the limits of [optimum]."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from chatter.stability.model import MillingModel
 from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
 from chatter.stability.search_range import maximum_depth, spindle_speeds
 from chatter.studies.model import standard_deviations
-from chatter.studies.optimisation.resolution import most_waves, telling
+from chatter.studies.optimisation.element_size import extreme_models, max_wavelengths
+from chatter.studies.optimisation.operating_point import model_with
 from chatter.studies.optimisation.steady_cut import SteadyCuts
-from chatter.studies.optimisation.width_and_feed import model_at
 
 Array = NDArray[np.float64]
 
@@ -30,9 +30,9 @@ LIMITED: Mapping[str, str] = {
     "max_surface_error": "surface_error",
 }
 _DEPTHS = 60
-#: depths below the first of an even net, each half of the one above
+#: depths below the first of an even grid, each half of the one above
 _HALVINGS = 4
-#: speeds looked at within the margin on either side, and speeds of the coarse net
+#: speeds evaluated within the margin on either side, and speeds of the coarse grid
 _SPEEDS_A_MARGIN = 2
 _LEAST_SPEEDS, _MOST_SPEEDS = 8, 400
 _COARSEST_STEP = 0.01
@@ -45,41 +45,41 @@ class Limits:
     Parameters
     ----------
     speeds : (n,) array of float
-        Coarse net, rad/s, each the same share above the one before.
+        Coarse grid, rad/s, each the same share above the one before.
     depths : (m,) array of float
         m.
-    widths, feeds : arrays of float
+    radial_depths, feeds : arrays of float
         m; one value where they are fixed.
     most : mapping
         Key of [optimum] -> what is allowed.
     depth_margin, speed_margin : float
     confidence : float
-    waves : float
-        Chatter waves that an element of collocation holds at the most.
+    wavelengths : float
+        Chatter wavelengths that an element of collocation holds at the most.
     """
 
     speeds: Array
     depths: Array
-    widths: Array
+    radial_depths: Array
     feeds: Array
     most: Mapping[str, float]
     depth_margin: float
     speed_margin: float
     confidence: float
-    waves: float
+    wavelengths: float
 
     @property
     def speed_step(self) -> float:
-        """Ratio of a speed of the net to the one before."""
+        """Ratio of a speed of the grid to the one before."""
         return float(self.speeds[1] / self.speeds[0])
 
-    def looked_at(self, speeds: Array) -> Array:
+    def evaluation_speeds(self, speeds: Array) -> Array:
         """Speeds at which stability must be known for the margins at some speeds, ascending."""
         shares = np.linspace(-self.speed_margin, self.speed_margin, 2 * _SPEEDS_A_MARGIN + 1)
         return np.unique(np.outer(speeds, 1.0 + shares))
 
-    def looked_at_beyond(self) -> Array:
-        """Speeds of the coarse net, run on by the margin at both ends."""
+    def extended_speeds(self) -> Array:
+        """Speeds of the coarse grid, run on by the margin at both ends."""
         more = math.ceil(math.log1p(self.speed_margin) / math.log(self.speed_step) - 1e-9)
         steps = self.speed_step ** np.arange(1, more + 1)
         return np.concatenate([self.speeds[0] / steps[::-1], self.speeds, self.speeds[-1] * steps])
@@ -111,23 +111,23 @@ def limits_of(case: Case, model: MillingModel, sampled: Sequence[MillingModel] =
         )
     ]
     speeds, depths = _speeds(case, section, margins[1]), _depths(case, section, model)
-    widths = _values(section.radial_depths, case.width_of_cut)
+    radial_depths = _values(section.radial_depths, case.width_of_cut)
     feed = case.cut.feed_per_tooth
     extremes = [
-        model_at(one, float(width), feed)
-        for one in (model, *telling(sampled))
-        for width in {widths[0], widths[-1]}
+        model_with(one, float(radial_depth), feed)
+        for one in (model, *extreme_models(sampled))
+        for radial_depth in {radial_depths[0], radial_depths[-1]}
     ]
     return Limits(
         speeds=speeds,
         depths=depths,
-        widths=widths,
+        radial_depths=radial_depths,
         feeds=_values(section.feeds, case.cut.feed_per_tooth),
         most={key: value for key, value in given.items() if value is not None},
         depth_margin=margins[0],
         speed_margin=margins[1],
         confidence=section.confidence,
-        waves=min(most_waves(one, speeds, depths) for one in extremes),
+        wavelengths=min(max_wavelengths(one, speeds, depths) for one in extremes),
     )
 
 
@@ -145,10 +145,10 @@ def _depths(case: Case, section: Optimum, model: MillingModel) -> Array:
     if section.depths is not None and section.depths.from_ is not None:
         return np.linspace(section.depths.from_, section.depths.to, section.depths.count)
     if section.depths is not None:
-        deepest, count = section.depths.to, section.depths.count
+        max_depth, count = section.depths.to, section.depths.count
     else:
-        deepest, count = maximum_depth(case, zero_order_of(model, spindle_speeds(case))), _DEPTHS
-    even = np.linspace(0.0, deepest, count + 1)[1:]
+        max_depth, count = maximum_depth(case, zero_order_of(model, spindle_speeds(case))), _DEPTHS
+    even = np.linspace(0.0, max_depth, count + 1)[1:]
     return np.concatenate([even[0] / 2.0 ** np.arange(_HALVINGS, 0, -1), even])
 
 

@@ -23,10 +23,14 @@ from chatter.stability.methods.collocation.element_cut import ElementCut, elemen
 from chatter.stability.model import MillingModel, milling_model
 from chatter.studies.model import patched, standard_deviations
 from chatter.studies.optimisation.limits import LIMITED, Limits
+from chatter.studies.optimisation.operating_point import model_with
 from chatter.studies.optimisation.steady_cut import SteadyCuts, SteadyModel
-from chatter.studies.optimisation.width_and_feed import model_at
-from chatter.studies.uncertainty.parameters import UncertainParameter, correlation_of, parameters_of
-from chatter.studies.uncertainty.sampling import samples
+from chatter.studies.uncertainty.latin_hypercube import samples
+from chatter.studies.uncertainty.uncertain_parameters import (
+    UncertainParameter,
+    correlation_of,
+    parameters_of,
+)
 
 Array = NDArray[np.float64]
 Result = TypeVar("Result")
@@ -37,7 +41,7 @@ _OF_STRUCTURE = ("structure", "machine", "friction", "cut.spindle_speed")
 _OF_CUT = ("cut.spindle_speed", "cut.axial_depth", "cut.radial_depth", "cut.feed_per_tooth")
 #: limits that need the motion
 _BY_MOTION = ("max_deflection", "max_surface_error")
-#: cuts, and samples, that are looked at together; cuts that are then counted in full together
+#: cuts, and samples, that are evaluated together; cuts that are then counted in full together
 _CUTS_AT_ONCE, _SAMPLES_AT_ONCE, _COUNTED_AT_ONCE = 16, 24, 4
 
 
@@ -85,8 +89,8 @@ class Samples:
             try:
                 return milling_model(patched(self.model.case, values), structure)
             except InputError as error:
-                told = [f"sample {number + 1}: {text}" for text in error.messages]
-                raise InputError(told) from None
+                report = [f"sample {number + 1}: {text}" for text in error.messages]
+                raise InputError(report) from None
 
         return each(compiled, np.arange(len(self)))
 
@@ -110,38 +114,40 @@ def samples_of(model: MillingModel, count: int, seed: int) -> Samples | None:
 def each(function: Callable[[int], Result], numbers: NDArray[np.int64]) -> list[Result]:
     """What a function makes of numbers, in threads."""
 
-    def at(places: NDArray[np.int64]) -> list[Result]:
+    def at(indices: NDArray[np.int64]) -> list[Result]:
         with one_thread():
-            return [function(int(numbers[place])) for place in places]
+            return [function(int(numbers[index])) for index in indices]
 
     return [found for chunk in sweep(at, len(numbers), points_a_chunk=4) for found in chunk]
 
 
 class SampledCuts:
-    """Cuts at one width and feed as the samples of a case have them.
+    """Cuts at one radial depth and feed as the samples of a case have them.
 
     Parameters
     ----------
     model : MillingModel
-        At this width and feed.
+        At this radial depth and feed.
     limits : Limits
     drawn : Samples
-    deepest : float
+    max_depth : float
         Largest depth that will be asked for, m.
     """
 
-    def __init__(self, model: MillingModel, limits: Limits, drawn: Samples, deepest: float) -> None:
+    def __init__(
+        self, model: MillingModel, limits: Limits, drawn: Samples, max_depth: float
+    ) -> None:
         self.limits, self.drawn = limits, drawn
-        width, feed = model.case.width_of_cut, model.case.cut.feed_per_tooth
+        radial_depth, feed = model.case.width_of_cut, model.case.cut.feed_per_tooth
 
         def at_this_cut(number: int) -> MillingModel:
             wider = drawn.ratio(number, "cut.radial_depth")
             faster = drawn.ratio(number, "cut.feed_per_tooth")
-            return model_at(drawn.models[number], width * wider, feed * faster)
+            return model_with(drawn.models[number], radial_depth * wider, feed * faster)
 
         def compiled(number: int) -> ElementCut:
-            depth = deepest * drawn.ratio(number, "cut.axial_depth")
-            return element_cut(self.models[number], depth * 1.001, wavelengths=limits.waves)
+            depth = max_depth * drawn.ratio(number, "cut.axial_depth")
+            return element_cut(self.models[number], depth * 1.001, wavelengths=limits.wavelengths)
 
         self.models = [at_this_cut(number) for number in range(len(drawn))]
         self.cuts = each(compiled, np.arange(len(drawn)))
@@ -170,7 +176,7 @@ class SampledCuts:
         stable: NDArray[np.bool_],
     ) -> SteadyCuts:
         """Steady cuts (s, n) of samples; nan where not stable, and what no limit asks for."""
-        row = {int(number): place for place, number in enumerate(numbers)}
+        row = {int(number): index for index, number in enumerate(numbers)}
         moves = any(key in self.limits.most for key in _BY_MOTION)
 
         def of_sample(number: int) -> SteadyCuts:

@@ -1,10 +1,11 @@
-"""State that all pieces of a search share: the case compiled, what is kept of it, progress."""
+"""State that all parts of a search share: the compiled case, the result cache, progress."""
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from chatter.description.case import Case
 from chatter.description.progress import Progress
@@ -12,14 +13,13 @@ from chatter.stability.model import milling_model
 from chatter.studies.model import fingerprint
 from chatter.studies.optimisation.candidate import Candidate, candidate_at
 from chatter.studies.optimisation.limits import limits_of
-from chatter.studies.optimisation.records import candidate_from, record_of_candidate
+from chatter.studies.optimisation.operating_point import OperatingPoint
 from chatter.studies.optimisation.sampled_cuts import samples_of
-from chatter.studies.optimisation.search import Place
 from chatter.studies.result_cache import ResultCache
 
 
-class KeptSearch:
-    """A case compiled for a search, its pieces on disk, and how far the search is.
+class OptimumSearch:
+    """A case compiled for a search, its parts on disk, and how far the search is.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ class KeptSearch:
     progress : callable
         Called with (done, total) parts of the work.
     folder : path or None
-        Keeps finished pieces.
+        Keeps finished parts.
     """
 
     def __init__(
@@ -45,55 +45,61 @@ class KeptSearch:
         sampled = self.drawn.models if self.drawn is not None else ()
         self.limits = limits_of(case, self.model, sampled)
         self.cache = ResultCache(folder, "optimum", fingerprint(case))
-        #: what pieces depend on where something is uncertain
+        #: what parts depend on where something is uncertain
         self.draw = (samples, seed) if self.drawn is not None else None
         self._progress, self._lock = progress, threading.Lock()
         self.total, self.finished = 1, 0
 
     def expect(self, total: int) -> None:
-        """Say how much work there is in all, at the most."""
+        """Set how much work there is in all, at the most."""
         self.total = total + 1
 
     def part(self, size: int) -> Progress:
-        """Progress of a piece of this size."""
-        return lambda done, total: self._tell(self.finished + size * done // max(total, 1))
+        """Progress of a part of this size."""
+        return lambda done, total: self._report(self.finished + size * done // max(total, 1))
 
     def parts(self, count: int, size: int) -> list[Progress]:
-        """Progress of pieces of this size that go on at the same time, in threads."""
+        """Progress of parts of this size that go on at the same time, in threads."""
         shares = [0] * count
 
-        def of(place: int) -> Progress:
-            def tell(done: int, total: int) -> None:
+        def of(index: int) -> Progress:
+            def report(done: int, total: int) -> None:
                 with self._lock:
-                    shares[place] = size * done // max(total, 1)
-                    self._tell(self.finished + sum(shares))
+                    shares[index] = size * done // max(total, 1)
+                    self._report(self.finished + sum(shares))
 
-            return tell
+            return report
 
-        return [of(place) for place in range(count)]
+        return [of(index) for index in range(count)]
 
     def done(self, size: int) -> None:
-        """Count a piece of this size."""
+        """Count a part of this size."""
         self.finished += size
-        self._tell(self.finished)
+        self._report(self.finished)
 
-    def _tell(self, finished: int) -> None:
+    def _report(self, finished: int) -> None:
         self._progress(min(finished, self.total - 1), self.total)
 
     def end(self) -> None:
-        """Say that nothing is left to do."""
+        """Report that nothing remains to do."""
         self._progress(self.total, self.total)
 
     def candidate(
-        self, name: str, place: Place, compute: Callable[[], Candidate | None]
+        self, name: str, point: OperatingPoint, compute: Callable[[], Candidate | None]
     ) -> Candidate | None:
-        """Candidate of a place, or that it has none, computed if it is not known yet."""
-        inputs = (tuple(place), self.draw)
-        record = self.cache.record(name, inputs, lambda: record_of_candidate(compute()))
-        return candidate_from(record)
+        """Candidate of a point, or that it has none, computed if it is not known yet."""
 
-    def at(self, place: Place) -> Candidate:
-        """Candidate at a place in round numbers."""
-        found = self.candidate("place", place, lambda: candidate_at(self.model, self.limits, place))
+        def found() -> dict[str, Any] | None:
+            candidate = compute()
+            return candidate and candidate.record()
+
+        record = self.cache.record(name, (tuple(point), self.draw), found)
+        return record and Candidate.from_record(record)
+
+    def at(self, point: OperatingPoint) -> Candidate:
+        """Candidate at a point in round numbers."""
+        found = self.candidate(
+            "rounded", point, lambda: candidate_at(self.model, self.limits, point)
+        )
         assert found is not None
         return found

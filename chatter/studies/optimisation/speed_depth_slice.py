@@ -1,9 +1,10 @@
-"""All speeds and depths at one width and feed: stability and what limits the cut."""
+"""All speeds and depths at one radial depth and feed: stability and what limits the cut."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,23 +20,23 @@ from cutting.engagement.removed_section import removed_section
 
 Array = NDArray[np.float64]
 
-_TURN = 2.0 * math.pi
+_REVOLUTION = 2.0 * math.pi
 #: names of what excludes points besides the keys of [optimum]
 STABILITY = "stability"
-#: the search for limits goes beyond the deepest depth by this much, so that its end is no limit
+#: the search for limits goes beyond the deepest one by this much, so that its end is no limit
 _BEYOND = 1.02
 #: step of the depths that only the margins ask for, a share of the deepest, at the least
 _STEP_BESIDE = 0.03
 
 
 @dataclass(frozen=True, eq=False)
-class Sheet:
-    """Points over depth (m) and speed (n) at one width and feed.
+class SpeedDepthSlice:
+    """Points over depth (m) and speed (n) at one radial depth and feed.
 
     Parameters
     ----------
     model : MillingModel
-        At this width and feed.
+        At this radial depth and feed.
     speeds, depths : (n,), (m,) arrays of float
         rad/s, m.
     stable : StableDepths
@@ -57,7 +58,7 @@ class Sheet:
 
     @property
     def case(self) -> Case:
-        """Case at this width and feed."""
+        """Case at this radial depth and feed."""
         return self.model.case
 
     @property
@@ -66,68 +67,71 @@ class Sheet:
         return removal_rates(self.model, self.speeds, self.depths)
 
     @property
-    def held(self) -> dict[str, NDArray[np.bool_]]:
+    def satisfied(self) -> dict[str, NDArray[np.bool_]]:
         """Where (m, n) each limit is held; stability first."""
         return {STABILITY: self.kept, **{key: self.usage[key] <= 1.0 for key in self.usage}}
 
     @property
     def feasible(self) -> NDArray[np.bool_]:
         """Where (m, n) all of them are."""
-        return np.logical_and.reduce(list(self.held.values()))
+        return np.logical_and.reduce(list(self.satisfied.values()))
 
 
 def removal_rates(model: MillingModel, speeds: Array, depths: Array) -> Array:
     """Volume removed per time (m, n), m^3/s, at depths (m,), m, and speeds (n,), rad/s."""
     case, cutter = model.case, model.cutter
     area = removed_section(cutter, case.cut.mode, case.width_of_cut, depths)
-    return np.outer(area, speeds) * case.cut.feed_per_tooth * cutter.teeth / _TURN
+    return np.outer(area, speeds) * case.cut.feed_per_tooth * cutter.teeth / _REVOLUTION
 
 
-def sheet_of(
+def evaluated_slice(
     model: MillingModel,
     limits: Limits,
     speeds: Array,
     depths: Array,
-    looked_at: Array,
+    evaluation_speeds: Array,
     progress: Progress = no_progress,
-) -> Sheet:
-    """Compute a sheet.
+) -> SpeedDepthSlice:
+    """Compute a slice.
 
     Parameters
     ----------
     model : MillingModel
-        At its width and feed.
+        At its radial depth and feed.
     limits : Limits
     speeds, depths : (n,), (m,) arrays of float
         rad/s, m, ascending.
-    looked_at : (p,) array of float
+    evaluation_speeds : (p,) array of float
         Speeds at which stability is computed, with those that the margins need, ascending.
     progress : callable, optional
         Called with (done, total) speeds.
     """
-    net = with_margins(depths, limits.depth_margin)
+    grid = with_margins(depths, limits.depth_margin)
     stable = stable_depths(
-        element_cut(model, float(net[-1]), wavelengths=limits.waves), looked_at, net, progress
+        element_cut(model, float(grid[-1]), wavelengths=limits.wavelengths),
+        evaluation_speeds,
+        grid,
+        progress,
     )
-    return sheet_with(model, limits, speeds, depths, stable)
+    return slice_with(model, limits, speeds, depths, stable)
 
 
-def sheet_with(
+def slice_with(
     model: MillingModel,
     limits: Limits,
     speeds: Array,
     depths: Array,
     stable: StableDepths,
     cuts: SteadyCuts | None = None,
-) -> Sheet:
-    """Sheet of which the stable depths, and perhaps the steady cuts, are known; else `sheet_of`."""
+) -> SpeedDepthSlice:
+    """Slice of known stable depths, and steady cuts where they are known too."""
     kept = _inside_at(stable, speeds, depths, limits.depth_margin, limits.speed_margin)
     # a corner or ball may not reach the work: that is no cut
     kept &= _reached(model, depths)[:, None]
     if cuts is None:
         settled = settled_at(model, speeds, depths, stable)
         cuts = _steady(SteadyModel(model, float(speeds[0])), speeds, depths, settled)
-    return Sheet(model, speeds, depths, stable, kept, cuts, limits.usage(cuts))
+    return SpeedDepthSlice(model, speeds, depths, stable, kept, cuts, limits.usage(cuts))
 
 
 def settled_at(
@@ -175,3 +179,27 @@ def _steady(
         for name, values in zip(SteadyCuts._fields, found, strict=True):
             columns[name][row, where] = values
     return SteadyCuts(**columns)
+
+
+def slice_record(grid_slice: SpeedDepthSlice) -> dict[str, Any]:
+    """Record of the result cache: what takes long to compute."""
+    settled = settled_at(grid_slice.model, grid_slice.speeds, grid_slice.depths, grid_slice.stable)
+    return {
+        "crossings": [found.tolist() for found in grid_slice.stable.crossings],
+        "max_depth": grid_slice.stable.max_depth,
+        "cuts": [values[settled].tolist() for values in grid_slice.cuts],
+    }
+
+
+def slice_from_record(
+    record: dict[str, Any], model: MillingModel, limits: Limits
+) -> SpeedDepthSlice:
+    """Slice of the coarse grid, of a model at its radial depth and feed, from its record."""
+    speeds, depths = limits.speeds, limits.depths
+    crossings = [np.array(found, dtype=np.float64) for found in record["crossings"]]
+    stable = StableDepths(limits.extended_speeds(), crossings, record["max_depth"])
+    settled = settled_at(model, speeds, depths, stable)
+    cuts = SteadyCuts(*np.full((len(SteadyCuts._fields), *settled.shape), np.nan))
+    for values, known in zip(cuts, record["cuts"], strict=True):
+        values[settled] = known
+    return slice_with(model, limits, speeds, depths, stable, cuts)

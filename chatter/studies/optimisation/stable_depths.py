@@ -1,6 +1,6 @@
-"""All stable stretches of depth at every speed, and what margins in speed and depth leave of them.
+"""All stable intervals of depth at every speed, and what margins in speed and depth leave of them.
 
-Nothing assumes that stability ends once: a speed has as many stretches as the net finds.
+Nothing assumes that stability ends once: a speed has as many intervals as the grid finds.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ Array = NDArray[np.float64]
 #: of a limit, relative to its depth
 _TOLERANCE = 1e-3
 _SMALLEST = 1e-30
-#: depths of a net that are looked at together
+#: depths of a grid that are evaluated together
 _ROWS_AT_ONCE = 6
 _ROUNDING = 1e-9
-#: speeds from one to the next of those at which all depths are looked at, at the most, and the
+#: speeds from one to the next of those at which all depths are evaluated, at the most, and the
 #: part of a lobe between them
 _WIDEST_STRIDE, _PART_OF_A_LOBE = 4, 0.3
 #: decay from tooth to tooth, e-folds, beyond which a mode keeps no phase and has no lobes
@@ -35,52 +35,52 @@ _FORGOTTEN = 1.5
 
 @dataclass(frozen=True)
 class StableDepths:
-    """Stable stretches of depth at the speeds that were looked at.
+    """Stable intervals of depth at the speeds that were evaluated.
 
     Parameters
     ----------
     speeds : (n,) array of float
         rad/s, ascending.
     crossings : list of n arrays
-        m; stability is lost at even places and regained at odd ones.
-    deepest : float
+        m; stability is lost at even indices and regained at odd ones.
+    max_depth : float
         Depth to which was searched, m.
     """
 
     speeds: Array
     crossings: Sequence[Array]
-    deepest: float
+    max_depth: float
 
-    def stretches(self, place: int) -> Array:
-        """Stable stretches (k, 2) at a speed, m."""
-        ends = np.concatenate([[0.0], self.crossings[place]])
+    def intervals(self, index: int) -> Array:
+        """Stable intervals (k, 2) at a speed, m."""
+        ends = np.concatenate([[0.0], self.crossings[index]])
         if ends.size % 2:
-            ends = np.append(ends, self.deepest)
+            ends = np.append(ends, self.max_depth)
         return ends.reshape(-1, 2)
 
     def within(self, speed: float, depth_margin: float, speed_margin: float) -> Array:
         """Stretches (k, 2), m, that keep the margins at a speed, rad/s.
 
         A depth keeps them if all depths within the share `depth_margin` of a limit are stable at
-        all speeds looked at within the share `speed_margin` of this one. Where the search ends is
+        all speeds evaluated within the share `speed_margin` of this one. Where the search ends is
         no limit.
         """
         near = np.flatnonzero(np.abs(self.speeds / speed - 1.0) <= speed_margin + _ROUNDING)
-        found = np.array([[0.0, self.deepest]])
-        for place in near:
-            found = _common(found, self._shrunk(self.stretches(place), depth_margin))
+        found = np.array([[0.0, self.max_depth]])
+        for index in near:
+            found = _common(found, self._shrunk(self.intervals(index), depth_margin))
         return found
 
-    def _shrunk(self, stretches: Array, margin: float) -> Array:
-        low, high = stretches[:, 0] / (1.0 - margin), stretches[:, 1].copy()
-        limited = high < self.deepest
+    def _shrunk(self, intervals: Array, margin: float) -> Array:
+        low, high = intervals[:, 0] / (1.0 - margin), intervals[:, 1].copy()
+        limited = high < self.max_depth
         high[limited] *= 1.0 - margin
         kept = low < high
         return np.stack([low[kept], high[kept]], axis=1)
 
 
 def _common(first: Array, second: Array) -> Array:
-    """Intersection of two sets of stretches."""
+    """Intersection of two sets of intervals."""
     found = [
         (max(a[0], b[0]), min(a[1], b[1]))
         for a in first
@@ -90,38 +90,38 @@ def _common(first: Array, second: Array) -> Array:
     return np.array(found).reshape(-1, 2)
 
 
-def is_inside(stretches: Array, depths: Array) -> NDArray[np.bool_]:
-    """Whether each depth (m,) lies in one of the stretches (k, 2)."""
-    low, high = stretches[:, 0], stretches[:, 1] * (1.0 + _ROUNDING)
+def is_inside(intervals: Array, depths: Array) -> NDArray[np.bool_]:
+    """Whether each depth (m,) lies in one of the intervals (k, 2)."""
+    low, high = intervals[:, 0], intervals[:, 1] * (1.0 + _ROUNDING)
     return ((depths[:, None] >= low) & (depths[:, None] <= high)).any(axis=1)
 
 
 def stable_depths(
     cut: ElementCut, speeds: Array, depths: Array, progress: Progress = no_progress
 ) -> StableDepths:
-    """Stable stretches of depth, by collocation, following the boundary from speed to speed.
+    """Stable intervals of depth, by collocation, following the boundary from speed to speed.
 
     Parameters
     ----------
     cut : ElementCut
-        Down to the deepest depth at least.
+        Down to the deepest one at least.
     speeds : (n,) array of float
         rad/s, ascending.
     depths : (m,) array of float
-        Net on which changes of stability are looked for, m, ascending, > 0: a stretch that fits
+        Net on which changes of stability are looked for, m, ascending, > 0: a interval that fits
         between two of its depths is not seen, nor one between two speeds at which all of them are
-        looked at.
+        evaluated.
     progress : callable, optional
         Called with (done, total) speeds.
     """
     stride = widest_stride(cut, speeds)
-    growth = _growth_at(cut, speeds)
-    crossings = continued_crossings(speeds.size, depths, growth, _TOLERANCE, stride, progress)
+    growth_rate = _growth_rate_at(cut, speeds)
+    crossings = continued_crossings(speeds.size, depths, growth_rate, _TOLERANCE, stride, progress)
     return StableDepths(speeds, crossings, float(depths[-1]))
 
 
 def widest_stride(cut: ElementCut, speeds: Array) -> int:
-    """Speeds (a power of two) that may be stepped over where all depths are looked at.
+    """Speeds (a power of two) that may be stepped over where all depths are evaluated.
 
     Where a mode does f/(N n) cycles from one tooth to the next, a lobe is as wide as the speed over
     that number. A mode that has died out by then has none.
@@ -148,27 +148,27 @@ def first_limits(cut: ElementCut, speeds: Array, depths: Array) -> Array:
     cut, speeds, depths
         As for `stable_depths`.
     """
-    growth = _growth_at(cut, speeds)
+    growth_rate = _growth_rate_at(cut, speeds)
     # a speed that has lost its stability needs no deeper look
-    net = np.ones((speeds.size, depths.size))
+    grid = np.ones((speeds.size, depths.size))
     open_speeds = np.arange(speeds.size)
     for start in range(0, depths.size, _ROWS_AT_ONCE):
         rows = np.arange(start, min(start + _ROWS_AT_ONCE, depths.size))
-        place, row = (part.ravel() for part in np.meshgrid(open_speeds, rows, indexing="ij"))
-        net[place, row] = growth(place, depths[row])
-        lost = (net[open_speeds][:, rows] > 0.0).any(axis=1)
+        index, row = (part.ravel() for part in np.meshgrid(open_speeds, rows, indexing="ij"))
+        grid[index, row] = growth_rate(index, depths[row])
+        lost = (grid[open_speeds][:, rows] > 0.0).any(axis=1)
         open_speeds = open_speeds[~lost]
         if open_speeds.size == 0:
             break
-    crossings = find_crossings(net, depths, growth, _TOLERANCE)
+    crossings = find_crossings(grid, depths, growth_rate, _TOLERANCE)
     return np.array([found[0] if len(found) else np.inf for found in crossings])
 
 
-def _growth_at(cut: ElementCut, speeds: Array) -> Callable[[NDArray[np.int64], Array], Array]:
+def _growth_rate_at(cut: ElementCut, speeds: Array) -> Callable[[NDArray[np.int64], Array], Array]:
     """Logarithm of the spectral radius at (indices of speeds, depths)."""
 
-    def growth(place: NDArray[np.int64], depth: Array) -> Array:
-        radius = np.abs(collocation.multipliers(cut, speeds[place], depth))
+    def growth_rate(index: NDArray[np.int64], depth: Array) -> Array:
+        radius = np.abs(collocation.multipliers(cut, speeds[index], depth))
         return np.log(np.maximum(radius, _SMALLEST))
 
-    return growth
+    return growth_rate

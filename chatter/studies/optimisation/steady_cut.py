@@ -30,7 +30,7 @@ from dynamics.modal.modes import receptance_matrix
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-_TURN = 2.0 * math.pi
+_REVOLUTION = 2.0 * math.pi
 #: harmonics reach to this multiple of the highest mode, and over so many of the period at least
 _HIGHEST = 3.0
 _LEAST_HARMONICS, _MOST_HARMONICS = 8, 400
@@ -40,7 +40,7 @@ _HIGHEST_COUPLED, _MOST_COUPLED = 1.6, 120
 #: points within the period, a harmonic
 _POINTS_A_HARMONIC = 8
 #: slices of the wall, whose middles are heights, as in simulated surfaces; every so many of them,
-#: and the last, are looked at
+#: and the last, are evaluated
 _HEIGHTS, _EVERY = 40, 3
 #: points along the feed of a turn, where teeth leave arcs of their own height
 _POINTS_ALONG = 48
@@ -75,9 +75,9 @@ class SteadyModel:
         self.model = model
         self.modes = model.structure.modes
         #: harmonics of the turn from one that can be there to the next
-        self.stride = round(_TURN / period_angle(model.cutter))
+        self.stride = round(_REVOLUTION / period_angle(model.cutter))
         highest = max(mode.frequency for mode in self.modes)
-        wanted = math.ceil(_HIGHEST * highest * _TURN / slowest / self.stride)
+        wanted = math.ceil(_HIGHEST * highest * _REVOLUTION / slowest / self.stride)
         count = min(max(wanted, _LEAST_HARMONICS), _MOST_HARMONICS)
         self.harmonic = self.stride * np.arange(count + 1)
 
@@ -116,7 +116,7 @@ class SteadyModel:
 
     def motion(self, speeds: Array, rigid: RigidCut, spectrum: ForceSpectrum) -> Complex:
         """Harmonics u_k (n, k, 3) of the motion of the tool against the work, m."""
-        frequency = np.outer(speeds, self.harmonic) / _TURN
+        frequency = np.outer(speeds, self.harmonic) / _REVOLUTION
         receptance = receptance_matrix(self.modes, frequency.ravel())
         receptance = receptance.reshape(*frequency.shape, 3, 3)
         motion = np.einsum("nkab,kb->nka", receptance, spectrum.force)
@@ -135,7 +135,7 @@ class SteadyModel:
     def _coupled_counts(self, speeds: Array) -> NDArray[np.int64]:
         """Harmonics (n,) that act on each other, in few steps of about a factor of 1.4."""
         highest = max(mode.frequency for mode in self.modes)
-        wanted = _HIGHEST_COUPLED * highest * _TURN / speeds / self.stride
+        wanted = _HIGHEST_COUPLED * highest * _REVOLUTION / speeds / self.stride
         steps = np.ceil(2.0 * np.log2(np.maximum(wanted, _LEAST_HARMONICS)))
         most = min(self.harmonic.size, _MOST_COUPLED + 1)
         return np.minimum(np.ceil(2.0 ** (0.5 * steps)).astype(np.int64) + 1, most)
@@ -185,7 +185,7 @@ class SteadyModel:
         return error[np.arange(len(error)), np.abs(error).argmax(axis=1)]
 
     def _wall_slices(self, depth: float) -> EdgeSlices:
-        """Slices whose middles are the heights that are looked at: the straight edge if it cuts."""
+        """Slices whose middles are the heights that are evaluated: the straight edge if it cuts."""
         cutter = self.model.cutter
         top = corner_height(cutter)
         if depth > top:
@@ -229,21 +229,21 @@ class SteadyModel:
         reach = _furthest(taylor, slices.radius * sk) + slices.normal_offset
         cut = self.model.case.cut
         feed = cut.feed_per_tooth * tooth
-        place = feed * np.mod(passing, _TURN) / _TURN
+        position = feed * np.mod(passing, _REVOLUTION) / _REVOLUTION
         if self.stride == tooth:
             # cusps between arcs of one height have a mean of a twelfth of f^2/2R
             return reach[:, 0] - sk * (feed / tooth) ** 2 / (24.0 * slices.radius)
-        return _mean_envelope(reach, place, feed, sk / (2.0 * slices.radius))
+        return _mean_envelope(reach, position, feed, sk / (2.0 * slices.radius))
 
 
-def _mean_envelope(reach: Array, place: Array, feed: float, curvature: Array) -> Array:
+def _mean_envelope(reach: Array, position: Array, feed: float, curvature: Array) -> Array:
     """Mean along the feed (n, L) of the highest of parabolas, m.
 
     Parameters
     ----------
     reach : (n, N, L) array of float
         Top of the arc that each tooth leaves, m.
-    place : (N, L) array of float
+    position : (N, L) array of float
         Where along the feed of a turn, m.
     feed : float
         Of a turn, m.
@@ -253,7 +253,7 @@ def _mean_envelope(reach: Array, place: Array, feed: float, curvature: Array) ->
     along = (np.arange(_POINTS_ALONG) + 0.5) / _POINTS_ALONG * feed
     highest = np.full((reach.shape[0], reach.shape[2], _POINTS_ALONG), -np.inf)
     for tooth in range(reach.shape[1]):
-        apart = np.abs(along - place[tooth][:, None])
+        apart = np.abs(along - position[tooth][:, None])
         # a tooth comes by again a turn later; the nearest of its arcs is the highest
         apart = np.minimum(apart, feed - apart)
         arc = reach[:, tooth, :, None] - curvature[:, None] * apart**2

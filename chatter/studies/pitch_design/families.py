@@ -18,18 +18,18 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_TURN = 2.0 * math.pi
+_REVOLUTION = 2.0 * math.pi
 
 
 def alternating(teeth: int, difference: float) -> Array:
     """Pitch angles (N,), rad: p, p + d, p, p + d, ...; of an even number of teeth."""
     sides = np.where(np.arange(teeth) % 2 == 0, -0.5, 0.5)
-    return _TURN / teeth + difference * sides
+    return _REVOLUTION / teeth + difference * sides
 
 
 def linear(teeth: int, difference: float) -> Array:
     """Pitch angles (N,), rad, each larger than the one before by a difference."""
-    return _TURN / teeth + difference * (np.arange(teeth) - 0.5 * (teeth - 1))
+    return _REVOLUTION / teeth + difference * (np.arange(teeth) - 0.5 * (teeth - 1))
 
 
 def _half_cycles(teeth: int, speed: float, frequency: float, count: int) -> Array:
@@ -40,8 +40,8 @@ def _half_cycles(teeth: int, speed: float, frequency: float, count: int) -> Arra
 
 def _even_phases(teeth: int, speed: float, frequency: float, count: int) -> Array:
     """Differences at which the waves of N teeth lie evenly around the cycle, rad."""
-    turns = np.array([k for k in range(1, 2 * count + 1) if k % teeth])[:count]
-    return _TURN * turns / teeth * speed / frequency
+    cycles = np.array([k for k in range(1, 2 * count + 1) if k % teeth])[:count]
+    return _REVOLUTION * cycles / teeth * speed / frequency
 
 
 @dataclass(frozen=True)

@@ -24,13 +24,13 @@ class DesignPoint:
     ----------
     labels : tuple of str
         For each variation; "as given" where it is not changed.
-    places : tuple of int or None
-        Which of its values; None where it is not changed.
+    indices : tuple of int or None
+        Index of its value; None where it is not changed.
     patch : mapping of str to object
     """
 
     labels: tuple[str, ...]
-    places: tuple[int | None, ...]
+    indices: tuple[int | None, ...]
     patch: Mapping[str, Any]
 
 
@@ -72,23 +72,23 @@ def points_of(variations: Sequence[Variation], layout: Layout) -> tuple[DesignPo
     if layout == "tornado":
         none = (None,) * len(variations)
         points = [_point(variations, none)]
-        for place, one in enumerate(variations):
+        for index, one in enumerate(variations):
             for end in (0, len(one.values) - 1):
-                points.append(_point(variations, (*none[:place], end, *none[place + 1 :])))
+                points.append(_point(variations, (*none[:index], end, *none[index + 1 :])))
         return tuple(points)
-    places = [range(len(one.values)) for one in variations]
+    ranges = [range(len(one.values)) for one in variations]
     total = 1
-    for each in places:
+    for each in ranges:
         total *= len(each)
     if total > _MOST_POINTS:
         raise InputError(f"{total} points; at most {_MOST_POINTS} are allowed: give fewer values")
-    return tuple(_point(variations, combination) for combination in itertools.product(*places))
+    return tuple(_point(variations, combination) for combination in itertools.product(*ranges))
 
 
-def _point(variations: Sequence[Variation], places: tuple[int | None, ...]) -> DesignPoint:
+def _point(variations: Sequence[Variation], indices: tuple[int | None, ...]) -> DesignPoint:
     labels, patch = [], {}
-    for one, place in zip(variations, places, strict=True):
-        labels.append(AS_GIVEN if place is None else one.values[place].label)
-        if place is not None:
-            patch.update(one.values[place].patch)
-    return DesignPoint(tuple(labels), places, patch)
+    for one, index in zip(variations, indices, strict=True):
+        labels.append(AS_GIVEN if index is None else one.values[index].label)
+        if index is not None:
+            patch.update(one.values[index].patch)
+    return DesignPoint(tuple(labels), indices, patch)

@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from chatter.simulation.result import SimulationResult
     from chatter.studies.model import Model
 
-_SHOWN_TURNS = 2.0
-_POINTS_A_TURN = 720
-_PROFILE_TURNS = 12.0
+_DRAWN_REVOLUTIONS = 2.0
+_POINTS_PER_REVOLUTION = 720
+_PROFILE_REVOLUTIONS = 12.0
 _SIGNIFICANT = 7
 
 
@@ -120,14 +120,14 @@ def _lobes(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
     del only
     from chatter.stability.lobes import lobes
 
-    told = lobes(case, method)
-    summary = told.summary()
+    diagram = lobes(case, method)
+    summary = diagram.summary()
     lowest, operating = summary["lowest_limit"], summary["operating_point"]
     curve = Curve(
         "critical depth [mm]",
         "",
-        _numbers(rpm(told.limits.spindle_speed)),
-        _numbers(told.limits.critical_depth * 1e3),
+        _numbers(rpm(diagram.limits.spindle_speed)),
+        _numbers(diagram.limits.critical_depth * 1e3),
         "spindle speed [rpm]",
     )
     return Outcome(
@@ -146,15 +146,15 @@ def _critical_depth(case: Case, method: str | None, only: tuple[str, ...]) -> Ou
     del only
     from chatter.stability.check import check
 
-    told = check(case, method).summary()
+    summary = check(case, method).summary()
     return Outcome(
         {
-            "critical_depth_mm": told["critical_depth_mm"],
-            "chatter_frequency_Hz": told["limit"]["chatter_frequency_Hz"],
-            "spectral_radius": told["spectral_radius"],
-            "max_axial_depth_mm": told["limit"]["max_axial_depth_mm"],
+            "critical_depth_mm": summary["critical_depth_mm"],
+            "chatter_frequency_Hz": summary["limit"]["chatter_frequency_Hz"],
+            "spectral_radius": summary["spectral_radius"],
+            "max_axial_depth_mm": summary["limit"]["max_axial_depth_mm"],
         },
-        {"verdict": "stable" if told["stable"] else "chatter"},
+        {"verdict": "stable" if summary["stable"] else "chatter"},
     )
 
 
@@ -171,28 +171,33 @@ def _simulated(case: Case) -> SimulationResult:
 def _forces(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
     del method, only
     result = _simulated(case)
-    told = result.summary()
-    mean = told["mean_force_N"]
+    summary = result.summary()
+    mean = summary["mean_force_N"]
     numbers = {
-        "peak_resultant_N": told["peak_resultant_N"],
+        "peak_resultant_N": summary["peak_resultant_N"],
         "mean_Fx_N": mean["Fx"],
         "mean_Fy_N": mean["Fy"],
         "mean_Fz_N": mean["Fz"],
-        "mean_power_W": told["power"]["mean_W"],
+        "mean_power_W": summary["power"]["mean_W"],
         "settled_displacement_um": float(_settled_motion(result) * 1e6),
-        "chatter_frequency_Hz": told["chatter_frequency_Hz"],
+        "chatter_frequency_Hz": summary["chatter_frequency_Hz"],
     }
     turned = result.spindle_angle / (2.0 * math.pi)
-    first = int(np.searchsorted(turned, math.floor(turned[-1]) - _SHOWN_TURNS))
-    shown = slice(first, None, max(1, math.ceil((len(turned) - first) / 2 / _POINTS_A_TURN)))
-    x = _numbers(turned[shown])
-    resultant = np.linalg.norm(result.force[shown], axis=1)
-    motion = np.linalg.norm(result.displacement[shown], axis=1) * 1e6
-    curves = [Curve("resultant force [N]", "", x, _numbers(resultant), "turns of the spindle")]
+    first = int(np.searchsorted(turned, math.floor(turned[-1]) - _DRAWN_REVOLUTIONS))
+    drawn = slice(
+        first,
+        None,
+        max(1, math.ceil((len(turned) - first) / _DRAWN_REVOLUTIONS / _POINTS_PER_REVOLUTION)),
+    )
+    x = _numbers(turned[drawn])
+    resultant = np.linalg.norm(result.force[drawn], axis=1)
+    motion = np.linalg.norm(result.displacement[drawn], axis=1) * 1e6
+    across = "revolutions of the spindle"
+    curves = [Curve("resultant force [N]", "", x, _numbers(resultant), across)]
     if motion.any():
         label = "displacement of the tool [µm]"
-        curves.append(Curve(label, "", x, _numbers(motion), "turns of the spindle"))
-    return Outcome(numbers, {"verdict": told["verdict"]}, tuple(curves))
+        curves.append(Curve(label, "", x, _numbers(motion), across))
+    return Outcome(numbers, {"verdict": summary["verdict"]}, tuple(curves))
 
 
 def _settled_motion(result: SimulationResult) -> float:
@@ -203,7 +208,7 @@ def _settled_motion(result: SimulationResult) -> float:
 def _surface(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
     del method, only
     result = _simulated(case)
-    told = result.summary()
+    summary = result.summary()
     walls = result.finish.walls
     if not walls:
         raise InputError(
@@ -212,19 +217,19 @@ def _surface(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
     curves = []
     for wall in walls:
         profile = wall.profiles
-        turn = case.cut.feed_per_tooth * case.tool.teeth
-        kept = profile.x - profile.x[0] <= _PROFILE_TURNS * turn
+        advance = case.cut.feed_per_tooth * case.tool.teeth
+        kept = profile.x - profile.x[0] <= _PROFILE_REVOLUTIONS * advance
         label = f"wall {profile.side} near the tip [µm]"
         x, y = (profile.x[kept] - profile.x[0]) * 1e3, profile.deviation[0][kept] * 1e6
         curves.append(Curve(label, "", _numbers(x), _numbers(y), "along the feed [mm]"))
-    rough = told["roughness"]["wall"]
+    rough = summary["roughness"]["wall"]
     numbers = {
-        "surface_location_error_um": told["surface_location_error_um"],
+        "surface_location_error_um": summary["surface_location_error_um"],
         "Ra_um": rough["Ra_um"],
         "Rz_um": rough["Rz_um"],
-        "chatter_frequency_Hz": told["chatter_frequency_Hz"],
+        "chatter_frequency_Hz": summary["chatter_frequency_Hz"],
     }
-    return Outcome(numbers, {"verdict": told["verdict"]}, tuple(curves))
+    return Outcome(numbers, {"verdict": summary["verdict"]}, tuple(curves))
 
 
 def _frf(model: Model, method: str | None, only: tuple[str, ...]) -> Outcome:
@@ -257,8 +262,8 @@ def _case_frfs(case: Case) -> list[tuple[str, str, str, Any, Any]]:
     refuse_unstable_structure(structure)
     lines, values = structure.receptance()
     return [
-        (f"tool {way}", "receptance", "m/N", lines, values[:, k, k])
-        for k, way in enumerate("xyz")
+        (f"tool {axis}", "receptance", "m/N", lines, values[:, k, k])
+        for k, axis in enumerate("xyz")
         if np.any(np.abs(values[:, k, k]) > 0.0)
     ]
 
@@ -288,8 +293,8 @@ def _machine_frfs(machine: Any, only: tuple[str, ...]) -> list[tuple[str, str, s
 
 
 _CRITICAL = Quantity("critical depth at {speed}", "mm", beyond="max_axial_depth_mm")
-_LOWEST = Quantity("lowest limit over speed", "mm", beyond="max_axial_depth_mm")
-_HEARD = Quantity("chatter frequency", "Hz")
+_LOWEST = Quantity("lowest critical depth over speed", "mm", beyond="max_axial_depth_mm")
+_CHATTER_FREQUENCY = Quantity("chatter frequency", "Hz")
 
 #: name -> kind of result
 MEASURES: dict[str, Measure] = {
@@ -312,7 +317,7 @@ MEASURES: dict[str, Measure] = {
             "mean_Fx_N": Quantity("mean force along x", "N"),
             "mean_Fy_N": Quantity("mean force along y", "N"),
             "mean_Fz_N": Quantity("mean force along z", "N"),
-            "chatter_frequency_Hz": _HEARD,
+            "chatter_frequency_Hz": _CHATTER_FREQUENCY,
         },
         _forces,
     ),
@@ -322,7 +327,7 @@ MEASURES: dict[str, Measure] = {
             "surface_location_error_um": Quantity("surface location error", "um"),
             "Ra_um": Quantity("roughness Ra", "um"),
             "Rz_um": Quantity("roughness Rz", "um"),
-            "chatter_frequency_Hz": _HEARD,
+            "chatter_frequency_Hz": _CHATTER_FREQUENCY,
         },
         _surface,
     ),

@@ -1,4 +1,4 @@
-"""What changed, by how much, in words."""
+"""Summary of a what-if study in sentences: what changed, and by how much."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from chatter.description.units import rpm
 from chatter.studies.whatif.measures import Outcome, Quantity
 
 if TYPE_CHECKING:
-    from chatter.studies.whatif.study import WhatIf
+    from chatter.studies.whatif.whatif_study import WhatIf
 
 #: a relative change smaller than this is none
 _NO_CHANGE = 5e-4
-#: quantities beside the main one are told where they change by more than this
-_WORTH_TELLING = 0.01
-#: from this relative change on the ratio is told instead
+#: quantities beside the main one are reported where they change by more than this
+_NOTABLE = 0.01
+#: from this relative change on the ratio is reported instead
 _MANY_TIMES = 2.0
 
 
@@ -61,47 +61,47 @@ def sentences(study: WhatIf) -> list[str]:
     """One sentence for each thing that changed."""
     if study.layout == "tornado":
         return _tornado(study)
-    told = []
-    for place, one in enumerate(study.variations):
-        first, last = _ends(study, place)
+    found = []
+    for index, one in enumerate(study.variations):
+        first, last = _ends(study, index)
         if first is last:
             continue
-        others = _others(study, place)
+        others = _others(study, index)
         why = f" as {one.path} goes from {one.values[0].label} to {one.values[-1].label}{others}"
-        told += _changes(study, study.outcomes[first], study.outcomes[last], why)
-    return told + _extremes(study) + failures(study)
+        found += _changes(study, study.outcomes[first], study.outcomes[last], why)
+    return found + _extremes(study) + failures(study)
 
 
 def failures(study: WhatIf) -> list[str]:
     """Sentences for the points without a result."""
     return [
-        f"no result at {_where(study, place)}: {outcome.failure}"
-        for place, outcome in enumerate(study.outcomes)
+        f"no result at {_where(study, index)}: {outcome.failure}"
+        for index, outcome in enumerate(study.outcomes)
         if outcome.failure
     ]
 
 
-def _where(study: WhatIf, place: int) -> str:
-    labels = study.points[place].labels
+def _where(study: WhatIf, index: int) -> str:
+    labels = study.points[index].labels
     return ", ".join(
         f"{one.path} = {label}" for one, label in zip(study.variations, labels, strict=True)
     )
 
 
-def _ends(study: WhatIf, place: int) -> tuple[int, int]:
+def _ends(study: WhatIf, index: int) -> tuple[int, int]:
     """Points at both ends of a variation, others at their first value."""
-    index = {point.places: k for k, point in enumerate(study.points)}
+    number = {point.indices: k for k, point in enumerate(study.points)}
     start = [0] * len(study.variations)
     end = list(start)
-    end[place] = len(study.variations[place].values) - 1
-    return index[tuple(start)], index[tuple(end)]
+    end[index] = len(study.variations[index].values) - 1
+    return number[tuple(start)], number[tuple(end)]
 
 
-def _others(study: WhatIf, place: int) -> str:
+def _others(study: WhatIf, index: int) -> str:
     held = [
         f"{one.path} = {one.values[0].label}"
         for k, one in enumerate(study.variations)
-        if k != place
+        if k != index
     ]
     return f", with {' and '.join(held)}" if held else ""
 
@@ -109,31 +109,31 @@ def _others(study: WhatIf, place: int) -> str:
 def _changes(study: WhatIf, before: Outcome, after: Outcome, why: str) -> list[str]:
     if before.failure or after.failure:
         return []
-    told = []
-    for key, quantity in _told_quantities(study, before, after).items():
+    found = []
+    for key, quantity in _changed_quantities(study, before, after).items():
         pair = value_text(quantity, before, key), value_text(quantity, after, key)
         share = change_text(before.numbers.get(key), after.numbers.get(key))
-        told.append(f"{title_of(study, quantity)}: {pair[0]} -> {pair[1]}{share}{why}")
+        found.append(f"{title_of(study, quantity)}: {pair[0]} -> {pair[1]}{share}{why}")
     for key in before.words:
         if before.words[key] != after.words.get(key):
-            told.append(f"{key}: {before.words[key]} -> {after.words.get(key)}{why}")
-    return told
+            found.append(f"{key}: {before.words[key]} -> {after.words.get(key)}{why}")
+    return found
 
 
-def _told_quantities(study: WhatIf, before: Outcome, after: Outcome) -> Mapping[str, Quantity]:
+def _changed_quantities(study: WhatIf, before: Outcome, after: Outcome) -> Mapping[str, Quantity]:
     """Main quantity, and others that change."""
     chosen = {study.quantity: study.measure.quantities[study.quantity]}
     for key, quantity in study.measure.quantities.items():
         pair = before.numbers.get(key), after.numbers.get(key)
-        if key != study.quantity and _is_worth_telling(*pair):
+        if key != study.quantity and _is_notable(*pair):
             chosen[key] = quantity
     return chosen
 
 
-def _is_worth_telling(before: float | None, after: float | None) -> bool:
+def _is_notable(before: float | None, after: float | None) -> bool:
     if before is None or after is None:
         return before is not after
-    return abs(after - before) > _WORTH_TELLING * max(abs(before), abs(after))
+    return abs(after - before) > _NOTABLE * max(abs(before), abs(after))
 
 
 def _extremes(study: WhatIf) -> list[str]:
@@ -144,43 +144,43 @@ def _extremes(study: WhatIf) -> list[str]:
         return []
     low, high = min(known, key=values.__getitem__), max(known, key=values.__getitem__)
     ends = {known[0], known[-1]} if study.layout == "overlay" else set()
-    spread = _is_worth_telling(values[low], values[high])
+    spread = _is_notable(values[low], values[high])
     if not spread or {low, high} <= ends:
         return []
     quantity = study.measure.quantities[study.quantity]
-    told = [
+    found = [
         f"{value_text(quantity, study.outcomes[k], study.quantity)} at {_where(study, k)}"
         for k in (low, high)
     ]
-    return [f"{title_of(study, quantity)}: from {told[0]} to {told[1]}"]
+    return [f"{title_of(study, quantity)}: from {found[0]} to {found[1]}"]
 
 
 def _tornado(study: WhatIf) -> list[str]:
     quantity = study.measure.quantities[study.quantity]
     base = study.outcomes[0]
-    told = [f"{title_of(study, quantity)}: {value_text(quantity, base, study.quantity)} as given"]
-    for place in ranked(study):
-        one = study.variations[place]
-        low, high = study.outcomes[1 + 2 * place], study.outcomes[2 + 2 * place]
+    found = [f"{title_of(study, quantity)}: {value_text(quantity, base, study.quantity)} as given"]
+    for index in ranked(study):
+        one = study.variations[index]
+        low, high = study.outcomes[1 + 2 * index], study.outcomes[2 + 2 * index]
         shares = [
             change_text(base.numbers.get(study.quantity), end.numbers.get(study.quantity))
             for end in (low, high)
         ]
-        told.append(
+        found.append(
             f"{one.path} from {one.values[0].label} to {one.values[-1].label}: "
             f"{value_text(quantity, low, study.quantity)}{shares[0]} to "
             f"{value_text(quantity, high, study.quantity)}{shares[1]}"
         )
-    return told + failures(study)
+    return found + failures(study)
 
 
 def ranked(study: WhatIf) -> Sequence[int]:
     """Variations of a tornado, the one with the greatest effect first."""
 
-    def swing(place: int) -> float:
+    def swing(index: int) -> float:
         base = study.outcomes[0].numbers.get(study.quantity)
         ends = [
-            study.outcomes[k].numbers.get(study.quantity) for k in (1 + 2 * place, 2 + 2 * place)
+            study.outcomes[k].numbers.get(study.quantity) for k in (1 + 2 * index, 2 + 2 * index)
         ]
         known = [value for value in (base, *ends) if value is not None]
         return max(known) - min(known) if known else 0.0

@@ -248,8 +248,8 @@ def _relative(model: Model, path: str, share: float, kind: QuantityField | None)
     values = []
     for factor in (1.0 - share, 1.0 + share):
         patch = {
-            path.replace("[*]", f"[{place}]", 1) if several else path: factor * float(number)
-            for place, number in enumerate(numbers)
+            path.replace("[*]", f"[{index}]", 1) if several else path: factor * float(number)
+            for index, number in enumerate(numbers)
         }
         label = f"{100.0 * (factor - 1.0):+.4g} %"
         values.append(Value(label, patch, 100.0 * (factor - 1.0)))

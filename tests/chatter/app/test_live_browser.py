@@ -17,7 +17,7 @@ import urllib.request
 import pytest
 
 import chatter
-from chatter.app.answers import LiveCase
+from chatter.app.live_case import LiveCase
 from chatter.app.server import LiveServer
 from tests.places import EXAMPLES
 
@@ -251,7 +251,7 @@ def test_pixels_of_the_diagram_tell_stable_from_chatter(tab):
 
 def test_a_wrong_value_is_told_in_the_page(tab):
     # a range of speeds whose lowest is the highest
-    tab.value("set(parameters[0], parameters[0].high); set(parameters[1], parameters[1].low)")
+    tab.value("set(sliders[0], sliders[0].high); set(sliders[1], sliders[1].low)")
     assert "not below" in tab.wait(ERRORS)
     tab.value("document.body.dataset.stage = ''; document.getElementById('reset').click()")
     tab.wait(FINE)

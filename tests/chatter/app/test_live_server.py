@@ -11,10 +11,10 @@ import pytest
 import tomlkit
 
 import chatter
-from chatter.app.answers import LiveCase
-from chatter.app.latest import Latest, SupersededError
-from chatter.app.parameters import case_parameters
+from chatter.app.live_case import LiveCase
+from chatter.app.newest_request import NewestRequest, SupersededError
 from chatter.app.server import LARGEST_REQUEST, LiveServer
+from chatter.app.sliders import case_sliders
 from chatter.description.errors import InputError, RunError
 from tests.places import EXAMPLES
 
@@ -67,7 +67,7 @@ def test_page_refers_to_nothing_elsewhere(server):
 
 def test_sliders_hold_the_values_of_the_case(server):
     _, _, content = call(server, "GET", "setup")
-    told = {one["path"]: one for one in json.loads(content)["parameters"]}
+    told = {one["path"]: one for one in json.loads(content)["sliders"]}
     assert told["material.Ktc"]["value"] == pytest.approx(600.0)
     assert told["structure.mode[1].damping"]["value"] == pytest.approx(0.011)
     assert told["tool.teeth"]["whole"]
@@ -102,7 +102,7 @@ def test_click_simulates_the_point(server):
     status, told = post(server, "simulation", **point)
     assert status == 200
     assert told["verdict"] == "stable"
-    assert len(told["turns"]) == len(told["lowest_um"]) == len(told["highest_um"])
+    assert len(told["revolutions"]) == len(told["lowest_um"]) == len(told["highest_um"])
     assert all(low <= high for low, high in zip(told["lowest_um"], told["highest_um"], strict=True))
 
 
@@ -190,7 +190,7 @@ def test_not_a_number_is_refused(server):
 
 
 def test_a_newer_request_supersedes_an_older_one():
-    latest, begun, outcome = Latest(60.0), threading.Event(), []
+    latest, begun, outcome = NewestRequest(60.0), threading.Event(), []
 
     def endless(go_on):
         begun.set()
@@ -217,7 +217,7 @@ def test_a_computation_without_end_is_given_up():
             go_on()
 
     with pytest.raises(RunError, match="given up"):
-        Latest(0.05).run("page", endless)
+        NewestRequest(0.05).run("page", endless)
 
 
 def test_port_in_use_is_told(server):
@@ -235,7 +235,7 @@ def test_every_slider_of_every_example_may_be_moved(path):
     case = chatter.load(path)
     if not (case.cut and case.structure and case.material and case.tool):
         pytest.skip("no cut of a structure")
-    for one in case_parameters(case):
+    for one in case_sliders(case):
         assert one.low <= one.value <= one.high
         for value in (one.low, one.value, one.high):
             # in steps of the slider, numbers are whole where they must be

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter.app.answers import LiveCase
+from chatter.app.live_case import LiveCase
 from chatter.compile.structure import structure_of
 from chatter.description.case import Case, loads
 from chatter.description.errors import InputError

@@ -1,4 +1,4 @@
-"""Bifurcation diagrams: branches of the points once a period, files and wrong ranges."""
+"""Bifurcation diagrams: branches of the Poincaré section, files and wrong ranges."""
 
 import csv
 import json
@@ -34,11 +34,11 @@ def test_flip_opens_two_branches():
     assert [point.value for point in diagram.points] == pytest.approx(depths)
     assert [point.verdict for point in diagram.points] == ["stable"] * 2 + ["chatter"] * 2
     for point in diagram.points[:2]:
-        assert np.ptp(point.once_a_period[:, 0]) < 1e-3 * 1e-4
+        assert np.ptp(point.poincare_section[:, 0]) < 1e-3 * 1e-4
         assert math.isnan(point.chatter_frequency)
         assert point.bifurcation == "none"
     for point in diagram.points[2:]:
-        x = point.once_a_period[:, 0]
+        x = point.poincare_section[:, 0]
         apart = np.ptp(x)
         assert apart > 1e-6
         assert branches(x, 0.02 * apart) == 2
@@ -48,7 +48,7 @@ def test_flip_opens_two_branches():
         assert point.bifurcation == "flip"
         assert point.chatter_frequency == pytest.approx(1000.0, rel=1e-3)
     # two branches part like the square root of the way beyond the limit, so the second is wider
-    widths = [np.ptp(point.once_a_period[:, 0]) for point in diagram.points[2:]]
+    widths = [np.ptp(point.poincare_section[:, 0]) for point in diagram.points[2:]]
     assert widths[0] < widths[1]
 
 
@@ -58,9 +58,9 @@ def test_hopf_opens_a_band():
     diagram = chatter.bifurcation(cut_of(10000, "1 mm"), "cut.axial_depth", depths)
     stable, chattering = diagram.points
     assert stable.verdict == "stable"
-    assert np.ptp(stable.once_a_period[:, 0]) < 1e-7
+    assert np.ptp(stable.poincare_section[:, 0]) < 1e-7
     assert (chattering.verdict, chattering.bifurcation) == ("chatter", "hopf")
-    x = chattering.once_a_period[:, 0]
+    x = chattering.poincare_section[:, 0]
     # the points fill the band: no gap as wide as a fifth of it, and none comes back
     assert np.diff(np.sort(x)).max() < 0.2 * np.ptp(x)
     assert branches(x, 1e-3 * np.ptp(x)) > 20
@@ -79,7 +79,7 @@ def test_tool_that_leaves_the_model_is_chatter_without_points():
     case = cut_of(10000, "1 mm", "down", "8 mm")
     diagram = chatter.bifurcation(case, "cut.axial_depth", [1e-3, 30e-3])
     assert diagram.points[1].verdict == "chatter"
-    assert diagram.points[1].once_a_period.shape == (0, 3)
+    assert diagram.points[1].poincare_section.shape == (0, 3)
     assert diagram.summary()["points"][1]["chatter_frequency_Hz"] is None
 
 
@@ -88,7 +88,7 @@ def test_order_of_the_cuts_changes_nothing():
     there = chatter.bifurcation(case, "cut.axial_depth", [1e-3, 4e-3])
     back = chatter.bifurcation(case, "cut.axial_depth", [4e-3, 1e-3])
     for one, other in zip(there.points, reversed(back.points), strict=True):
-        assert np.array_equal(one.once_a_period, other.once_a_period)
+        assert np.array_equal(one.poincare_section, other.poincare_section)
 
 
 @pytest.mark.parametrize(

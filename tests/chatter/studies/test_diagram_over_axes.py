@@ -159,7 +159,9 @@ def test_a_value_that_the_tool_does_not_reach_leaves_a_gap(tmp_path):
     assert all(("not reach" in why) != ok for why, ok in zip(found.reasons, reached, strict=True))
     assert np.isnan(found.limits.critical_depth[:2]).all()
     assert list(found.excluded) == ["cut.radial_depth = 2 mm", "cut.radial_depth = 3 mm"]
-    assert found.told()[0].startswith("excluded, cut.radial_depth = 2 mm: cut.radial_depth: down")
+    assert found.sentences()[0].startswith(
+        "excluded, cut.radial_depth = 2 mm: cut.radial_depth: down"
+    )
     alone = chatter.lobes_over(ball(), "cut.radial_depth=4 mm..6 mm:3")
     assert found.limits.critical_depth[2:] == pytest.approx(alone.limits.critical_depth)
     found.save(tmp_path)

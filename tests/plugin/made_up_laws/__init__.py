@@ -3,7 +3,7 @@
 ================= ===========================================================================
 module            what it adds
 ================= ===========================================================================
-force_law         `power-pair`: a force of two powers of the chip thickness
+force_law         `root`: a force that grows with the root of the chip thickness
 friction_law      `arctan-coulomb`: Coulomb friction smoothed by an arc tangent
 stability_method  `cautious-zero-order`: zeroth-order limits less a margin
 effect            `tilted_guide`: the weight of a slide on a guide that is not level

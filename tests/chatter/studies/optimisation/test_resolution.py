@@ -8,8 +8,8 @@ import pytest
 from chatter.stability.methods.collocation import multipliers as collocation
 from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import milling_model
+from chatter.studies.optimisation.element_size import max_wavelengths
 from chatter.studies.optimisation.limits import limits_of
-from chatter.studies.optimisation.resolution import most_waves
 from chatter.studies.optimisation.sampled_cuts import samples_of
 from chatter.studies.optimisation.stable_depths import first_limits, stable_depths, widest_stride
 from tests.chatter.studies.optimisation.cuts import MODES, end_mill
@@ -27,9 +27,9 @@ def test_a_fast_mode_that_hardly_takes_part_needs_no_short_elements():
     model = milling_model(end_mill({"structure.mode": ON_A_MACHINE}))
     speeds = np.linspace(500.0, 2500.0, 30) * RPM
     depths = np.linspace(0.0, 10e-3, 41)[1:]
-    waves = most_waves(model, speeds, depths)
-    assert waves >= 2.0
-    found = first_limits(element_cut(model, 10e-3, wavelengths=waves), speeds, depths)
+    wavelengths = max_wavelengths(model, speeds, depths)
+    assert wavelengths >= 2.0
+    found = first_limits(element_cut(model, 10e-3, wavelengths=wavelengths), speeds, depths)
     # the finest that any command takes
     exact = first_limits(element_cut(model, 10e-3, *collocation.FINER[1]), speeds, depths)
     limited = np.isfinite(exact)
@@ -46,11 +46,13 @@ def test_elements_are_as_short_as_the_samples_need_them():
     sampled = samples_of(model, 200, 1).models
     stiffest = max(sampled, key=lambda one: one.structure.modes[2].stiffness)
     nominal, limits = limits_of(case, model), limits_of(case, model, sampled)
-    assert limits.waves < nominal.waves
+    assert limits.wavelengths < nominal.wavelengths
     speeds = np.linspace(500.0, 2500.0, 30) * RPM
     depths = np.linspace(0.0, 10e-3, 41)[1:]
     exact = first_limits(element_cut(stiffest, 10e-3, *collocation.FINER[1]), speeds, depths)
-    found = first_limits(element_cut(stiffest, 10e-3, wavelengths=limits.waves), speeds, depths)
+    found = first_limits(
+        element_cut(stiffest, 10e-3, wavelengths=limits.wavelengths), speeds, depths
+    )
     limited = np.isfinite(exact)
     assert limited.any()
     assert found[limited] == pytest.approx(exact[limited], rel=1e-3)
@@ -80,7 +82,7 @@ def test_the_followed_limits_are_those_of_every_speed():
     assert widest_stride(cut, speeds) > 1
     followed = stable_depths(cut, speeds, depths)
     alone = [
-        stable_depths(cut, speeds[place : place + 1], depths).crossings[0] for place in range(60)
+        stable_depths(cut, speeds[point : point + 1], depths).crossings[0] for point in range(60)
     ]
     for one, other in zip(followed.crossings, alone, strict=True):
         assert len(one) == len(other)

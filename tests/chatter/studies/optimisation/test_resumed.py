@@ -53,15 +53,17 @@ def interrupted_after(count, command, case, out):
         while len(records_in(out)) < count and process.poll() is None and time.monotonic() < until:
             time.sleep(0.002)
         process.send_signal(signal.SIGINT)
-        _, told = process.communicate(timeout=60.0)
+        _, report = process.communicate(timeout=60.0)
     finally:
         process.kill()
-    return process.returncode, told
+    return process.returncode, report
 
 
 def parts_before_the_time_domain(records):
     found = [record for _, record in records]
-    return next(i for i, one in enumerate(found) if isinstance(one, dict) and one.get("time"))
+    return next(
+        i for i, one in enumerate(found) if isinstance(one, dict) and one.get("verification")
+    )
 
 
 @pytest.mark.parametrize("command", ["optimum", "pitch"])
@@ -77,19 +79,19 @@ def test_an_interrupted_search_goes_on_where_it_stopped(command, tmp_path):
         stops.append(parts_before_the_time_domain(records_in(whole)))
     before = []
     for stop in stops:
-        code, told = interrupted_after(stop, command, path, out)
-        assert code == 1, told
-        assert "the same command goes on from there" in told
-        assert "Traceback" not in told
+        code, report = interrupted_after(stop, command, path, out)
+        assert code == 1, report
+        assert "the same command goes on from there" in report
+        assert "Traceback" not in report
         assert not (out / "summary.json").exists()
         # what was known is there once, and was not computed again
         known, before = before, records_in(out)
         assert before[: len(known)] == known
         assert stop <= len(before) < len(records_in(whole))
-        assert "parts of the search are finished" in told
+        assert "parts of the search are finished" in report
     process = started(command, path, out)
-    _, told = process.communicate(timeout=240.0)
-    assert process.returncode == 0, told
+    _, report = process.communicate(timeout=240.0)
+    assert process.returncode == 0, report
     after = records_in(out)
     assert after[: len(before)] == before
     assert sorted(after) == sorted(records_in(whole))
@@ -101,7 +103,7 @@ def test_a_changed_case_starts_anew_and_the_same_one_computes_nothing(tmp_path, 
     case = end_mill(CASES["pitch"])
     first = chatter.pitch(case, folder=tmp_path)
     known = records_in(tmp_path)
-    monkeypatch.setattr("chatter.studies.pitch_design.search.first_limits", None)
+    monkeypatch.setattr("chatter.studies.pitch_design.pitch_search.first_limits", None)
     again = chatter.pitch(case, folder=tmp_path)
     assert records_in(tmp_path) == known
     assert again.best.pitch == first.best.pitch
@@ -122,4 +124,4 @@ def test_an_interrupted_run_in_time_is_no_verdict(tmp_path, monkeypatch):
     with pytest.raises(RunError, match="parts of the search are finished"):
         chatter.optimum(end_mill({"optimum": section}), folder=tmp_path)
     kept = [record for _, record in records_in(tmp_path)]
-    assert not any(isinstance(one, dict) and one.get("time") for one in kept)
+    assert not any(isinstance(one, dict) and one.get("verification") for one in kept)

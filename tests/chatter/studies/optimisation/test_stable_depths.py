@@ -24,10 +24,10 @@ def test_stability_that_comes_back_is_used():
     case = chatter.load(example("helix-islands").folder / "case.toml")
     cut = element_cut(milling_model(case), 8e-3)
     speeds, depths = np.array([19000.0 * RPM]), np.linspace(0.0, 8e-3, 81)[1:]
-    stretches = stable_depths(cut, speeds, depths).stretches(0)
+    intervals = stable_depths(cut, speeds, depths).intervals(0)
     crossings = chatter.check(case).limit.crossings[0]
-    assert stretches[:, 0] == pytest.approx([0.0, crossings[1]], rel=2e-3)
-    assert stretches[:, 1] == pytest.approx([crossings[0], crossings[2]], rel=2e-3)
+    assert intervals[:, 0] == pytest.approx([0.0, crossings[1]], rel=2e-3)
+    assert intervals[:, 1] == pytest.approx([crossings[0], crossings[2]], rel=2e-3)
     assert first_limits(cut, speeds, depths) == pytest.approx(crossings[:1], rel=2e-3)
 
 
@@ -37,7 +37,7 @@ def test_margins_shrink_every_stretch_from_both_sides():
         [np.array([2.0]), np.array([2.5, 4.0, 8.0]), np.array([3.0, 4.2])],
         10.0,
     )
-    assert found.stretches(2).tolist() == [[0.0, 3.0], [4.2, 10.0]]
+    assert found.intervals(2).tolist() == [[0.0, 3.0], [4.2, 10.0]]
     assert found.within(100.0, 0.0, 0.0).tolist() == [[0.0, 2.5], [4.0, 8.0]]
     wide = found.within(100.0, 0.2, 0.0)
     assert wide == pytest.approx(np.array([[0.0, 2.0], [5.0, 6.4]]))

@@ -66,7 +66,7 @@ def test_a_softer_structure_that_may_be_bends_more():
     softer = {f"structure.mode[{number}].stiffness": "40 +- 4 N/um" for number in (0, 1)}
     unsure = chatter.optimum(case.patch(softer), samples=60)
     assert sure.best.usage["max_deflection"] == pytest.approx(1.0, abs=5e-3)
-    assert unsure.best.place.axial_depth < 0.97 * sure.best.place.axial_depth
+    assert unsure.best.point.axial_depth < 0.97 * sure.best.point.axial_depth
     # the tool bends mostly along one axis: about as much as that is softer
     weakest = 1.0 / (1.0 + 0.1 * norm.ppf(0.1))
     assert 1.0 < 1.0 / unsure.best.usage["max_deflection"] < 1.03 * weakest

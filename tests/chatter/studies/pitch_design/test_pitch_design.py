@@ -13,7 +13,7 @@ from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import milling_model
 from chatter.studies.optimisation.stable_depths import first_limits
 from chatter.studies.pitch_design.families import alternating, families, linear, regeneration
-from chatter.studies.pitch_design.search import in_grains
+from chatter.studies.pitch_design.pitch_search import rounded_pitch
 from tests.command_line import chatter_command
 
 RPM = math.pi / 30.0
@@ -71,7 +71,7 @@ def designed():
 
 def test_the_search_finds_what_the_rule_says(designed):
     curve = next(one for one in designed.curves if one.name == "alternating")
-    # half a wave at 5500 rpm and the chatter frequency of the evenly spaced tool
+    # half a wave at 5500 rpm and the chatter frequency of the uniform-pitch tool
     rule = math.pi * 5500.0 * RPM / (2.0 * math.pi * designed.chatter_frequency)
     assert curve.rule == pytest.approx([rule])
     assert 500.0 < designed.chatter_frequency < 600.0
@@ -86,8 +86,8 @@ def test_the_search_finds_what_the_rule_says(designed):
 
 def test_the_gain_is_that_of_another_method(designed):
     assert designed.is_better
-    assert designed.best.lowest_limit > 2.0 * designed.standing.lowest_limit
-    assert designed.best.largest_chip <= 1.25 + 1e-9
+    assert designed.best.lowest_limit > 2.0 * designed.original.lowest_limit
+    assert designed.best.max_pitch_ratio <= 1.25 + 1e-9
     assert sum(designed.best.pitch) == pytest.approx(360.0)
     # cuts simulated in time, which knows no multipliers
     depth, lowest = 0.85 * designed.best.lowest_limit, int(designed.best.limits.argmin())
@@ -107,7 +107,7 @@ def test_the_gain_is_that_of_another_method(designed):
 
 def test_angles_in_tenths_make_a_turn():
     for angles in ([360 / 7.0] * 7, [75.03, 104.97, 75.03, 104.97], [119.96, 120.02, 120.02]):
-        found = in_grains(angles)
+        found = rounded_pitch(angles)
         assert sum(found) == pytest.approx(360.0, abs=1e-9)
         assert found == pytest.approx(angles, abs=0.11)
 
@@ -126,7 +126,7 @@ def test_the_command_writes_a_case_that_others_accept(tmp_path):
     answer = chatter_command("pitch", path, "--out", out, "--json")
     assert answer.exit_code == 0, answer.stderr
     summary = json.loads((out / "summary.json").read_text())
-    assert summary["best"]["largest_chip"] <= 1.1 + 1e-9
+    assert summary["best"]["max_pitch_ratio"] <= 1.1 + 1e-9
     found = chatter.load(out / "case-pitch.toml")
     assert np.degrees(found.tool.pitch) == pytest.approx(summary["best"]["pitch_deg"])
     assert (out / "pitch.png").stat().st_size > 10_000

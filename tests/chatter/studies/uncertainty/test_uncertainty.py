@@ -11,11 +11,14 @@ from scipy.stats import norm, truncnorm
 
 from chatter.description.case import loads
 from chatter.description.errors import InputError, RunError
-from chatter.studies.uncertainty import study as module
-from chatter.studies.uncertainty.confidence import wilson_interval
-from chatter.studies.uncertainty.parameters import UncertainParameter, correlation_of, parameters_of
-from chatter.studies.uncertainty.sampling import samples
-from chatter.studies.uncertainty.study import uncertainty
+from chatter.studies.uncertainty import monte_carlo as module
+from chatter.studies.uncertainty.latin_hypercube import samples
+from chatter.studies.uncertainty.monte_carlo import uncertainty
+from chatter.studies.uncertainty.uncertain_parameters import (
+    UncertainParameter,
+    correlation_of,
+    parameters_of,
+)
 from tests.cases import TOOL_OF_922_HERTZ
 from tests.command_line import chatter_command
 
@@ -41,10 +44,10 @@ def case():
 def limit_of(case, **patch):
     """Limit at the speed of the cut, m."""
     fixed = {path.replace("__", "."): value for path, value in patch.items()}
-    from chatter.studies.uncertainty.propagation import sample_limits, shared_net
+    from chatter.studies.uncertainty.sample_limits import sample_limits, shared_grid
 
     changed = case.patch({"material.Ktc": case.get("material.Ktc"), **fixed})
-    return sample_limits(changed, shared_net(case, 3), None).operating
+    return sample_limits(changed, shared_grid(case, 3), None).operating
 
 
 def test_a_force_coefficient_propagates_by_its_reciprocal(case):
@@ -126,17 +129,6 @@ def test_probability_converges_at_least_as_one_over_the_root_of_the_count():
         assert spread[count] < independent
     # 16 times the samples: a quarter of the error, within what 60 seeds tell of it
     assert spread[50] / spread[800] == pytest.approx(4.0, rel=0.35)
-
-
-def test_wilson_interval_has_its_published_values():
-    # Newcombe 1998, Table I: 81 of 263, 15 of 148, 0 of 20, 1 of 29
-    for counts, ends in (
-        ((81, 263), (0.2553, 0.3662)),
-        ((15, 148), (0.0624, 0.1605)),
-        ((0, 20), (0.0, 0.1611)),
-        ((1, 29), (0.0061, 0.1718)),
-    ):
-        assert wilson_interval(*counts) == pytest.approx(ends, abs=5e-5)
 
 
 def test_files_and_resumption(case, tmp_path, monkeypatch):

@@ -7,9 +7,9 @@ import pytest
 
 from chatter.description.assignments import parse_assignments
 from chatter.studies.model import load_model, patched
-from chatter.studies.uncertainty.parameters import parameters_of
+from chatter.studies.uncertainty.uncertain_parameters import parameters_of
 from chatter.studies.whatif.design import chosen_layout, points_of
-from chatter.studies.whatif.presets import STUDIES
+from chatter.studies.whatif.preset_studies import preset_studies
 from chatter.studies.whatif.variation import read_variation
 from tests.places import ROOT
 
@@ -26,7 +26,7 @@ def given(words, option):
 
 
 def test_every_study_is_documented():
-    assert set(re.findall(r"--study ([\w-]+)", TEXT)) == set(STUDIES)
+    assert set(re.findall(r"--study ([\w-]+)", TEXT)) == set(preset_studies())
     assert len(COMMANDS) == 5
 
 

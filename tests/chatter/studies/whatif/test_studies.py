@@ -11,8 +11,8 @@ import chatter
 from chatter.description.errors import InputError, RunError
 from chatter.studies.model import load_model
 from chatter.studies.whatif import measures
-from chatter.studies.whatif.presets import STUDIES
-from chatter.studies.whatif.study import whatif
+from chatter.studies.whatif.preset_studies import preset_studies
+from chatter.studies.whatif.whatif_study import whatif
 
 ZERO_ORDER = {"method": "zero-order"}
 
@@ -49,9 +49,9 @@ def test_a_tornado_has_the_signs_of_physics(case):
     assert ends[4] == pytest.approx(base)  # the linear law does not know the feed
     assert ends[5] == pytest.approx(base)
     # the strongest first, and the weakest last
-    assert "as given" in study.sentences[0]
-    assert "cut.feed_per_tooth" in study.sentences[-1]
-    assert study.sentences[-1].count("(no change)") == 2
+    assert "as given" in study.sentences()[0]
+    assert "cut.feed_per_tooth" in study.sentences()[-1]
+    assert study.sentences()[-1].count("(no change)") == 2
 
 
 def test_corners_of_a_heat_map_are_single_runs(case):
@@ -140,7 +140,7 @@ def test_points_without_a_result_do_not_spoil_the_others(case, tmp_path):
     study = whatif(case, {"tool.helix": angles}, "critical depth", folder=tmp_path)
     assert study.values()[0] > 0.0
     assert study.values()[1] is None
-    assert "no result at tool.helix" in study.sentences[-1]
+    assert "no result at tool.helix" in study.sentences()[-1]
     study.save(tmp_path)
     with pytest.raises(InputError, match="run into each other"):
         whatif(case, {"tool.helix": angles[1:]}, "critical depth")
@@ -174,7 +174,7 @@ def test_frf_of_a_machine_follows_stiffness_and_mass(machine_file):
     heights = study.values()
     assert heights[0] == pytest.approx(1.0 / (2000.0 * math.sqrt(20e6 / 100.0)), rel=5e-3)
     assert heights[0] / heights[1] == pytest.approx(2.0, rel=5e-3)
-    assert "m/N" in study.sentences[0]
+    assert "m/N" in study.sentences()[0]
 
 
 def test_lobes_of_a_case_follow_its_machine(case_on_machine, machine_file):
@@ -194,14 +194,14 @@ def test_lobes_of_a_case_follow_its_machine(case_on_machine, machine_file):
     assert high == pytest.approx(single.critical_depth * 1e3, rel=1e-9)
 
 
-@pytest.mark.parametrize("name", STUDIES)
+@pytest.mark.parametrize("name", preset_studies())
 def test_ready_studies_fit_their_examples(name):
     """Every patch of a ready study is valid on its example."""
     from chatter.studies.model import patched
     from chatter.studies.whatif.design import chosen_layout, points_of
     from chatter.studies.whatif.variation import read_variation
 
-    study = STUDIES[name]
+    study = preset_studies()[name]
     try:
         file = study.file()
     except InputError:

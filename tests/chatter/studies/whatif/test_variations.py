@@ -4,8 +4,8 @@ import pytest
 
 from chatter.description.errors import InputError
 from chatter.studies.model import load_model, patched, value_of
-from chatter.studies.whatif.study import whatif
 from chatter.studies.whatif.variation import read_variation
+from chatter.studies.whatif.whatif_study import whatif
 
 
 def numbers(text, case, count=None):

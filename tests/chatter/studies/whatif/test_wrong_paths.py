@@ -2,7 +2,7 @@
 
 import pytest
 
-from chatter.studies.whatif.presets import STUDIES
+from chatter.studies.whatif.preset_studies import preset_study
 from tests.command_line import chatter_command
 
 CASE = "friction-amplitude/case.toml"
@@ -11,7 +11,7 @@ MACHINE = "friction-amplitude/machine.toml"
 
 @pytest.fixture(scope="module")
 def folder():
-    return STUDIES["friction-amplitude"].file().parents[1]
+    return preset_study("friction-amplitude").file().parents[1]
 
 
 @pytest.mark.parametrize(

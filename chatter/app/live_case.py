@@ -1,0 +1,262 @@
+"""A case on the page: diagrams, simulated points and case files for values of its sliders."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.app.sliders import Slider, case_sliders, checked_values, diagram_sliders
+from chatter.description.case import Case
+from chatter.description.errors import InputError
+from chatter.description.progress import Progress
+from chatter.description.units import from_rpm, rpm
+from chatter.stability.limit_curve import LimitCurve
+from chatter.stability.methods.collocation import multipliers as collocation
+from chatter.stability.methods.collocation.element_cut import element_cut
+from chatter.stability.methods.collocation.varying_speed import LOOSE_FIT
+from chatter.stability.methods.zeroth_order.limits import zero_order_of
+from chatter.stability.model import MillingModel, milling_model
+from chatter.stability.registry import chosen_method, fixed_steps
+from chatter.stability.search_range import maximum_depth, spindle_speeds
+
+#: stage -> speeds, depths of the grid
+STAGES = {"coarse": (120, 24), "fine": (200, 50)}
+_DRAWN_POINTS = 700
+#: points per element and wavelengths of the highest mode in one, enough for a picture
+_POINTS, _WAVELENGTHS = 6, 1.0
+_TOLERANCE = 5e-3
+_STRIDE = 8
+
+
+class LiveCase:
+    """A case and the sliders that it has.
+
+    Parameters
+    ----------
+    case : Case
+    method : str, optional
+        Of stability, as for `chatter.lobes`.
+
+    Raises
+    ------
+    InputError
+        If the case lacks something, or the method is too slow to follow a slider.
+    """
+
+    def __init__(self, case: Case, method: str | None) -> None:
+        self._method = chosen_method(case, method)
+        self.method = self._method.name
+        if not self._method.is_fast:
+            raise InputError(
+                f'method "{self.method}" cannot follow a slider; with --live, give another --method'
+            )
+        self.case = case
+        model = milling_model(case)
+        speeds = spindle_speeds(case)
+        max_depth = maximum_depth(case, zero_order_of(model, speeds))
+        self.view = diagram_sliders((float(speeds[0]), float(speeds[-1])), max_depth)
+        self.sliders = (*self.view, *case_sliders(case))
+        self.by_path: dict[str, Slider] = {one.path: one for one in self.sliders}
+
+    def setup(self) -> dict[str, Any]:
+        """What the page shows before anything is moved."""
+        return {
+            "title": self.case.title or self.case.name,
+            "name": self.case.name.rsplit("/", 1)[-1],
+            "method": self.method,
+            "sliders": [one.as_json() for one in self.sliders],
+        }
+
+    def patched(self, given: Any) -> tuple[Case, dict[str, float]]:
+        """Case with the values of a page, and the ranges of the diagram by path.
+
+        Raises
+        ------
+        InputError
+            If a value is unknown or out of range, or what comes of them is no cut.
+        """
+        values = checked_values(given, self.by_path)
+        view = {one.path: values.get(one.path, one.value) for one in self.view}
+        if view["lobes.speeds.from"] >= view["lobes.speeds.to"]:
+            raise InputError("the lowest speed of the diagram is not below the highest")
+        own = {
+            path: self.by_path[path].text(value)
+            for path, value in values.items()
+            if not self.by_path[path].view
+        }
+        return (self.case.patch(own) if own else self.case), view
+
+    def diagram(self, given: Any, stage: str, progress: Progress) -> dict[str, Any]:
+        """Limits over spindle speed, coarse or fine.
+
+        Sliders
+        ----------
+        given : mapping
+            Values of sliders.
+        stage : str
+            Key of STAGES.
+        progress : callable
+            May raise to give up.
+        """
+        started = time.perf_counter()
+        case, view = self.patched(given)
+        speed_count, depth_count = STAGES[stage]
+        span = (from_rpm(view["lobes.speeds.from"]), from_rpm(view["lobes.speeds.to"]))
+        max_depth = view["lobes.depths.to"] * 1e-3
+        model = milling_model(case)
+        steps = fixed_steps(case)
+        speeds = np.linspace(*span, speed_count)
+        depths = np.linspace(0.0, max_depth, depth_count + 1)[1:]
+        follows = stage == "coarse" and self.method == "collocation" and not model.depends_on_speed
+        limits_of = _coarse_limits if follows else self._method.limits
+        curve = limits_of(model, speeds, depths, steps, progress)
+        cut = case.cut
+        to_operating = np.linspace(0.0, 1.02 * max(cut.axial_depth, max_depth), depth_count + 1)[1:]
+        at = np.array([cut.spindle_speed])
+        operating = limits_of(model, at, to_operating, steps, progress)
+        below = int((operating.crossings[0] < cut.axial_depth).sum())
+        lowest = int(np.argmin(curve.critical_depth))
+        return {
+            "stage": stage,
+            "spindle_speed_rpm": _numbers(rpm(curve.spindle_speed)),
+            "crossings_mm": [_numbers(found * 1e3) for found in curve.crossings],
+            "chatter_frequency_Hz": _numbers(curve.chatter_frequency),
+            "bifurcation": list(curve.bifurcation),
+            "natural_frequencies_Hz": [mode.frequency for mode in model.structure.modes],
+            "max_axial_depth_mm": max_depth * 1e3,
+            "lowest": {
+                "depth_mm": _number(float(curve.critical_depth[lowest]) * 1e3),
+                "spindle_speed_rpm": rpm(float(curve.spindle_speed[lowest])),
+            },
+            "operating": {
+                "spindle_speed_rpm": rpm(cut.spindle_speed),
+                "axial_depth_mm": cut.axial_depth * 1e3,
+                "critical_depth_mm": _number(float(operating.critical_depth[0]) * 1e3),
+                "stable": below % 2 == 0,
+            },
+            "removal_rate_per_mm_rpm": _removal(case),
+            "notes": list(model.notes),
+            "seconds": time.perf_counter() - started,
+        }
+
+    def simulation(
+        self, given: Any, speed_rpm: float, depth_mm: float, progress: Progress
+    ) -> dict[str, Any]:
+        """Cut simulated at a point of the diagram.
+
+        Raises
+        ------
+        InputError
+            If the point is outside of the diagram, or cannot be simulated.
+        RunError
+            If the tool moves so far that the model no longer holds.
+        """
+        started = time.perf_counter()
+        case, view = self.patched(given)
+        _check_point(view, speed_rpm, depth_mm)
+        wanted = {
+            "cut.spindle_speed": f"{speed_rpm:.7g} rpm",
+            "cut.axial_depth": f"{depth_mm:.7g} mm",
+        }
+        from chatter.simulation.simulate import simulate
+
+        result = simulate(case, wanted, progress)
+        summary = result.summary()
+        revolutions = result.spindle_angle / (2.0 * math.pi)
+        axis = int(np.argmax(np.ptp(result.displacement, axis=0)))
+        envelope = _envelope(revolutions, result.displacement[:, axis] * 1e6)
+        whole = np.searchsorted(revolutions, np.arange(0.0, math.floor(revolutions[-1]) + 0.5))
+        whole = whole[whole < len(revolutions)]
+        return {
+            "spindle_speed_rpm": speed_rpm,
+            "axial_depth_mm": depth_mm,
+            "verdict": summary["verdict"],
+            "reason": summary["reason"],
+            "chatter_frequency_Hz": summary["chatter_frequency_Hz"],
+            "peak_resultant_N": summary["peak_resultant_N"],
+            "mean_power_W": summary["power"]["mean_W"],
+            "direction": "xyz"[axis],
+            **envelope,
+            "once_per_revolution": {
+                "revolutions": _numbers(revolutions[whole]),
+                "um": _numbers(result.displacement[whole, axis] * 1e6),
+            },
+            "notes": summary["notes"],
+            "seconds": time.perf_counter() - started,
+        }
+
+    def case_text(self, given: Any) -> str:
+        """Case file with the values of a page.
+
+        Raises
+        ------
+        InputError
+            If a value is unknown or out of range, or what comes of them is no cut.
+        """
+        _, view = self.patched(given)
+        wanted = {path: self.by_path[path].text(float(value)) for path, value in given.items()}
+        if any(path.startswith("lobes.speeds.") for path in wanted):
+            # neither end of the range stands alone
+            for path in ("lobes.speeds.from", "lobes.speeds.to"):
+                wanted[path] = self.by_path[path].text(view[path])
+        return self.case.patch(wanted).to_toml() if wanted else self.case.to_toml()
+
+
+def _check_point(view: Mapping[str, float], speed: float, depth: float) -> None:
+    for name, value in (("spindle_speed_rpm", speed), ("axial_depth_mm", depth)):
+        number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        if not number or not math.isfinite(value):
+            raise InputError(f"{name}: a number is wanted")
+    inside = 0.9 * view["lobes.speeds.from"] <= speed <= 1.1 * view["lobes.speeds.to"]
+    if not inside or not 0.0 < depth <= 1.1 * view["lobes.depths.to"]:
+        raise InputError(f"{speed:g} rpm, {depth:g} mm is no point of the diagram")
+
+
+def _removal(case: Case) -> float:
+    """Removal rate, cm^3/min, at 1 mm and 1 rpm."""
+    return case.width_of_cut * case.cut.feed_per_tooth * case.tool.teeth * 1e3
+
+
+def _envelope(x: NDArray[np.float64], y: NDArray[np.float64]) -> dict[str, list[float | None]]:
+    """Lowest and highest value in each of a few intervals, so that no peak is lost."""
+    intervals = np.array_split(np.arange(len(x)), min(_DRAWN_POINTS, len(x)))
+    return {
+        "revolutions": _numbers(np.array([x[part[0]] for part in intervals])),
+        "lowest_um": _numbers(np.array([y[part].min() for part in intervals])),
+        "highest_um": _numbers(np.array([y[part].max() for part in intervals])),
+    }
+
+
+def _numbers(values: NDArray[np.float64]) -> list[float | None]:
+    return [_number(float(value)) for value in values]
+
+
+def _number(value: float) -> float | None:
+    """Value as the page shows it; None where there is none."""
+    return float(f"{value:.7g}") if math.isfinite(value) else None
+
+
+def _coarse_limits(
+    model: MillingModel,
+    speeds: NDArray[np.float64],
+    depths: NDArray[np.float64],
+    steps: int | None,  # noqa: ARG001  (the signature of a method)
+    progress: Progress,
+) -> LimitCurve:
+    """Limits to 0.5 %, by continuation of the boundary: quick enough for a moving slider.
+
+    Parameters
+    ----------
+    model : MillingModel
+    speeds, depths : array of float
+        rad/s, m.
+    progress : callable
+        May raise to give up.
+    """
+    cut = element_cut(model, float(depths[-1]), _POINTS, _WAVELENGTHS).with_fit(LOOSE_FIT)
+    return collocation.limit_curve(cut, speeds, depths, progress, _TOLERANCE, _STRIDE)

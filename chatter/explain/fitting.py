@@ -1,0 +1,267 @@
+"""Least squares with priors: scipy's trust region, with a Jacobian that costs few simulations.
+
+Parameters are counted in standard deviations of their priors (or in a typical size where they
+have none) from where they start, so that one step fits all. A prior is one more row of residuals.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.optimize
+import scipy.stats
+from numpy.typing import NDArray
+
+Vector = NDArray[np.float64]
+Matrix = NDArray[np.float64]
+Residuals = Callable[[Vector], Vector]
+
+#: threads; the simulations leave the interpreter alone
+WORKERS = 2
+#: of a finite difference, in units of a parameter's size
+_STEP = 1e-3
+#: change of the sum of squares, and step over the sizes, below which a fit has converged
+_SMALLEST_GAIN, _SMALLEST_STEP = 1e-7, 1e-7
+#: scipy's first trust region is as large as the start is far from zero, which starts are moved to
+_FIRST_REGION = 100.0
+#: share of what the Jacobian promised below which a step asks for new differences, where it is
+#: a fall of the sum of squares that matters
+_LEAST_OF_PROMISE, _LEAST_HOPED = 0.8, 1.0
+#: steps tried at the most, without those of finite differences
+_MOST_STEPS = 30
+#: groups from which a scatter between them can be told
+_LEAST_GROUPS = 4
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number that is fitted.
+
+    Parameters
+    ----------
+    name : str
+        Path in the case, or name within an effect.
+    start : float
+        SI.
+    size : float
+        Standard deviation of the prior, or a typical size where there is none.
+    lower, upper : float
+    prior : bool
+        Whether the start is a declared value with a standard deviation.
+    unit : str
+        SI unit, for reports.
+    """
+
+    name: str
+    start: float
+    size: float
+    lower: float = -np.inf
+    upper: float = np.inf
+    prior: bool = True
+    unit: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """Result of a fit.
+
+    Parameters
+    ----------
+    parameters : tuple of Parameter
+    values : (p,) array of float
+        SI.
+    covariance : (p, p) array of float
+        SI, from the residuals' own standard deviations and the priors.
+    jacobian : (n, p) array of float
+        At the solution, per size of a parameter.
+    residuals : (n,) array of float
+    """
+
+    parameters: tuple[Parameter, ...]
+    values: Vector
+    covariance: Matrix
+    jacobian: Matrix
+    residuals: Vector
+
+    @property
+    def cost(self) -> float:
+        """Sum of squares of the residuals, without priors."""
+        return float(self.residuals @ self.residuals)
+
+    @property
+    def by_name(self) -> dict[str, float]:
+        """Values by name."""
+        return {one.name: float(v) for one, v in zip(self.parameters, self.values, strict=True)}
+
+    def interval(self, index: int) -> tuple[float, float]:
+        """95 % confidence interval of a parameter, within its bounds."""
+        parameter = self.parameters[index]
+        half = 1.96 * float(np.sqrt(max(self.covariance[index, index], 0.0)))
+        middle = float(self.values[index])
+        return max(middle - half, parameter.lower), min(middle + half, parameter.upper)
+
+
+class _Scaled:
+    """Residuals and priors over scaled parameters, and their Jacobian.
+
+    Between finite differences the Jacobian is brought up to date by Broyden's (1965) rank-one
+    formula: one simulation a step in place of one a parameter. Differences are taken anew where a
+    step gained less than most of what the Jacobian promised.
+    """
+
+    def __init__(
+        self, parameters: Sequence[Parameter], residuals: Residuals, jacobian: Matrix | None
+    ) -> None:
+        self.residuals_of = residuals
+        self.size = np.array([one.size for one in parameters])
+        self.origin = np.array([one.start for one in parameters])
+        self.lower = self.scaled(np.array([one.lower for one in parameters]))
+        self.upper = self.scaled(np.array([one.upper for one in parameters]))
+        has_prior = np.array([one.prior for one in parameters], dtype=bool)
+        self.priors = np.eye(self.size.size)[has_prior]
+        self.latest: tuple[Vector, Vector] | None = None
+        #: Jacobian of the residuals, where it is from, the rows there, updates since differences
+        self.known, self.at, self.then = jacobian, None, np.empty(0)
+        self.updates = 0 if jacobian is None else 1
+
+    def scaled(self, values: Vector) -> Vector:
+        """Parameters as counted in the search."""
+        return (values - self.origin) / self.size + _FIRST_REGION
+
+    def values(self, scaled: Vector) -> Vector:
+        """Parameters in SI."""
+        return self.origin + (scaled - _FIRST_REGION) * self.size
+
+    def residuals(self, scaled: Vector) -> Vector:
+        """Residuals (n,), those of the point before kept."""
+        if self.latest is None or not np.array_equal(scaled, self.latest[0]):
+            self.latest = scaled.copy(), self.residuals_of(self.values(scaled))
+        return self.latest[1]
+
+    def rows(self, scaled: Vector) -> Vector:
+        """Residuals, then what the priors add."""
+        return np.concatenate([self.residuals(scaled), self.priors @ (scaled - _FIRST_REGION)])
+
+    def jacobian(self, scaled: Vector) -> Matrix:
+        """Rows by parameters, at the last point that was accepted."""
+        now = self.rows(scaled)
+        if self.at is not None and not np.array_equal(scaled, self.at):
+            moved = scaled - self.at
+            promised = self.then + np.vstack([self.known, self.priors]) @ moved
+            before = self.then @ self.then
+            hoped = before - promised @ promised
+            if hoped > _LEAST_HOPED and before - now @ now < _LEAST_OF_PROMISE * hoped:
+                self.known = None
+            else:
+                change = (now - promised)[: len(self.known)]
+                self.known = self.known + np.outer(change, moved) / float(moved @ moved)
+                self.updates += 1
+        if self.known is None:
+            self.known, self.updates = self.differences(scaled), 0
+        self.at, self.then = scaled.copy(), now
+        return np.vstack([self.known, self.priors])
+
+    def differences(self, scaled: Vector) -> Matrix:
+        """Forward differences (n, p), in threads."""
+        now = self.residuals(scaled)
+
+        def column(index: int) -> Vector:
+            moved = scaled.copy()
+            step = _STEP if moved[index] + _STEP <= self.upper[index] else -_STEP
+            moved[index] += step
+            return (self.residuals_of(self.values(moved)) - now) / step
+
+        with ThreadPoolExecutor(WORKERS) as pool:
+            return np.array(list(pool.map(column, range(scaled.size)))).T.reshape(now.size, -1)
+
+    def forget_jacobian(self) -> None:
+        """Have differences taken next, where the point does not change."""
+        self.known, self.at = None, None
+
+
+def fit(
+    parameters: Sequence[Parameter],
+    residuals: Residuals,
+    start: Vector,
+    jacobian: Matrix | None = None,
+) -> Fit:
+    """Fit parameters to residuals that are scaled to a standard deviation of one.
+
+    Parameters
+    ----------
+    parameters : sequence of Parameter
+    residuals : callable
+        (p,) values in SI -> (n,) residuals.
+    start : (p,) array of float
+        SI.
+    jacobian : (n, p) array of float, optional
+        Near the start, per size of a parameter, where it is known.
+    """
+    problem = _Scaled(parameters, residuals, jacobian)
+    scaled = np.clip(problem.scaled(start), problem.lower, problem.upper)
+    most = _MOST_STEPS
+    while parameters and most > 0:
+        found = scipy.optimize.least_squares(
+            problem.rows,
+            scaled,
+            problem.jacobian,
+            bounds=(problem.lower, problem.upper),
+            # bounds as active sets: many effects start at a bound, zero
+            method="dogbox",
+            ftol=_SMALLEST_GAIN,
+            xtol=_SMALLEST_STEP,
+            gtol=None,
+            max_nfev=most + 1,
+        )
+        scaled, most = found.x, most - (found.nfev - 1)
+        if problem.updates <= 1:
+            break
+        # what no longer gains by a Jacobian brought up to date may by differences
+        problem.forget_jacobian()
+    rows = problem.jacobian(scaled)
+    inverse = np.linalg.pinv(rows.T @ rows, hermitian=True)
+    return Fit(
+        tuple(parameters),
+        problem.values(scaled),
+        inverse * np.outer(problem.size, problem.size),
+        problem.known,
+        problem.residuals(scaled),
+    )
+
+
+def over_groups(fit: Fit, sizes: Sequence[int]) -> Fit:
+    """Fit whose covariance allows for residuals that hang together within groups.
+
+    Parameters
+    ----------
+    fit : Fit
+    sizes : sequence of int
+        Residuals in each group, in their order; the groups are independent of each other.
+
+    Notes
+    -----
+    Where the groups pull a parameter about by more than white noise would let them, its standard
+    deviation is that of the cluster-robust covariance (Liang and Zeger 1986, equation 4), with
+    Student's t for the number of groups; elsewhere it stays as it is.
+    """
+    groups = len(sizes)
+    if groups < _LEAST_GROUPS:
+        return fit
+    ends = np.cumsum(sizes)
+    pulls = np.array(
+        [
+            fit.jacobian[end - size : end].T @ fit.residuals[end - size : end]
+            for size, end in zip(sizes, ends, strict=True)
+        ]
+    )
+    pulls -= pulls.mean(axis=0)
+    size = np.array([one.size for one in fit.parameters])
+    inverse = fit.covariance / np.outer(size, size)
+    spread = inverse @ (pulls.T @ pulls) @ inverse * groups / (groups - 1)
+    wider = scipy.stats.t.ppf(0.975, groups - 1) / 1.96
+    own = np.maximum(np.diag(inverse), 1e-300)
+    factor = np.maximum(1.0, wider * np.sqrt(np.maximum(np.diag(spread), 0.0) / own))
+    return replace(fit, covariance=fit.covariance * np.outer(factor, factor))

@@ -1,0 +1,236 @@
+"""Result of a process optimisation: candidates, picture, files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar
+
+from chatter.description.case import Case
+from chatter.description.units import rpm
+from chatter.io.result_files import SavedResult, as_json, csv_text, finite_or_none
+from chatter.studies.optimisation.candidate import Candidate
+from chatter.studies.optimisation.exclusion import Exclusion, why_nothing
+from chatter.studies.optimisation.limits import Limits
+from chatter.studies.optimisation.operating_point import OperatingPoint, case_at
+from chatter.studies.optimisation.speed_depth_slice import SpeedDepthSlice
+
+#: m^3/s in cm^3/min
+_PER_MINUTE = 6e7
+#: limit -> name of what it limits in a summary, and factor from SI
+_QUANTILE = {
+    "max_power": ("power_W", 1.0),
+    "max_torque": ("torque_Nm", 1.0),
+    "max_deflection": ("deflection_um", 1e6),
+    "max_surface_error": ("surface_error_um", 1e6),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Optimum(SavedResult):
+    """Best cuts within the limits of a case.
+
+    Parameters
+    ----------
+    case : Case
+    limits : Limits
+    candidates : tuple of Candidate
+        Those that hold in the time domain first, highest removal rate first.
+    over_radial_depths : tuple of OperatingPoint
+        Best point of the coarse grid at every radial depth that has one.
+    grid_slice : SpeedDepthSlice
+        All speeds and depths at the radial depth and feed of the best cut.
+    exclusions : tuple of Exclusion
+        What each limit excludes of the coarse grid.
+    points : int
+        Of the coarse grid.
+    samples, seed : int
+        Of what is uncertain; no samples where nothing is.
+    notes : tuple of str
+    """
+
+    drawn_by: ClassVar[str] = "plots.optimum.plot_optimum"
+    picture: ClassVar[str] = "optimum.png"
+
+    case: Case
+    limits: Limits
+    candidates: tuple[Candidate, ...]
+    over_radial_depths: tuple[OperatingPoint, ...]
+    grid_slice: SpeedDepthSlice
+    exclusions: tuple[Exclusion, ...]
+    points: int
+    samples: int
+    seed: int
+    notes: tuple[str, ...] = ()
+
+    @property
+    def best(self) -> Candidate | None:
+        """The best cut; None where no cut keeps all limits."""
+        verified = [
+            one for one in self.candidates if one.verification is None or one.verification.verified
+        ]
+        return verified[0] if verified else None
+
+    @property
+    def best_case(self) -> Case | None:
+        """The case with the best cut written in; None where there is none."""
+        return None if self.best is None else case_at(self.case, self.best.point)
+
+    @property
+    def why_nothing(self) -> str:
+        """What excludes everything; empty where there is a best cut."""
+        if self.best is not None:
+            return ""
+        if self.candidates:
+            return "no candidate of the linear search holds all limits in the time domain"
+        if self.over_radial_depths:
+            return (
+                "no cut is stable and keeps all limits with a probability of "
+                f"{self.limits.confidence:.3g}"
+            )
+        return why_nothing(self.exclusions)
+
+    def summary(self) -> dict:
+        """Return the content of summary.json."""
+        return {
+            "title": self.case.title,
+            "feasible": self.best is not None,
+            "why_nothing": self.why_nothing or None,
+            "best": None if self.best is None else _summary_of(self.best),
+            "candidates": [_summary_of(one) for one in self.candidates],
+            "limits": {
+                **self.limits.most,
+                "confidence": self.limits.confidence if self.samples else None,
+                "depth_margin": self.limits.depth_margin,
+                "speed_margin": self.limits.speed_margin,
+            },
+            "searched": {
+                "spindle_speeds_rpm": _ends(rpm(self.limits.speeds)),
+                "axial_depths_mm": _ends(self.limits.depths * 1e3),
+                "radial_depths_mm": _ends(self.limits.radial_depths * 1e3),
+                "feeds_per_tooth_mm": _ends(self.limits.feeds * 1e3),
+                "points": self.points,
+            },
+            "excluded_share": {one.limit: one.excluded for one in self.exclusions},
+            "over_radial_depths": [_point_summary(point) for point in self.over_radial_depths],
+            "samples": self.samples,
+            "seed": self.seed,
+            "notes": list(self.notes),
+        }
+
+    def sentences(self) -> list[str]:
+        """Sentences for the terminal; none where there is no best cut, see `why_nothing`."""
+        if self.best is None:
+            return []
+        best = self.best
+        point, known = best.point, best.probability
+        lines = [
+            f"{rpm(point.spindle_speed):.5g} rpm, {point.axial_depth * 1e3:.4g} mm deep, "
+            f"{point.radial_depth * 1e3:.4g} mm wide, {point.feed_per_tooth * 1e3:.4g} mm a tooth: "
+            f"{best.removal_rate * _PER_MINUTE:.4g} cm^3/min",
+            f"{best.power * 1e-3:.3g} kW, {best.torque:.3g} N m, deflection "
+            f"{best.deflection * 1e6:.3g} um, surface error {best.surface_error * 1e6:.3g} um",
+        ]
+        if known is not None:
+            low, high = known.interval
+            what = "stable and within all limits" if self.limits.most else "stable"
+            lines.append(
+                f"{what} with a probability of {known.value:.1%} (95 % confidence: {low:.1%} to "
+                f"{high:.1%}, {self.samples} samples)"
+            )
+        limited = ", ".join(best.active) or "nothing that a deeper cut would break at once"
+        lines.append(f"limited by {limited}")
+        return lines
+
+    def texts(self) -> dict[str, str]:
+        """Content of optimum.csv and summary.json."""
+        return {"optimum.csv": self._table(), "summary.json": as_json(self.summary())}
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write optimum.csv, summary.json, optimum.png and, of an optimum, case-optimum.toml."""
+        written, path = super().save(folder), Path(folder) / "case-optimum.toml"
+        if self.best_case is not None:
+            self.best_case.save(path)
+            return [*written, path]
+        # one of an earlier search would be taken for what was found now
+        path.unlink(missing_ok=True)
+        return written
+
+    def _table(self) -> str:
+        found = self.candidates
+        points = [one.point for one in found]
+        known = [one.probability for one in found]
+        checks = [one.verification for one in found]
+        rates = [one.removal_rate * _PER_MINUTE for one in found]
+        active = [" ".join(name.replace(" ", "-") for name in one.active) for one in found]
+        return csv_text(
+            {
+                "rank": (range(1, len(found) + 1), "d"),
+                "spindle_speed [rpm]": ([rpm(one.spindle_speed) for one in points], ".8g"),
+                "axial_depth [mm]": ([one.axial_depth * 1e3 for one in points], ".7g"),
+                "radial_depth [mm]": ([one.radial_depth * 1e3 for one in points], ".7g"),
+                "feed_per_tooth [mm]": ([one.feed_per_tooth * 1e3 for one in points], ".7g"),
+                "removal_rate [cm^3/min]": (rates, ".7g"),
+                "power [kW]": ([one.power * 1e-3 for one in found], ".7g"),
+                "torque [N m]": ([one.torque for one in found], ".7g"),
+                "deflection [um]": ([one.deflection * 1e6 for one in found], ".7g"),
+                "surface_error [um]": ([one.surface_error * 1e6 for one in found], ".7g"),
+                "critical_depth [mm]": ([one.critical_depth * 1e3 for one in found], ".7g"),
+                "probability_of_stability": ([one and one.stable for one in known], ".6g"),
+                "probability": ([one and one.value for one in known], ".6g"),
+                "active": (active, ""),
+                "time_domain_verdict": ([one and one.verdict for one in checks], ""),
+                "time_domain_verified": ([one and one.verified for one in checks], ""),
+            }
+        )
+
+
+def _ends(values) -> list[float]:
+    return [float(values[0]), float(values[-1])]
+
+
+def _point_summary(point: OperatingPoint) -> dict:
+    return {
+        "spindle_speed_rpm": rpm(point.spindle_speed),
+        "axial_depth_mm": point.axial_depth * 1e3,
+        "radial_depth_mm": point.radial_depth * 1e3,
+        "feed_per_tooth_mm": point.feed_per_tooth * 1e3,
+        "removal_rate_cm3_per_min": point.removal_rate * _PER_MINUTE,
+    }
+
+
+def _summary_of(one: Candidate) -> dict:
+    known, verification = one.probability, one.verification
+    return {
+        **_point_summary(one.point),
+        **_numbers(one),
+        "critical_depth_mm": finite_or_none(one.critical_depth * 1e3),
+        "usage": {key: finite_or_none(value) for key, value in one.usage.items()},
+        "active": list(one.active),
+        "probability_of_stability": None if known is None else known.stable,
+        "probability": None if known is None else known.value,
+        "confidence_interval_95": None if known is None else list(known.interval),
+        "at_confidence": None
+        if known is None
+        else {_QUANTILE[key][0]: _scaled(key, value) for key, value in known.quantiles.items()},
+        "time_domain": None
+        if verification is None
+        else {
+            "verdict": verification.verdict,
+            "verified": verification.verified,
+            **_numbers(verification),
+        },
+    }
+
+
+def _scaled(key: str, value: float) -> float | None:
+    return finite_or_none(value * _QUANTILE[key][1])
+
+
+def _numbers(one) -> dict:
+    return {
+        "power_W": finite_or_none(one.power),
+        "torque_Nm": finite_or_none(one.torque),
+        "deflection_um": finite_or_none(one.deflection * 1e6),
+        "surface_error_um": finite_or_none(one.surface_error * 1e6),
+    }

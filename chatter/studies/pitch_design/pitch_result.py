@@ -1,0 +1,189 @@
+"""Result of a pitch design: designs, picture, files."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.case import Case
+from chatter.description.units import rpm
+from chatter.io.result_files import SavedResult, as_json, csv_text
+from chatter.studies.pitch_design.families import regeneration
+from chatter.studies.pitch_design.pitch_search import Design
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class FamilyCurve:
+    """Designs of a family over its difference.
+
+    Parameters
+    ----------
+    name : str
+    differences : (n,) array of float
+        rad.
+    designs : tuple of n Design
+    rule : (k,) array of float
+        Differences at which regeneration cancels by the rule, rad, within the bounds.
+    """
+
+    name: str
+    differences: Array
+    designs: tuple[Design, ...]
+    rule: Array
+
+    @property
+    def best(self) -> Design:
+        """Design with the highest score."""
+        return max(self.designs, key=lambda one: one.score)
+
+
+@dataclass(frozen=True, eq=False)
+class PitchResult(SavedResult):
+    """Pitch angles for a range of speeds.
+
+    Parameters
+    ----------
+    case : Case
+    goal : str
+    max_pitch_ratio : float
+        That was allowed, in units of the mean.
+    max_depth : float
+        Depth to which limits were searched, m.
+    original : Design
+        That of the case.
+    designs : tuple of Design
+        Best first, that of the case among them; their limits are those at `speeds`.
+    curves : tuple of FamilyCurve
+        Their limits are those at the coarser speeds of the search.
+    chatter_frequency, design_speed : float
+        What the rule uses: the chatter frequency of the uniform-pitch tool where its limit is
+        lowest, Hz, and the middle of the speeds, rad/s.
+    speeds : (m,) array of float
+        rad/s.
+    notes : tuple of str
+    """
+
+    drawn_by: ClassVar[str] = "plots.pitch_design.plot_pitch"
+    picture: ClassVar[str] = "pitch.png"
+
+    case: Case
+    goal: str
+    max_pitch_ratio: float
+    max_depth: float
+    original: Design
+    designs: tuple[Design, ...]
+    curves: tuple[FamilyCurve, ...]
+    chatter_frequency: float
+    design_speed: float
+    speeds: Array
+    notes: tuple[str, ...] = ()
+
+    @property
+    def best(self) -> Design:
+        """Design with the highest score."""
+        return self.designs[0]
+
+    @property
+    def is_better(self) -> bool:
+        """Whether the best design is another than that of the case."""
+        return self.best.pitch != self.original.pitch
+
+    @property
+    def best_case(self) -> Case:
+        """The case with the best pitch angles written in."""
+        return self.case.patch({"tool.pitch": [f"{angle:g} deg" for angle in self.best.pitch]})
+
+    def summary(self) -> dict:
+        """Return the content of summary.json."""
+        return {
+            "title": self.case.title,
+            "goal": self.goal,
+            "max_pitch_ratio_allowed": self.max_pitch_ratio,
+            "spindle_speeds_rpm": [float(rpm(end)) for end in self.speeds[[0, -1]]],
+            "max_axial_depth_mm": self.max_depth * 1e3,
+            "better_than_the_case": self.is_better,
+            "best": self._design(self.best),
+            "designs": [self._design(one) for one in self.designs],
+            "lowest_limit_mm": {
+                "before": self.original.lowest_limit * 1e3,
+                "after": self.best.lowest_limit * 1e3,
+            },
+            "rule": {
+                "chatter_frequency_Hz": self.chatter_frequency,
+                "spindle_speed_rpm": rpm(self.design_speed),
+                "differences_deg": {
+                    curve.name: np.degrees(curve.rule).round(3).tolist() for curve in self.curves
+                },
+            },
+            "notes": list(self.notes),
+        }
+
+    def _design(self, one: Design) -> dict:
+        frequency = 2.0 * math.pi * self.chatter_frequency
+        return {
+            "name": one.name,
+            "pitch_deg": list(one.pitch),
+            "lowest_limit_mm": one.lowest_limit * 1e3,
+            "mean_limit_mm": float(one.limits.mean()) * 1e3,
+            "max_pitch_ratio": one.max_pitch_ratio,
+            "regeneration_left": regeneration(np.radians(one.pitch), self.design_speed, frequency),
+        }
+
+    def sentences(self) -> list[str]:
+        """Sentences for the terminal."""
+        low, high = rpm(self.speeds[[0, -1]])
+        angles = ", ".join(f"{angle:g}" for angle in self.best.pitch)
+        before, after = self.original.lowest_limit * 1e3, self.best.lowest_limit * 1e3
+        lines = [
+            f"pitch {angles} deg: lowest limit from {low:.0f} to {high:.0f} rpm "
+            f"{after:.4g} mm, with that of the case {before:.4g} mm",
+            f"largest pitch ratio {self.best.max_pitch_ratio:.3g} of the mean",
+        ]
+        if not self.is_better:
+            lines.append("no pitch within the bounds is better than that of the case")
+        return lines
+
+    def texts(self) -> dict[str, str]:
+        """Content of pitch.csv, lobes.csv and summary.json."""
+        return {
+            "pitch.csv": self._table(),
+            "lobes.csv": self._lobes(),
+            "summary.json": as_json(self.summary()),
+        }
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write pitch.csv, lobes.csv, summary.json, pitch.png and case-pitch.toml."""
+        path = Path(folder) / "case-pitch.toml"
+        written = super().save(folder)
+        self.best_case.save(path)
+        return [*written, path]
+
+    def _table(self) -> str:
+        found = self.designs
+        angles = [" ".join(f"{angle:g}" for angle in one.pitch) for one in found]
+        return csv_text(
+            {
+                "rank": (range(1, len(found) + 1), "d"),
+                "name": ([one.name for one in found], ""),
+                "pitch [deg]": (angles, ""),
+                "lowest_limit [mm]": ([one.lowest_limit * 1e3 for one in found], ".6g"),
+                "mean_limit [mm]": ([one.limits.mean() * 1e3 for one in found], ".6g"),
+                "max_pitch_ratio": ([one.max_pitch_ratio for one in found], ".5g"),
+            }
+        )
+
+    def _lobes(self) -> str:
+        return csv_text(
+            {
+                "spindle_speed [rpm]": (rpm(self.speeds), ".4f"),
+                "critical_depth_before [mm]": (self.original.limits * 1e3, ".6g"),
+                "critical_depth_after [mm]": (self.best.limits * 1e3, ".6g"),
+            }
+        )

@@ -1,0 +1,189 @@
+"""Search for pitch angles by the limits of collocation: one-parameter families, then all angles."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.case import Case
+from chatter.stability.methods.collocation.element_cut import element_cut
+from chatter.stability.model import milling_model
+from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
+from chatter.studies.optimisation.stable_depths import first_limits
+from chatter.studies.pitch_design.families import Family
+from chatter.studies.result_cache import ResultCache
+
+Array = NDArray[np.float64]
+
+#: angles are whole multiples of this, deg
+RESOLUTION = 0.1
+#: differences of a family that are evaluated
+DIFFERENCES = 16
+#: what is moved from one pitch to another, deg, and evaluations at most
+_STEPS = (6.0, 3.0, 1.5, 0.7, 0.3)
+MAX_MOVES = 60
+#: a gain below this share is none
+_LEAST_GAIN = 1e-3
+#: weight of the mean limit against the lowest, where that is alike
+_MEAN_WEIGHT = 1e-3
+
+
+@dataclass(frozen=True)
+class Design:
+    """Pitch angles and the limits that they give.
+
+    Parameters
+    ----------
+    name : str
+    pitch : tuple of float
+        deg, multiples of 0.1.
+    limits : (n,) array of float
+        First limit at every speed, m; the end of the search where none was found.
+    score : float
+        What the goal makes of them.
+    """
+
+    name: str
+    pitch: tuple[float, ...]
+    limits: Array
+    score: float
+
+    @property
+    def lowest_limit(self) -> float:
+        """Lowest limit over all speeds, m."""
+        return float(self.limits.min())
+
+    @property
+    def max_pitch_ratio(self) -> float:
+        """Chip of the tooth that takes most, in units of the mean."""
+        return max(self.pitch) * len(self.pitch) / 360.0
+
+
+def lowest_limit(speeds: Array, limits: Array) -> float:
+    """Goal: the lowest limit, and a little of the mean."""
+    del speeds
+    return float(limits.min() + _MEAN_WEIGHT * limits.mean())
+
+
+def highest_removal(speeds: Array, limits: Array) -> float:
+    """Goal: the highest depth times speed that keeps the usual margins of depth and speed."""
+    robust = [
+        limits[np.abs(speeds / speed - 1.0) <= SPEED_MARGIN * (1.0 + 1e-9)].min()
+        for speed in speeds
+    ]
+    return float((1.0 - DEPTH_MARGIN) * np.max(np.array(robust) * speeds))
+
+
+#: name in a case file -> goal
+GOALS: dict[str, Callable[[Array, Array], float]] = {
+    "lowest limit": lowest_limit,
+    "removal rate": highest_removal,
+}
+
+
+def rounded_pitch(pitch: Sequence[float]) -> tuple[float, ...]:
+    """Angles (deg) as multiples of the resolution that make a revolution."""
+    parts = np.asarray(pitch) / RESOLUTION
+    whole = np.floor(parts + 1e-6).astype(int)
+    missing = round(360.0 / RESOLUTION) - int(whole.sum())
+    order = np.argsort(-(parts - whole), kind="stable")
+    whole[order[:missing]] += 1
+    return tuple(round(float(part) * RESOLUTION, 6) for part in whole)
+
+
+class PitchSearch:
+    """Limits of a case by its pitch angles, over a range of speeds.
+
+    Parameters
+    ----------
+    case : Case
+    speeds, depths : (n,), (m,) arrays of float
+        rad/s and grid of depths, m.
+    goal : str
+        Key of `GOALS`.
+    max_pitch_ratio : float
+        Largest pitch, in units of the mean; the smallest is 2 less this.
+    evaluated : callable
+        Called after every evaluation.
+    cache : ResultCache
+        Limits that are known already.
+    """
+
+    def __init__(
+        self,
+        case: Case,
+        speeds: Array,
+        depths: Array,
+        goal: str,
+        max_pitch_ratio: float,
+        evaluated: Callable[[], None],
+        cache: ResultCache,
+    ) -> None:
+        self.case, self.speeds, self.depths = case, speeds, depths
+        self.goal, self.max_pitch_ratio, self.evaluated = GOALS[goal], max_pitch_ratio, evaluated
+        self.teeth, self._cache = case.tool.teeth, cache
+        self._known: dict[tuple[float, ...], Array] = {}
+
+    def limits(self, pitch: Sequence[float], speeds: Array) -> Array:
+        """First limits at speeds (n,), m, of pitch angles in deg."""
+        angles = [f"{angle:.6g} deg" for angle in pitch]
+
+        def compute() -> list[float]:
+            model = milling_model(self.case.patch({"tool.pitch": angles}))
+            max_depth = float(self.depths[-1])
+            found = first_limits(element_cut(model, max_depth), speeds, self.depths)
+            return np.minimum(found, max_depth).tolist()
+
+        inputs = (angles, speeds.tolist())
+        return np.array(self._cache.record("limits", inputs, compute), dtype=np.float64)
+
+    def design(self, name: str, pitch: Sequence[float]) -> Design:
+        """Design of pitch angles (deg), computed once."""
+        angles = rounded_pitch(pitch)
+        if angles not in self._known:
+            self._known[angles] = self.limits(angles, self.speeds)
+        self.evaluated()
+        limits = self._known[angles]
+        return Design(name, angles, limits, self.goal(self.speeds, limits))
+
+    def may_be(self, pitch: Sequence[float]) -> bool:
+        """Whether all pitch angles (deg) are within the bounds of the chip."""
+        shares = np.asarray(pitch) * self.teeth / 360.0
+        allowed = self.max_pitch_ratio + 1e-9
+        return bool(shares.max() <= allowed and shares.min() >= 2.0 - allowed)
+
+    def of_family(self, family: Family) -> tuple[Array, list[Design]]:
+        """Differences, rad, and designs of a family up to the bounds of the chip."""
+        widest = (self.max_pitch_ratio - 1.0) * 2.0 * math.pi / self.teeth
+        differences = np.linspace(0.0, widest / family.widest(self.teeth), DIFFERENCES)
+        designs = [
+            self.design(family.name, np.degrees(family.angles(self.teeth, float(difference))))
+            for difference in differences
+        ]
+        return differences, designs
+
+    def improved(self, start: Design) -> Design:
+        """Best design on the way from a start, moving angle from one pitch to another."""
+        best, left = start, MAX_MOVES
+        for step in _STEPS:
+            pairs = list(itertools.permutations(range(self.teeth), 2))
+            unsuccessful = 0
+            for source, target in itertools.cycle(pairs):
+                if left <= 0 or unsuccessful >= len(pairs):
+                    break
+                unsuccessful += 1
+                pitch = list(best.pitch)
+                pitch[source] -= step
+                pitch[target] += step
+                if not self.may_be(pitch):
+                    continue
+                left -= 1
+                found = self.design("free", pitch)
+                if found.score > best.score * (1.0 + _LEAST_GAIN):
+                    best, unsuccessful = found, 0
+        return best

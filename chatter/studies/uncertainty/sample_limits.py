@@ -1,0 +1,115 @@
+"""Limits of stability of one sample."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.case import Case
+from chatter.description.errors import InputError
+from chatter.description.progress import no_progress
+from chatter.stability.methods.zeroth_order.limits import zero_order_of
+from chatter.stability.model import milling_model
+from chatter.stability.registry import chosen_method, fixed_steps
+from chatter.stability.search_range import maximum_depth, spindle_speeds
+
+#: depths of the grid on which limits are bracketed
+_DEPTHS = 32
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Speeds and depths that all samples share.
+
+    Parameters
+    ----------
+    speeds : (n,) array of float
+        rad/s.
+    depths : (m,) array of float
+        m, ascending.
+    """
+
+    speeds: NDArray[np.float64]
+    depths: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SampleLimits:
+    """Limits of a sample.
+
+    Parameters
+    ----------
+    limits : list of float
+        At every speed, m; inf where none was found.
+    operating : float
+        At the speed of the cut, m.
+    stable : bool
+        Whether the cut is.
+    """
+
+    limits: list[float]
+    operating: float
+    stable: bool
+
+
+def shared_grid(case: Case, speed_count: int) -> Grid:
+    """Speeds and depths from the case with its mean values.
+
+    Raises
+    ------
+    InputError
+        If the case lacks something.
+    """
+    model = milling_model(case)
+    wide = spindle_speeds(case)
+    speeds = np.linspace(float(wide[0]), float(wide[-1]), speed_count)
+    max_depth = maximum_depth(case, zero_order_of(model, wide))
+    return Grid(speeds, np.linspace(0.0, max_depth, _DEPTHS + 1)[1:])
+
+
+def sample_limits(case: Case, grid: Grid, method: str | None) -> SampleLimits:
+    """Limits of one sample at the shared speeds and at the speed of its cut.
+
+    Parameters
+    ----------
+    case : Case
+    grid : Grid
+    method : str, optional
+        Of stability.
+
+    Raises
+    ------
+    InputError
+        If the sample describes no cut.
+    """
+    chosen = chosen_method(case, method)
+    model = milling_model(case)
+    steps = fixed_steps(case)
+    curve = chosen.limits(model, grid.speeds, grid.depths, steps, no_progress)
+    cut = case.cut
+    depths = grid.depths
+    if cut.axial_depth > 0.98 * depths[-1]:
+        depths = np.linspace(0.0, 1.02 * cut.axial_depth, _DEPTHS + 1)[1:]
+    operating = chosen.limits(model, np.array([cut.spindle_speed]), depths, steps, no_progress)
+    below = operating.crossings[0] < cut.axial_depth
+    return SampleLimits(
+        [float(depth) for depth in curve.critical_depth],
+        float(operating.critical_depth[0]),
+        int(below.sum()) % 2 == 0,
+    )
+
+
+def check_counts(samples: int, speeds: int, seed: int) -> None:
+    """Refuse counts that give no result.
+
+    Raises
+    ------
+    InputError
+        If one is out of range.
+    """
+    limits = (("--samples", samples, 2, 1_000_000), ("--speeds", speeds, 2, 20_000))
+    for name, given, low, high in (*limits, ("--seed", seed, 0, 2**31)):
+        if not low <= given <= high:
+            raise InputError(f"{name} {given}: a number from {low} to {high} is wanted")

@@ -1,0 +1,233 @@
+"""`whatif`: a case or machine with values changed, the points of the study, and its result."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from functools import partial
+from io import StringIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from chatter.description.errors import InputError, RunError
+from chatter.description.progress import Progress, no_progress
+from chatter.engine.parallel import Executor
+from chatter.io.result_files import SavedResult, as_json
+from chatter.studies.model import fingerprint, patched
+from chatter.studies.result_cache import ResultCache
+from chatter.studies.whatif.design import AS_GIVEN, DesignPoint, Layout, chosen_layout, points_of
+from chatter.studies.whatif.measures import Curve, Measure, Outcome, measure_of
+from chatter.studies.whatif.summary import sentences
+from chatter.studies.whatif.variation import Variation, read_variation, variation
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from chatter.studies.model import Model
+
+
+@dataclass(frozen=True)
+class WhatIf(SavedResult):
+    """Result of a study.
+
+    Parameters
+    ----------
+    model : Case or MachineFile
+        As given.
+    variations : tuple of Variation
+    layout : {"overlay", "heat map", "tornado"}
+    measure : Measure
+    quantity : str
+        Key of the number that is shown.
+    points : tuple of DesignPoint
+        A tornado begins with the model as given, then low and high of each path.
+    outcomes : tuple of Outcome
+    """
+
+    drawn_by: ClassVar[str] = "plots.whatif.plot_whatif"
+    picture: ClassVar[str] = "whatif.png"
+
+    model: Model
+    variations: tuple[Variation, ...]
+    layout: Layout
+    measure: Measure
+    quantity: str
+    points: tuple[DesignPoint, ...]
+    outcomes: tuple[Outcome, ...]
+
+    def sentences(self) -> list[str]:
+        """What changed, by how much."""
+        return sentences(self)
+
+    def values(self, key: str | None = None) -> list[float | None]:
+        """Number of a key at every point; that which is shown by default."""
+        return [outcome.numbers.get(key or self.quantity) for outcome in self.outcomes]
+
+    def summary(self) -> dict:
+        """Return the content of summary.json."""
+        return {
+            "title": self.model.title,
+            "result": self.measure.name,
+            "layout": self.layout,
+            "quantity": self.quantity,
+            "paths": {one.path: [value.label for value in one.values] for one in self.variations},
+            "points": [
+                {
+                    "values": dict(
+                        zip((one.path for one in self.variations), point.labels, strict=True)
+                    ),
+                    **outcome.words,
+                    **outcome.numbers,
+                    **({"failure": outcome.failure} if outcome.failure else {}),
+                }
+                for point, outcome in zip(self.points, self.outcomes, strict=True)
+            ],
+            "changes": self.sentences(),
+        }
+
+    def texts(self) -> dict[str, str]:
+        """Content of whatif.csv and summary.json."""
+        return {"whatif.csv": self._table(), "summary.json": as_json(self.summary())}
+
+    def _table(self) -> str:
+        """One row a point: values of the paths, then words and numbers."""
+        words = list(dict.fromkeys(key for one in self.outcomes for key in one.words))
+        numbers = list(dict.fromkeys(key for one in self.outcomes for key in one.numbers))
+        text = StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        heads = [one.axis_label for one in self.variations]
+        writer.writerow([*heads, *words, *numbers])
+        for point, outcome in zip(self.points, self.outcomes, strict=True):
+            given = [
+                _cell(one, index) for one, index in zip(self.variations, point.indices, strict=True)
+            ]
+            words_found = [outcome.words.get(key, "") for key in words]
+            found = [outcome.numbers.get(key) for key in numbers]
+            cells = ["" if one is None else f"{one:.9g}" for one in found]
+            writer.writerow([*given, *words_found, *cells])
+        return text.getvalue()
+
+
+def _cell(one: Variation, index: int | None) -> str:
+    if index is None:
+        return AS_GIVEN
+    if one.numbers is None:
+        return one.values[index].label
+    return f"{one.numbers[index]:.9g}"
+
+
+def whatif(
+    model: Model,
+    vary: Mapping[str, Sequence[Any] | str] | Sequence[Variation | str],
+    result: str | None = None,
+    *,
+    tornado: bool = False,
+    count: int | None = None,
+    quantity: str | None = None,
+    method: str | None = None,
+    only: Sequence[str] = (),
+    folder: str | Path | None = None,
+    progress: Progress = no_progress,
+    resumed: Callable[[int, int], None] | None = None,
+    cluster: str | Executor | None = None,
+) -> WhatIf:
+    """Ask what would change if values of a case or machine were others.
+
+    Parameters
+    ----------
+    model : Case or MachineFile
+        Paths into the machine of a case begin with "machine.".
+    vary : mapping of str to values, or sequence of str
+        Path -> values (text with units, numbers in SI, None to take a key away), or texts as on
+        the command line: "PATH=v1,v2", "PATH=from..to", "PATH=+-10%".
+    result : {"lobes", "critical depth", "forces", "surface", "frf"}, optional
+        Lobes of a case, FRFs of a machine by default.
+    tornado : bool
+        One path at a time, each at its first and last value, against the model as given. By
+        default one path gives an overlay and two a heat map.
+    count : int, optional
+        Values of ranges; 5 by default.
+    quantity : str, optional
+        Key of the number that is shown.
+    method : str, optional
+        Of stability, as for `chatter.lobes`.
+    only : sequence of str
+        Names of [frf.NAME] of a machine.
+    folder : path, optional
+        Keeps finished points in the result cache there, and reuses those of the same input.
+    progress : callable, optional
+        Called with (done, total) points.
+    resumed : callable, optional
+        Called once with (finished before, total) points.
+    cluster : str or Executor, optional
+        Where points are computed, as for `chatter.studies.executor.open_executor`; here by default.
+
+    Returns
+    -------
+    WhatIf
+
+    Raises
+    ------
+    InputError
+        If a path or value is wrong, or nothing can be computed.
+    RunError
+        If every run fails, or the study is interrupted; finished points are in the folder.
+    """
+    variations = _variations(model, vary, count)
+    layout = chosen_layout(variations, tornado)
+    measure = measure_of(result, model)
+    key = quantity or next(iter(measure.quantities))
+    if key not in measure.quantities:
+        known = ", ".join(measure.quantities)
+        raise InputError(f'--quantity "{key}" is not known; {measure.name} has {known}')
+    points = points_of(variations, layout)
+    models = [patched(model, point.patch) for point in points]
+    evaluate = partial(_record, measure.name, method, tuple(only))
+    with ResultCache(folder, measure.name, method or "", ",".join(only)) as cache:
+        keys = [cache.key(fingerprint(each)) for each in models]
+        before = cache.finished(keys)
+        if before and resumed is not None:
+            resumed(before, len(points))
+        records = cache.evaluate(evaluate, models, keys, "points", cluster, progress)
+    if all(record["failure"] for record in records):
+        messages, failure = records[0]["input_errors"], records[0]["failure"]
+        raise InputError(messages) if messages else RunError(failure)
+    outcomes = tuple(_outcome(record) for record in records)
+    return WhatIf(model, variations, layout, measure, key, points, outcomes)
+
+
+def _record(
+    measure: str, method: str | None, only: tuple[str, ...], model: Model
+) -> dict[str, Any]:
+    """Record of a point, with what is wrong with its input."""
+    messages: tuple[str, ...] = ()
+    try:
+        outcome = measure_of(measure, model).evaluate(model, method, only)
+    except InputError as error:
+        outcome, messages = Outcome(failure=str(error)), error.messages
+    except RunError as error:
+        outcome = Outcome(failure=str(error))
+    return {**asdict(outcome), "input_errors": messages}
+
+
+def _outcome(record: dict[str, Any]) -> Outcome:
+    curves = tuple(Curve(**curve) for curve in record["curves"])
+    return Outcome(record["numbers"], record["words"], curves, record["failure"], record["units"])
+
+
+def _variations(
+    model: Model,
+    vary: Mapping[str, Sequence[Any] | str] | Sequence[Variation | str],
+    count: int | None,
+) -> tuple[Variation, ...]:
+    if hasattr(vary, "items"):
+        return tuple(
+            read_variation(f"{path}={values}", model, count)
+            if isinstance(values, str)
+            else variation(path, list(values), model)
+            for path, values in vary.items()
+        )
+    return tuple(
+        one if isinstance(one, Variation) else read_variation(one, model, count) for one in vary
+    )
