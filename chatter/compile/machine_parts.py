@@ -23,8 +23,8 @@ from dynamics.machine.description import (
     MachineParts,
     machine,
 )
+from dynamics.reduction.imported_part import ImportedPart, reduced_part
 from dynamics.structure.bodies import Connector
-from dynamics.structure.imported_part import ImportedPart, reduced_part
 from dynamics.structure.spring_coupling import Coupling, Term
 from dynamics.structure.surface_constraint import InterpolatedPoint, RigidSurface
 

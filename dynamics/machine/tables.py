@@ -18,8 +18,8 @@ from dynamics.machine.groups import (
     Loads,
     frictions_on_ports,
 )
+from dynamics.machine.modal_structure import modal_energy, modal_structure
 from dynamics.machine.steps import StructureSteps, structure_steps
-from dynamics.modal.modal_structure import modal_energy, modal_structure
 from dynamics.modal.modes import Mode
 from dynamics.structure.linear_structure import StructureError
 from dynamics.trajectory.set_points import SetPoints
