@@ -25,7 +25,7 @@ def main(out: Path) -> list[Path]:
         print(f"missing: {effect['name']}: {numbers}")
     error = summary["error"]
     print(
-        f"error on runs that were not seen: {100 * error['holdout_before']:.3g} % before, "
+        f"error on holdout runs: {100 * error['holdout_before']:.3g} % before, "
         f"{100 * error['holdout_after']:.3g} % after, noise {100 * error['noise_floor']:.3g} %"
     )
     return result.save(out)
