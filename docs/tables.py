@@ -41,6 +41,13 @@ def friction_laws() -> str:
     return _laws(FRICTION_LAWS)
 
 
+def force_laws() -> str:
+    """Force laws of `[material]`."""
+    from chatter.description.laws import FORCE_LAWS
+
+    return _laws(FORCE_LAWS)
+
+
 def methods() -> str:
     """Stability methods."""
     from chatter.stability.registry import documentation
@@ -117,6 +124,7 @@ def sections() -> str:
 TABLES: dict[str, Callable[[], str]] = {
     "commands": commands,
     "sections": sections,
+    "force laws": force_laws,
     "friction laws": friction_laws,
     "methods": methods,
     "effects": effects,

@@ -13,7 +13,7 @@ class ExactStep(NamedTuple):
     """What a step of x' = A x + B u makes of the state and of an input linear in time."""
 
     transition: NDArray[np.float64]  # exp(A h), (n, n)
-    held: NDArray[np.float64]  # state per input that is 1 over the step, (n, k)
+    constant: NDArray[np.float64]  # state per input that is 1 over the step, (n, k)
     ramp: NDArray[np.float64]  # state per input that grows from 0 to 1 over the step, (n, k)
 
 

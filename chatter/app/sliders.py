@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from chatter.compile.cutter import force_law
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.formatting import shown
@@ -118,7 +119,7 @@ def _feed_matters(case: Case) -> bool:
     given = case.process_damping
     ploughs = given is not None and given.indentation_force is not None
     uneven = case.tool.runout is not None or case.tool.radial_error is not None
-    return case.material.law == "exponential" or ploughs or uneven
+    return force_law(case, 0.0).slope_power.exponent != 0.0 or ploughs or uneven
 
 
 def _of_tool(case: Case) -> Iterator[Slider]:
@@ -147,6 +148,8 @@ def _of_material(case: Case) -> Iterator[Slider]:
             label = key.replace("_", " ")
             ends = min(low, angle), max(high, angle)
             yield Slider(f"material.{key}", group, label, "deg", angle, *ends)
+        return
+    if material.Ktc is None:
         return
     tangential = _rounded(material.Ktc * 1e-6)
     yield _around("material.Ktc", group, "Ktc", "MPa", material.Ktc)

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from cutting.force.edge_force import ExponentialEdge, LinearEdge, edge_law_table
-from cutting.force.force_law import ExponentialLaw, ForceLaw, LinearLaw
+from cutting.force.law import ForceLaw
+from cutting.force.laws import edge_law_table
 from cutting.process_damping.flank import BareFlank
-from cutting.process_damping.ploughing import Ploughing, PloughingFlank, ploughing_flank
-from cutting.process_damping.viscous import ViscousFlank
+from cutting.process_damping.law import ProcessDampingLaw
+from cutting.process_damping.ploughing import Ploughing
+from cutting.process_damping.viscous import ViscousProcessDamping
 from cutting.tool.cutter import Cutter, Serration
 
 
@@ -48,32 +51,33 @@ def cutter_of(case: Case) -> Cutter:
 
 def force_law(case: Case, helix: float) -> ForceLaw:
     """Force law of a case after its cutting time, for an edge inclined by the helix, rad."""
-    material = case.material
-    cutting = np.asarray(material.cutting_coefficients(helix))
-    edge = np.asarray(material.edge_coefficients)
-    if case.wear is not None and case.cut is not None:
-        time = case.cut.cut_time
-        cutting = cutting * (1.0 + case.wear.cutting * time)
-        edge = edge + time * np.array([case.wear.edge_tangential, case.wear.edge_radial, 0.0])
-    if material.law == "exponential":
-        return ExponentialLaw(tuple(cutting), material.h0, material.exponent, tuple(edge))
-    return LinearLaw(tuple(cutting), tuple(edge))
+    law = case.material.force_law(helix)
+    if case.wear is None or case.cut is None:
+        return law
+    wear, time = case.wear, case.cut.cut_time
+    growth = time * np.array([wear.edge_tangential, wear.edge_radial, 0.0])
+    return law.worn(wear.cutting * time, growth)
 
 
-def edge_law(case: Case) -> LinearEdge | ExponentialEdge:
+def edge_law(case: Case) -> NamedTuple:
     """Table of the force law for the kernels; helix may differ from tooth to tooth."""
     return edge_law_table([force_law(case, helix) for helix in helix_angles(case)])
 
 
-def ploughing_of(case: Case) -> Ploughing:
-    """Ploughing that a case describes.
+def process_damping_of(case: Case) -> ProcessDampingLaw | None:
+    """Force on the flank that a case describes; None where there is none.
 
     Raises
     ------
     InputError
-        If the tool lacks the clearance angle, or anything that touches the work.
+        If ploughing lacks the clearance angle, or anything that touches the work.
     """
     tool, section = case.tool, case.process_damping
+    if section is None:
+        return None
+    if section.indentation_force is None:
+        given = section.coefficient
+        return ViscousProcessDamping(given, section.friction) if given else None
     problems = []
     if tool.clearance_angle is None:
         problems.append(
@@ -96,13 +100,7 @@ def ploughing_of(case: Case) -> Ploughing:
     )
 
 
-def flank_table(
-    case: Case, radius: np.ndarray, step_angle: float
-) -> BareFlank | ViscousFlank | PloughingFlank:
-    """Table of the flank force for the kernels."""
-    section = case.process_damping
-    if section is not None and section.indentation_force is not None:
-        return ploughing_flank(ploughing_of(case), radius, case.tool.teeth, step_angle)
-    if section is not None and section.coefficient:
-        return ViscousFlank(section.coefficient, section.friction)
-    return BareFlank()
+def flank_table(case: Case, radius: np.ndarray, step_angle: float) -> NamedTuple:
+    """Table of the force on the flank for the kernels."""
+    law = process_damping_of(case)
+    return BareFlank() if law is None else law.table(radius, case.tool.teeth, step_angle)

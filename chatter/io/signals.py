@@ -115,7 +115,7 @@ def _frf(path: Path, direction: str) -> Signals:
     one = format_of(path, "FRFs")
     if one.read_signals is not None:
         try:
-            signals = with_parts(path, _in_si(one.read_signals(path), "frf"))
+            signals = _with_parts(path, _in_si(one.read_signals(path), "frf"))
         except (InputError, MeasurementError):
             signals = {}  # a table of another quantity, of several FRFs, or no table
         if {"frequency", "real", "imag"} <= signals.keys():
@@ -123,7 +123,7 @@ def _frf(path: Path, direction: str) -> Signals:
     return _frf_of_direction(path, one.read_frfs(path), direction)
 
 
-def with_parts(path: Path, signals: Signals) -> Signals:
+def _with_parts(path: Path, signals: Signals) -> Signals:
     """Real and imaginary part instead of magnitude and phase."""
     if "magnitude" not in signals or "real" in signals:
         return signals

@@ -188,7 +188,7 @@ def _wall(result: SimulationResult, record: _Record, side: str) -> WallProfiles 
 
 def _spacing(result: SimulationResult, motion: ToolMotion) -> float:
     """Distance between points along the feed, m."""
-    way = float(np.ptp(motion.place[:, 0]))
+    way = float(np.ptp(motion.position[:, 0]))
     return max(result.case.cut.feed_per_tooth / _POINTS_A_TOOTH, way / _MOST_POINTS)
 
 
@@ -208,7 +208,7 @@ def _grid(record: _Record, passes: list[WallPasses], width: float, spacing: floa
     """Points along the feed that every edge which matters has passed."""
     middles = [one.reach_at_pass(record.longer)[0] for one in passes]
     low = max(middle[0] for middle in middles) + width
-    low = max(low, float(record.evaluated.place[0, 0]))
+    low = max(low, float(record.evaluated.position[0, 0]))
     high = min(middle[-1] for middle in middles) - width
     count = math.floor((high - low) / spacing) if high > low else 0
     return low + spacing * np.arange(count) if count >= _POINTS_A_TOOTH else None
@@ -232,7 +232,7 @@ def _floor(result: SimulationResult, record: _Record) -> tuple[FloorProfile | No
     feed_per_turn = case.cut.feed_per_tooth * cutter.teeth
     spacing = _spacing(result, record.evaluated)
     # what later turns will still cut is left out at the end
-    start = max(at.min() + feed_per_turn, record.evaluated.place[0, 0] + tip_radius * steep)
+    start = max(at.min() + feed_per_turn, record.evaluated.position[0, 0] + tip_radius * steep)
     count = math.floor((at.max() - feed_per_turn - start) / spacing)
     if count < _POINTS_A_TOOTH:
         return None, "floor: the run is too short for it to be evaluated"

@@ -9,7 +9,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.compile.cutter import cutter_of, force_law, helix_angles, ploughing_of
+from chatter.compile.cutter import cutter_of, force_law, helix_angles, process_damping_of
 from chatter.compile.structure import Structure, depends_on_speed, structure_at, structure_of
 from chatter.description.case import Case
 from chatter.description.errors import InputError
@@ -25,7 +25,6 @@ from cutting.edge_segments.segments import (
     EdgeSegments,
     edge_segments,
     period_angle,
-    small_vibration_coefficient,
 )
 from cutting.engagement.immersion import engagement
 from cutting.force.directional_coefficients import (
@@ -33,8 +32,8 @@ from cutting.force.directional_coefficients import (
     directional_table,
     mean_over_turn,
 )
-from cutting.force.force_law import ForceLaw
-from cutting.process_damping.ploughing import Ploughing
+from cutting.force.law import ForceLaw
+from cutting.process_damping.law import ProcessDampingLaw
 from cutting.process_damping.viscous import ViscousProcessDamping
 from cutting.tool.cutter import Cutter
 
@@ -60,7 +59,7 @@ class MillingModel:
     cutter : Cutter
     laws : tuple of ForceLaw
         One for each tooth.
-    flank : ViscousProcessDamping, Ploughing or None
+    flank : ProcessDampingLaw or None
     notes : tuple of str
         Assumptions and limits that the user should know of.
     """
@@ -70,13 +69,18 @@ class MillingModel:
     basis: NDArray[np.float64]
     cutter: Cutter
     laws: tuple[ForceLaw, ...]
-    flank: ViscousProcessDamping | Ploughing | None
+    flank: ProcessDampingLaw | None
     notes: tuple[str, ...]
 
     @property
     def teeth(self) -> int:
         """Number of teeth."""
         return self.cutter.teeth
+
+    @property
+    def dashpot(self) -> ViscousProcessDamping | None:
+        """Process damping as it is for small vibration."""
+        return None if self.flank is None else self.flank.small_vibration
 
     @property
     def depends_on_speed(self) -> bool:
@@ -116,7 +120,7 @@ class MillingModel:
         case = self.case
         arc = engagement(case.cut.mode, case.width_of_cut, case.tool.diameter)
         return directional_table(
-            arc, self.laws[0], case.cut.feed_per_tooth, self.basis, viscous(self.flank)
+            arc, self.laws[0], case.cut.feed_per_tooth, self.basis, self.dashpot
         )
 
     @cached_property
@@ -214,13 +218,6 @@ def _segments_of(cutter: Cutter, laws: tuple[ForceLaw, ...], *cut: object) -> Ed
     return edge_segments(cutter, list(laws), *cut)
 
 
-def viscous(flank: ViscousProcessDamping | Ploughing | None) -> ViscousProcessDamping | None:
-    """Dashpot that a flank makes for small vibration (see `cutting.edge_segments.segments`)."""
-    if isinstance(flank, Ploughing):
-        return ViscousProcessDamping(small_vibration_coefficient(flank), flank.friction)
-    return flank
-
-
 def milling_model(case: Case, structure: Structure | None = None) -> MillingModel:
     """Compile a case for the stability methods.
 
@@ -243,10 +240,10 @@ def milling_model(case: Case, structure: Structure | None = None) -> MillingMode
         refuse_unstable_structure(structure)
     cutter = cutter_of(case)
     notes = list(structure.notes)
-    flank = _flank(case)
+    flank = process_damping_of(case)
     if flank is not None:
         notes.append("the zeroth-order solution leaves out process damping")
-    if isinstance(flank, Ploughing):
+    if flank is not None and flank is not flank.small_vibration:
         notes.append(
             "ploughing is linearised as a dashpot for small vibration; chatter simulate includes "
             "it in full"
@@ -292,17 +289,6 @@ def _refuse_crossing_flutes(case: Case, cutter: Cutter) -> None:
             f"{case.name}: tool.helix: flutes of these angles run into each other "
             f"{min(heights) * 1e3:.3g} mm above the tip"
         )
-
-
-def _flank(case: Case) -> ViscousProcessDamping | Ploughing | None:
-    section = case.process_damping
-    if section is None:
-        return None
-    if section.indentation_force is not None:
-        return ploughing_of(case)
-    if not section.coefficient:
-        return None
-    return ViscousProcessDamping(section.coefficient, section.friction)
 
 
 def _motion_basis(directions: NDArray[np.float64]) -> NDArray[np.float64]:

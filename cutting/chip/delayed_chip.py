@@ -19,10 +19,8 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from cutting.compiled import INLINED, by_table
-from cutting.force.edge_force import ExponentialEdge, LinearEdge, edge_force
-from cutting.process_damping.flank import BareFlank, end_contact, flank_force, store_surface
-from cutting.process_damping.ploughing import PloughingFlank
-from cutting.process_damping.viscous import ViscousFlank
+from cutting.force.laws import edge_force
+from cutting.process_damping.flank import BARE, LEAVES, end_contact, flank_force, store_surface
 from cutting.tool.edge_table import (
     GAUSS_POINT,
     EdgeTable,
@@ -44,8 +42,8 @@ class DelayedCut(NamedTuple):
     """Cut of a tool through the waves that its teeth have left in the last turn."""
 
     edges: EdgeTable
-    law: LinearEdge | ExponentialEdge
-    flank: BareFlank | ViscousFlank | PloughingFlank
+    law: NamedTuple
+    flank: NamedTuple
     entry: NDArray[np.float64]  # of each slice, bins, (L,)
     exit: NDArray[np.float64]  # bins, (L,)
     arc: NDArray[np.float64]  # first entry and last exit of all slices, bins, (2,)
@@ -268,9 +266,7 @@ def _off_flank(flank, cut, tooth, piece, rotation, point, total):  # noqa: ARG00
 
 
 #: adds the force on the flank, where there is one
-_add_flank_force = by_table(
-    {BareFlank: _off_flank, ViscousFlank: _on_flank, PloughingFlank: _on_flank}
-)
+_add_flank_force = by_table({one.table: _off_flank if one is BARE else _on_flank for one in LEAVES})
 
 
 @register_jitable(**INLINED)
@@ -413,7 +409,7 @@ def _no_surfaces(flank, cut, rotation, point):
 
 #: lets the flank take in the surface behind every edge, where it has a memory
 _store_surfaces = by_table(
-    {BareFlank: _no_surfaces, ViscousFlank: _no_surfaces, PloughingFlank: _surfaces_behind}
+    {one.table: _surfaces_behind if one.has_memory else _no_surfaces for one in LEAVES}
 )
 
 

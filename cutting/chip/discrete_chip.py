@@ -16,10 +16,8 @@ from numpy.typing import NDArray
 from cutting.compiled import INLINED, by_table
 from cutting.dexel.carving import dexel_carve, dexel_chip_thickness
 from cutting.dexel.stock import DexelStock
-from cutting.force.edge_force import ExponentialEdge, LinearEdge, edge_force
-from cutting.process_damping.flank import BareFlank, end_contact, flank_force, store_surface
-from cutting.process_damping.ploughing import PloughingFlank
-from cutting.process_damping.viscous import ViscousFlank
+from cutting.force.laws import edge_force
+from cutting.process_damping.flank import LEAVES, end_contact, flank_force, store_surface
 from cutting.tool.edge_table import EdgeTable, direction, force_on_tool
 from cutting.voxel.carving import voxel_carve, voxel_chip_thickness
 from cutting.voxel.stock import VoxelStock
@@ -29,8 +27,8 @@ class DiscreteCut(NamedTuple):
     """Cut of a tool through a workpiece of layers."""
 
     edges: EdgeTable
-    law: LinearEdge | ExponentialEdge
-    flank: BareFlank | ViscousFlank | PloughingFlank
+    law: NamedTuple
+    flank: NamedTuple
     stock: DexelStock | VoxelStock
     depth: float  # of all layers, m
     removed: NDArray[np.float64]  # volume removed since the start, m^3, (1,)
@@ -142,7 +140,7 @@ def _no_surface(flank, cut, tooth, piece, rotation, point):
 
 #: lets the flank take in the surface behind an edge, where it has a memory
 _store_surface_of_layer = by_table(
-    {BareFlank: _no_surface, ViscousFlank: _no_surface, PloughingFlank: _surface_behind}
+    {one.table: _surface_behind if one.has_memory else _no_surface for one in LEAVES}
 )
 
 

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cutting.chip.delayed_chip import DelayedCut
-from cutting.force.edge_force import ExponentialEdge, LinearEdge
-from cutting.process_damping.flank import BareFlank
-from cutting.process_damping.ploughing import PloughingFlank
-from cutting.process_damping.viscous import ViscousFlank
 from cutting.tool.cutter import EdgeSlices
 from cutting.tool.edge_table import edge_table
 from cutting.tool.tooth_passes import earlier_passes
@@ -22,8 +19,8 @@ _TURN = 2.0 * math.pi
 def delayed_cut(
     slices: EdgeSlices,
     arc: tuple[NDArray[np.float64], NDArray[np.float64]],
-    law: LinearEdge | ExponentialEdge,
-    flank: BareFlank | ViscousFlank | PloughingFlank,
+    law: NamedTuple,
+    flank: NamedTuple,
     bins: int,
     path: NDArray[np.float64],
 ) -> DelayedCut:

@@ -22,9 +22,8 @@ from cutting.edge_segments.edge_profile import edge_line, straight_borders
 from cutting.edge_segments.engagement_arcs import Segment, segments_of_one_pass, segments_of_passes
 from cutting.edge_segments.segment_groups import segment_groups, turning_ends
 from cutting.engagement.immersion import MillingMode
-from cutting.force.force_law import ExponentialLaw, ForceLaw
-from cutting.process_damping.ploughing import Ploughing
-from cutting.process_damping.viscous import ViscousProcessDamping
+from cutting.force.law import ForceLaw, SlopePower
+from cutting.process_damping.law import ProcessDampingLaw
 from cutting.tool.cutter import Cutter
 
 _REVOLUTION = 2.0 * math.pi
@@ -73,7 +72,7 @@ def edge_segments(
     radial_depth: float,
     feed_per_revolution: float,
     max_depth: float,
-    flank: ViscousProcessDamping | Ploughing | None = None,
+    flank: ProcessDampingLaw | None = None,
     relative_length: float = 1.0,
 ) -> EdgeSegments:
     """Cut the edges of a tool into segments from the tip to a height.
@@ -86,8 +85,8 @@ def edge_segments(
     mode : {"up", "down", "slot"}
     radial_depth, feed_per_revolution, max_depth : float
         m.
-    flank : ViscousProcessDamping or Ploughing, optional
-        Ploughing is taken for small vibration; see `small_vibration_coefficient`.
+    flank : ProcessDampingLaw, optional
+        Ploughing is taken for small vibration; see `ProcessDampingLaw.small_vibration`.
     relative_length : float
         Factor on how much an edge turns, trails or widens within a segment.
 
@@ -102,24 +101,19 @@ def edge_segments(
         cutter, max_depth, mode, radial_depth, own_passes, arc_step, relative_length
     )
     line = edge_line(cutter, max_depth, mode, radial_depth, heights, arc_step)
-    slopes = [_reference_slope(law) for law in laws]
+    slopes = [law.slope_power.cutting for law in laws]
     if own_passes:
         edges = Edges(cutter, mode, radial_depth, feed_per_revolution)
         segments, owners = segments_of_passes(edges, line, max_depth, slopes, relative_length)
     else:
         segments, owners = segments_of_one_pass(cutter, line, mode, radial_depth, slopes)
     turning = turning_ends(segments, owners, wave)
-    sized = isinstance(laws[0], ExponentialLaw) and laws[0].exponent < 1.0
+    power = laws[0].slope_power
+    sized = power.exponent != 0.0
     order, first_of_group = segment_groups(segments, owners, sized=sized, apart=wave and sized)
     segments = [segments[i] for i in order]
     feed = feed_per_revolution / _REVOLUTION
-    return _as_arrays(segments, turning[order], first_of_group, cutter, laws[0], flank, feed)
-
-
-def _reference_slope(law: ForceLaw) -> NDArray[np.float64]:
-    if isinstance(law, ExponentialLaw):
-        return law.exponent * np.asarray(law.cutting)
-    return np.asarray(law.cutting)
+    return _as_arrays(segments, turning[order], first_of_group, cutter, power, flank, feed)
 
 
 def _as_arrays(
@@ -127,8 +121,8 @@ def _as_arrays(
     turning: NDArray[np.int64],
     first_of_group: NDArray[np.int64],
     cutter: Cutter,
-    law: ForceLaw,
-    flank: ViscousProcessDamping | Ploughing | None,
+    power: SlopePower,
+    flank: ProcessDampingLaw | None,
     feed: float,
 ) -> EdgeSegments:
     count = len(segments)
@@ -147,33 +141,21 @@ def _as_arrays(
         if not near:
             distinct.append(value)
         delay_index[position] = near[0] if near else len(distinct) - 1
-    exponent, reference = 0.0, 1.0
-    if isinstance(law, ExponentialLaw) and law.exponent < 1.0:
-        exponent, reference = law.exponent - 1.0, law.reference_chip_thickness
     damping = np.zeros(2)
-    if isinstance(flank, ViscousProcessDamping):
-        damping = flank.coefficient * np.array([flank.friction, 1.0])
-    elif isinstance(flank, Ploughing):
-        damping = small_vibration_coefficient(flank) * np.array([flank.friction, 1.0])
+    if flank is not None:
+        dashpot = flank.small_vibration
+        damping = dashpot.coefficient * np.array([dashpot.friction, 1.0])
     return EdgeSegments(
         bottom=table.bottom, thickness=table.thickness, length=table.length, angle=table.angle,
         entry=table.entry, exit=table.exit, delay=delay, immersion=table.immersion,
         radius=table.radius, delay_index=delay_index, distinct_delay=np.array(distinct),
         cutting=table.cutting, feed=feed, radial_offset=table.radial_offset,
         axial_offset=table.axial_offset, corner=table.corner,
-        vanishing=table.vanishing.astype(np.int64), exponent=exponent, reference=reference,
-        damping=damping, turning=turning, first_of_group=first_of_group,
+        vanishing=table.vanishing.astype(np.int64), exponent=power.exponent,
+        reference=power.reference, damping=damping, turning=turning,
+        first_of_group=first_of_group,
         outline=np.array([cutter.radius, cutter.corner_radius, cutter.edge_angle]),
     )  # fmt: skip
-
-
-def small_vibration_coefficient(law: Ploughing) -> float:
-    """C of the dashpot, N/m, that a ploughing flank is for small vibration: K l^2/2.
-
-    The land in contact, of length l, is pressed into the wave behind the edge: at a distance s the
-    wave lies r(t) - r(t - s/V) = s r'/V lower, and the displaced volume a width is the sum of that.
-    """
-    return 0.5 * law.indentation_force * law.contact_length**2
 
 
 def period_angle(cutter: Cutter) -> float:

@@ -21,7 +21,7 @@ from numba.extending import register_jitable
 from numpy.typing import ArrayLike, NDArray
 
 from cutting.engagement.immersion import Engagement
-from cutting.force.force_law import ForceLaw
+from cutting.force.law import ForceLaw
 from cutting.process_damping.viscous import ViscousProcessDamping
 
 #: below this lag (rad) the edge is taken as straight at half its lag: error of lag^2/24

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutting.engagement.immersion import MillingMode, slice_engagement
-from cutting.force.force_law import ForceLaw
+from cutting.force.law import ForceLaw
 from cutting.process_damping.viscous import ViscousProcessDamping
 from cutting.tool.cutter import Cutter, EdgeSlices, edge_slices, slice_counts
 from cutting.tool.tooth_passes import earlier_passes

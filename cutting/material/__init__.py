@@ -1,1 +1,1 @@
-"""Material."""
+"""Material data: published cutting coefficients (`table`), orthogonal cutting data (`oblique`)."""

@@ -1,6 +1,6 @@
 """Forces on the flank behind the edge: none, viscous process damping, or ploughing.
 
-A law is added by a table and leaves in its own module, and its entries here. Every table answers
+A law is added by its module, which ends in `FlankLeaves`, and by its line here. Every table answers
 three calls: the force at a place of the edge, the surface left by a step, and the end of contact.
 """
 
@@ -11,13 +11,9 @@ from typing import NamedTuple
 from numba.extending import register_jitable
 
 from cutting.compiled import INLINED, by_table
-from cutting.process_damping.ploughing import (
-    PloughingFlank,
-    clear_surface_history,
-    ploughing_force,
-    store_surface_history,
-)
-from cutting.process_damping.viscous import ViscousFlank, no_clear, no_store, viscous_force
+from cutting.process_damping.law import FlankLeaves
+from cutting.process_damping.ploughing import PLOUGHING
+from cutting.process_damping.viscous import VISCOUS, no_clear, no_store
 
 
 class BareFlank(NamedTuple):
@@ -32,15 +28,14 @@ def bare_force(flank, tooth, piece, place, rate, speed):  # noqa: ARG001
     return 0.0, 0.0
 
 
+BARE = FlankLeaves(BareFlank, bare_force, no_store, no_clear)
+
+#: forces on the flank: one module and one line here each
+LEAVES = (BARE, VISCOUS, PLOUGHING)
+
 #: tangential and radial force per length of edge, N/m
-flank_force = by_table(
-    {BareFlank: bare_force, ViscousFlank: viscous_force, PloughingFlank: ploughing_force}
-)
+flank_force = by_table({one.table: one.force for one in LEAVES})
 #: takes in the surface that the edge has left in this step, m along its outward normal
-store_surface = by_table(
-    {BareFlank: no_store, ViscousFlank: no_store, PloughingFlank: store_surface_history}
-)
+store_surface = by_table({one.table: one.store for one in LEAVES})
 #: clears what lies behind an edge that has left the cut
-end_contact = by_table(
-    {BareFlank: no_clear, ViscousFlank: no_clear, PloughingFlank: clear_surface_history}
-)
+end_contact = by_table({one.table: one.clear for one in LEAVES})

@@ -17,6 +17,8 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from cutting.compiled import INLINED
+from cutting.process_damping.law import FlankLeaves
+from cutting.process_damping.viscous import ViscousProcessDamping
 
 #: material parts at this angle before the lowest point of a rounded edge (Basuray et al. 1977)
 _SEPARATION_ANGLE = math.radians(37.6)
@@ -84,6 +86,53 @@ class Ploughing:
         rise = radius - np.sqrt(radius**2 - before**2) + radius - np.sqrt(radius**2 - on_arc**2)
         return depth - rise - np.maximum(after - arc_end, 0.0) * math.tan(self.clearance_angle)
 
+    @property
+    def small_vibration(self) -> ViscousProcessDamping:
+        """Dashpot that the flank is for small vibration: C = K l^2/2.
+
+        The land in contact, of length l, is pressed into the wave behind the edge: at a distance s
+        the wave lies r(t) - r(t - s/V) = s r'/V lower, and the displaced volume a width is the sum
+        of that.
+        """
+        coefficient = 0.5 * self.indentation_force * self.contact_length**2
+        return ViscousProcessDamping(coefficient, self.friction)
+
+    def table(self, radius: NDArray[np.float64], teeth: int, step_angle: float) -> PloughingFlank:
+        """Table for the kernels, with the samples of the wave for every tooth and slice.
+
+        Parameters
+        ----------
+        radius : (L,) array of float
+            Of the edge slices, m.
+        teeth : int
+        step_angle : float
+            Rotation in a time step, rad.
+        """
+        contact = self.contact_length
+        length = contact + _HIGHEST_WAVE / math.tan(self.clearance_angle)
+        nodes = np.concatenate(
+            [
+                np.linspace(0.0, contact, _NODES_OF_CONTACT + 1),
+                contact + (length - contact) * np.linspace(0.0, 1.0, _NODES_BEHIND + 1)[1:] ** 2,
+            ]
+        )
+        arc = np.maximum(radius, 1e-3 * radius.max()) * step_angle
+        stride = max(1, math.ceil(length / (_MOST_SAMPLES - 2) / arc.max()))
+        samples = min(_MOST_SAMPLES, math.ceil(length / (stride * arc.max())) + 2)
+        shape = (teeth, radius.size)
+        return PloughingFlank(
+            indentation_force=self.indentation_force,
+            friction=self.friction,
+            distance=nodes,
+            depth=self.profile(nodes),
+            spacing=stride * arc,
+            stride=stride,
+            wave=np.zeros((*shape, samples)),
+            newest=np.zeros(shape, dtype=np.int64),
+            filled=np.zeros(shape, dtype=np.int64),
+            age=np.zeros(shape, dtype=np.int64),
+        )
+
 
 class PloughingFlank(NamedTuple):
     """Flank of the edge, and the wave that each slice of it has just cut."""
@@ -98,46 +147,6 @@ class PloughingFlank(NamedTuple):
     newest: NDArray[np.int64]  # column of the last sample, (N, L)
     filled: NDArray[np.int64]  # samples since the edge came into the cut, (N, L)
     age: NDArray[np.int64]  # steps since the last sample, (N, L)
-
-
-def ploughing_flank(
-    law: Ploughing, radius: NDArray[np.float64], teeth: int, step_angle: float
-) -> PloughingFlank:
-    """Lay out the samples of the wave for every tooth and slice.
-
-    Parameters
-    ----------
-    law : Ploughing
-    radius : (L,) array of float
-        Of the edge slices, m.
-    teeth : int
-    step_angle : float
-        Rotation in a time step, rad.
-    """
-    contact = law.contact_length
-    length = contact + _HIGHEST_WAVE / math.tan(law.clearance_angle)
-    nodes = np.concatenate(
-        [
-            np.linspace(0.0, contact, _NODES_OF_CONTACT + 1),
-            contact + (length - contact) * np.linspace(0.0, 1.0, _NODES_BEHIND + 1)[1:] ** 2,
-        ]
-    )
-    arc = np.maximum(radius, 1e-3 * radius.max()) * step_angle
-    stride = max(1, math.ceil(length / (_MOST_SAMPLES - 2) / arc.max()))
-    samples = min(_MOST_SAMPLES, math.ceil(length / (stride * arc.max())) + 2)
-    shape = (teeth, radius.size)
-    return PloughingFlank(
-        indentation_force=law.indentation_force,
-        friction=law.friction,
-        distance=nodes,
-        depth=law.profile(nodes),
-        spacing=stride * arc,
-        stride=stride,
-        wave=np.zeros((*shape, samples)),
-        newest=np.zeros(shape, dtype=np.int64),
-        filled=np.zeros(shape, dtype=np.int64),
-        age=np.zeros(shape, dtype=np.int64),
-    )
 
 
 @register_jitable(**INLINED)
@@ -218,3 +227,8 @@ def clear_surface_history(flank, tooth, piece):
     """The edge has left the cut: there is nothing behind it any more."""
     flank.filled[tooth, piece] = 0
     flank.age[tooth, piece] = 0
+
+
+PLOUGHING = FlankLeaves(
+    PloughingFlank, ploughing_force, store_surface_history, clear_surface_history, has_memory=True
+)

@@ -10,9 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
+import numpy as np
 from numba.extending import register_jitable
+from numpy.typing import NDArray
 
 from cutting.compiled import INLINED
+from cutting.process_damping.law import FlankLeaves
 
 
 @dataclass(frozen=True)
@@ -29,6 +32,20 @@ class ViscousProcessDamping:
 
     coefficient: float
     friction: float = 0.0
+
+    @property
+    def small_vibration(self) -> ViscousProcessDamping:
+        """The dashpot itself."""
+        return self
+
+    def table(
+        self,
+        radius: NDArray[np.float64],  # noqa: ARG002
+        teeth: int,  # noqa: ARG002
+        step_angle: float,  # noqa: ARG002
+    ) -> ViscousFlank:
+        """Table for the kernels; all edges are alike."""
+        return ViscousFlank(self.coefficient, self.friction)
 
     @property
     def force_per_radial_velocity(self) -> tuple[float, float, float]:
@@ -69,3 +86,6 @@ def no_clear(flank, tooth, piece):
 @register_jitable(**INLINED)
 def no_store(flank, tooth, piece, surface):
     """Store nothing: the viscous form has no memory."""
+
+
+VISCOUS = FlankLeaves(ViscousFlank, viscous_force, no_store, no_clear)

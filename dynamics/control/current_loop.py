@@ -31,7 +31,7 @@ class CurrentPlant(NamedTuple):
     def sampled(self, step: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return transition (2, 2) and entry (2,) over a step, s, of held input."""
         over = exact_step(self.matrix, self.entry[:, None], step)
-        return over.transition, over.held[:, 0]
+        return over.transition, over.constant[:, 0]
 
     def response(self, frequencies: ArrayLike, step: float) -> NDArray[np.complex128]:
         """Return both states per input in the z-domain of a step, s: (..., 2); Hz."""

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.simulation.reconstruction import WALLS
-from chatter.stability.model import MillingModel, viscous
+from chatter.stability.model import MillingModel
 from cutting.edge_segments.segments import period_angle
 from cutting.engagement.immersion import slice_engagement
 from cutting.force.force_spectrum import ForceSpectrum, RigidCut, slices_at
@@ -120,7 +120,7 @@ class SteadyModel:
         receptance = receptance_matrix(self.modes, frequency.ravel())
         receptance = receptance.reshape(*frequency.shape, 3, 3)
         motion = np.einsum("nkab,kb->nka", receptance, spectrum.force)
-        flank = viscous(self.model.flank)
+        flank = self.model.dashpot
         if self.stride == self.model.teeth and flank is None:
             return motion
         counts = self._coupled_counts(speeds)
@@ -162,7 +162,7 @@ class SteadyModel:
     def _feedback(self, rigid: RigidCut, count: int) -> Complex:
         """Force at harmonic k by motion at harmonic m, N/m, (k, r, m, r), of both signs."""
         wanted = self.stride * np.arange(2 * count - 1)
-        coupling = rigid.coupling(wanted, self.model.basis, viscous(self.model.flank))
+        coupling = rigid.coupling(wanted, self.model.basis, self.model.dashpot)
         signed = np.arange(1 - count, count)
         apart = signed[:, None] - signed[None, :]
         turn = self.stride * signed

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.frf.container import Frf, MeasurementError, Point, Quantity
-from dynamics.frf.hammer.spectra import Estimator, Spectra, coherence
+from dynamics.frf.hammer.spectra import Estimator, Spectra, frf_of
 
 
 def spectra_of_segments(
@@ -56,16 +56,7 @@ def averaged_frf(spectra: Spectra, estimator: Estimator, source: str) -> Frf:
         If a line holds no force.
     """
     require_force(spectra.frequency, spectra.force_power, source)
-    return Frf(
-        frequency=spectra.frequency,
-        values=estimator(spectra),
-        quantity=spectra.quantity,
-        response=spectra.response,
-        reference=spectra.reference,
-        coherence=coherence(spectra) if spectra.count > 1 else None,
-        source=source,
-        added_decay=spectra.added_decay,
-    )
+    return frf_of(spectra, estimator, source)
 
 
 def require_force(frequency: NDArray[np.float64], power: NDArray[np.float64], source: str) -> None:

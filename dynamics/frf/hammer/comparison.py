@@ -72,7 +72,7 @@ class Excess:
     ratio : float
         Root mean square over its limit; above 1 it is no chance.
     start, stop : int
-        Stretch of the aligned record, samples.
+        Segment of the aligned record, samples.
     size : float
         Largest absolute residual in the segment.
     """
@@ -81,6 +81,44 @@ class Excess:
     start: int
     stop: int
     size: float
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What counts as a deviation, given how far the agreeing records scatter.
+
+    Parameters
+    ----------
+    gain, delay, misfit : float
+        Largest allowed deviation of `Comparison.gain` from 1, of `Comparison.delay` from 0 in
+        samples, and of `Comparison.misfit`.
+    tolerance : float
+        Share of the predicted response by which a residual may exceed its noise.
+    """
+
+    gain: float
+    delay: float
+    misfit: float
+    tolerance: float
+
+
+@dataclass(frozen=True)
+class RecordAssessment:
+    """A record against the others: how far beyond the limits, and in what."""
+
+    comparison: Comparison
+    excess: Excess
+    limits: Limits
+
+    @property
+    def severity(self) -> float:
+        """Largest deviation over its limit; above 1 the record is at fault."""
+        return max(
+            abs(self.comparison.gain - 1.0) / self.limits.gain,
+            abs(self.comparison.delay) / self.limits.delay,
+            self.comparison.misfit / self.limits.misfit,
+            self.excess.ratio,
+        )
 
 
 def compare(aligned: AlignedSet, row: int, members: NDArray[np.bool_]) -> Comparison:

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
+from dynamics.frf.hammer.comparison import RecordAssessment
 from dynamics.frf.hammer.consensus import AlignedSet
 from dynamics.frf.hammer.findings import Fault, Finding
 from dynamics.frf.hammer.record import HammerRecord
-
-if TYPE_CHECKING:
-    from dynamics.frf.hammer.record_comparison import RecordAssessment
 
 #: factors by which a wrong unit or sensitivity scales a channel
 _UNIT_SLIPS = {

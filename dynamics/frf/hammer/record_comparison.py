@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import t as student
 
-from dynamics.frf.hammer.comparison import Comparison, Excess, compare, largest_excess
+from dynamics.frf.hammer.comparison import (
+    Comparison,
+    Limits,
+    RecordAssessment,
+    compare,
+    largest_excess,
+)
 from dynamics.frf.hammer.consensus import AlignedSet, agreeing_group, align, disagreement
 from dynamics.frf.hammer.findings import Finding
 from dynamics.frf.hammer.hit import Hit
@@ -30,44 +34,6 @@ _ENOUGH_FOR_SPREAD = 4
 #: noise over peak, against the median of the set and absolutely, above which nothing is coherent
 _NOISE_OVER_OTHERS = 5.0
 _NOISE_OVER_PEAK = 0.025
-
-
-@dataclass(frozen=True)
-class Limits:
-    """What counts as a deviation, given how far the agreeing records scatter.
-
-    Parameters
-    ----------
-    gain, delay, misfit : float
-        Largest allowed deviation of `Comparison.gain` from 1, of `Comparison.delay` from 0 in
-        samples, and of `Comparison.misfit`.
-    tolerance : float
-        Share of the predicted response by which a residual may exceed its noise.
-    """
-
-    gain: float
-    delay: float
-    misfit: float
-    tolerance: float
-
-
-@dataclass(frozen=True)
-class RecordAssessment:
-    """A record against the others: how far beyond the limits, and in what."""
-
-    comparison: Comparison
-    excess: Excess
-    limits: Limits
-
-    @property
-    def severity(self) -> float:
-        """Largest deviation over its limit; above 1 the record is at fault."""
-        return max(
-            abs(self.comparison.gain - 1.0) / self.limits.gain,
-            abs(self.comparison.delay) / self.limits.delay,
-            self.comparison.misfit / self.limits.misfit,
-            self.excess.ratio,
-        )
 
 
 def findings_against_each_other(sound: list[tuple[HammerRecord, Hit]]) -> list[Finding]:

@@ -4,7 +4,7 @@
 module         responsibility
 ============== ======================================================================
 record         motion and effort of one axis, its checks; effort from the motor current
-filtering      one low-pass for every signal; smoothed derivative and its noise
+filtering      one low-pass for every signal
 intervals      confidence intervals with residuals that are not white
 linear_fit     inertia, viscous and Coulomb friction by linear least squares
 first_guess    starting values of a friction law from the linear fit and a reversal

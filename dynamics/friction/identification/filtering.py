@@ -1,4 +1,4 @@
-"""The same low-pass for every signal of a record, and the noise a derivative carries.
+"""The same low-pass for every signal of a record.
 
 A regression whose effort and motion went through different filters mistakes phase for friction
 and inertia. Here one linear, zero-phase operator acts on all of them (parallel filtering of
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import butter, savgol_filter, sosfiltfilt
+from scipy.signal import butter, sosfiltfilt
 
 from dynamics.frf.container import MeasurementError
 
@@ -71,72 +71,3 @@ class LowPass:
             )
         sections = butter(self.order, self.cutoff / nyquist, output="sos")
         return sosfiltfilt(sections, values, axis=0, padlen=pad)
-
-
-@dataclass(frozen=True)
-class Derivative:
-    """A smoothed time derivative and the noise that is left in it.
-
-    Parameters
-    ----------
-    values : (n,) array of float
-        Derivative, unit of the signal per s.
-    noise : float
-        Standard deviation of its random error, from the white noise seen in the signal.
-    """
-
-    values: NDArray[np.float64]
-    noise: float
-
-
-def smoothed_derivative(
-    signal: NDArray[np.float64], sample_time: float, window: float, order: int = 2
-) -> Derivative:
-    """Return the derivative of a local polynomial, and its noise.
-
-    Parameters
-    ----------
-    signal : (n,) array of float
-        Evenly sampled.
-    sample_time : float
-        s.
-    window : float
-        Length of the local polynomial, s; longer is quieter and blunter.
-    order : int
-        Of the polynomial.
-
-    Returns
-    -------
-    Derivative
-
-    Raises
-    ------
-    MeasurementError
-        If the window holds too few samples, or more than the record.
-
-    Notes
-    -----
-    Savitzky and Golay 1964. The filter is linear, so white noise of standard deviation s leaves
-    s times the norm of its coefficients; s comes from what the smoothing takes away, of which a
-    fraction 1 - c0 is noise (c0: middle coefficient of the smoothing filter).
-    """
-    samples = 2 * round(0.5 * window / sample_time) + 1
-    if samples < order + 2:
-        raise MeasurementError(
-            f"drive record: a smoothing window of {window:g} s holds {samples} samples of "
-            f"{sample_time:g} s; at least {order + 2} are needed"
-        )
-    if samples > len(signal):
-        raise MeasurementError(
-            f"drive record: a smoothing window of {window:g} s is longer than the record"
-        )
-    values = savgol_filter(signal, samples, order, deriv=1, delta=sample_time)
-    impulse = np.zeros(2 * samples - 1)
-    impulse[samples - 1] = 1.0
-    smoothing = savgol_filter(impulse, samples, order, mode="constant")
-    slope = savgol_filter(impulse, samples, order, deriv=1, delta=sample_time, mode="constant")
-    taken = signal - savgol_filter(signal, samples, order)
-    half = samples // 2
-    white = float(np.std(taken[half : len(taken) - half])) if len(taken) > 2 * half + 2 else 0.0
-    white /= math.sqrt(1.0 - smoothing[samples - 1])
-    return Derivative(values, white * float(np.linalg.norm(slope)))

@@ -123,9 +123,9 @@ def test_the_good_case_is_good():
         ('radial_depth = "5 mm"\n', "", 'cut.radial_depth: is missing; mode = "up" needs a length, such as radial_depth = "4 mm"'),
         ('mass = "0.5 kg"\n', "", "structure.mode[0]: either mass or stiffness is needed"),
         ('mass = "0.5 kg"', 'mass = "0.5 kg"\nstiffness = "5 N/um"', "structure.mode[0]: give mass or stiffness, not both"),
-        ('Ktc = "1650 MPa"\n', "", 'material.Ktc: is missing; law = "linear" needs it'),
-        ('Ktc = "1650 MPa"', 'Ktc = "1650 MPa"\nh0 = "1 mm"', 'material.h0: does not belong to law = "linear"'),
-        ('law = "linear"', 'law = "exponential"\nh0 = "1 mm"', 'material.exponent: is missing; law = "exponential" needs it'),
+        ('Ktc = "1650 MPa"\n', "", 'material.Ktc: is missing; law = "linear" needs it; a pressure (force per area), such as "1650 MPa"'),
+        ('Ktc = "1650 MPa"', 'Ktc = "1650 MPa"\nh0 = "1 mm"', 'material.h0: does not belong to law = "linear"; known are Ktc, Krc, Kac, Kte, Kre, Kae'),
+        ('law = "linear"', 'law = "exponential"\nh0 = "1 mm"', 'material.exponent: is missing; law = "exponential" needs it; a plain number, such as 0.03'),
         ("[lobes]", "[simulation]\nduration = 1\nrevolutions = 3\n[lobes]", "simulation: give duration or revolutions, not both"),
         ("[lobes]", '[friction.guide]\nlaw = "coulomb-stribeck"\ncoulomb = 1\nbristle_stiffness = 3\n[lobes]', 'friction.guide.bristle_stiffness: does not belong to law = "coulomb-stribeck"; known are coulomb, static, stribeck_velocity, viscous, stribeck_shape'),
         # choices

@@ -114,8 +114,8 @@ def test_tool(full):
 
 def test_material(full):
     material = full.material
-    assert material.cutting_coefficients(0.0) == (1.65e9, 7e8, 2e8)
-    assert material.edge_coefficients == (27400.0, 30000.0, -3000.0)
+    assert material.force_law(0.0).cutting == (1.65e9, 7e8, 2e8)
+    assert material.force_law(0.0).edge == (27400.0, 30000.0, -3000.0)
     assert (material.law, material.h0, material.exponent) == ("exponential", 1e-4, 0.75)
     assert full.deviations() == {"material.Ktc": 8e7}
 
@@ -254,8 +254,8 @@ def test_a_case_made_of_sections_can_be_written(full):
 def test_materials_by_name(name):
     material = loads(f"[material]\nname = '{name}'").material
     row = MATERIALS[name]
-    assert material.cutting_coefficients(0.5) == row.cutting
-    assert material.edge_coefficients == row.edge
+    assert material.force_law(0.5).cutting == row.cutting
+    assert material.force_law(0.0).edge == row.edge
     assert row.source
     # pressures of a few hundred to a few thousand MPa, edge forces of at most some 100 N/mm
     assert 1e8 < row.cutting[0] < 5e9
@@ -286,7 +286,7 @@ def test_oblique_law():
         'shear_angle = "33.067 deg"\nrake_angle = "0 deg"'
     )
     # validation 8: orthogonal, rake 0, h = 0.05 mm: 1730.9 and 599.4 MPa
-    tangential, radial, axial = loads(text).material.cutting_coefficients(0.0)
+    tangential, radial, axial = loads(text).material.force_law(0.0).cutting
     assert (tangential, radial) == pytest.approx((1730.9e6, 599.4e6), rel=1e-4)
     assert axial == pytest.approx(0.0, abs=1.0)
 

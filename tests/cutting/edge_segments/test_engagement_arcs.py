@@ -8,7 +8,8 @@ from scipy.integrate import quad
 
 from cutting.edge_segments.coupling import coupling_at, part_below
 from cutting.edge_segments.segments import edge_segments
-from cutting.force.force_law import ExponentialLaw, LinearLaw
+from cutting.force.exponential import ExponentialLaw
+from cutting.force.linear import LinearLaw
 from cutting.tool.cutter import Cutter
 
 RADIUS, DEPTH = 8e-3, 2e-3

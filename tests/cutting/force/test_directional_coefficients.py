@@ -13,7 +13,8 @@ from cutting.force.directional_coefficients import (
     mean_coupling,
     mean_over_turn,
 )
-from cutting.force.force_law import ExponentialLaw, LinearLaw
+from cutting.force.exponential import ExponentialLaw
+from cutting.force.linear import LinearLaw
 from cutting.process_damping.viscous import ViscousProcessDamping
 
 KT, KR, KA = 600e6, 200e6, 80e6

@@ -5,7 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from cutting.force.force_law import ExponentialLaw, LinearLaw, oblique_cutting_coefficients
+from cutting.force.exponential import ExponentialLaw
+from cutting.force.linear import LinearLaw
+from cutting.material.oblique import oblique_cutting_coefficients
 
 MPA = 1e6
 

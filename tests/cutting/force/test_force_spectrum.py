@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from cutting.force.force_law import ExponentialLaw, LinearLaw
+from cutting.force.exponential import ExponentialLaw
 from cutting.force.force_spectrum import RigidCut
+from cutting.force.linear import LinearLaw
 from cutting.process_damping.viscous import ViscousProcessDamping
 from cutting.tool.cutter import Cutter
 

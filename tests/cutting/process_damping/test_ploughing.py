@@ -8,7 +8,6 @@ import pytest
 from cutting.process_damping.ploughing import (
     Ploughing,
     clear_surface_history,
-    ploughing_flank,
     ploughing_force,
     store_surface_history,
 )
@@ -68,7 +67,7 @@ class Edge:
 
     def __init__(self, law, step=SPEED_STEP):
         radius = 10e-3
-        self.flank = ploughing_flank(law, np.array([radius]), 1, step / radius)
+        self.flank = law.table(np.array([radius]), 1, step / radius)
         # counters are arrays: the kernels change them in place
         self.step = step
 

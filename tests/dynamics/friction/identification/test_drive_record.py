@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from dynamics.frf.container import MeasurementError
-from dynamics.friction.identification.filtering import LowPass, smoothed_derivative
+from dynamics.friction.identification.filtering import LowPass
 from dynamics.friction.identification.record import DriveRecord, record_from_current
 
 T = 1e-3 * np.arange(1000)
@@ -68,16 +68,3 @@ def test_low_pass_has_the_gain_of_two_butterworth_passes():
         LowPass(1.0).apply(V[:400], 1e-3)
     with pytest.raises(ValueError, match="cutoff"):
         LowPass(-1.0)
-
-
-def test_derivative_and_its_noise():
-    rng = np.random.default_rng(0)
-    t = 1e-3 * np.arange(20000)
-    clean = np.sin(2 * np.pi * t)
-    made = smoothed_derivative(clean + 1e-3 * rng.standard_normal(len(t)), 1e-3, 0.02)
-    error = made.values[50:-50] - 2 * np.pi * np.cos(2 * np.pi * t[50:-50])
-    assert np.std(error) == pytest.approx(made.noise, rel=0.1)
-    with pytest.raises(MeasurementError, match="holds 3 samples"):
-        smoothed_derivative(clean, 1e-3, 0.002)
-    with pytest.raises(MeasurementError, match="longer than the record"):
-        smoothed_derivative(clean, 1e-3, 200.0)

@@ -1,0 +1,114 @@
+"""Exponential law: F = (K h0 (h/h0)^p + K_e) b, the size effect of the specific force.
+
+Kienzle, O., 1952, VDI-Z 94:299: the specific cutting force falls with a power of the chip.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numba.extending import register_jitable
+from numpy.typing import NDArray
+
+from cutting.compiled import INLINED
+from cutting.force.law import (
+    CUTTING_KEYS,
+    EDGE_KEYS,
+    Coefficients,
+    ForceLaw,
+    ForceLawEntry,
+    SlopePower,
+)
+from cutting.keys import Key
+
+
+class ExponentialTable(NamedTuple):
+    """The law for each tooth; columns tangential, radial, axial."""
+
+    cutting: NDArray[np.float64]  # N/m^2, (N, 3)
+    edge: NDArray[np.float64]  # N/m, (N, 3)
+    reference: float  # h0, m
+    exponent: float  # p
+
+
+@register_jitable(**INLINED)
+def exponential_force(law, tooth, chip):
+    """Tangential, radial and axial force per length of edge, N/m, at a chip thickness > 0, m."""
+    # a power, by exponential and logarithm: a tenth of the whole time step less
+    size = law.reference * np.exp(law.exponent * np.log(chip / law.reference))
+    return (
+        law.cutting[tooth, 0] * size + law.edge[tooth, 0],
+        law.cutting[tooth, 1] * size + law.edge[tooth, 1],
+        law.cutting[tooth, 2] * size + law.edge[tooth, 2],
+    )
+
+
+@dataclass(frozen=True)
+class ExponentialLaw(ForceLaw):
+    """Coefficients of the exponential law.
+
+    Parameters
+    ----------
+    cutting : (3,) tuple of float
+        K_tc, K_rc, K_ac at the reference chip thickness, N/m^2.
+    reference_chip_thickness : float
+        h0, m.
+    exponent : float
+        p, 0 < p <= 1.
+    edge : (3,) tuple of float
+        K_te, K_re, K_ae, N/m.
+    """
+
+    cutting: Coefficients
+    reference_chip_thickness: float
+    exponent: float
+    edge: Coefficients = (0.0, 0.0, 0.0)
+
+    leaf = exponential_force
+
+    @classmethod
+    def table(cls, laws: Sequence[ExponentialLaw]) -> ExponentialTable:
+        """Table of the law for the kernels, of one law for each tooth."""
+        return ExponentialTable(
+            np.array([law.cutting for law in laws], dtype=np.float64),
+            np.array([law.edge for law in laws], dtype=np.float64),
+            laws[0].reference_chip_thickness,
+            laws[0].exponent,
+        )
+
+    @property
+    def slope_power(self) -> SlopePower:
+        """Slope of the force; it grows without bound as the chip thickness goes to zero."""
+        slope = self.exponent * np.asarray(self.cutting)
+        return SlopePower(slope, self.exponent - 1.0, self.reference_chip_thickness)
+
+
+def _of_keys(
+    inclination: float,  # noqa: ARG001
+    h0: float,
+    exponent: float,
+    **coefficients: float,
+) -> ExponentialLaw:
+    cutting, edge = (
+        tuple(coefficients[key.name] for key in keys) for keys in (CUTTING_KEYS, EDGE_KEYS)
+    )
+    return ExponentialLaw(cutting, h0, exponent, edge)
+
+
+EXPONENTIAL = ForceLawEntry(
+    name="exponential",
+    label="exponential law",
+    help="F = (Kc h0 (h/h0)^p + Ke) b",
+    keys=(
+        *CUTTING_KEYS,
+        *EDGE_KEYS,
+        Key("h0", "length", "reference chip thickness", needed=True, above=0.0, at_most=2.0),
+        Key("exponent", "number", "p of K h0 (h/h0)^p", needed=True, above=0.0, at_most=1.0),
+    ),
+    spec=ExponentialLaw,
+    table=ExponentialTable,
+    make=_of_keys,
+)
