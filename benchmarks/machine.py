@@ -227,7 +227,7 @@ def loop_alone(machine: Machine, points: SetPoints | None) -> Callable[[], objec
     count = round(DURATION / STEP)
     tables = machine_tables(machine, STEP, points)
     record = port_record(0, 0, count + 1, count + 1)
-    laws = Laws(tables.held, (TravelLimit(1e5),), tables.implicit, (record,))
+    laws = Laws(tables.explicit, (TravelLimit(1e5),), tables.implicit, (record,))
     return lambda: run(laws, tables.bus, 0, 0, count)
 
 

@@ -157,7 +157,7 @@ def engaged_share(setup: Setup) -> float:
     entry, leave = slice_engagement(
         setup.case.cut.mode, setup.case.width_of_cut, setup.cutter.radius, setup.slices.radius
     )
-    bins = setup.resolution.steps_a_turn
+    bins = setup.resolution.steps_per_revolution
     turn = np.arange(bins)[:, None, None] * 2 * math.pi / bins
     place = np.mod(turn + angle - entry, 2 * math.pi)
     return float(np.mean(place < leave - entry))
@@ -514,7 +514,7 @@ def delay_equations() -> list[dict]:
     engine, general = [], []
     for steps in ENGINE_STEPS:
         case = straight_case(steps, DEPTH)
-        assert set_up(case).resolution.steps_a_turn == steps
+        assert set_up(case).resolution.steps_per_revolution == steps
         taken = timed(lambda case=case: run_setup(set_up(case)))
         engine.append((error(engine_motion(case), reference), taken, f"{steps} steps"))
     for tolerance in TOLERANCES:

@@ -5,10 +5,8 @@ module          responsibility
 =============== ==================================================================
 tool            geometry of the tool, edges cut into slices
 engagement      entry and exit angles of the teeth, cutting speed
-force_law       force per edge length as a function of chip thickness, its slope
-material_table  published cutting coefficients with their sources
-directional     change of the force with the motion of the tool, averaged in angle
-edge_force      force laws as tables and leaves for the time domain
+force           force laws, directional coefficients, force spectrum
+material        published cutting coefficients with their sources; oblique transformation
 edges           edge slices as the kernels see them; force of an edge on the tool
 tool_point      where the cut meets the machine
 delayed_chip    chip against the motion of the last turn

@@ -8,9 +8,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import grimp
 import numpy as np
 import pytest
+import scipy.sparse
 import tomlkit
+from scipy.sparse.csgraph import connected_components
 
 from tests.cases import TOOL_OF_922_HERTZ
 from tests.places import ROOT
@@ -50,17 +53,36 @@ def test_machine_and_cutting_know_nothing_of_each_other(package, others):
 
 
 def test_kernels_know_nothing_of_units_files_and_pictures():
-    for path in modules("chatter/stability/methods"):
+    compiled = [p for p in modules("chatter/stability") if "chatter.engine.presets" in imported(p)]
+    assert len(compiled) > 10
+    for path in compiled:
         for name in imported(path):
             assert name.split(".")[0] not in FOREIGN - {"chatter"}, (path, name)
-            known = (
-                "chatter.stability",
-                "chatter.engine.presets",
-                "chatter.stability.simd_batch",
-                "chatter.description.errors",
-            )
-            inside = name.startswith(known)
+            layers = ("chatter.stability", "chatter.engine")
+            known = ("chatter.description.errors", "chatter.description.progress")
+            inside = name.startswith((*layers, *known))
             assert inside or not name.startswith("chatter"), (path, name)
+
+
+def test_no_module_is_reached_from_itself():
+    """No circle of imports; what is imported for types alone does not count."""
+    graph = grimp.build_graph(
+        "chatter", "cutting", "dynamics", exclude_type_checking_imports=True, cache_dir=None
+    )
+    names = sorted(graph.modules)
+    number = {name: index for index, name in enumerate(names)}
+    pairs = [
+        (number[name], number[other])
+        for name in names
+        for other in graph.find_modules_directly_imported_by(name)
+        if not other.startswith(f"{name}.")  # a package names its parts
+    ]
+    links = scipy.sparse.csr_array(
+        (np.ones(len(pairs)), tuple(np.transpose(pairs))), shape=(len(names), len(names))
+    )
+    count, circle = connected_components(links, connection="strong")
+    of_circle = [[names[i] for i in np.flatnonzero(circle == one)] for one in range(count)]
+    assert [members for members in of_circle if len(members) > 1] == []
 
 
 def test_pictures_are_drawn_in_one_place():

@@ -10,7 +10,7 @@ from typing import Any
 from chatter.compile.cutter import force_law
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.description.formatting import shown
+from chatter.description.formatting import formatted
 from chatter.description.units import rpm, unit_factor
 
 #: modes with sliders of their own
@@ -237,7 +237,7 @@ def checked_values(given: Any, sliders: Mapping[str, Slider]) -> dict[str, float
     for path, value in given.items():
         slider = sliders.get(path)
         if slider is None:
-            problems.append(f"{shown(path)} is no slider of this page")
+            problems.append(f"{formatted(path)} is no slider of this page")
             continue
         problem = _problem(slider, value)
         if problem:
@@ -252,7 +252,7 @@ def checked_values(given: Any, sliders: Mapping[str, Slider]) -> dict[str, float
 def _problem(slider: Slider, value: Any) -> str:
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
     if not number or not abs(value) < 1e300:
-        return f"{slider.path}: {shown(value)} is no number"
+        return f"{slider.path}: {formatted(value)} is no number"
     slack = 1e-6 * max(abs(slider.low), abs(slider.high))
     if not slider.low - slack <= value <= slider.high + slack:
         unit = f" {slider.unit}" if slider.unit else ""

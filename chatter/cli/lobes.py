@@ -162,7 +162,7 @@ def _print_pockets(summary: dict) -> None:
         f"operating point {operating['spindle_speed_rpm']:.0f} rpm, "
         f"{operating['axial_depth_mm']:.4g} mm: "
         f"{'stable' if operating['stable'] else 'chatter'}; "
-        f"limit there {_millimetres(limit, summary['max_depth_mm'])} mm"
+        f"limit there {_millimetres(limit, summary['max_axial_depth_mm'])} mm"
     )
 
 

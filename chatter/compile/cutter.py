@@ -10,8 +10,7 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from cutting.force.law import ForceLaw
 from cutting.force.laws import edge_law_table
-from cutting.process_damping.flank import BareFlank
-from cutting.process_damping.law import ProcessDampingLaw
+from cutting.process_damping.flank import BareFlank, ProcessDampingLaw
 from cutting.process_damping.ploughing import Ploughing
 from cutting.process_damping.viscous import ViscousProcessDamping
 from cutting.tool.cutter import Cutter, Serration

@@ -141,7 +141,7 @@ def _amplitudes(case: Case, cut: MachineCut) -> dict[str, float] | None:
         drive = None if target.motor is None else cut.file.axis[target.motor].drive
         if drive is None:
             found[one.name] = along
-        elif not drive.turns:
+        elif not drive.is_rotary:
             found[one.name] = along / drive.spec().transmission
     return found
 

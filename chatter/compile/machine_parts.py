@@ -10,7 +10,7 @@ import numpy as np
 from chatter.description.errors import InputError
 from chatter.description.machine.bodies import SIX
 from chatter.description.machine.compose import Composition
-from chatter.description.machine.errors_by_key import telling
+from chatter.description.machine.errors_by_key import machine_errors
 from chatter.description.machine.friction import FrictionSection
 from chatter.description.machine.imported import ImportedSection
 from chatter.description.machine.machine_file import MachineFile
@@ -23,8 +23,8 @@ from dynamics.machine.description import (
     MachineParts,
     machine,
 )
+from dynamics.reduction.imported_part import ImportedPart, reduced_part
 from dynamics.structure.bodies import Connector
-from dynamics.structure.imported_part import ImportedPart, reduced_part
 from dynamics.structure.spring_coupling import Coupling, Term
 from dynamics.structure.surface_constraint import InterpolatedPoint, RigidSurface
 
@@ -57,7 +57,7 @@ def assembled_machine(
             raise InputError(
                 f"{file.name}: axis.{name}.brake: is missing; the axis is to be held by it"
             )
-    with telling(file.name):
+    with machine_errors(file.name):
         return machine(parts, conditions)
 
 
@@ -127,7 +127,7 @@ def machine_parts(
 
 
 def _made(file: MachineFile, key: str, make: Callable[[], object]) -> object:
-    with telling(file.name, key):
+    with machine_errors(file.name, key):
         return make()
 
 
@@ -209,7 +209,7 @@ def _frictions(
 
 def _travel(composition: Composition, name: str, at: tuple[float, ...] | None) -> tuple[Term, ...]:
     axis, geometry = composition.file.axis[name], composition.geometry(name)
-    if axis.drive is not None and axis.drive.turns:
+    if axis.drive is not None and axis.drive.is_rotary:
         return geometry.turning(geometry.moving), geometry.turning(geometry.carrying, -1.0)
     place = None if at is None else np.asarray(at) + composition.shift(axis.driven_part)
     return geometry.travel(place)

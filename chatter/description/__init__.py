@@ -1,22 +1,23 @@
-"""The case file.
+"""Case file and machine file: keys, units, patches, errors, schema.
 
-=========== ========================================================================
-module      responsibility
-=========== ========================================================================
-case        Case: what a case file says
-description reading, patching, writing back; shared with the machine file
-tool        [tool]
-material    [material]
-cut         [cut]
-structure   [structure]
-sections    the smaller sections
-checks      checks across sections
-quantities  field types: dimension and range of each key, declared once
-path        dotted paths into a case
-assignments ``--set PATH=VALUE`` of the command line
-document    the TOML document behind a case: text, values, file names
-editing     changes of the document that keep its comments
-wording     sentences for what is wrong
-schema      JSON schema
-=========== ========================================================================
+=================== ================================================================
+module              responsibility
+=================== ================================================================
+case                Case: what a case file says
+sections            the sections of a case file
+machine             the machine file and its sections
+patchable           reading, patching, writing back; shared by both files
+laws, law_section   registries of force and friction laws; sections made from them
+registry            entries by name, ours and those of installed packages
+renamed             keys with a new name; the old one is read for one release
+units               quantities with units; the one units registry
+quantities          field types: dimension and range of each key, declared once
+path, assignments   dotted paths; ``--set PATH=VALUE`` of the command line
+toml_document       the TOML document behind a file; toml_editing keeps its comments
+case_checks         checks across sections; plausibility: numbers that must be wrong
+keys_of_kind        keys that belong to a kind or a law alone
+wording, formatting sentences for what is wrong; values in messages
+errors, progress    InputError and RunError; how far a computation is
+case_schema         JSON schema of the case file; json_schema: of any file
+=================== ================================================================
 """

@@ -8,7 +8,7 @@ from typing import Any
 import tomlkit
 
 from chatter.description.errors import InputError
-from chatter.description.formatting import shown
+from chatter.description.formatting import formatted
 
 
 def parse_assignments(assignments: Sequence[str]) -> dict[str, Any]:
@@ -28,10 +28,11 @@ def parse_assignments(assignments: Sequence[str]) -> dict[str, Any]:
         path, equals, text = assignment.partition("=")
         if not equals or not path.strip():
             problems.append(
-                f'--set {shown(assignment)}: PATH=VALUE is wanted, such as cut.axial_depth="2 mm"'
+                f"--set {formatted(assignment)}: PATH=VALUE is wanted, "
+                'such as cut.axial_depth="2 mm"'
             )
         elif not text.strip():
-            problems.append(f"--set {shown(assignment)}: there is no value after the =")
+            problems.append(f"--set {formatted(assignment)}: there is no value after the =")
         values[path.strip()] = _toml_value(text.strip())
     if problems:
         raise InputError(problems)

@@ -1,4 +1,4 @@
-"""JSON schema of the case file, from the same declarations that read it."""
+"""JSON schema of the case file."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from chatter.description.case import Case
-from chatter.description.patchable import Description
+from chatter.description.json_schema import schema_of
 
 
 def schema(methods: Sequence[str]) -> dict[str, Any]:
@@ -24,52 +24,3 @@ def schema(methods: Sequence[str]) -> dict[str, Any]:
     )
     content["$defs"]["Lobes"]["properties"]["method"]["enum"] = list(methods)
     return content
-
-
-def schema_of(model: type[Description], title: str, description: str) -> dict[str, Any]:
-    """Return the JSON schema (draft 2020-12) of a kind of file."""
-    content = _tidy(model.model_json_schema(by_alias=True))
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        **content,
-        "title": title,
-        "description": description,
-    }
-
-
-def _tidy(node: Any) -> Any:
-    """Leave out what a TOML file cannot hold (null) and what tells an editor nothing."""
-    if isinstance(node, list):
-        return [_tidy(entry) for entry in node]
-    if not isinstance(node, dict):
-        return node
-    tidied = {
-        # below "properties" and "$defs" the keys are names, not keywords
-        key: (
-            {name: _tidy(entry) for name, entry in value.items()}
-            if key in ("properties", "$defs")
-            else _tidy(value)
-        )
-        for key, value in node.items()
-        if not (key == "title" and isinstance(value, str))
-    }
-    if tidied.get("default", 0) is None:
-        del tidied["default"]
-    return _without_null(tidied)
-
-
-def _without_null(node: dict) -> dict:
-    """Merge an optional value with its only alternative; both descriptions are kept."""
-    alternatives = [entry for entry in node.get("anyOf", []) if entry != {"type": "null"}]
-    if len(alternatives) == len(node.get("anyOf", [])):
-        return node
-    rest = {key: value for key, value in node.items() if key != "anyOf"}
-    if len(alternatives) > 1:
-        return {**rest, "anyOf": alternatives}
-    merged = {**alternatives[0], **rest}
-    return {**merged, **_description(rest, alternatives[0])}
-
-
-def _description(*nodes: dict) -> dict:
-    texts = [node["description"] for node in nodes if "description" in node]
-    return {"description": ": ".join(texts)} if texts else {}

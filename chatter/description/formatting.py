@@ -7,7 +7,7 @@ from typing import Any
 _LONGEST = 60
 
 
-def shown(value: Any) -> str:
+def formatted(value: Any) -> str:
     """Show a value as it stands in a case file, shortened and in printable characters."""
     if isinstance(value, bool):
         return str(value).lower()
@@ -16,7 +16,7 @@ def shown(value: Any) -> str:
     if isinstance(value, dict):
         return "a table"
     if isinstance(value, (list, tuple)):
-        return printable(f"[{', '.join(shown(entry) for entry in value[:10])}]")
+        return printable(f"[{', '.join(formatted(entry) for entry in value[:10])}]")
     try:
         return printable(str(value))
     except ValueError:

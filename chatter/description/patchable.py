@@ -12,7 +12,7 @@ import tomlkit
 from pydantic import PrivateAttr, ValidationError
 
 from chatter.description.errors import InputError
-from chatter.description.formatting import shown
+from chatter.description.formatting import formatted
 from chatter.description.path import (
     Step,
     field_at,
@@ -124,7 +124,7 @@ class Description(Section):
         """
         name = name or cls.NOUN
         if not isinstance(data, Mapping):
-            raise InputError(f"{name}: {shown(data)} is given, a table of sections is wanted")
+            raise InputError(f"{name}: {formatted(data)} is given, a table of sections is wanted")
         try:
             document = tomlkit.item(plain(data, noun=cls.NOUN))
         except InputError as error:
@@ -366,7 +366,7 @@ class Description(Section):
         elif isinstance(item, str):
             field = field_at(cls, steps)
             if field is not None:
-                deviation = parse(item, field.alike(item).dimension).deviation
+                deviation = parse(item, field.matching(item).dimension).deviation
                 if deviation > 0.0:
                     found[join_path(steps)] = deviation
 
@@ -385,7 +385,7 @@ def _like(value: Any, stands: Any, field: Any, steps: tuple[Step, ...]) -> Any:
     if not bare or not isinstance(stands, str):
         return value
     try:
-        stood = field.alike(stands)
+        stood = field.matching(stands)
         unit = parse(stands, stood.dimension).unit
         return write(stood.read(value), unit, stood.dimension)
     except ValueError as error:

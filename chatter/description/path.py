@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from chatter.description.errors import InputError
-from chatter.description.formatting import shown
+from chatter.description.formatting import formatted
 from chatter.description.quantities import QuantityField
 
 #: a key, a place in a list, or ``"*"`` for every place
@@ -34,7 +34,7 @@ def parse_path(text: str, into: str = "a case, such as cut.axial_depth") -> tupl
         If it is no path.
     """
     if not isinstance(text, str):
-        raise InputError(f"{shown(text)} is no path into {into}")
+        raise InputError(f"{formatted(text)} is no path into {into}")
     steps: list[Step] = []
     position = 0
     while position < len(text):
@@ -46,7 +46,7 @@ def parse_path(text: str, into: str = "a case, such as cut.axial_depth") -> tupl
         steps.append(key if key else "*" if place == "*" else int(place))
         position = match.end()
     if not steps or position < len(text) or not isinstance(steps[0], str):
-        raise InputError(f"{shown(text)} is no path into {into}")
+        raise InputError(f"{formatted(text)} is no path into {into}")
     return tuple(steps)
 
 

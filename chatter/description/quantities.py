@@ -9,7 +9,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, WithJsonSchema
 
 from chatter.description import units
-from chatter.description.formatting import shown
+from chatter.description.formatting import formatted
 
 #: what an editor can check: a number, perhaps a deviation, and a unit unless it is zero
 _TEXT_PATTERN = (
@@ -40,12 +40,12 @@ class QuantityField:
         for bound, holds, words in checks:
             if bound is not None and not holds:
                 raise ValueError(
-                    f"{shown(given)}{self._bare_unit(given)} is out of range; "
+                    f"{formatted(given)}{self._bare_unit(given)} is out of range; "
                     f"it must be {words} {self._shown(bound)}"
                 )
         return value
 
-    def alike(self, text: str) -> QuantityField:  # noqa: ARG002
+    def matching(self, text: str) -> QuantityField:  # noqa: ARG002
         """Field for another value of the same dimension as a text."""
         return self
 
@@ -120,7 +120,7 @@ class EitherQuantityField(QuantityField):
 
     others: tuple[str, ...] = ()
 
-    def alike(self, text: str) -> QuantityField:
+    def matching(self, text: str) -> QuantityField:
         """Field for another value of the same dimension as a text."""
         for dimension in (self.dimension, *self.others):
             try:
@@ -136,7 +136,7 @@ class EitherQuantityField(QuantityField):
 
     def read(self, given: Any) -> float:
         """Read a quantity of any of the dimensions; raise ValueError with a sentence."""
-        return (self.alike(given) if isinstance(given, str) else self.of(self.dimension)).read(
+        return (self.matching(given) if isinstance(given, str) else self.of(self.dimension)).read(
             given
         )
 
@@ -190,7 +190,7 @@ def quantities(count: int, dimension: str, **bounds: float) -> Any:
     def read(given: Any) -> tuple[float, ...]:
         if not isinstance(given, (list, tuple)) or len(given) != count:
             raise ValueError(
-                f"{shown(given)} is given; {count} quantities are wanted, such as {example}"
+                f"{formatted(given)} is given; {count} quantities are wanted, such as {example}"
             )
         return tuple(field.read(part) for part in given)
 
@@ -220,7 +220,7 @@ def quantity_list(dimension: str, fewest: int, most: int, **bounds: float) -> An
     def read(given: Any) -> tuple[float, ...]:
         if not isinstance(given, (list, tuple)) or not fewest <= len(given) <= most:
             raise ValueError(
-                f"{shown(given)} is given; a list of {fewest} to {most} quantities is wanted, "
+                f"{formatted(given)} is given; a list of {fewest} to {most} quantities is wanted, "
                 f"such as [{field.example}, ...]"
             )
         return tuple(field.read(part) for part in given)
@@ -244,7 +244,7 @@ PositiveLength = quantity("length", above=0.0, at_most=_LARGEST_LENGTH)
 
 def _whole(given: Any) -> int:
     if isinstance(given, bool) or not isinstance(given, int):
-        raise ValueError(f"{shown(given)} is no whole number")
+        raise ValueError(f"{formatted(given)} is no whole number")
     return given
 
 
@@ -255,7 +255,7 @@ def whole_number(at_least: int, at_most: int, meaning: str) -> Any:
         value = _whole(given)
         if not at_least <= value <= at_most:
             raise ValueError(
-                f"{shown(value)} is out of range; {meaning} go from {at_least} to {at_most}"
+                f"{formatted(value)} is out of range; {meaning} go from {at_least} to {at_most}"
             )
         return value
 

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Generic, Protocol, TypeVar
 
 from chatter.description.errors import InputError
-from chatter.description.formatting import shown
+from chatter.description.formatting import formatted
 
 #: every entry point group that is read
 GROUPS = (
@@ -92,7 +92,7 @@ class Registry(Generic[Entry]):
                 entry = _loaded(point, self.what)
                 if entry.name in entries:
                     raise InputError(
-                        f"{self.what} {shown(entry.name)} of {_origin(point)} has the name of "
+                        f"{self.what} {formatted(entry.name)} of {_origin(point)} has the name of "
                         "another one; rename it or remove that package"
                     )
                 entries[entry.name] = entry
@@ -120,10 +120,14 @@ class Registry(Generic[Entry]):
 
     def unknown(self, name: str) -> str:
         """Say that there is no entry of this name, and which there are."""
-        known = ", ".join(shown(entry) for entry in self.entries)
+        known = ", ".join(formatted(entry) for entry in self.entries)
         near = difflib.get_close_matches(name[:60].lower(), self.entries, n=1, cutoff=0.6)
-        hint = f"did you mean {shown(near[0])}? There are {known}" if near else f"there are {known}"
-        return f"{self.what} {shown(name)} is not known; {hint}"
+        hint = (
+            f"did you mean {formatted(near[0])}? There are {known}"
+            if near
+            else f"there are {known}"
+        )
+        return f"{self.what} {formatted(name)} is not known; {hint}"
 
 
 @lru_cache(maxsize=1)
@@ -143,13 +147,13 @@ def _loaded(point: EntryPoint, what: str) -> Entry:  # type: ignore[type-var]
         entry = point.load()
     except Exception as error:
         raise InputError(
-            f"{what} {shown(point.name)} of {_origin(point)} ({point.value}) cannot be imported: "
-            f"{type(error).__name__}: {error}"
+            f"{what} {formatted(point.name)} of {_origin(point)} ({point.value}) cannot be "
+            f"imported: {type(error).__name__}: {error}"
         ) from error
     missing = [key for key in ("name", "label", "help") if not hasattr(entry, key)]
     if missing:
         raise InputError(
-            f"{what} {shown(point.name)} of {_origin(point)} ({point.value}) has no "
+            f"{what} {formatted(point.name)} of {_origin(point)} ({point.value}) has no "
             + ", ".join(missing)
         )
     return entry

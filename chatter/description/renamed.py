@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
-from chatter.description.formatting import shown
+from chatter.description.formatting import formatted
 from chatter.description.path import Step, join_path
 
 
@@ -37,6 +37,8 @@ CASE = (
 )
 
 MACHINE = (
+    Renamed(("connector", "*"), "places", "positions"),
+    Renamed(("move", "*"), "turns", "revolutions"),
     Renamed(("friction", "*"), "stiffness", "bristle_stiffness"),
     Renamed(("friction", "*"), "slow_viscous", "low_speed_viscous"),
     Renamed(("friction", "*"), "slow_decay", "low_speed_decay"),
@@ -104,6 +106,6 @@ def _tables(
 def _note(steps: tuple[Step, ...], one: Renamed) -> str:
     kind = "value" if one.is_value else "key"
     return (
-        f"{join_path(steps)}: {shown(one.old)} is now called {shown(one.new)}; "
+        f"{join_path(steps)}: {formatted(one.old)} is now called {formatted(one.new)}; "
         f"the old {kind} is read in this release, not in the next"
     )

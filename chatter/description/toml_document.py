@@ -12,7 +12,7 @@ from typing import Any
 import tomlkit
 
 from chatter.description.errors import InputError
-from chatter.description.formatting import printable, shown
+from chatter.description.formatting import formatted, printable
 from chatter.description.path import Step, join_path
 
 _LARGEST_FILE = 256 * 1024
@@ -45,7 +45,7 @@ def read_text(path: Path, noun: str = "case") -> str:
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from None
     except ValueError:
-        raise InputError(f"{shown(str(path))}: is no name of a file") from None
+        raise InputError(f"{formatted(str(path))}: is no name of a file") from None
     if b"\0" in raw:
         raise InputError(f"{path}: is a binary file; a {noun} file is TOML text")
     if len(raw) > _LARGEST_FILE:
@@ -114,7 +114,7 @@ def plain(value: Any, steps: tuple[Step, ...] = (), noun: str = "case") -> Any:
         return [plain(entry, (*steps, place), noun) for place, entry in enumerate(value)]
     known = value is None or isinstance(value, (bool, int, float, str, date, time))
     if not known or (isinstance(value, int) and abs(value) > _LARGEST_INTEGER):
-        raise InputError(f"{join_path(steps)}: {shown(value)} is no value of a {noun} file")
+        raise InputError(f"{join_path(steps)}: {formatted(value)} is no value of a {noun} file")
     return value
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
-from chatter.description.formatting import shown
+from chatter.description.formatting import formatted
 
 if TYPE_CHECKING:
     import numpy as np
@@ -200,7 +200,7 @@ def unit_factor(unit: str, dimension: str) -> float:
     if dimension == "number":
         if unit in _NUMBER_UNITS:
             return _NUMBER_UNITS[unit]
-        raise QuantityError(f"has the unit {shown(unit)}; {_wanted(dimension)}")
+        raise QuantityError(f"has the unit {formatted(unit)}; {_wanted(dimension)}")
     expected = registry().Unit(DIMENSIONS[dimension].unit)
     no_angle = dimension in _NEEDS_ANGLE and not _is_angle(parsed)
     if one.dimensionality != expected.dimensionality or no_angle:
@@ -217,11 +217,11 @@ def _parsed_unit(unit: str, dimension: str) -> tuple[Any, Any]:
     """Return pint's unit and one of it in base units."""
     known = _unit_of_library(unit, _WORDS)
     if known is None:
-        raise QuantityError(f"has the unknown unit {shown(unit)}; {_wanted(dimension)}")
+        raise QuantityError(f"has the unknown unit {formatted(unit)}; {_wanted(dimension)}")
     parsed, one, proportional = known
     if not proportional:
         # decibels, degrees Celsius
-        raise QuantityError(f"has the unit {shown(unit)}; {_wanted(dimension)}")
+        raise QuantityError(f"has the unit {formatted(unit)}; {_wanted(dimension)}")
     return parsed, one
 
 
@@ -311,25 +311,25 @@ def parse(given: Any, dimension: str) -> Quantity:
         If it is no quantity, of another dimension or not finite.
     """
     if isinstance(given, bool) or not isinstance(given, (int, float, str)):
-        raise QuantityError(f"{shown(given)} is no quantity; {_wanted(dimension)}")
+        raise QuantityError(f"{formatted(given)} is no quantity; {_wanted(dimension)}")
     if not isinstance(given, str):
         return Quantity(_finite(_as_float(given), given), 0.0, "")
     match = _QUANTITY.match(given) if len(given) <= _LONGEST_TEXT else None
     if match is None:
-        raise QuantityError(f"{shown(given)} is no quantity; {_wanted(dimension)}")
+        raise QuantityError(f"{formatted(given)} is no quantity; {_wanted(dimension)}")
     if _DECIMAL_COMMA.match(given):
-        raise QuantityError(f"{shown(given)} has a decimal comma; write a decimal point")
+        raise QuantityError(f"{formatted(given)} has a decimal comma; write a decimal point")
     unit = match["unit"]
     try:
         factor = unit_factor(unit, dimension)
     except QuantityError as error:
-        raise QuantityError(f"{shown(given)} {error}") from None
+        raise QuantityError(f"{formatted(given)} {error}") from None
     if not unit and DIMENSIONS[dimension].unit and float(match["value"]) != 0.0:
-        raise QuantityError(f"{shown(given)} has no unit; {_wanted(dimension)}")
+        raise QuantityError(f"{formatted(given)} has no unit; {_wanted(dimension)}")
     value = _finite(_times(float(match["value"]), factor), given)
     deviation = _times(float(match["deviation"] or 0.0), factor)
     if deviation < 0.0:
-        raise QuantityError(f"{shown(given)} has a negative standard deviation")
+        raise QuantityError(f"{formatted(given)} has a negative standard deviation")
     return Quantity(value, _finite(deviation, given), unit)
 
 
@@ -352,7 +352,7 @@ def _as_float(given: int | float) -> float:
 
 def _finite(value: float, given: Any) -> float:
     if not math.isfinite(value):
-        raise QuantityError(f"{shown(given)} is not a finite number")
+        raise QuantityError(f"{formatted(given)} is not a finite number")
     return value
 
 

@@ -8,7 +8,7 @@ from typing import Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
-from chatter.description.formatting import printable, shown
+from chatter.description.formatting import formatted, printable
 from chatter.description.path import Step, field_at, info_at, join_path, keys_of, model_at
 from chatter.description.section import SectionError
 
@@ -74,16 +74,16 @@ def _wrong_type(item: Any, steps: tuple[Step, ...]) -> str:
     if kind.startswith(("model", "dict")):
         tables = isinstance(given, list) and given and all(isinstance(e, dict) for e in given)
         hint = f"; write [{key}], not [[{key}]]" if tables else ""
-        return f"{shown(given)} is given, a table is wanted{hint}"
+        return f"{formatted(given)} is given, a table is wanted{hint}"
     if kind.startswith(("tuple", "list")):
         table = join_path(steps)
         hint = f"; write [[{table}]], not [{table}]" if isinstance(given, dict) else ""
-        return f"{shown(given)} is given, a list is wanted{hint}"
+        return f"{formatted(given)} is given, a list is wanted{hint}"
     if kind.startswith("string"):
-        return f"{shown(given)} is given, text in quotes is wanted"
+        return f"{formatted(given)} is given, text in quotes is wanted"
     if kind.startswith("bool"):
-        return f"{shown(given)} is given, true or false is wanted"
-    return f"{shown(given)} is not allowed here"
+        return f"{formatted(given)} is given, true or false is wanted"
+    return f"{formatted(given)} is not allowed here"
 
 
 def nearest(word: str, known: Sequence[str]) -> str:
@@ -114,13 +114,13 @@ def _missing(model: type[BaseModel], steps: tuple[Step, ...]) -> str:
     if quantity is not None:
         return f"{_IS_MISSING}; {quantity.noun} is wanted, such as {quantity.example}"
     if info is not None and get_origin(info.annotation) is Literal:
-        allowed = ", ".join(shown(value) for value in get_args(info.annotation))
+        allowed = ", ".join(formatted(value) for value in get_args(info.annotation))
         return f"{_IS_MISSING}; allowed are {allowed}"
     if info is not None and info.examples:
-        return f"{_IS_MISSING}; give, for example, {shown(info.examples[0])}"
+        return f"{_IS_MISSING}; give, for example, {formatted(info.examples[0])}"
     return _IS_MISSING
 
 
 def _not_allowed(item: Any) -> str:
     allowed = item["ctx"]["expected"].replace("'", '"')
-    return f"{shown(item['input'])} is not allowed; allowed are {allowed}"
+    return f"{formatted(item['input'])} is not allowed; allowed are {allowed}"

@@ -23,8 +23,8 @@ from dynamics.machine.groups import (
     load_forces,
     nothing,
 )
+from dynamics.machine.modal_structure import ModalEnergy, modal_energy_forces
 from dynamics.machine.travel_limit import TravelLimit, travel_limit_commit
-from dynamics.modal.modal_structure import ModalEnergy, modal_energy_forces
 
 #: table -> kernels of its forces and its commit
 LAWS = {

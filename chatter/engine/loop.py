@@ -15,13 +15,14 @@ from numba import njit
 from chatter.engine.bus import Clock
 from chatter.engine.dispatch import all_commit, all_forces
 from chatter.engine.presets import TIME_LOOP
-from dynamics.machine.steps import begin_step, correct, end_step, predict
+from dynamics.machine.ports import correct, predict
+from dynamics.machine.steps import begin_step, end_step
 
 
 class Laws(NamedTuple):
     """Law groups by when in a step their forces are known."""
 
-    held: tuple = ()  # at its beginning: drives, constant forces, loads
+    explicit: tuple = ()  # at its beginning: drives, constant forces, loads
     interacting: tuple = ()  # at its end, by the predicted motion: the cut
     implicit: tuple = ()  # together with the motion: frictions
     observers: tuple = ()  # never: records
@@ -54,7 +55,7 @@ def run(laws, bus, first, before, count):
         moves = clock.step >= 0
         if moves:
             begin_step(bus)
-            all_forces(laws.held, bus, clock)
+            all_forces(laws.explicit, bus, clock)
             predict(bus)
         all_forces(laws.interacting, bus, clock)
         if moves:

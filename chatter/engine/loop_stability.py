@@ -38,7 +38,7 @@ class LoopMotion:
 
     Parameters
     ----------
-    growth : float
+    growth_rate : float
         1/s.
     frequency : float
         Hz.
@@ -46,14 +46,14 @@ class LoopMotion:
         Drive that puts the most work into it.
     """
 
-    growth: float
+    growth_rate: float
     frequency: float
     drive: str
 
     @property
     def stable(self) -> bool:
         """Whether it dies out, or at least does not grow."""
-        return self.growth <= _NEUTRAL
+        return self.growth_rate <= _NEUTRAL
 
 
 def least_stable_motion(machine: Machine, step: float) -> LoopMotion | None:
@@ -84,7 +84,7 @@ def least_stable_motion(machine: Machine, step: float) -> LoopMotion | None:
         tables = machine_tables(linear, step)
     except (StructureError, ControlError) as error:
         raise InputError(str(error)) from error
-    drives = tables.held[0]
+    drives = tables.explicit[0]
     period = _common_period(drives)
     transition = _map_over(tables, drives, period)
     # what nothing ever changes stays at zero, and what nothing reads is no motion
@@ -114,7 +114,7 @@ def refuse_unstable_control(machine: Machine, step: float) -> None:
     gains = {drive.name: drive.controller for drive in machine.drives}[motion.drive]
     raise InputError(
         f'axis "{motion.drive}": its control loop is unstable: a motion of about '
-        f"{motion.frequency:.3g} Hz grows by {motion.growth:.3g} 1/s; velocity gain "
+        f"{motion.frequency:.3g} Hz grows by {motion.growth_rate:.3g} 1/s; velocity gain "
         f"{gains.velocity.proportional_gain:g} N m s/rad, integral time "
         f"{gains.velocity.integral_time:g} s, position gain {gains.position.gain:g} 1/s"
     )
@@ -169,7 +169,7 @@ def _map_over(
     states = _states(tables, drives)
     sizes = [state.size for state in states]
     transition = np.empty((sum(sizes), sum(sizes)))
-    laws, column = Laws(tables.held), 0
+    laws, column = Laws(tables.explicit), 0
     for chosen, size in zip(states, sizes, strict=True):
         for place in range(size):
             for state in states:
@@ -209,7 +209,7 @@ def _heard(
     tables.bus.v[:] = tables.bus.state @ tables.bus.velocity
     # what is linear may be scaled at each step, so that no growth leaves the numbers
     kept = math.exp(-growth * tables.bus.step)
-    laws = Laws(tables.held)
+    laws = Laws(tables.explicit)
     speed = np.empty((_HEARD, len(drives.port)))
     work = np.zeros(len(drives.port))
     for i in range(_HEARD):

@@ -8,12 +8,16 @@ module              responsibility
 =================== ================================================================
 measurement         runs with their signals, and the declared case
 measurement_file    measurement folders
-kinds               milling, axis, stability, frf: predictions, nuisance parameters
+criteria            every tuned number of the search and the verdict, with its reason
+fitting             least squares with priors
+prior               standard deviations of declared values
+residuals           where the residual lives
 data_checks         checks of the signals before anything is blamed on physics
+kinds               milling, axis, stability, frf: predictions, nuisance parameters
+checking            the checks of a kind, one after the other
 prediction          predictions of a case for every run, each made once
 effects             what a case may lack, each a patch of it
-selection           fits, candidates, search, discriminating tests; every tuned number
-residuals           where the residual lives
+selection           candidates, search, discriminating tests
 errors              errors of predictions, before and after
 lobes_before_after  stability lobes before and after
 stability_margin    how far cutting tests are from the limit

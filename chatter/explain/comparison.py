@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from chatter.description.case import Case
-from chatter.explain.data_checks.checking import checked
+from chatter.explain.checking import checked
 from chatter.explain.data_checks.finding import SignalFinding
 from chatter.explain.errors import ChannelError, errors_of, overall
 from chatter.explain.explanation import as_measurement

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
-from chatter.explain.data_checks.checking import Checked, checked
+from chatter.explain.checking import Checked, checked
+from chatter.explain.criteria import CONFOUNDED, CORRELATED_SAMPLES, NUMERICS
 from chatter.explain.data_checks.finding import SignalFinding
 from chatter.explain.effects.effect import Effect
 from chatter.explain.errors import (
@@ -25,6 +26,7 @@ from chatter.explain.errors import (
     errors_of,
     overall,
 )
+from chatter.explain.fitting import Fit
 from chatter.explain.kinds.registry import KINDS
 from chatter.explain.lobes_before_after import Added, LobesBeforeAfter, lobes_before_after
 from chatter.explain.measurement import Measurement
@@ -33,9 +35,7 @@ from chatter.explain.prediction import Predictions
 from chatter.explain.residuals.residual_dependence import ResidualDependence
 from chatter.explain.residuals.signature import Signature, signature_of
 from chatter.explain.selection.candidates import Candidate, Progress, Stage
-from chatter.explain.selection.criteria import CONFOUNDED, CORRELATED_SAMPLES, NUMERICS
 from chatter.explain.selection.discriminating_test import discriminating_test
-from chatter.explain.selection.fitting import Fit
 from chatter.explain.selection.search import Search, search
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, write_results
@@ -172,15 +172,15 @@ class Explanation:
 
     def _errors(self) -> dict[str, Any]:
         runs, holdout = self.measurement.runs, self.found.split.holdout
-        noise, kind = self.found.problem.noise, self.predictions.kind
+        signature = self.refitted_signature
+        if self.verdict == EXPLAINED:
+            signature = self.repaired_signature
+        floor = self.predictions.kind.noise_floor(signature.residual.parts)
         fitted = list(self._of_fitted.values())
 
         def error(case: Case, some=runs) -> float | None:
             return finite_or_none(overall(errors_of(case, self.predictions, some)))
 
-        floor = kind.noise_floor(
-            self.measurement, lambda run: self.predictions.of(self.case, run), noise
-        )
         return {
             "metric": "nrmse",
             "noise_floor": finite_or_none(floor),

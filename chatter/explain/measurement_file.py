@@ -10,7 +10,7 @@ import tomlkit
 
 from chatter.description.case import Case, load
 from chatter.description.errors import InputError
-from chatter.description.formatting import shown
+from chatter.description.formatting import formatted
 from chatter.description.units import QuantityError, parse
 from chatter.explain.kinds.registry import KINDS
 from chatter.explain.measurement import Measurement, Run
@@ -48,7 +48,7 @@ def read_measurement(folder: str | Path, case: str | Path | Case | None = None) 
         )
     name = content.get("kind")
     if name not in KINDS:
-        raise InputError(f"{path}: kind: {shown(name)} is none of {', '.join(KINDS)}")
+        raise InputError(f"{path}: kind: {formatted(name)} is none of {', '.join(KINDS)}")
     declared = case if isinstance(case, Case) else load(case or _file(path, content, "case"))
     table = KINDS[name].table_key
     if table:
@@ -88,25 +88,27 @@ def _refuse_names_twice(path: Path, runs: Sequence[Run]) -> None:
 
 def _tolerances(path: Path, given: Any) -> dict[str, float]:
     if not isinstance(given, dict):
-        raise InputError(f"{path}: tolerance: {shown(given)} is no table of keys and shares")
+        raise InputError(f"{path}: tolerance: {formatted(given)} is no table of keys and shares")
     for key, value in given.items():
         is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
         if not is_number or not 0.0 <= value < 10.0:
-            raise InputError(f"{path}: tolerance.{key}: {shown(value)} is no share such as 0.05")
+            raise InputError(
+                f"{path}: tolerance.{key}: {formatted(value)} is no share such as 0.05"
+            )
     return {key: float(value) for key, value in given.items()}
 
 
 def _file(path: Path, content: Mapping[str, Any], key: str) -> Path:
     name = content.get(key)
     if not isinstance(name, str):
-        raise InputError(f"{path}: {key}: {shown(name)} is no file name")
+        raise InputError(f"{path}: {key}: {formatted(name)} is no file name")
     return path.parent / name
 
 
 def _run(path: Path, kind: str, number: int, entry: Mapping[str, Any], declared: Case) -> Run:
     where = f"{path}: run {number}"
     if not isinstance(entry.get("file"), str):
-        raise InputError(f"{where}: file: {shown(entry.get('file'))} is no file name")
+        raise InputError(f"{where}: file: {formatted(entry.get('file'))} is no file name")
     file = _file(path, entry, "file")
     where = f"{where} ({file.name})"
     overrides = {

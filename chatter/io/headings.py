@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from chatter.description.errors import InputError
-from chatter.description.formatting import shown
+from chatter.description.formatting import formatted
 from chatter.description.units import QuantityError, dimension_of, measured_unit, parse
 
 #: name of a column -> dimension of its unit; "" for one without
@@ -79,7 +79,7 @@ def _parted(path: Path, heading: str) -> tuple[str, str]:
     if match is None or not match["name"].strip():
         match = _STROKE.fullmatch(heading)
         if match is None:
-            raise InputError(f'{path}: {shown(heading)} is no heading such as "Fx [N]"')
+            raise InputError(f'{path}: {formatted(heading)} is no heading such as "Fx [N]"')
         return match["name"], match["unit"].strip()
     name, unit = match["name"], (match["unit"] or match["other"] or "").strip()
     if unit or _plain(name) in _SPELLINGS:
@@ -106,7 +106,7 @@ def _factor(path: Path, heading: str, name: str, unit: str) -> float:
             return parse(f"1 {unit}", dimension).value
         return _receptance(unit)
     except (QuantityError, ValueError) as error:
-        raise InputError(f"{path}: {shown(heading)}: {error}") from error
+        raise InputError(f"{path}: {formatted(heading)}: {error}") from error
 
 
 def _receptance(unit: str) -> float:

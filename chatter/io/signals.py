@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.errors import InputError
-from chatter.description.formatting import shown
+from chatter.description.formatting import formatted
 from chatter.io.formats.registry import format_of
 from chatter.io.headings import named
 from chatter.io.table import Column, Table
@@ -97,15 +97,15 @@ def _number(table: Table, column: Column, row: int) -> float:
         return float(text) if text else np.nan
     except ValueError:
         where = f"{table.path}: {table.where(row)}: {column.heading}"
-        raise InputError(f"{where}: {shown(text)} is no number") from None
+        raise InputError(f"{where}: {formatted(text)} is no number") from None
 
 
 def _verdict(table: Table, column: Column, row: int) -> float:
     text = str(column.cells[row]).strip()
     if text.lower() not in _VERDICTS:
         raise InputError(
-            f"{table.path}: {table.where(row)}: {column.heading}: {shown(text)} is no verdict; 1, "
-            "true or stable, 0, false or chatter, or marginal"
+            f"{table.path}: {table.where(row)}: {column.heading}: {formatted(text)} is no verdict; "
+            "1, true or stable, 0, false or chatter, or marginal"
         )
     return _VERDICTS[text.lower()]
 

@@ -59,10 +59,10 @@ def plot_simulation(result: SimulationResult) -> Figure:
     for row, (label, names, values) in enumerate(signals):
         pair = grid[row].subgridspec(1, 2)
         draw_run(figure.add_subplot(pair[0]), result, values, names, label)
-        draw_last_turns(figure.add_subplot(pair[1]), result, values, names, label)
+        draw_last_revolutions(figure.add_subplot(pair[1]), result, values, names, label)
     middle = grid[2].subgridspec(1, 2, width_ratios=[1.7, 1.0])
     draw_spectrum(figure.add_subplot(middle[0]), result)
-    draw_once_a_turn(figure.add_subplot(middle[1]), result)
+    draw_poincare_section(figure.add_subplot(middle[1]), result)
     bottom = grid[3].subgridspec(1, 2)
     if _shows_workpiece(result):
         layers = len(result.setup.slices.height)
@@ -113,7 +113,7 @@ def draw_run(
 ) -> None:
     """Draw the whole run: the band between the least and the largest value of a revolution."""
     turns = result.spindle_angle / _TURN
-    whole = math.floor(result.turns)
+    whole = math.floor(result.revolutions)
     banded = whole >= _LEAST_BANDS
     bounds = np.linspace(0, whole, min(max(whole, 1), _MOST_BANDS) + 1)
     rows = np.searchsorted(turns, bounds[:-1] - 1e-9)
@@ -127,7 +127,7 @@ def draw_run(
             axes.fill_between(bounds, low, high, alpha=0.5, linewidth=0.8, **band)
         else:
             axes.plot(turns, values[:, axis], color=colour, linewidth=0.8, label=name)
-    axes.set_xlim(0.0, max(result.turns, 1e-9))
+    axes.set_xlim(0.0, max(result.revolutions, 1e-9))
     axes.set_xlabel("spindle revolutions")
     axes.set_ylabel(label)
     if not values.any():
@@ -138,7 +138,7 @@ def draw_run(
     _legend(axes)
 
 
-def draw_last_turns(
+def draw_last_revolutions(
     axes: Axes, result: SimulationResult, values: Array, names: tuple[str, ...], label: str
 ) -> None:
     """Draw the last revolutions."""
@@ -245,7 +245,7 @@ def _mark_chatter(axes: Axes, result: SimulationResult) -> None:
     )
 
 
-def draw_once_a_turn(axes: Axes, result: SimulationResult) -> None:
+def draw_poincare_section(axes: Axes, result: SimulationResult) -> None:
     """Draw the displacement each time the first tooth is at +y."""
     axes.set_title("once a revolution", loc="left")
     axes.set_xlabel("x [µm]")
@@ -269,7 +269,7 @@ def draw_once_a_turn(axes: Axes, result: SimulationResult) -> None:
 
 def _once_a_turn(result: SimulationResult) -> Array:
     """Points (turns, 2), µm."""
-    turns = np.arange(1, math.floor(result.turns + 1e-9) + 1)
+    turns = np.arange(1, math.floor(result.revolutions + 1e-9) + 1)
     if len(turns) == 0 or len(result.rows) < 4:
         return np.zeros((0, 2))
     motion = CubicSpline(result.spindle_angle, result.displacement[:, :2], axis=0)

@@ -45,7 +45,7 @@ def draw_workpiece(axes: Axes, result: SimulationResult, layer: int) -> None:
         vmin=0,
         vmax=1,
     )
-    x, y = result.setup.path.place_at(result.time) * 1e3
+    x, y = result.setup.path.position_at(result.time) * 1e3
     axes.plot(x, y, color=BLUE, linewidth=1.0, label="tool axis")
     turn = np.linspace(0.0, 2.0 * np.pi, 100)
     radius = result.setup.slices.radius[layer] * 1e3

@@ -115,7 +115,7 @@ def carved_walls(result: SimulationResult) -> list[WallProfiles]:
     cut: DiscreteCut = result.setup.groups[0]
     if isinstance(cut.stock, DexelStock):
         dexel_flush(cut.stock)
-    place = result.setup.path.place_at(result.time[[result.settled.start, -1]])
+    place = result.setup.path.position_at(result.time[[result.settled.start, -1]])
     slices = result.setup.slices
     swing = float(np.ptp(result.displacement[result.settled, 1]))
     a_turn = result.case.cut.feed_per_tooth * result.case.tool.teeth
@@ -167,7 +167,7 @@ def carving_notes(cut: DiscreteCut) -> list[str]:
     deep = int(cut.stock.deep[0])
     if not deep:
         return []
-    return [f"voxel: {deep} times an edge met more material than the {_window_text(cut)} looked at"]
+    return [f"voxel: {deep} times an edge met more material than its window of {_window_text(cut)}"]
 
 
 def _window_text(cut: DiscreteCut) -> str:

@@ -81,13 +81,13 @@ class CutRun:
         """Let a machine come to its feed."""
         structure = self.setup.structure
         if structure.settling:
-            laws = Laws(structure.tables.held, (), structure.tables.implicit)
+            laws = Laws(structure.tables.explicit, (), structure.tables.implicit)
             run(laws, self.bus, 0, 0, structure.settling)
 
     def _carve_before(self) -> None:
         """Carve the workpiece with the tool at rest for the turns before the start."""
         setup = self.setup
-        if not setup.turns_before:
+        if not setup.revolutions_before:
             return
         if setup.on_machine is not None:
             # the tool turns and is fed as prescribed, whatever the machine does
@@ -100,7 +100,7 @@ class CutRun:
             )
             self.stock = CutRun(replace(setup, structure=rigid), 1, 0).stock
             return
-        self.done -= setup.turns_before * setup.resolution.steps_a_turn
+        self.done -= setup.revolutions_before * setup.resolution.steps_per_revolution
         self.steps(-1)
         setup.groups[0].removed[0] = 0.0
 
@@ -124,7 +124,9 @@ class CutRun:
         tables, before = self.setup.structure.tables, self.setup.structure.settling
         while self.done < last:
             count = min(self._chunk, last - self.done)
-            laws = Laws(tables.held, (self._cut(count, share),), tables.implicit, self._observers)
+            laws = Laws(
+                tables.explicit, (self._cut(count, share),), tables.implicit, self._observers
+            )
             try:
                 ran = run(laws, self.bus, self.done, before, count)
                 self.done += ran
@@ -168,7 +170,7 @@ class CutRun:
     def _spindle(
         self, number: NDArray[np.int64], time: NDArray[np.float64]
     ) -> PrescribedSpindle | SpindleOnPort:
-        setup, bins = self.setup, self.setup.resolution.steps_a_turn
+        setup, bins = self.setup, self.setup.resolution.steps_per_revolution
         if setup.turned_by_port:
             turning = setup.structure.tables.port["tool turn"]
             return SpindleOnPort(turning, self.angle, bins)

@@ -157,14 +157,14 @@ def finish_of(result: SimulationResult) -> Finish:
     if walls and isinstance(cut, DiscreteCut) and isinstance(cut.stock, DexelStock):
         # the workpiece itself shows its walls; voxels are too coarse for that
         walls = carved_walls(result) or walls
-    feed_per_turn = result.case.cut.feed_per_tooth * result.case.tool.teeth
-    return finish_from_profiles(walls, floor, feed_per_turn, notes)
+    feed_per_revolution = result.case.cut.feed_per_tooth * result.case.tool.teeth
+    return finish_from_profiles(walls, floor, feed_per_revolution, notes)
 
 
 def finish_from_profiles(
     walls: Sequence[WallProfiles],
     floor: FloorProfile | None,
-    feed_per_turn: float,
+    feed_per_revolution: float,
     notes: Sequence[str] = (),
 ) -> Finish:
     """Evaluate profiles, whether reconstructed from a motion or carved out of a stock.
@@ -173,12 +173,12 @@ def finish_from_profiles(
     ----------
     walls : sequence of WallProfiles
     floor : FloorProfile or None
-    feed_per_turn : float
+    feed_per_revolution : float
         Longest spacing of marks that belong to the roughness, m; it chooses the cut-off.
     notes : sequence of str
         What is already known to be missing.
     """
-    cut_off = cut_off_for(feed_per_turn)
+    cut_off = cut_off_for(feed_per_revolution)
     found = tuple(_wall_finish(wall, cut_off) for wall in walls)
     below = None if floor is None else _floor_finish(floor, cut_off)
     evaluated = [one.texture for one in (*found, below) if one is not None]

@@ -134,7 +134,7 @@ def _record(result: SimulationResult) -> _Record | None:
         return None
     before = int(np.searchsorted(angle, 2.0 * angle[start] - last))
     place = result.displacement.copy()
-    place[:, :2] += result.setup.path.place_at(result.time).T
+    place[:, :2] += result.setup.path.position_at(result.time).T
     evaluated, longer = slice(start, settled.stop), slice(before, None)
     return _Record(
         ToolMotion(angle[evaluated], place[evaluated]), ToolMotion(angle[longer], place[longer])
@@ -229,15 +229,17 @@ def _floor(result: SimulationResult, record: _Record) -> tuple[FloorProfile | No
     lowest = place[:, 2] - cutter.axial_offsets[edge]
     if cutter.corner_radius == 0.0 and not lowest.any():
         return None, "floor: a sharp corner that does not move along z leaves no marks"
-    feed_per_turn = case.cut.feed_per_tooth * cutter.teeth
+    feed_per_revolution = case.cut.feed_per_tooth * cutter.teeth
     spacing = _spacing(result, record.evaluated)
     # what later turns will still cut is left out at the end
-    start = max(at.min() + feed_per_turn, record.evaluated.position[0, 0] + tip_radius * steep)
-    count = math.floor((at.max() - feed_per_turn - start) / spacing)
+    start = max(
+        at.min() + feed_per_revolution, record.evaluated.position[0, 0] + tip_radius * steep
+    )
+    count = math.floor((at.max() - feed_per_revolution - start) / spacing)
     if count < _POINTS_A_TOOTH:
         return None, "floor: the run is too short for it to be evaluated"
     x = start + spacing * np.arange(count)
-    profile = floor_height(x, at, lowest, cutter.corner_radius / steep**2, feed_per_turn)
+    profile = floor_height(x, at, lowest, cutter.corner_radius / steep**2, feed_per_revolution)
     if not np.all(np.isfinite(profile)):
         return None, "floor: the tool moves too far for its corners to meet"
     return FloorProfile(x, profile), ""

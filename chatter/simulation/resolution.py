@@ -39,25 +39,25 @@ class Resolution:
 
     Parameters
     ----------
-    steps_a_turn : int
+    steps_per_revolution : int
         Time steps, and bins of the surface memory.
     counts : (int, int)
         Slices of the corner and of the straight edge.
-    turns : float
+    revolutions : float
         Length of the run in revolutions.
     stride : int
         Steps from one row of the record to the next.
     """
 
-    steps_a_turn: int
+    steps_per_revolution: int
     counts: tuple[int, int]
-    turns: float
+    revolutions: float
     stride: int
 
     @property
     def steps(self) -> int:
         """Steps of the run."""
-        return max(1, round(self.turns * self.steps_a_turn))
+        return max(1, round(self.revolutions * self.steps_per_revolution))
 
 
 def shortest_arc(case: Case, cutter: Cutter) -> float:
@@ -81,7 +81,7 @@ def resolution_of(case: Case, cutter: Cutter, modes: Sequence[Mode]) -> Resoluti
     section = case.simulation
     steps = section.steps if section and section.steps else None
     if steps is None:
-        steps = steps_a_turn(case, modes, shortest_arc(case, cutter), cutter.pitch)
+        steps = steps_per_revolution(case, modes, shortest_arc(case, cutter), cutter.pitch)
     if steps > _MOST_STEPS_A_TURN:
         raise InputError(
             f"{case.name}: simulation.steps: {steps:.3g} steps a revolution would be needed for "
@@ -89,7 +89,7 @@ def resolution_of(case: Case, cutter: Cutter, modes: Sequence[Mode]) -> Resoluti
             f"{_MOST_STEPS_A_TURN:.0e} are allowed: give simulation.steps, or leave out what is "
             "so fast"
         )
-    turns = turns_of(case, modes)
+    turns = revolutions_of(case, modes)
     whole = math.lcm(4, case.tool.teeth)
     if section is None or not section.steps:
         steps = _evenly_recorded(steps, turns, whole)
@@ -107,7 +107,7 @@ def resolution_of(case: Case, cutter: Cutter, modes: Sequence[Mode]) -> Resoluti
     return Resolution(steps, (corner, straight), turns, _stride(steps, total))
 
 
-def steps_a_turn(
+def steps_per_revolution(
     case: Case, modes: Sequence[Mode], shortest_arc: float, pitch: Sequence[float]
 ) -> int:
     """Steps a revolution that resolve the highest mode and the time of a tooth in the cut."""
@@ -125,7 +125,7 @@ def steps_a_turn(
     )
 
 
-def turns_of(case: Case, modes: Sequence[Mode]) -> float:
+def revolutions_of(case: Case, modes: Sequence[Mode]) -> float:
     """Length of the run in revolutions: as the case says, else until transients have died out."""
     section = case.simulation
     per_second = case.cut.spindle_speed / (2.0 * math.pi)

@@ -103,7 +103,7 @@ class SimulationResult:
         return self.torque * self.spindle_speed
 
     @property
-    def turns(self) -> float:
+    def revolutions(self) -> float:
         """Revolutions that were simulated."""
         return float(self.spindle_angle[-1]) / (2.0 * math.pi)
 
@@ -115,7 +115,7 @@ class SimulationResult:
     @cached_property
     def settled(self) -> slice:
         """Rows of the last whole turns, after the start has died out."""
-        turns = math.floor(self.turns)
+        turns = math.floor(self.revolutions)
         if turns < 1:
             return slice(0, len(self.rows))
         kept = max(1, math.floor(turns * _SETTLED_SHARE))
@@ -150,10 +150,10 @@ class SimulationResult:
             },
             **self.finish.summary(),
             "energy_J": self.energy,
-            "revolutions": self.turns,
+            "revolutions": self.revolutions,
             "resolution": {
                 "chip": self.case.simulation.chip if self.case.simulation else "delay",
-                "steps_per_revolution": self.setup.resolution.steps_a_turn,
+                "steps_per_revolution": self.setup.resolution.steps_per_revolution,
                 "slices": int(sum(self.setup.resolution.counts)),
                 "time_step_us": self.setup.step * 1e6,
             },
@@ -166,7 +166,8 @@ class SimulationResult:
         """What the user should know of the run."""
         cut = self.setup.groups[0]
         carving = carving_notes(cut) if isinstance(cut, DiscreteCut) else []
-        stopped = f"interrupted after {self.turns:.4g} of {self.setup.resolution.turns:g} turns"
+        wanted = self.setup.resolution.revolutions
+        stopped = f"interrupted after {self.revolutions:.4g} of {wanted:g} revolutions"
         return (*self.setup.notes, *carving, *([stopped] if self.interrupted else []))
 
     def _carving(self) -> dict:

@@ -25,7 +25,7 @@ from chatter.simulation.structure_in_time import (
     modes_in_time,
     structure_in_time,
 )
-from chatter.simulation.workpiece import TURNS_BEFORE, discrete_cut
+from chatter.simulation.workpiece import REVOLUTIONS_BEFORE, discrete_cut
 from cutting.chip.delayed_chip import DelayedCut
 from cutting.chip.discrete_chip import DiscreteCut
 from cutting.chip.regeneration import delayed_cut
@@ -72,10 +72,10 @@ class Setup:
     left_behind: tuple = ()
 
     @property
-    def turns_before(self) -> int:
+    def revolutions_before(self) -> int:
         """Turns before the start in which the tool, at rest, carves what it finds at the start."""
         carved = isinstance(self.groups[0], DiscreteCut) and self.case.stock is None
-        return TURNS_BEFORE if carved else 0
+        return REVOLUTIONS_BEFORE if carved else 0
 
     @property
     def modes(self) -> tuple[Mode, ...]:
@@ -167,7 +167,7 @@ def _compiled(case: Case, cutter: Cutter, structure: StructureInTime) -> Setup:
         )
     notes = structure.notes
     if case.tool.axial_error and np.all(slices.immersion > 0.5 * math.pi - 1e-9):
-        notes += ("tool.axial_error changes no force: the edge is upright at every height",)
+        notes += ("tool.axial_error changes no force: the edge is parallel to the tool axis",)
     if case.stock is not None:
         notes += ("the engagement changes along the path; the verdict is that of the whole record",)
     chip = case.simulation.chip if case.simulation else "delay"
@@ -252,7 +252,7 @@ def _delayed(
             f'{case.name}: simulation.chip: "delay" knows the engagement of [cut] alone, along a '
             'straight line; [stock] and simulation.path need chip = "dexel" or "voxel"'
         )
-    bins = resolution.steps_a_turn
+    bins = resolution.steps_per_revolution
     return delayed_cut(
         slices,
         slice_engagement(case.cut.mode, case.width_of_cut, cutter.radius, slices.radius),

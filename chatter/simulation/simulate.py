@@ -17,7 +17,7 @@ from chatter.simulation.result import SimulationResult
 from chatter.simulation.setup import Setup, set_up
 from chatter.simulation.verdict import with_verdict
 from dynamics.machine.groups import FrictionsOnPorts
-from dynamics.modal.modal_structure import stored_energy
+from dynamics.machine.modal_structure import stored_energy
 
 #: a run may be this long, in steps
 _MOST_STEPS = 2_000_000_000

@@ -82,7 +82,7 @@ class ToolPath:
     corners: NDArray[np.float64]
     feed: float
 
-    def place_at(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
+    def position_at(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
         """Place (2, ...) of the tool axis, m; before time zero it came straight to the first."""
         way = self.feed * np.asarray(time)
         legs = np.diff(self.corners, axis=0)
@@ -145,7 +145,7 @@ def prescribed_path(
     path: ToolPath, time: NDArray[np.float64], share: NDArray[np.float64] | None = None
 ) -> PrescribedPath:
     """Path of the tool at times, s, and share of the force ramp, which is 1 by default."""
-    x, y = path.place_at(time)
+    x, y = path.position_at(time)
     return PrescribedPath(
         np.ascontiguousarray(x),
         np.ascontiguousarray(y),
@@ -157,4 +157,4 @@ def path_of_last_revolution(spindle: Spindle, path: ToolPath, bins: int) -> NDAr
     """Place (2, bins + 1) of the tool axis at every bin of the revolution before the start."""
     behind = np.arange(bins, -1, -1)
     time = -behind * _REVOLUTION / bins / float(spindle.speed_at(np.zeros(1))[0])
-    return path.place_at(time)
+    return path.position_at(time)

@@ -18,8 +18,8 @@ from chatter.simulation.resolution import (
     LARGEST_LAG,
     Resolution,
     resolution_of,
+    revolutions_of,
     shortest_arc,
-    turns_of,
 )
 from chatter.simulation.spindle import path_of
 from cutting.tool.cutter import Cutter, slice_counts
@@ -114,7 +114,7 @@ def modes_in_time(
 ) -> StructureInTime:
     """Compile modes with the frictions on them."""
     resolution = resolution_of(case, cutter, modes)
-    step = 2.0 * math.pi / (case.cut.spindle_speed * resolution.steps_a_turn)
+    step = 2.0 * math.pi / (case.cut.spindle_speed * resolution.steps_per_revolution)
     given = case.structure.mode if case.structure is not None else ()
     frictions = {
         place: case.friction[mode.friction].spec()
@@ -140,7 +140,7 @@ def machine_in_time(case: Case, cutter: Cutter) -> StructureInTime:
     resolution = _resolution(case, cutter, modes, step)
     speed = case.cut.spindle_speed
     before = round(_time_before(case, cut) / step)
-    duration = resolution.turns * 2.0 * math.pi / speed
+    duration = resolution.revolutions * 2.0 * math.pi / speed
     points = _set_points(
         cut, path_of(case).feed, speed, (before + 10) * step + duration, before * step
     )
@@ -193,7 +193,7 @@ def _resolution(case: Case, cutter: Cutter, modes: tuple, step: float) -> Resolu
     corner, straight = slice_counts(cutter, case.cut.axial_depth, LARGEST_LAG[chip])
     if section and section.slices and straight:
         straight = section.slices
-    turns = turns_of(case, modes)
+    turns = revolutions_of(case, modes)
     steps = turns * a_turn / step
     return Resolution(bins, (corner, straight), turns, max(1, math.ceil(steps / _MOST_ROWS)))
 

@@ -11,7 +11,11 @@ import numpy as np
 from chatter.description.errors import InputError
 from chatter.detection.chatter_detection import Detection, detect_chatter
 from chatter.detection.cut_record import CutRecord
-from chatter.simulation.perturbation.divergence import LARGE_SWING, Divergence, divergence
+from chatter.simulation.perturbation.lyapunov_verdict import (
+    LARGE_SWING,
+    LyapunovVerdict,
+    lyapunov_verdict,
+)
 from chatter.simulation.result import SimulationResult
 from cutting.chip.discrete_chip import DiscreteCut
 
@@ -42,7 +46,7 @@ def with_verdict(result: Result) -> Result:
 def _detected(result: SimulationResult) -> tuple[Detection | None, str]:
     if not result.setup.modes:
         return None, "the tool is rigid"
-    if result.turns < _LEAST_REVOLUTIONS:
+    if result.revolutions < _LEAST_REVOLUTIONS:
         return None, f"fewer than {_LEAST_REVOLUTIONS:g} revolutions were simulated"
     slowest = min(mode.frequency for mode in result.setup.modes)
     if result.time[-1] * slowest < _LEAST_CYCLES:
@@ -59,7 +63,7 @@ def _detected(result: SimulationResult) -> tuple[Detection | None, str]:
     varies = result.setup.spindle.amplitude != 0.0
     if not varies and not (found.verdict == "stable" and _large(result) and _steady(result)):
         return found, ""
-    perturbed = divergence(result.case, result.setup.modes)
+    perturbed = lyapunov_verdict(result.case, result.setup.modes)
     if not perturbed.verdict:
         return None, perturbed.reason
     if not varies and perturbed.stable:
@@ -97,7 +101,7 @@ def _cut_record(result: SimulationResult) -> CutRecord:
     )
 
 
-def _by_perturbation(perturbed: Divergence, found: Detection, speed: float) -> Detection:
+def _by_perturbation(perturbed: LyapunovVerdict, found: Detection, speed: float) -> Detection:
     """Verdict by a small perturbation, where the record does not tell."""
     a_revolution = math.expm1(min(perturbed.rate, 50.0))
     return replace(

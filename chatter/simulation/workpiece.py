@@ -47,7 +47,7 @@ _LONGEST_WAY = 2.0
 #: an edge comes no farther from the undisplaced axis than this, in radii
 _REACH = 1.25
 #: turns that the tool carves at rest before the start of a run without a stock
-TURNS_BEFORE = 2
+REVOLUTIONS_BEFORE = 2
 
 Rectangle = tuple[float, float, float, float]
 
@@ -152,9 +152,9 @@ def discrete_cut(
     if case.stock is None:
         _cut_before(kind, stock, slices, case, path)
     return DiscreteCut(
-        edges=edge_table(slices, resolution.steps_a_turn),
+        edges=edge_table(slices, resolution.steps_per_revolution),
         law=edge_law(case),
-        flank=flank_table(case, slices.radius, 2.0 * math.pi / resolution.steps_a_turn),
+        flank=flank_table(case, slices.radius, 2.0 * math.pi / resolution.steps_per_revolution),
         stock=stock,
         depth=float(slices.thickness.sum()),
         removed=np.zeros(1),
@@ -185,7 +185,7 @@ def _feed_a_turn(case: Case) -> float:
 
 
 def _feed_a_step(case: Case, resolution: Resolution) -> float:
-    return _feed_a_turn(case) / resolution.steps_a_turn
+    return _feed_a_turn(case) / resolution.steps_per_revolution
 
 
 def reach_of(case: Case, cutter: Cutter, slices: EdgeSlices, size: float) -> float:
@@ -208,7 +208,7 @@ def _ends(
         x = _swept(resolution, spindle, path)[0]
         return float(x.min()) - 3.0 * float(slices.radius.max()), float(x.max()) + far
     way = steps_a_chunk(case, slices, resolution) * _feed_a_step(case, resolution)
-    start = float(path.corners[0, 0]) - TURNS_BEFORE * _feed_a_turn(case)
+    start = float(path.corners[0, 0]) - REVOLUTIONS_BEFORE * _feed_a_turn(case)
     start -= _feed_a_step(case, resolution) + far
     # a stock that moves by whole steps lags behind by up to one
     step = DISCRETE_CHIPS[case.simulation.chip].cells_a_move
@@ -217,10 +217,10 @@ def _ends(
 
 def _swept(resolution: Resolution, spindle: Spindle, path: ToolPath) -> NDArray[np.float64]:
     """Places (2, n) of the tool axis over the run, m, with all corners between."""
-    end = resolution.turns * 2.0 * math.pi / spindle.speed
+    end = resolution.revolutions * 2.0 * math.pi / spindle.speed
     legs = np.hypot(*np.diff(path.corners, axis=0).T)
     times = np.concatenate([[0.0], np.cumsum(legs) / path.feed, [end]])
-    return path.place_at(np.sort(times[times <= end]))
+    return path.position_at(np.sort(times[times <= end]))
 
 
 def _boxes(
@@ -294,7 +294,7 @@ def _cut_before(
     """Take away what the tool has cut until the turns before the start."""
     heading = np.diff(path.corners[:2], axis=0)[0]
     heading = heading / np.hypot(*heading)
-    end = path.corners[0] - TURNS_BEFORE * _feed_a_turn(case) * heading
+    end = path.corners[0] - REVOLUTIONS_BEFORE * _feed_a_turn(case) * heading
     start = end - (4.0 * slices.radius.max() + stock.window) * heading
     inner = slices.normal_offset.min(axis=0) / np.sin(slices.immersion)
     for layer, (radius, offset) in enumerate(zip(slices.radius, inner, strict=True)):

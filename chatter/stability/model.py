@@ -30,10 +30,10 @@ from cutting.engagement.immersion import engagement
 from cutting.force.directional_coefficients import (
     DirectionalTable,
     directional_table,
-    mean_over_turn,
+    mean_over_revolution,
 )
 from cutting.force.law import ForceLaw
-from cutting.process_damping.law import ProcessDampingLaw
+from cutting.process_damping.flank import ProcessDampingLaw
 from cutting.process_damping.viscous import ViscousProcessDamping
 from cutting.tool.cutter import Cutter
 
@@ -127,7 +127,7 @@ class MillingModel:
     def averaged_coefficients(self) -> AveragedCoefficients:
         """Directional coefficients of every delay averaged over a revolution, per axial depth."""
         if self.is_uniform:
-            mean = mean_over_turn(self.table, self.teeth)[:1]
+            mean = mean_over_revolution(self.table, self.teeth)[:1]
             return AveragedCoefficients(np.array([2.0 * np.pi / self.teeth]), mean)
         return self.averaged_coefficients_at(self.case.cut.axial_depth)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.description.formatting import shown
+from chatter.description.formatting import formatted
 from chatter.description.registry import Registry
 from chatter.stability.method import StabilityMethod
 from chatter.stability.methods.collocation.method import COLLOCATION
@@ -44,12 +44,14 @@ def chosen_method(case: Case, name: str | None = None) -> StabilityMethod:
     InputError
         If there is no such method.
     """
-    name = name or (case.lobes.method if case.lobes else None) or AUTO
+    given = name
+    name = given or (case.lobes.method if case.lobes else None) or AUTO
     if name == AUTO:
         name = "collocation" if case.contact is None else "matrix-free"
         name = name if fixed_steps(case) is None else "semi-discretization"
     if name not in METHODS:
-        raise InputError(f"{METHODS.unknown(name)}; {shown(AUTO)} chooses")
+        where = "" if given else f"{case.name}: lobes.method: "
+        raise InputError(f"{where}{METHODS.unknown(name)}; {formatted(AUTO)} chooses")
     return METHODS[name]
 
 

@@ -1,1 +1,1 @@
-"""Studies."""
+"""Questions asked of many cases: what-if, uncertainty, optimisation, pitch design, bifurcation."""

@@ -15,7 +15,7 @@ from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
 from chatter.engine.parallel import sweep
 from chatter.io.result_files import SavedResult, as_json, finite_or_none
-from chatter.simulation.perturbation.growth_rate import periods_a_turn
+from chatter.simulation.perturbation.multiplier import periods_per_revolution
 from chatter.simulation.setup import set_up
 from chatter.simulation.simulate import run_setup
 from chatter.simulation.structure_in_time import modes_of
@@ -148,8 +148,8 @@ def _point(case: Case, path: str, modes: tuple[Mode, ...] | None) -> Bifurcation
     if not result.complete:
         return BifurcationPoint(value, np.zeros((0, 3)), "chatter", "unknown", math.nan)
     detection = with_verdict(result).detection
-    a_turn = periods_a_turn(result.setup)
-    periods = np.arange(math.floor(result.turns * a_turn) + 1) / a_turn
+    a_turn = periods_per_revolution(result.setup)
+    periods = np.arange(math.floor(result.revolutions * a_turn) + 1) / a_turn
     kept = 2.0 * math.pi * periods[-_KEPT_REVOLUTIONS * a_turn :]
     points = np.stack(
         [np.interp(kept, result.spindle_angle, column) for column in result.displacement.T], axis=1

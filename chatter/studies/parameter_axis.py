@@ -11,7 +11,7 @@ import numpy as np
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.description.formatting import shown
+from chatter.description.formatting import formatted
 from chatter.description.units import rpm, unit_factor
 from chatter.stability.search_range import spindle_speeds
 from chatter.studies.model import field_of, value_of
@@ -65,7 +65,9 @@ def _read(given: AxisGiven, case: Case, option: str, count: int) -> Variation:
         return variation(path, list(values), case)
     path, equals, span = given.partition("=")
     if not (equals and path.strip() and ".." in span):
-        raise InputError(f"{option} {shown(given)}: PATH=FROM..TO[:COUNT] is wanted, {_EXAMPLE}")
+        raise InputError(
+            f"{option} {formatted(given)}: PATH=FROM..TO[:COUNT] is wanted, {_EXAMPLE}"
+        )
     _require_quantity(case, path.strip(), option)
     wanted = _COUNT.search(span)
     if wanted:
@@ -80,7 +82,7 @@ def _read(given: AxisGiven, case: Case, option: str, count: int) -> Variation:
 def _require_quantity(case: Case, path: str, option: str) -> None:
     if field_of(case, path) is None:
         raise InputError(
-            f"{option} {shown(path)}: there is no such quantity in a case; a path to one is "
+            f"{option} {formatted(path)}: there is no such quantity in a case; a path to one is "
             f"wanted, {_EXAMPLE}"
         )
 
@@ -101,4 +103,4 @@ def case_value(case: Case, axis: Variation) -> float:
     if kind is None or isinstance(value, bool) or not isinstance(value, (int, float, np.floating)):
         return math.nan
     sample = f"1 {axis.unit}" if axis.unit else "1"
-    return float(value) / unit_factor(axis.unit, kind.alike(sample).dimension)
+    return float(value) / unit_factor(axis.unit, kind.matching(sample).dimension)

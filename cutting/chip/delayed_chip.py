@@ -51,7 +51,7 @@ class DelayedCut(NamedTuple):
     helices: int  # 1 where all flutes have one helix, else the number of slices
     earlier: NDArray[np.int64]  # tooth of the k-th pass back, (N, L, N)
     delay: NDArray[np.float64]  # turn of the spindle since that pass, bins, (N, helices, N)
-    inset: NDArray[np.float64]  # of the edge behind that of the pass, m, (N, L, N)
+    radial_offset: NDArray[np.float64]  # of the edge behind that of the pass, m, (N, L, N)
     history: NDArray[np.float64]  # x, y, z of the tool against the work at each bin of the last
     # turn, path and vibration, m, and its change to the next bin by its slope, m, (2, bins, 3)
     since: NDArray[np.float64]  # scratch: motion since each pass, m, (N, 3)
@@ -95,11 +95,11 @@ def _chip(cut, tooth, piece, sine, cosine):
     """Chip thickness of an edge at an angle, m; negative in the air."""
     sk, ck = cut.edges.sine_immersion[piece], cut.edges.cosine_immersion[piece]
     across, along = sk * sine, sk * cosine
-    since, inset = cut.since, cut.inset
+    since, radial_offset = cut.since, cut.radial_offset
     thinnest = math.inf
     for k in range(since.shape[0]):
         chip = since[k, 0] * across + since[k, 1] * along - since[k, 2] * ck
-        chip -= inset[tooth, piece, k]
+        chip -= radial_offset[tooth, piece, k]
         if chip < thinnest:
             thinnest = chip
     return thinnest
@@ -132,7 +132,7 @@ def _chip_since(cut, tooth, piece, sine, cosine, k):
     sk, ck = cut.edges.sine_immersion[piece], cut.edges.cosine_immersion[piece]
     since = cut.since
     chip = since[k, 0] * (sk * sine) + since[k, 1] * (sk * cosine) - since[k, 2] * ck
-    return chip - cut.inset[tooth, piece, k]
+    return chip - cut.radial_offset[tooth, piece, k]
 
 
 @register_jitable(**INLINED)
@@ -147,7 +147,7 @@ def _whole_slice(cut, tooth, piece, rotation):
     # a loop without branches: most of all the time goes here
     for k in range(cut.since.shape[0]):
         x, y = sk * cut.since[k, 0], sk * cut.since[k, 1]
-        beside = cut.since[k, 2] * ck + cut.inset[tooth, piece, k]
+        beside = cut.since[k, 2] * ck + cut.radial_offset[tooth, piece, k]
         first, last = x * s1 + y * c1 - beside, x * s2 + y * c2 - beside
         low, high = _at_ends(first, last)
         chip1, chip2 = min(chip1, first), min(chip2, last)

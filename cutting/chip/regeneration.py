@@ -62,7 +62,7 @@ def delayed_cut(
         helices=1 if alike else offset.shape[1],
         earlier=earlier,
         delay=np.ascontiguousarray(delay[:, :1] if alike else delay),
-        inset=np.ascontiguousarray(offset[earlier, pieces] - offset[:, :, None]),
+        radial_offset=np.ascontiguousarray(offset[earlier, pieces] - offset[:, :, None]),
         history=_history(path),
         since=np.zeros((len(offset), 3)),
     )

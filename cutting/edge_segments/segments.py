@@ -23,7 +23,7 @@ from cutting.edge_segments.engagement_arcs import Segment, segments_of_one_pass,
 from cutting.edge_segments.segment_groups import segment_groups, turning_ends
 from cutting.engagement.immersion import MillingMode
 from cutting.force.law import ForceLaw, SlopePower
-from cutting.process_damping.law import ProcessDampingLaw
+from cutting.process_damping.flank import ProcessDampingLaw
 from cutting.tool.cutter import Cutter
 
 _REVOLUTION = 2.0 * math.pi

@@ -212,7 +212,7 @@ def _add_second_integral(table, angle, factor, out):
 
 
 @register_jitable
-def mean_coupling(table, tooth_pitch, start, end, lag, out):
+def mean_directional(table, tooth_pitch, start, end, lag, out):
     """Mean of the directional matrix over a rotation of the tool, summed over its teeth.
 
     Parameters
@@ -248,7 +248,7 @@ def mean_coupling(table, tooth_pitch, start, end, lag, out):
                 _add_second_integral(table, angle, sign / (span * lag), out)
 
 
-def mean_over_turn(table: DirectionalTable, teeth: int) -> NDArray[np.float64]:
+def mean_over_revolution(table: DirectionalTable, teeth: int) -> NDArray[np.float64]:
     """Mean of the directional matrix over a revolution, per depth: (c, r, r).
 
     The zeroth Fourier term of Altintas and Budak 1995, eq. 14; a helix does not change it.

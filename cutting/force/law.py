@@ -68,18 +68,18 @@ class ForceLaw(ABC):
         h = np.asarray(chip_thickness, dtype=np.float64)
         return np.multiply.outer(power.cutting, (h / power.reference) ** power.exponent)
 
-    def worn(self, cutting_growth: float, edge_growth: Sequence[float]) -> ForceLaw:
+    def worn(self, cutting_wear: float, edge_wear: Sequence[float]) -> ForceLaw:
         """Law of a worn edge.
 
         Parameters
         ----------
-        cutting_growth : float
+        cutting_wear : float
             Share by which the cutting coefficients have grown.
-        edge_growth : (3,) sequence of float
+        edge_wear : (3,) sequence of float
             What is added to the edge coefficients, N/m.
         """
-        cutting = np.asarray(self.cutting) * (1.0 + cutting_growth)  # type: ignore[attr-defined]
-        edge = np.asarray(self.edge) + np.asarray(edge_growth)  # type: ignore[attr-defined]
+        cutting = np.asarray(self.cutting) * (1.0 + cutting_wear)  # type: ignore[attr-defined]
+        edge = np.asarray(self.edge) + np.asarray(edge_wear)  # type: ignore[attr-defined]
         return replace(self, cutting=tuple(cutting), edge=tuple(edge))  # type: ignore[call-arg]
 
 

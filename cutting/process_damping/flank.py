@@ -1,19 +1,41 @@
 """Forces on the flank behind the edge: none, viscous process damping, or ploughing.
 
 A law is added by its module, which ends in `FlankLeaves`, and by its line here. Every table answers
-three calls: the force at a place of the edge, the surface left by a step, and the end of contact.
+three calls: the force on a segment of the edge, the surface left by a step, the end of contact.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
+import numpy as np
 from numba.extending import register_jitable
+from numpy.typing import NDArray
 
 from cutting.compiled import INLINED, by_table
-from cutting.process_damping.law import FlankLeaves
+from cutting.process_damping.leaves import FlankLeaves
 from cutting.process_damping.ploughing import PLOUGHING
-from cutting.process_damping.viscous import VISCOUS, no_clear, no_store
+from cutting.process_damping.viscous import VISCOUS, ViscousProcessDamping, no_clear, no_store
+
+
+class ProcessDampingLaw(Protocol):
+    """Parameters of the force on the flank, SI."""
+
+    @property
+    def small_vibration(self) -> ViscousProcessDamping:
+        """Dashpot that the flank is for small vibration, for the linear analysis."""
+
+    def table(self, radius: NDArray[np.float64], teeth: int, step_angle: float) -> NamedTuple:
+        """Table for the kernels.
+
+        Parameters
+        ----------
+        radius : (L,) array of float
+            Of the edge slices, m.
+        teeth : int
+        step_angle : float
+            Rotation in a time step, rad.
+        """
 
 
 class BareFlank(NamedTuple):
@@ -23,7 +45,7 @@ class BareFlank(NamedTuple):
 
 
 @register_jitable(**INLINED)
-def bare_force(flank, tooth, piece, place, rate, speed):  # noqa: ARG001
+def bare_force(flank, tooth, segment, position, rate, speed):  # noqa: ARG001
     """No force."""
     return 0.0, 0.0
 

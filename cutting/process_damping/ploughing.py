@@ -17,7 +17,7 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from cutting.compiled import INLINED
-from cutting.process_damping.law import FlankLeaves
+from cutting.process_damping.leaves import FlankLeaves
 from cutting.process_damping.viscous import ViscousProcessDamping
 
 #: material parts at this angle before the lowest point of a rounded edge (Basuray et al. 1977)
@@ -127,7 +127,7 @@ class Ploughing:
             depth=self.profile(nodes),
             spacing=stride * arc,
             stride=stride,
-            wave=np.zeros((*shape, samples)),
+            surface=np.zeros((*shape, samples)),
             newest=np.zeros(shape, dtype=np.int64),
             filled=np.zeros(shape, dtype=np.int64),
             age=np.zeros(shape, dtype=np.int64),
@@ -143,7 +143,7 @@ class PloughingFlank(NamedTuple):
     depth: NDArray[np.float64]  # of the flank below the new surface there, m, (J,)
     spacing: NDArray[np.float64]  # of the samples along the cut, m, (L,)
     stride: int  # steps between samples
-    wave: NDArray[np.float64]  # surface left at the last samples, outwards, m, (N, L, K)
+    surface: NDArray[np.float64]  # surface left at the last samples, outwards, m, (N, L, K)
     newest: NDArray[np.int64]  # column of the last sample, (N, L)
     filled: NDArray[np.int64]  # samples since the edge came into the cut, (N, L)
     age: NDArray[np.int64]  # steps since the last sample, (N, L)
@@ -162,42 +162,42 @@ def _area_above(left, right, width):
 
 
 @register_jitable(**INLINED)
-def ploughing_force(flank, tooth, piece, place, rate, speed):  # noqa: ARG001
+def ploughing_force(flank, tooth, segment, position, rate, speed):  # noqa: ARG001
     """Tangential and radial force per length of edge, N/m.
 
     Parameters
     ----------
     flank : PloughingFlank
-    tooth, piece : int
-    place : float
+    tooth, segment : int
+    position : float
         Of the edge along its outward normal, m, in the frame of the samples.
     rate, speed : float
         Not used: the wave itself says how fast the edge moves.
     """
-    count = flank.filled[tooth, piece]
-    samples = flank.wave.shape[2]
-    spacing = flank.spacing[piece]
+    count = flank.filled[tooth, segment]
+    samples = flank.surface.shape[2]
+    spacing = flank.spacing[segment]
     # the newest sample was taken `age` steps before the last one, the others a stride earlier each
-    further = spacing * (flank.age[tooth, piece] + 1) / flank.stride
-    nearer, near_wave = 0.0, place
-    column, seen = flank.newest[tooth, piece], 1
+    further = spacing * (flank.age[tooth, segment] + 1) / flank.stride
+    nearer, near_wave = 0.0, position
+    column, seen = flank.newest[tooth, segment], 1
     area = 0.0
     if count == 0:
         return 0.0, 0.0
-    far_wave = flank.wave[tooth, piece, column]
+    far_wave = flank.surface[tooth, segment, column]
     left = at_rest = flank.depth[0]
     for node in range(1, flank.distance.shape[0]):
         distance = flank.distance[node]
         while distance > further and seen < count:
             column = column - 1 if column > 0 else samples - 1
             nearer, near_wave = further, far_wave
-            further, far_wave = further + spacing, flank.wave[tooth, piece, column]
+            further, far_wave = further + spacing, flank.surface[tooth, segment, column]
             seen += 1
         if distance > further:
             break
         share = (distance - nearer) / (further - nearer)
         depth = flank.depth[node]
-        right = place - (near_wave + share * (far_wave - near_wave)) + depth
+        right = position - (near_wave + share * (far_wave - near_wave)) + depth
         width = distance - flank.distance[node - 1]
         # what a still tool displaces belongs to the edge coefficients
         area += _area_above(left, right, width) - _area_above(at_rest, depth, width)
@@ -207,26 +207,26 @@ def ploughing_force(flank, tooth, piece, place, rate, speed):  # noqa: ARG001
 
 
 @register_jitable(**INLINED)
-def store_surface_history(flank, tooth, piece, surface):
+def store_surface_history(flank, tooth, segment, surface):
     """Take the surface left by the edge in this step, m, into the samples."""
-    age = flank.age[tooth, piece] + 1
-    if flank.filled[tooth, piece] == 0 or age >= flank.stride:
-        samples = flank.wave.shape[2]
-        column = flank.newest[tooth, piece] + 1
+    age = flank.age[tooth, segment] + 1
+    if flank.filled[tooth, segment] == 0 or age >= flank.stride:
+        samples = flank.surface.shape[2]
+        column = flank.newest[tooth, segment] + 1
         if column >= samples:
             column = 0
-        flank.newest[tooth, piece] = column
-        flank.wave[tooth, piece, column] = surface
-        flank.filled[tooth, piece] = min(samples, flank.filled[tooth, piece] + 1)
+        flank.newest[tooth, segment] = column
+        flank.surface[tooth, segment, column] = surface
+        flank.filled[tooth, segment] = min(samples, flank.filled[tooth, segment] + 1)
         age = 0
-    flank.age[tooth, piece] = age
+    flank.age[tooth, segment] = age
 
 
 @register_jitable(**INLINED)
-def clear_surface_history(flank, tooth, piece):
+def clear_surface_history(flank, tooth, segment):
     """The edge has left the cut: there is nothing behind it any more."""
-    flank.filled[tooth, piece] = 0
-    flank.age[tooth, piece] = 0
+    flank.filled[tooth, segment] = 0
+    flank.age[tooth, segment] = 0
 
 
 PLOUGHING = FlankLeaves(

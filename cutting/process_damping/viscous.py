@@ -15,7 +15,7 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from cutting.compiled import INLINED
-from cutting.process_damping.law import FlankLeaves
+from cutting.process_damping.leaves import FlankLeaves
 
 
 @dataclass(frozen=True)
@@ -61,15 +61,15 @@ class ViscousFlank(NamedTuple):
 
 
 @register_jitable(**INLINED)
-def viscous_force(flank, tooth, piece, place, rate, speed):  # noqa: ARG001
+def viscous_force(flank, tooth, segment, position, rate, speed):  # noqa: ARG001
     """Tangential and radial force per length of edge, N/m.
 
     Parameters
     ----------
     flank : ViscousFlank
-    tooth, piece : int
+    tooth, segment : int
         Not used: all edges are alike.
-    place : float
+    position : float
         Not used.
     rate, speed : float
         Velocity of the edge along its outward normal, and cutting speed, m/s.
@@ -79,12 +79,12 @@ def viscous_force(flank, tooth, piece, place, rate, speed):  # noqa: ARG001
 
 
 @register_jitable(**INLINED)
-def no_clear(flank, tooth, piece):
+def no_clear(flank, tooth, segment):
     """Clear nothing: the viscous form has no memory."""
 
 
 @register_jitable(**INLINED)
-def no_store(flank, tooth, piece, surface):
+def no_store(flank, tooth, segment, surface):
     """Store nothing: the viscous form has no memory."""
 
 

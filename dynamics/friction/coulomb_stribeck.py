@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from dynamics.compiled import INLINED
 from dynamics.friction.columns import parameter_columns, port_column
 from dynamics.friction.harmonic import memoryless_describing_function
-from dynamics.friction.implicit import held_force, no_energy, no_force
+from dynamics.friction.implicit import implicit_force, no_energy, no_force
 from dynamics.friction.law import FrictionLawEntry
 from dynamics.keys import Key, check_ranges
 
@@ -30,7 +30,7 @@ KEYS = (
     Key("stribeck_shape", "number", "exponent of the Stribeck curve", 2.0, above=0.0),
 )
 #: dynamic stiffness at rest, N/m (N m/rad): it holds, and nothing in a machine is stiffer
-HELD = 1e14
+STIFFNESS_AT_REST = 1e14
 #: Stribeck velocity where the static force is the Coulomb friction, m/s: it changes nothing
 _ANY_VELOCITY = 1.0
 
@@ -74,7 +74,7 @@ class CoulombStribeck:
 
     def stiffness_at_rest(self, frequency: ArrayLike) -> NDArray[np.complex128]:
         """Dynamic stiffness of small motion about rest, N/m: the port is held."""
-        return np.full(np.shape(np.asarray(frequency)), HELD, dtype=np.complex128)
+        return np.full(np.shape(np.asarray(frequency)), STIFFNESS_AT_REST, dtype=np.complex128)
 
     def stiffness_in_motion(self, frequency: ArrayLike, velocity: float) -> NDArray[np.complex128]:
         """Dynamic stiffness j w dF/dv, N/m, about a velocity in m/s (not 0); Hz."""
@@ -138,8 +138,8 @@ def coulomb_stribeck_force(law, i, motion, h):
 
 @register_jitable(**INLINED)
 def coulomb_stribeck_step(law, i, dx_free, gx, v_free, g, h):
-    """Held force, N, and motion of the law, m; see `implicit.held_force`."""
-    return held_force(no_force, _resist, no_energy, law, i, math.inf, dx_free, gx, v_free, g, h)
+    """Held force, N, and motion of the law, m; see `implicit.implicit_force`."""
+    return implicit_force(no_force, _resist, no_energy, law, i, math.inf, dx_free, gx, v_free, g, h)
 
 
 @register_jitable(**INLINED)

@@ -39,13 +39,13 @@ def no_energy(law, i, motion, h):  # noqa: ARG001
 
 
 @register_jitable(**INLINED)
-def held_force(rest, resist, stored, law, i, stiffness, dx_free, gx, v_free, g, h):
+def implicit_force(rest, opposing, stored, law, i, stiffness, dx_free, gx, v_free, g, h):
     """Force held over the step and motion of the law.
 
     Parameters
     ----------
-    rest, resist, stored : functions
-        Of the law: `rest(law, i)` force at no motion; `resist(law, i, sign, way, h)` mean force
+    rest, opposing, stored : functions
+        Of the law: `rest(law, i)` force at no motion; `opposing(law, i, sign, way, h)` mean force
         against a motion by way > 0 (or = 0, the limit) along sign; `stored(law, i, motion, h)`
         change of the stored energy, J.
     law : NamedTuple
@@ -69,7 +69,7 @@ def held_force(rest, resist, stored, law, i, stiffness, dx_free, gx, v_free, g, 
     motion : float
         By which the law is to be advanced, m.
     """
-    force, motion = _solve(rest, resist, law, i, dx_free, gx, h)
+    force, motion = _solve(rest, opposing, law, i, dx_free, gx, h)
     end = v_free - g * force
     if gx == 0.0 or g <= 0.0 or end * motion > 0.0 or end == 0.0:
         return force, motion
@@ -77,7 +77,7 @@ def held_force(rest, resist, stored, law, i, stiffness, dx_free, gx, v_free, g, 
     for _ in range(_SHARES):
         free = (1.0 - share) * dx_free + share * h * v_free
         compliance = (1.0 - share) * gx + share * h * g
-        stopping, short = _solve(rest, resist, law, i, free, compliance, h)
+        stopping, short = _solve(rest, opposing, law, i, free, compliance, h)
         work = stopping * (dx_free - gx * stopping)
         noise = _ROUNDING * abs(stopping) * (abs(dx_free) + gx * abs(stopping))
         if work >= stored(law, i, short, h) - noise:
@@ -87,7 +87,7 @@ def held_force(rest, resist, stored, law, i, stiffness, dx_free, gx, v_free, g, 
 
 
 @register_jitable(**INLINED)
-def _solve(rest, resist, law, i, free, compliance, h):
+def _solve(rest, opposing, law, i, free, compliance, h):
     """Force and motion d with d = free - compliance F(d)."""
     at_rest = rest(law, i)
     drive = free - compliance * at_rest
@@ -95,61 +95,61 @@ def _solve(rest, resist, law, i, free, compliance, h):
     # the force is never less than the elastic pull at the start, or none
     high = sign * free - compliance * min(sign * at_rest, 0.0)
     if compliance == 0.0 and high > 0.0:
-        return sign * resist(law, i, sign, high, h), free
+        return sign * opposing(law, i, sign, high, h), free
     if high <= 0.0:
         return at_rest, 0.0
     guess = min(max(sign * law.rate[i] * h, 0.0), high)
-    way = _way(resist, law, i, sign, h, sign * free, compliance, high, guess)
+    way = _way(opposing, law, i, sign, h, sign * free, compliance, high, guess)
     if way == 0.0:
         return free / compliance, 0.0
-    return sign * resist(law, i, sign, way, h), sign * way
+    return sign * opposing(law, i, sign, way, h), sign * way
 
 
 @register_jitable(**INLINED)
-def _way(resist, law, i, sign, h, free, compliance, high, guess):
-    """Root of way - free + compliance resist(way) in [0, high], that next to the guess.
+def _way(opposing, law, i, sign, h, free, compliance, high, guess):
+    """Root of way - free + compliance opposing(way) in [0, high], that next to the guess.
 
     A falling force over speed has several roots if the step is coarse; the one that continues
     the motion is taken. 0 is a root also if rest can be held.
     """
-    way = _contracted(resist, law, i, sign, h, free, compliance, high, guess)
+    way = _contracted(opposing, law, i, sign, h, free, compliance, high, guess)
     if way > 0.0:
         return way
     low, f_low, top, f_top = 0.0, -1.0, high, 1.0
     if guess > 0.0:
-        f = guess - free + compliance * resist(law, i, sign, guess, h)
+        f = guess - free + compliance * opposing(law, i, sign, guess, h)
         if f == 0.0:
             return guess
         near = min(max(guess - 1.5 * f, 0.0), high)
-        fn = near - free + compliance * resist(law, i, sign, near, h)
+        fn = near - free + compliance * opposing(law, i, sign, near, h)
         if f < 0.0 < fn:
-            return _root(resist, law, i, sign, h, free, compliance, guess, f, near, fn)
+            return _root(opposing, law, i, sign, h, free, compliance, guess, f, near, fn)
         if fn < 0.0 < f:
-            return _root(resist, law, i, sign, h, free, compliance, near, fn, guess, f)
+            return _root(opposing, law, i, sign, h, free, compliance, near, fn, guess, f)
         if f < 0.0:
             low, f_low = guess, f
         else:
             top, f_top = guess, f
     if low == 0.0:
-        f_low = compliance * resist(law, i, sign, 0.0, h) - free
+        f_low = compliance * opposing(law, i, sign, 0.0, h) - free
         if f_low >= 0.0:
             return 0.0
     if top == high:
-        f_top = high - free + compliance * resist(law, i, sign, high, h)
+        f_top = high - free + compliance * opposing(law, i, sign, high, h)
         if f_top <= 0.0:
             return high
-    return _root(resist, law, i, sign, h, free, compliance, low, f_low, top, f_top)
+    return _root(opposing, law, i, sign, h, free, compliance, low, f_low, top, f_top)
 
 
 @register_jitable(**INLINED)
-def _contracted(resist, law, i, sign, h, free, compliance, high, guess):
+def _contracted(opposing, law, i, sign, h, free, compliance, high, guess):
     """Root by putting the way in again and again, or 0 where that does not close in at once.
 
     A law much softer than the step's compliance closes in by orders of magnitude each time.
     """
     way, last = guess, high
     for _ in range(_CONTRACTIONS):
-        following = free - compliance * resist(law, i, sign, way, h)
+        following = free - compliance * opposing(law, i, sign, way, h)
         change = abs(following - way)
         if not 0.0 < following <= high or change > _CLOSING * last:
             break
@@ -161,14 +161,14 @@ def _contracted(resist, law, i, sign, h, free, compliance, high, guess):
 
 
 @register_jitable(**INLINED)
-def _root(resist, law, i, sign, h, free, compliance, a, fa, b, fb):
+def _root(opposing, law, i, sign, h, free, compliance, a, fa, b, fb):
     """Root between fa < 0 < fb (Chandrupatla 1997, Adv. Eng. Software 28:145, eqs. 1-4)."""
     c, fc = a, fa
     noise = 0.4 * _ROUNDING * abs(free)
     part = min(max(fa / (fa - fb), 1e-3), 0.999)
     for _ in range(_ITERATIONS):
         x = a + part * (b - a)
-        f = x - free + compliance * resist(law, i, sign, x, h)
+        f = x - free + compliance * opposing(law, i, sign, x, h)
         if (f > 0.0) == (fa > 0.0):
             c, fc = a, fa
         else:

@@ -34,7 +34,7 @@ def include(law: FrictionLawEntry) -> None:
 for _law in LAWS:
     include(_law)
 
-#: held force, N, and motion of a law, m; see `implicit.held_force`
+#: held force, N, and motion of a law, m; see `implicit.implicit_force`
 friction_step = by_table(_STEP)
 #: moves the state of a law by a motion, m, in a time, s
 friction_advance = by_table(_ADVANCE)

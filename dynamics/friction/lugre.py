@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 from dynamics.compiled import INLINED
 from dynamics.friction.columns import parameter_columns, port_column
 from dynamics.friction.harmonic import describing_function
-from dynamics.friction.implicit import held_force
+from dynamics.friction.implicit import implicit_force
 from dynamics.friction.law import FrictionLawEntry
 from dynamics.keys import Key, check_ranges
 
@@ -216,9 +216,9 @@ def lugre_force(law, i, motion, h):
 
 @register_jitable(**INLINED)
 def lugre_step(law, i, dx_free, gx, v_free, g, h):
-    """Held force, N, and motion of the law, m; see `implicit.held_force`."""
+    """Held force, N, and motion of the law, m; see `implicit.implicit_force`."""
     stiffness = law.bristle_stiffness[i] + (law.bristle_damping[i] + law.viscous[i]) / h
-    return held_force(_rest, _resist, _stored, law, i, stiffness, dx_free, gx, v_free, g, h)
+    return implicit_force(_rest, _resist, _stored, law, i, stiffness, dx_free, gx, v_free, g, h)
 
 
 @register_jitable(**INLINED)

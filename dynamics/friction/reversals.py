@@ -41,7 +41,7 @@ def reversal_columns(
 
 
 @register_jitable(**INLINED)
-def way_value(law, i):
+def branch_value(law, i):
     """Value of r now."""
     n = law.count[i]
     if n == 0:
@@ -88,8 +88,8 @@ def _nothing(start, width, height):  # noqa: ARG001
 
 
 @register_jitable(**INLINED)
-def _along(over, share, law, i, sign, way):
-    """Integral along a way >= 0 (m) in a direction, and where it ends.
+def _along(over, share, law, i, sign, distance):
+    """Integral along a distance >= 0 (m) in a direction, and where it ends.
 
     Parameters
     ----------
@@ -110,12 +110,12 @@ def _along(over, share, law, i, sign, way):
     origin = sign * law.value[i, n - 1] if n > 0 else 0.0
     close = law.length[i, n - 1] if n > 0 else math.inf
     if sign != law.side[i] and (n > 0 or u > 0.0):
-        origin, close, u, n = sign * way_value(law, i), u, 0.0, n + 1
-    total, rest = 0.0, way
+        origin, close, u, n = sign * branch_value(law, i), u, 0.0, n + 1
+    total, rest = 0.0, distance
     while True:
         scale = a if n > 0 else 2.0 * a
         closes = rest * scale > close - u
-        # its own number: the end forgets the digits of a short way
+        # its own number: the end forgets the digits of a short distance
         width = close - u if closes else rest * scale
         run = width / scale if closes else rest
         total += share * origin * run + over(u, width, 2.0 if n > 0 else 1.0) / scale
@@ -134,23 +134,23 @@ def _along(over, share, law, i, sign, way):
 
 
 @register_jitable(**INLINED)
-def branch_mean(law, i, sign, way):
-    """Mean of r along a way >= 0 (m) in a direction, counted along it."""
-    if way <= 0.0:
-        return sign * way_value(law, i)
-    total, _, _ = _along(_rise_over, 1.0, law, i, sign, way)
-    return total / way
+def branch_mean(law, i, sign, distance):
+    """Mean of r along a distance >= 0 (m) in a direction, counted along it."""
+    if distance <= 0.0:
+        return sign * branch_value(law, i)
+    total, _, _ = _along(_rise_over, 1.0, law, i, sign, distance)
+    return total / distance
 
 
 @register_jitable(**INLINED)
-def branch_lost(law, i, sign, way):
-    """Dissipated energy per sliding force, m, along a way > 0 (m) in a direction."""
-    lost, _, _ = _along(_lost_over, 0.0, law, i, sign, way)
+def branch_lost(law, i, sign, distance):
+    """Dissipated energy per sliding force, m, along a distance > 0 (m) in a direction."""
+    lost, _, _ = _along(_lost_over, 0.0, law, i, sign, distance)
     return lost
 
 
 @register_jitable(**INLINED)
-def take_way(law, i, motion):
+def move_along(law, i, motion):
     """Move by a motion, m: note a reversal, forget loops that close."""
     if motion == 0.0:
         return
@@ -159,7 +159,7 @@ def take_way(law, i, motion):
         if law.count[i] == law.value.shape[1]:
             _forget_least(law, i)
         n = law.count[i]
-        law.value[i, n] = way_value(law, i)
+        law.value[i, n] = branch_value(law, i)
         law.length[i, n] = law.travel[i]
         law.count[i] = n + 1
         law.travel[i] = 0.0
@@ -173,7 +173,7 @@ def take_way(law, i, motion):
 def _forget_least(law, i):
     """Forget the two neighbouring reversals whose branches differ least in length."""
     n = law.count[i]
-    now = way_value(law, i)
+    now = branch_value(law, i)
     least, gap = 1, math.inf
     for k in range(1, n - 1):
         if law.length[i, k] - law.length[i, k + 1] < gap:

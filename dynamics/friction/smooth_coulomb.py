@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from dynamics.compiled import INLINED
 from dynamics.friction.columns import parameter_columns, port_column
 from dynamics.friction.harmonic import memoryless_describing_function
-from dynamics.friction.implicit import held_force, no_energy, no_force
+from dynamics.friction.implicit import implicit_force, no_energy, no_force
 from dynamics.friction.law import FrictionLawEntry
 from dynamics.keys import Key, check_ranges
 
@@ -119,9 +119,11 @@ def smooth_coulomb_force(law, i, motion, h):
 
 @register_jitable(**INLINED)
 def smooth_coulomb_step(law, i, dx_free, gx, v_free, g, h):
-    """Held force, N, and motion of the law, m; see `implicit.held_force`."""
+    """Held force, N, and motion of the law, m; see `implicit.implicit_force`."""
     stiffness = (law.coulomb[i] / law.smoothing_velocity[i] + law.viscous[i]) / h
-    return held_force(no_force, _resist, no_energy, law, i, stiffness, dx_free, gx, v_free, g, h)
+    return implicit_force(
+        no_force, _resist, no_energy, law, i, stiffness, dx_free, gx, v_free, g, h
+    )
 
 
 @register_jitable(**INLINED)

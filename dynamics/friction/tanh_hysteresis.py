@@ -33,14 +33,14 @@ from numpy.typing import ArrayLike, NDArray
 from dynamics.compiled import INLINED
 from dynamics.friction.columns import parameter_columns, port_column
 from dynamics.friction.harmonic import describing_function
-from dynamics.friction.implicit import held_force
+from dynamics.friction.implicit import implicit_force
 from dynamics.friction.law import FrictionLawEntry
 from dynamics.friction.reversals import (
     branch_lost,
     branch_mean,
+    branch_value,
+    move_along,
     reversal_columns,
-    take_way,
-    way_value,
 )
 from dynamics.keys import Key, check_ranges
 
@@ -151,7 +151,7 @@ def _resist(law, i, sign, way, h):
 
 @register_jitable(**INLINED)
 def _rest(law, i):
-    return law.coulomb[i] * way_value(law, i)
+    return law.coulomb[i] * branch_value(law, i)
 
 
 @register_jitable(**INLINED)
@@ -173,16 +173,16 @@ def tanh_force(law, i, motion, h):
 
 @register_jitable(**INLINED)
 def tanh_step(law, i, dx_free, gx, v_free, g, h):
-    """Held force, N, and motion of the law, m; see `implicit.held_force`."""
+    """Held force, N, and motion of the law, m; see `implicit.implicit_force`."""
     stiffness = 2.0 * law.hysteresis_slope[i] * law.coulomb[i]
     stiffness += (law.viscous[i] + law.low_speed_viscous[i]) / h
-    return held_force(_rest, _resist, _stored, law, i, stiffness, dx_free, gx, v_free, g, h)
+    return implicit_force(_rest, _resist, _stored, law, i, stiffness, dx_free, gx, v_free, g, h)
 
 
 @register_jitable(**INLINED)
 def tanh_advance(law, i, motion, h):
     """Move along the branches by a motion, m, in a time h, s."""
-    take_way(law, i, motion)
+    move_along(law, i, motion)
     law.rate[i] = motion / h
 
 

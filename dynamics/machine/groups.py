@@ -17,7 +17,7 @@ from dynamics.compiled import INLINED, for_each
 from dynamics.control.drive_step import control_step
 from dynamics.control.drive_table import TORQUE_INJECTED, ControlTable
 from dynamics.friction.laws import Frictions, friction_advance, friction_step
-from dynamics.machine.steps import add_held
+from dynamics.machine.ports import add_constant_force
 from dynamics.trajectory.set_points import SetPoints, set_point_at
 
 #: change of a friction force that its neighbours need not hear of: its motion over theirs, and m
@@ -132,7 +132,7 @@ def _solve_each(frictions, group, bus):
         force, motion = friction_step(frictions.law, i, dx_free, gx, v_free, resting * g, bus.step)
         change = force - frictions.force[i]
         if change != 0.0:
-            add_held(bus, p, -change)
+            add_constant_force(bus, p, -change)
         frictions.force[i] = force
         frictions.beyond[i] = motion - (dx_free - gx * force)
         if abs(change) * gx > _UNHEARD * abs(dx_free) + _UNSEEN:

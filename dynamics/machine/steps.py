@@ -1,13 +1,12 @@
 """Exact step of a linear structure under forces on ports: table and kernels.
 
 Ports are the bus: every law reads displacement and velocity of a port and puts a force on it.
-Forces are held over a step (drives, friction), or vary linearly over it (loads, the cut). The state
-is a block of coordinates and pairs; of a structure given by modes, a pair is a mode.
+Forces are constant over a step (drives, friction), or vary linearly over it (loads, the cut). The
+state is a block of coordinates and pairs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -26,11 +25,11 @@ class StructureSteps(NamedTuple):
     step: float  # s
     dense: NDArray[np.float64]  # transition of the dense coordinates, transposed, (r, r)
     pairs: NDArray[np.float64]  # transition of the pairs, entries 11, 12, 21, 22, (4, b)
-    held: NDArray[np.float64]  # state per force held, (p, s)
+    constant: NDArray[np.float64]  # state per constant force, (p, s)
     ramp: NDArray[np.float64]  # state per change of a force over the step, (p, s)
     displacement: NDArray[np.float64]  # of the ports, transposed, (s, p)
     velocity: NDArray[np.float64]  # (s, p)
-    step_compliance: NDArray[np.float64]  # displacements per force held on a row's port, (p, p)
+    step_compliance: NDArray[np.float64]  # displacements per constant force on a row's port, (p, p)
     step_mobility: NDArray[np.float64]  # velocities, (p, p)
     ramp_compliance: NDArray[np.float64]  # the same per change of a force, (p, p)
     ramp_mobility: NDArray[np.float64]  # (p, p)
@@ -73,46 +72,32 @@ def structure_steps(
         "pairs": np.array(
             [[transition[start + i, start + j] for start in pairs] for i, j in entries]
         ).reshape(4, -1),
-        "held": (first @ split.entry).T,
+        "constant": (first @ split.entry).T,
         "ramp": (second @ split.entry).T,
         "displacement": split.displacement.T,
         "velocity": split.velocity.T,
     }
-    steps = steps_of(step, columns)
-    if velocity is not None:
-        steps.state[:] = split.start @ velocity
-    steps.v[:] = split.velocity @ steps.state
-    return steps
-
-
-def steps_of(step: float, columns: Mapping[str, NDArray[np.float64]]) -> StructureSteps:
-    """Return a structure at rest by its transition.
-
-    Parameters
-    ----------
-    step : float
-        s.
-    columns : mapping of str to array of float
-        ``dense``, ``pairs``, ``held``, ``ramp``, ``displacement`` and ``velocity`` of the table.
-    """
-    ports, size = columns["held"].shape
     answers = {
         f"{force}_{kind}": columns[way] @ columns[motion]
-        for force, way in (("step", "held"), ("ramp", "ramp"))
+        for force, way in (("step", "constant"), ("ramp", "ramp"))
         for kind, motion in (("compliance", "displacement"), ("mobility", "velocity"))
     }
     fixed = {name: np.ascontiguousarray(part) for name, part in {**columns, **answers}.items()}
     for column in fixed.values():
         column.flags.writeable = False
     signals = ("force", "change", "next_force", "u_before", "v_before", "u", "v")
-    return StructureSteps(
+    steps = StructureSteps(
         step=step,
         **fixed,
-        state=np.zeros(size),
-        after=np.zeros(size),
-        **{name: np.zeros(ports) for name in signals},
+        state=np.zeros(len(split.rate)),
+        after=np.zeros(len(split.rate)),
+        **{name: np.zeros(split.entry.shape[1]) for name in signals},
         halted=np.zeros(1, dtype=np.int64),
     )
+    if velocity is not None:
+        steps.state[:] = split.start @ velocity
+    steps.v[:] = split.velocity @ steps.state
+    return steps
 
 
 def _over_step(
@@ -142,7 +127,7 @@ def begin_step(bus):
 
 
 @register_jitable(**INLINED)
-def predict(bus):
+def predict_structure(bus):
     """Motion over the step with all forces held."""
     r = bus.dense.shape[0]
     for i in range(r):
@@ -158,7 +143,7 @@ def predict(bus):
     for p in range(bus.force.shape[0]):
         if bus.force[p] != 0.0:
             for i in range(bus.after.shape[0]):
-                bus.after[i] += bus.held[p, i] * bus.force[p]
+                bus.after[i] += bus.constant[p, i] * bus.force[p]
     for p in range(bus.u.shape[0]):
         bus.u[p] = 0.0
         bus.v[p] = 0.0
@@ -180,7 +165,7 @@ def _answer(bus, p, force, state, displacement, velocity):
 
 
 @register_jitable(**INLINED)
-def correct(bus):
+def correct_structure(bus):
     """Let the forces vary linearly over the step by their changes."""
     for p in range(bus.change.shape[0]):
         if bus.change[p] != 0.0:
@@ -188,10 +173,10 @@ def correct(bus):
 
 
 @register_jitable(**INLINED)
-def add_held(bus, p, force):
+def add_force_on_structure(bus, p, force):
     """Add a force held over the step, after it was predicted."""
     bus.force[p] += force
-    _answer(bus, p, force, bus.held, bus.step_compliance, bus.step_mobility)
+    _answer(bus, p, force, bus.constant, bus.step_compliance, bus.step_mobility)
 
 
 @register_jitable(**INLINED)

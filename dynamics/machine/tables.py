@@ -18,8 +18,8 @@ from dynamics.machine.groups import (
     Loads,
     frictions_on_ports,
 )
+from dynamics.machine.modal_structure import ModalSteps, modal_energy, modal_structure
 from dynamics.machine.steps import StructureSteps, structure_steps
-from dynamics.modal.modal_structure import modal_energy, modal_structure
 from dynamics.modal.modes import Mode
 from dynamics.structure.linear_structure import StructureError
 from dynamics.trajectory.set_points import SetPoints
@@ -28,8 +28,8 @@ from dynamics.trajectory.set_points import SetPoints
 class StructureTables(NamedTuple):
     """What the time loop needs of a structure: its ports, and what acts on them."""
 
-    bus: StructureSteps
-    held: tuple  # laws whose forces are known at the beginning of a step
+    bus: StructureSteps | ModalSteps
+    explicit: tuple  # laws whose forces are known at the beginning of a step
     implicit: tuple  # laws that are solved together with the motion
     port: dict[str, int]  # of drives, frictions, loads and outputs by name
 
@@ -84,21 +84,21 @@ def machine_tables(
     port = {name: place for place, name in enumerate(rows)}
     matrix = np.array(list(rows.values())).reshape(-1, machine.structure.size)
     bus = structure_steps(machine.structure, matrix, step, velocity)
-    held: tuple = ()
+    explicit: tuple = ()
     if machine.drives:
-        held += (_controlled(machine, step, points, port),)
+        explicit += (_controlled(machine, step, points, port),)
     if machine.preloads:
         places = np.array([port[one.name] for one in machine.preloads], dtype=np.int64)
-        held += (ConstantForces(places, np.array([one.value for one in machine.preloads])),)
+        explicit += (ConstantForces(places, np.array([one.value for one in machine.preloads])),)
     if loads:
         places = np.array([port[name] for name in loads], dtype=np.int64)
         force = np.stack([force for _, force in loads.values()], axis=1, dtype=np.float64)
-        held += (Loads(places, force),)
+        explicit += (Loads(places, force),)
     frictions = friction_groups(
         [one.law for one in machine.frictions], [port[_friction(one)] for one in machine.frictions]
     )
     implicit = (frictions_on_ports(frictions, bus.step_compliance),) if frictions else ()
-    return StructureTables(bus, held, implicit, port)
+    return StructureTables(bus, explicit, implicit, port)
 
 
 def modal_tables(

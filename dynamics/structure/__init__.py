@@ -11,6 +11,5 @@ spring_coupling    springs along a combination of motions: nuts, belts, gears
 rigid_body_motion  motions of parts that nothing holds
 imported           structures given by matrices; the check of a mass matrix
 surface_constraint points tied to the surfaces of a finite element model
-imported_part      an imported structure, reduced, as a part of an assembly
 ================== ==================================================================
 """

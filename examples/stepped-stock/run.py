@@ -17,7 +17,7 @@ def main(out: Path) -> list[Path]:
     """Simulate the path, print the force along it, return what was written."""
     case = chatter.load(HERE / "case.toml")
     result = chatter.simulate(case)
-    place = result.setup.path.place_at(result.time)
+    place = result.setup.path.position_at(result.time)
     resultant = np.linalg.norm(result.force, axis=1)
     way = np.cumsum(np.hypot(*np.diff(place, axis=1, prepend=place[:, :1])))
     for low, high in ((0.0, 2.0), (8.0, 12.0), (22.0, 28.0), (31.0, 34.0)):

@@ -13,7 +13,7 @@ def load(name):
 
 def test_stepped_stock():
     result = chatter.simulate(load("stepped-stock").patch({"simulation.revolutions": 95}))
-    place = result.setup.path.place_at(result.time)[0]
+    place = result.setup.path.position_at(result.time)[0]
     # a radius of 6 mm in front of the block, whose side is at x = 8 mm
     assert np.all(result.force[place < 1.99e-3] == 0.0)
     # on the step about twice the depth is cut at the same engagement, in whole layers

@@ -79,7 +79,7 @@ def moved(case, push):
     setup = set_up(case)
     run, s = CutRun(setup, 1, setup.steps), setup.structure.tables.bus
     tool = [setup.structure.tables.port[f"tool {axis}"] for axis in "xy"]
-    s.state[:] += push * s.held[tool].sum(axis=0)
+    s.state[:] += push * s.constant[tool].sum(axis=0)
     s.u[:] = s.state @ s.displacement
     s.v[:] = s.state @ s.velocity
     assert run.steps(setup.steps) == setup.steps

@@ -13,8 +13,8 @@ import pytest
 import chatter
 from chatter.description.case import Case
 from chatter.description.progress import no_progress
-from chatter.simulation.perturbation.divergence import divergence
-from chatter.simulation.perturbation.growth_rate import motion_of
+from chatter.simulation.perturbation.lyapunov_verdict import lyapunov_verdict
+from chatter.simulation.perturbation.multiplier import motion_of
 from chatter.simulation.setup import delayed, set_up
 from chatter.simulation.structure_in_time import modes_of
 from chatter.stability.model import milling_model
@@ -68,7 +68,7 @@ def is_forced(case):
     swings = []
     for ramp in (0, TURNS // 2):
         setup = set_up(delayed(case))
-        bins = setup.resolution.steps_a_turn
+        bins = setup.resolution.steps_per_revolution
         motion, done = motion_of(setup, TURNS * bins, ramp * bins)
         if done < TURNS * bins:
             return False
@@ -84,13 +84,13 @@ def is_forced(case):
 def test_verdict_is_that_of_the_run(limit, law, force, shares):
     for share in shares:
         case = rubbing_case(law, force, share * limit)
-        found = divergence(case, modes_of(case)[0])
+        found = lyapunov_verdict(case, modes_of(case)[0])
         assert found.verdict == ("stable" if is_forced(case) else "chatter")
 
 
 def test_friction_makes_a_cut_stable_that_chatters_without(limit):
     free, rubbing = (rubbing_case("coulomb", force, 1.4 * limit) for force in (0.0, 20.0))
-    assert divergence(free, modes_of(free)[0]).verdict == "chatter"
+    assert lyapunov_verdict(free, modes_of(free)[0]).verdict == "chatter"
     found = chatter.simulate(rubbing).detection
     assert found.stable
     assert found.reason == "a small push on the forced motion dies out at once"

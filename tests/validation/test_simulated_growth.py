@@ -12,7 +12,7 @@ import pytest
 import chatter
 from chatter.description.case import Case
 from chatter.description.progress import no_progress
-from chatter.simulation.perturbation.growth_rate import growth_of
+from chatter.simulation.perturbation.multiplier import simulated_multiplier
 from chatter.simulation.structure_in_time import modes_of
 from chatter.stability.methods.time_domain.critical_depths import time_limit_curve
 from chatter.stability.model import milling_model
@@ -62,7 +62,7 @@ def multiplier_of(case):
 
 
 def measured(case):
-    return growth_of(case, modes_of(case)[0])
+    return simulated_multiplier(case, modes_of(case)[0])
 
 
 @pytest.mark.parametrize("kind", ["slot", "side", "light"])

@@ -11,8 +11,8 @@ import pytest
 
 from chatter.description.case import Case
 from chatter.description.progress import no_progress
-from chatter.simulation.perturbation.divergence import divergence
-from chatter.simulation.perturbation.growth_rate import motion_of
+from chatter.simulation.perturbation.lyapunov_verdict import lyapunov_verdict
+from chatter.simulation.perturbation.multiplier import motion_of
 from chatter.simulation.setup import delayed, set_up
 from chatter.simulation.structure_in_time import modes_of
 from chatter.stability.methods.collocation.element_cut import element_cut
@@ -202,7 +202,7 @@ def simulated(case, turns, depth):
     runs, steps = [], 0
     for push in (0.0, 1e-7):
         setup = set_up(case)
-        steps = turns * setup.resolution.steps_a_turn
+        steps = turns * setup.resolution.steps_per_revolution
         motion, done = motion_of(setup, (RAMP + WATCHED) * steps, RAMP * steps, push)
         assert done > (RAMP + WATCHED) * steps
         runs.append(motion[RAMP * steps : -1].reshape(WATCHED, -1))
@@ -248,7 +248,7 @@ def test_what_the_variation_is_good_for(name):
 
 def verdict_of(case, depth):
     case = case.patch({"cut.axial_depth": depth})
-    return divergence(case, modes_of(case)[0])
+    return lyapunov_verdict(case, modes_of(case)[0])
 
 
 @pytest.mark.parametrize(

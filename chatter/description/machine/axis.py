@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from chatter.description.machine.control import ControlSection
 from chatter.description.machine.drive import DriveSection
-from chatter.description.machine.fields import Direction, Place
+from chatter.description.machine.fields import Direction, Position
 from chatter.description.quantities import either_quantity, quantity
 from chatter.description.section import Section, raise_if_any
 from dynamics.drive.parts import DrivenAxis
@@ -33,12 +33,12 @@ class AxisSection(Section):
     )
     moving: str | None = Field(None, description="part that is driven")
     carrying: str = Field(GROUND, description="part that carries the motor")
-    at: Place | None = Field(None, description="where the drive pushes, at position 0")
+    at: Position | None = Field(None, description="where the drive acts, at position 0")
     carries: tuple[str, ...] | None = Field(
         None, description="all parts that travel with the axis; moving by default"
     )
     position: quantity("length", at_least=-200.0, at_most=200.0) = 0.0
-    scale_at: Place | None = Field(
+    scale_at: Position | None = Field(
         None, description="place of the direct measuring system; at by default"
     )
     drive: DriveSection | None = None
@@ -52,7 +52,7 @@ class AxisSection(Section):
         if self.moving is None and kind != "spindle":
             problems.append(("moving", "is missing; the part that the axis moves is wanted"))
         if self.at is None and kind is not None:
-            problems.append(("at", "is missing; the place where the drive pushes is wanted"))
+            problems.append(("at", "is missing; the position where the drive acts is wanted"))
         for key in ("brake", "control"):
             if kind is None and getattr(self, key) is not None:
                 problems.append((key, "is given, but the axis has no drive"))
@@ -66,7 +66,7 @@ class AxisSection(Section):
                 for place, motor in enumerate(() if kind is None else self.drive.motors)
                 if motor.preload
             ]
-        if kind is not None and self.drive.turns and (self.carries or self.position):
+        if kind is not None and self.drive.is_rotary and (self.carries or self.position):
             problems.append(
                 ("", f'drive.kind = "{kind}" turns; position and carries do not belong to it')
             )
@@ -76,7 +76,7 @@ class AxisSection(Section):
     @property
     def travelling(self) -> tuple[str, ...]:
         """All parts that travel with the axis."""
-        if self.drive is not None and self.drive.turns:
+        if self.drive is not None and self.drive.is_rotary:
             return ()
         return (self.moving,) if self.carries is None else self.carries
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from chatter.description.machine.fields import Direction, Place, arguments, pair
+from chatter.description.machine.fields import Direction, Position, arguments, pair
 from chatter.description.quantities import quantity, whole_number
 from chatter.description.section import Section, raise_if_any
 from dynamics.beam.element import Material, Segment
@@ -96,7 +96,7 @@ class BearingSection(Section):
 class BeamSection(Section):
     """Line of stepped round segments; stations count from its origin."""
 
-    origin: Place = Field(description="first end")
+    origin: Position = Field(description="first end")
     axis: Direction = (0.0, 0.0, 1.0)
     first_radial: Direction | None = Field(
         None, description="first radial direction, made perpendicular to the axis"

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
-from chatter.description.formatting import shown
-from chatter.description.machine.fields import Direction, Place, Places, Size
+from chatter.description.formatting import formatted
+from chatter.description.machine.fields import Direction, Position, Positions, Size
 from chatter.description.quantities import QuantityField, quantity
 from chatter.description.section import Section, raise_if_any
 from dynamics.structure.bodies import Body, Connector, Point
@@ -22,7 +22,7 @@ _ENTRIES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 def _inertia(given: Any) -> tuple[float, ...]:
     if not isinstance(given, (list, tuple)) or len(given) not in (3, 6):
         raise ValueError(
-            f"{shown(given)} is given; three principal moments of inertia are wanted, or six "
+            f"{formatted(given)} is given; three principal moments of inertia are wanted, or six "
             "entries of the tensor: xx, yy, zz, xy, xz, yz"
         )
     return tuple(_INERTIA.read(part) for part in given)
@@ -53,7 +53,7 @@ class BodySection(Section):
     size: Size | None = Field(
         None, description="edges of a uniform block, for its moments of inertia; or give inertia"
     )
-    centre: Place = Field(description="centre of gravity")
+    centre: Position = Field(description="centre of gravity")
 
     @model_validator(mode="after")
     def _check_inertia(self) -> BodySection:
@@ -124,8 +124,8 @@ class ConnectorSection(Section):
         description='two parts, or one and "ground"; the connector travels with the first',
         examples=[["table", "ground"]],
     )
-    at: Place | None = None
-    places: Places | None = Field(None, description="several equal ones; or give at")
+    at: Position | None = None
+    positions: Positions | None = Field(None, description="several equal ones; or give at")
     stiffness: SixStiffness
     damping: SixDamping = SixDamping()
     axes: tuple[Direction, Direction, Direction] | None = Field(
@@ -134,7 +134,7 @@ class ConnectorSection(Section):
 
     @model_validator(mode="after")
     def _check_place(self) -> ConnectorSection:
-        given = (self.at is not None) + (self.places is not None)
+        given = (self.at is not None) + (self.positions is not None)
         text = {
             0: ("at", 'is missing; a place is wanted, such as ["0 mm", "0 mm", "0 mm"]'),
             2: ("", "at and places are both given; one is wanted"),
@@ -146,11 +146,11 @@ class ConnectorSection(Section):
         """Names of the connectors that this one stands for."""
         if self.at is not None:
             return [name]
-        return [f"{name}[{number}]" for number in range(len(self.places))]
+        return [f"{name}[{number}]" for number in range(len(self.positions))]
 
     def parts(self, name: str, shift: NDArray[np.float64]) -> list[Connector]:
         """The connectors, shifted (3,) m with the first part."""
-        places = self.places if self.at is None else (self.at,)
+        places = self.positions if self.at is None else (self.at,)
         return [
             Connector(
                 one,
@@ -168,7 +168,7 @@ class PointSection(Section):
     """Named place on a part."""
 
     on: str = Field(description='body, beam or imported part, or "ground"', examples=["table"])
-    at: Place
+    at: Position
 
     def part(self, name: str, shift: NDArray[np.float64]) -> Point:
         """The point, shifted (3,) m with its part."""

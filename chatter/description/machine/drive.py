@@ -10,8 +10,8 @@ from chatter.description.keys_of_kind import key_problems
 from chatter.description.machine.beam import MaterialSection
 from chatter.description.machine.fields import (
     Direction,
-    Place,
-    Places,
+    Position,
+    Positions,
     arguments,
     fields_of,
     pair,
@@ -76,7 +76,7 @@ class RackMotorSection(Section):
     towards_pinion: Direction = Field(
         description="from the rack to the pinion's axis", examples=[[0, 0, 1]]
     )
-    offset: Place = Field((0.0, 0.0, 0.0), description="from where the axis is driven")
+    offset: Position = Field((0.0, 0.0, 0.0), description="from where the axis is driven")
     preload: quantity("torque") = 0.0
 
 
@@ -87,7 +87,7 @@ class DriveSection(Section):
         "ball screw", "screw on beam", "rack and pinion", "linear motor", "rotary", "spindle"
     ]
     lead: quantity("length") | None = Field(
-        None, description="travel per turn; negative for a left-hand thread"
+        None, description="travel per revolution; negative for a left-hand thread"
     )
     motor_inertia: quantity("moment_of_inertia", at_least=0.0) | None = None
     screw_inertia: quantity("moment_of_inertia", at_least=0.0) | None = None
@@ -113,7 +113,7 @@ class DriveSection(Section):
     tilt_damping: pair("rotational_damping", at_least=0.0) | None = None
     pinion_radius: quantity("length", above=0.0) | None = None
     gear_ratio: quantity("number", above=0.0) | None = Field(
-        None, description="turns of the motor per turn of the pinion"
+        None, description="revolutions of the motor per one of the pinion"
     )
     motors: tuple[RackMotorSection, ...] = ()
     mesh_stiffness: quantity("stiffness", above=0.0) | None = None
@@ -124,7 +124,7 @@ class DriveSection(Section):
     gearbox_damping: quantity("rotational_damping", at_least=0.0) | None = None
     coupling_damping: quantity("rotational_damping", at_least=0.0) | None = None
     motors_on: Literal["moving", "carrying"] | None = None
-    offsets: Places | None = Field(None, description="of each linear motor, from at of the axis")
+    offsets: Positions | None = Field(None, description="of each linear motor, from at of the axis")
     shares: tuple[quantity("number", at_least=0.0), ...] | None = None
     inertia: quantity("moment_of_inertia", above=0.0) | None = Field(
         None, description="of spindle, motor and tool"
@@ -136,7 +136,7 @@ class DriveSection(Section):
         return self
 
     @property
-    def turns(self) -> bool:
+    def is_rotary(self) -> bool:
         """Whether travel of the axis is an angle."""
         return self.kind in ROTARY
 

@@ -22,7 +22,7 @@ def sentence(error: ValueError, key: str = "") -> str:
 
 
 @contextmanager
-def telling(name: str, key: str = "") -> Iterator[None]:
+def machine_errors(name: str, key: str = "") -> Iterator[None]:
     """Turn errors of the machine into errors of input.
 
     Parameters

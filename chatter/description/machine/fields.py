@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, WithJsonSchema
 
-from chatter.description.formatting import shown
+from chatter.description.formatting import formatted
 from chatter.description.quantities import QuantityField, quantities
 from chatter.description.section import Section
 
@@ -19,7 +19,7 @@ _FARTHEST = 200.0
 _NAME = re.compile(r"[A-Za-z_][\w-]*", re.ASCII)
 
 Coordinate = QuantityField("length", at_least=-_FARTHEST, at_most=_FARTHEST)
-Place = quantities(3, "length", at_least=-_FARTHEST, at_most=_FARTHEST)
+Position = quantities(3, "length", at_least=-_FARTHEST, at_most=_FARTHEST)
 Size = quantities(3, "length", above=0.0, at_most=_FARTHEST)
 
 
@@ -27,13 +27,13 @@ def _places(given: Any) -> tuple[tuple[float, ...], ...]:
     many = isinstance(given, (list, tuple)) and given
     if not many or not all(isinstance(one, (list, tuple)) and len(one) == 3 for one in given):
         raise ValueError(
-            f"{shown(given)} is given; a list of places is wanted, "
+            f"{formatted(given)} is given; a list of places is wanted, "
             'such as [["0 mm", "0 mm", "0 mm"], ...]'
         )
     return tuple(tuple(Coordinate.read(part) for part in one) for one in given)
 
 
-Places = Annotated[
+Positions = Annotated[
     tuple[tuple[float, float, float], ...],
     BeforeValidator(_places),
     WithJsonSchema(
@@ -60,11 +60,11 @@ def _direction(given: Any) -> tuple[float, float, float]:
     )
     if not numbers or len(given) != 3:
         raise ValueError(
-            f"{shown(given)} is no direction; three numbers are wanted, such as [1, 0, 0]"
+            f"{formatted(given)} is no direction; three numbers are wanted, such as [1, 0, 0]"
         )
     length = math.hypot(*given)
     if length < 1e-9:
-        raise ValueError(f"{shown(given)} is no direction; it has no length")
+        raise ValueError(f"{formatted(given)} is no direction; it has no length")
     return tuple(part / length for part in given)
 
 
@@ -83,7 +83,9 @@ def pair(dimension: str, **bounds: float) -> Any:
     def read(given: Any) -> tuple[float, float]:
         both = given if isinstance(given, (list, tuple)) else (given, given)
         if len(both) != 2:
-            raise ValueError(f"{shown(given)} is given; {field.noun}, or a list of two, is wanted")
+            raise ValueError(
+                f"{formatted(given)} is given; {field.noun}, or a list of two, is wanted"
+            )
         return field.read(both[0]), field.read(both[1])
 
     alternatives = field.json_schema()["anyOf"]
@@ -108,7 +110,7 @@ def name_problems(tables: Mapping[str, Mapping[str, Any]]) -> list[tuple[str, st
     return [
         (
             kind,
-            f"the name {shown(name)} is not allowed; letters, digits, _ and - make a name, "
+            f"the name {formatted(name)} is not allowed; letters, digits, _ and - make a name, "
             "the first a letter",
         )
         for kind, table in tables.items()

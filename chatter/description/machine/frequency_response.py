@@ -20,7 +20,7 @@ TORQUE_KINDS = ("torque impulse", "torque multisine")
 _PLACE = re.compile(r"(?:(motor):(\w[\w-]*)|(\w[\w-]*)(?:/(\w[\w-]*))?:(r?[xyz]))", re.ASCII)
 
 
-class PlaceOfTest(NamedTuple):
+class TestedPoint(NamedTuple):
     """What a text such as "tool/table:y" or "motor:Y" names."""
 
     motor: str | None
@@ -29,7 +29,7 @@ class PlaceOfTest(NamedTuple):
     direction: str | None
 
 
-def parse_place(text: str) -> PlaceOfTest:
+def parse_tested_point(text: str) -> TestedPoint:
     """Read a place of a test.
 
     Raises
@@ -44,15 +44,15 @@ def parse_place(text: str) -> PlaceOfTest:
             '"tool/table:y" (against another point) or "motor:Y" (torque of an axis)'
         )
     _, motor, point, against, direction = match.groups()
-    return PlaceOfTest(motor, point, against, direction)
+    return TestedPoint(motor, point, against, direction)
 
 
-def _checked_place(text: str) -> str:
-    parse_place(text)
+def _checked_point(text: str) -> str:
+    parse_tested_point(text)
     return text
 
 
-TestPlace = Annotated[str, BeforeValidator(_checked_place)]
+TestedPointText = Annotated[str, BeforeValidator(_checked_point)]
 
 
 class StateSection(Section):
@@ -71,8 +71,8 @@ class StateSection(Section):
 class FrfSection(StateSection):
     """What is excited and read, how, and in which state."""
 
-    excite: TestPlace = Field(description='such as "table:y", "tool/table:y", "motor:Y"')
-    read: TestPlace | None = Field(None, description="the same as excited by default")
+    excite: TestedPointText = Field(description='such as "table:y", "tool/table:y", "motor:Y"')
+    read: TestedPointText | None = Field(None, description="the same as excited by default")
     by: FrfKind = "hammer"
     level: either_quantity("force", "torque", above=0.0) = Field(
         100.0, description="peak of the force or torque"
@@ -104,14 +104,18 @@ class FrfSection(StateSection):
     @model_validator(mode="after")
     def _check(self) -> FrfSection:
         problems = []
-        by_motor = parse_place(self.excite).motor is not None
+        by_motor = parse_tested_point(self.excite).motor is not None
         if by_motor != (self.by in TORQUE_KINDS) and self.by != "linearised":
             text = f'{self.excite!r} does not suit by = "{self.by}"; '
             text += "a motor is excited by torque impulse or torque multisine, a point by a force"
             problems.append(("excite", text))
         if self.read is None and by_motor:
             problems.append(("read", "is missing; where a motor excites, say what is read"))
-        if self.read is not None and parse_place(self.read).motor is not None and not by_motor:
+        if (
+            self.read is not None
+            and parse_tested_point(self.read).motor is not None
+            and not by_motor
+        ):
             problems.append(("read", "motors are read only where a motor excites"))
         if (self.at_angle is None) != (self.spindle_speed is None):
             missing = "at_angle" if self.at_angle is None else "spindle_speed"

@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from pydantic import Field, model_validator
 
-from chatter.description.machine.fields import Place
+from chatter.description.machine.fields import Position
 from chatter.description.quantities import either_quantity, quantity, whole_number
 from chatter.description.section import Section, raise_if_any
 from chatter.description.sections.friction import friction_section
@@ -28,7 +28,9 @@ class FrictionTarget(Section):
     direction: Literal["x", "y", "z", "rx", "ry", "rz"] | None = Field(
         None, description="of the connector's own"
     )
-    at: Place | None = Field(None, description="place on the axis; where it is driven by default")
+    at: Position | None = Field(
+        None, description="place on the axis; where it is driven by default"
+    )
 
     @model_validator(mode="after")
     def _check_target(self) -> FrictionTarget:

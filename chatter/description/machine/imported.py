@@ -6,8 +6,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
-from chatter.description.formatting import shown
-from chatter.description.machine.fields import Place
+from chatter.description.formatting import formatted
+from chatter.description.machine.fields import Position
 from chatter.description.quantities import quantity
 from chatter.description.section import Section
 from chatter.description.sections.structure import FileName
@@ -16,7 +16,7 @@ from chatter.description.sections.structure import FileName
 def _nodes(given: Any) -> tuple[int, ...]:
     whole = isinstance(given, (list, tuple)) and given
     if not whole or not all(isinstance(one, int) and not isinstance(one, bool) for one in given):
-        raise ValueError(f"{shown(given)} is given; a list of numbers of nodes is wanted")
+        raise ValueError(f"{formatted(given)} is given; a list of numbers of nodes is wanted")
     return tuple(given)
 
 
@@ -30,7 +30,7 @@ NodeNumbers = Annotated[
 class ImportedPointSection(Section):
     """Point tied to nodes: they follow it rigidly, or it follows them."""
 
-    at: Place
+    at: Position
     nodes: NodeNumbers
     kind: Literal["rigid", "interpolating"] = "rigid"
     weights: tuple[quantity("number", above=0.0), ...] | None = Field(

@@ -57,7 +57,7 @@ class MachineFile(Description):
                 ("imported", "*", "point", "*"),
             }
         ),
-        alternatives={"at": "places", "places": "at", "inertia": "size", "size": "inertia"},
+        alternatives={"at": "positions", "positions": "at", "inertia": "size", "size": "inertia"},
     )
     #: kinds of parts
     PARTS: ClassVar[tuple[str, ...]] = ("body", "beam", "imported")
@@ -157,7 +157,7 @@ class MachineFile(Description):
                 known = nearest(str(name), list(self.axis)) if self.axis else "there are none"
                 raise InputError(f'{self.name}: position: there is no axis "{name}"; {known}')
             drive = self.axis[name].drive
-            if drive is not None and drive.turns:
+            if drive is not None and drive.is_rotary:
                 raise InputError(f"{self.name}: position: axis {name} turns; it has no position")
             try:
                 read[name] = _POSITION.read(position)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from chatter.description.case_schema import schema_of
+from chatter.description.json_schema import schema_of
 from chatter.description.machine.machine_file import MachineFile
 
 

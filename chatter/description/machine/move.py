@@ -59,7 +59,7 @@ class MoveSection(StateSection):
     amplitude: quantity("length", above=0.0) | None = None
     periods: quantity("number", above=0.0) | None = None
     radius: quantity("length", above=0.0) | None = None
-    turns: quantity("number", above=0.0) | None = None
+    revolutions: quantity("number", above=0.0) | None = None
     side: quantity("length", above=0.0) | None = None
     fillet: quantity("length", at_least=0.0) | None = None
     points: PlanePoints | None = None
@@ -129,7 +129,7 @@ def _sine(section: MoveSection) -> Course:
 
 def _circle(section: MoveSection) -> Course:
     centre = np.array([-section.radius, 0.0])
-    motion = CircleMotion(centre, section.radius, section.velocity, section.turns)
+    motion = CircleMotion(centre, section.radius, section.velocity, section.revolutions)
     return Course(motion, circle(centre, section.radius))
 
 
@@ -152,7 +152,7 @@ COURSES: dict[str, CourseKind] = {
     "jerk limited": CourseKind(("travel", *_LIMITS), _jerk_limited),
     "constant speed": CourseKind(("travel", "velocity"), _constant_speed),
     "sine": CourseKind(("amplitude", "velocity", "periods"), _sine),
-    "circle": CourseKind(("radius", "velocity", "turns"), _circle),
+    "circle": CourseKind(("radius", "velocity", "revolutions"), _circle),
     "square": CourseKind(("side", "fillet", *_LIMITS), _square),
     "polyline": CourseKind(("points", "fillet", *_LIMITS), _polyline),
 }

@@ -148,7 +148,7 @@ def dimension_problems(file: MachineFile, data: Mapping[str, Any]) -> list[Probl
             steps = (*where, "control", section, key)
             problems = [one for one in problems if one[0] != join_path(steps)]
             given = own.get("control", {}).get(section, {}).get(key)
-            problems += _of_the_other_kind(type(file), steps, given, not axis.drive.turns)
+            problems += _of_the_other_kind(type(file), steps, given, not axis.drive.is_rotary)
     for name, friction in file.friction.items():
         straight = _is_straight(file, friction.on)
         problems += _of_the_other_kind(
@@ -163,7 +163,7 @@ def _is_straight(file: MachineFile, target: Any) -> bool:
         return file.axis[target.motor].drive.motor_is_linear
     if target.axis is not None:
         drive = file.axis[target.axis].drive
-        return drive is None or not drive.turns
+        return drive is None or not drive.is_rotary
     return target.direction is None or not target.direction.startswith("r")
 
 

@@ -1,1 +1,1 @@
-"""Sections."""
+"""The sections of a case file, in modules named after what they describe."""

@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import Field, model_validator
 
-from chatter.description.formatting import shown
+from chatter.description.formatting import formatted
 from chatter.description.law_section import LawSection, law_section
 from chatter.description.laws import FORCE_LAWS
 from chatter.description.quantities import quantity
@@ -20,7 +20,7 @@ def _no_such_row(name: str) -> str:
     near = difflib.get_close_matches(name[:60], MATERIALS, n=1, cutoff=0.4)
     known = ", ".join(f'"{row}"' for row in MATERIALS)
     hint = f'did you mean "{near[0]}"? There are {known}' if near else f"there are {known}"
-    return f"{shown(name)} is not in the table of materials; {hint}"
+    return f"{formatted(name)} is not in the table of materials; {hint}"
 
 
 class _ForceLawSection(LawSection):
@@ -48,10 +48,10 @@ class Material(_Keys):
         if row is None:
             raise SectionError([("name", _no_such_row(data["name"]))])
         if data.get("law", "linear") != "linear":
-            text = f"has coefficients of the linear law, not of law = {shown(data['law'])}"
-            raise SectionError([("name", f"{shown(data['name'])} {text}")])
+            text = f"has coefficients of the linear law, not of law = {formatted(data['law'])}"
+            raise SectionError([("name", f"{formatted(data['name'])} {text}")])
         return {**row.coefficients(), **data}
 
-    def force_law(self, inclination: float) -> ForceLaw:
-        """Force law of an edge inclined by an angle (the helix), rad."""
-        return self.LAWS[self.law].of(self.values, inclination)
+    def force_law(self, helix: float) -> ForceLaw:
+        """Force law of an edge inclined by the helix, rad."""
+        return self.LAWS[self.law].of(self.values, helix)

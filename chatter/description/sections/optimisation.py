@@ -37,7 +37,7 @@ class AxialDepths(Section):
 
     from_: PositiveLength | None = Field(None, alias="from")
     to: PositiveLength
-    count: Values = Field(60, description="depths of the coarse net")
+    count: Values = Field(60, description="depths of the coarse grid")
 
     @model_validator(mode="after")
     def _check_order(self) -> AxialDepths:
@@ -64,7 +64,7 @@ class Feeds(Section):
 
     from_: quantity("length", above=0.0, at_most=LARGEST_FEED) = Field(alias="from")
     to: quantity("length", above=0.0, at_most=LARGEST_FEED)
-    count: Values = Field(4, description="feeds of the coarse net")
+    count: Values = Field(4, description="feeds of the coarse grid")
 
     @model_validator(mode="after")
     def _check_order(self) -> Feeds:
@@ -83,13 +83,13 @@ class Optimum(Section):
     radial_depths: RadialDepths | None = Field(None, description="by default that of the cut alone")
     feeds: Feeds | None = Field(None, description="by default that of the cut alone")
     max_power: quantity("power", above=0.0) | None = Field(
-        None, description="of the spindle, mean over a turn"
+        None, description="of the spindle, mean over a revolution"
     )
     max_torque: quantity("torque", above=0.0) | None = Field(
-        None, description="of the spindle, mean over a turn"
+        None, description="of the spindle, mean over a revolution"
     )
     max_deflection: PositiveLength | None = Field(
-        None, description="of the tool point against the work, largest within a turn"
+        None, description="of the tool point against the work, largest within a revolution"
     )
     max_surface_error: PositiveLength | None = Field(
         None, description="location of the wall, largest over its height, either way"
@@ -98,7 +98,7 @@ class Optimum(Section):
         0.95, description="probability of stability, where values of the case are uncertain"
     )
     depth_margin: Margin | None = Field(
-        None, description="share of the limit depth kept free; 0.15 by default"
+        None, description="share of the critical depth kept free; 0.15 by default"
     )
     speed_margin: Margin | None = Field(
         None, description="share by which the speed may be off; 0.015 by default"

@@ -13,7 +13,7 @@ from pydantic import (
     model_validator,
 )
 
-from chatter.description.formatting import shown
+from chatter.description.formatting import formatted
 from chatter.description.quantities import PositiveLength, QuantityField, quantity, whole_number
 from chatter.description.section import Section, raise_if_any
 from chatter.description.units import rpm
@@ -121,7 +121,9 @@ class Axis(Section):
 
 def _plane_point(given: Any) -> tuple[float, float]:
     if not isinstance(given, (list, tuple)) or len(given) != 2:
-        raise ValueError(f'{shown(given)} is no point; two lengths are wanted: ["0 mm", "5 mm"]')
+        raise ValueError(
+            f'{formatted(given)} is no point; two lengths are wanted: ["0 mm", "5 mm"]'
+        )
     x, y = (_COORDINATE.read(part) for part in given)
     return x, y
 

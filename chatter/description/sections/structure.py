@@ -19,7 +19,7 @@ from pydantic import (
     model_validator,
 )
 
-from chatter.description.formatting import shown
+from chatter.description.formatting import formatted
 from chatter.description.quantities import quantity, quantity_list
 from chatter.description.section import Section, raise_if_any
 
@@ -36,11 +36,11 @@ def _unit_vector(given: Any) -> tuple[float, float, float]:
     )
     if not numbers or len(given) != 3:
         raise ValueError(
-            f"{shown(given)} is no direction; three numbers are wanted, such as [1, 0, 0]"
+            f"{formatted(given)} is no direction; three numbers are wanted, such as [1, 0, 0]"
         )
     length = math.hypot(*given)
     if abs(length - 1.0) > _UNIT_TOLERANCE:
-        raise ValueError(f"{shown(given)} has length {length:.4g}; a unit vector is wanted")
+        raise ValueError(f"{formatted(given)} has length {length:.4g}; a unit vector is wanted")
     return tuple(float(part) / length for part in given)
 
 
@@ -179,7 +179,7 @@ class ModeSection(Section):
 
 def _in_case_folder(given: Any, info: ValidationInfo) -> Path:
     if not isinstance(given, (str, Path)) or not str(given) or not str(given).isprintable():
-        raise ValueError(f'{shown(given)} is no file name; one is wanted, such as "tap.uff"')
+        raise ValueError(f'{formatted(given)} is no file name; one is wanted, such as "tap.uff"')
     return (info.context or {}).get("folder", Path()) / given
 
 
@@ -227,7 +227,8 @@ def _as_tables(given: Any) -> Any:
     for entry in entries:
         if not isinstance(entry, (str, dict)):
             raise ValueError(
-                f"{shown(entry)} is no measured FRF; a file name is wanted, or a table with file"
+                f"{formatted(entry)} is no measured FRF; "
+                "a file name is wanted, or a table with file"
             )
     return [{"file": entry} if isinstance(entry, str) else entry for entry in entries]
 

@@ -14,7 +14,7 @@ from pydantic import (
     model_validator,
 )
 
-from chatter.description.formatting import shown
+from chatter.description.formatting import formatted
 from chatter.description.quantities import (
     Length,
     PositiveLength,
@@ -39,7 +39,7 @@ def _angle_or_list(given: Any) -> float | tuple[float, ...]:
 def _list_of_angles(given: Any) -> tuple[float, ...]:
     if not isinstance(given, (list, tuple)):
         raise ValueError(
-            f'{shown(given)} is no list; a list of angles is wanted, such as ["90 deg", ...]'
+            f'{formatted(given)} is no list; a list of angles is wanted, such as ["90 deg", ...]'
         )
     return tuple(_PITCH.read(angle) for angle in given)
 
@@ -65,7 +65,7 @@ PitchAngles = Annotated[
         {
             "type": "array",
             "items": {"anyOf": _PITCH.json_schema()["anyOf"]},
-            "description": "angle from each tooth to the next; they make a turn",
+            "description": "angle from each tooth to the next; they make a revolution",
         }
     ),
     _PITCH,
@@ -78,7 +78,8 @@ _ERROR = QuantityField("length", above=-0.1, below=0.1)
 def _list_of_errors(given: Any) -> tuple[float, ...]:
     if not isinstance(given, (list, tuple)):
         raise ValueError(
-            f'{shown(given)} is no list; one length for each tooth is wanted, such as ["5 um", ...]'
+            f"{formatted(given)} is no list; one length for each tooth is wanted, "
+            'such as ["5 um", ...]'
         )
     return tuple(_ERROR.read(error) for error in given)
 

@@ -15,6 +15,5 @@ motion              axis moves: force, velocity and position against each other
 responses           FRFs against each other and the declared structure
 verdicts            points judged stable or chatter
 exclusion           exclusion of samples, channels, runs
-checking            the checks of a kind, one after the other
 =================== ================================================================
 """

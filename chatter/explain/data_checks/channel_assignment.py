@@ -81,19 +81,21 @@ class Cut:
     description : str
     measured : list of (2, bins) array of float
     basis : list of (4, 2, bins) array of float
-    held : list of float
+    power_share : list of float
         Share of the forces' power that is in the measured pattern.
     """
 
     description: str
     measured: list[Patterns]
     basis: list[NDArray[np.float64]]
-    held: list[float]
+    power_share: list[float]
 
     def of_all(self, share: float, runs: Sequence[int] | None = None) -> float:
         """Residual share of the forces as a whole, from that of the pattern."""
-        held = float(np.mean([self.held[k] for k in runs or range(len(self.held))]))
-        return float(np.sqrt(1.0 - held + share**2 * held))
+        power_share = float(
+            np.mean([self.power_share[k] for k in runs or range(len(self.power_share))])
+        )
+        return float(np.sqrt(1.0 - power_share + share**2 * power_share))
 
 
 def wrong_assignment(measurement: Measurement) -> list[SignalFinding]:
@@ -197,11 +199,11 @@ def _cut(
     """Cut whose case is changed in every run."""
     cases = [changed(run.of(measurement.case)) for run in runs]
     measured = [tooth_pattern(measurement, run) for run in runs]
-    held = [
+    power_share = [
         float(np.mean(pattern**2)) / force_power(measurement, run)
         for pattern, run in zip(measured, runs, strict=True)
     ]
-    return Cut(description, measured, [basis_patterns(case) for case in cases], held)
+    return Cut(description, measured, [basis_patterns(case) for case in cases], power_share)
 
 
 def _others(declared: Cut, measurement: Measurement, runs: Sequence[Run]) -> list[Cut]:
@@ -211,7 +213,7 @@ def _others(declared: Cut, measurement: Measurement, runs: Sequence[Run]) -> lis
             one.fault(("Fx", "Fy")),
             [one.applied(pattern) for pattern in declared.measured],
             declared.basis,
-            declared.held,
+            declared.power_share,
         )
         for one in ASSIGNMENTS[1:]
     ]

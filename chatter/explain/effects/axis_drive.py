@@ -7,8 +7,8 @@ import numpy as np
 from chatter.description.case import Case
 from chatter.explain.effects.axis_friction import AxisValue, typical_force
 from chatter.explain.effects.effect import Effect, Patch, Reported, Values, free, polar
+from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
-from chatter.explain.selection.fitting import Parameter
 
 
 class Offset(AxisValue):
@@ -66,6 +66,7 @@ class Backlash(Effect):
     label = "backlash"
     help = "the motor crosses a gap at every reversal"
     kinds = ("axis",)
+    section = "axis"
 
     def applies(self, measurement: Measurement) -> bool:
         """Where none is declared."""
@@ -78,10 +79,6 @@ class Backlash(Effect):
             return [gap]
         mass = measurement.case.axis.moving_mass
         return [gap, free("motor_mass", 0.2 * mass, 0.05 * mass, "kg", lower=0.0, upper=mass)]
-
-    def patch(self, case: Case, values: Values) -> Patch:
-        """Backlash of the axis."""
-        return {f"axis.{key}": float(value) for key, value in values.items()}
 
     def starts(self, measurement: Measurement) -> list[Values]:
         """Gaps from small to large."""

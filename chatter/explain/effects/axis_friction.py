@@ -6,8 +6,8 @@ import numpy as np
 
 from chatter.description.case import Case
 from chatter.explain.effects.effect import Effect, Patch, Reported, Values, free
+from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
-from chatter.explain.selection.fitting import Parameter
 
 
 def typical_force(measurement: Measurement) -> float:
@@ -21,7 +21,7 @@ def _coulomb_of(measurement: Measurement) -> float:
 
 
 class AxisValue(Effect):
-    """A value of [axis] that is not declared, of the size of a share of the typical force.
+    """A value of [axis] under the name of the effect, of the size of a share of the typical force.
 
     Parameters
     ----------
@@ -30,19 +30,15 @@ class AxisValue(Effect):
     """
 
     kinds = ("axis",)
+    section = "axis"
     unit = "N"
 
     def __init__(self, **bounds: float) -> None:
         self.bounds = bounds
 
-    @property
-    def key(self) -> str:
-        """Key of [axis]; as the effect is named by default."""
-        return self.name
-
     def applies(self, measurement: Measurement) -> bool:
         """Where no value is declared."""
-        return not getattr(measurement.case.axis, self.key)
+        return not getattr(measurement.case.axis, self.name)
 
     def size(self, measurement: Measurement) -> float:
         """Typical size of the value."""
@@ -50,11 +46,7 @@ class AxisValue(Effect):
 
     def parameters(self, measurement: Measurement) -> list[Parameter]:
         """The value."""
-        return [free(self.key, 0.0, self.size(measurement), self.unit, **self.bounds)]
-
-    def patch(self, case: Case, values: Values) -> Patch:
-        """The value of [axis]."""
-        return {f"axis.{self.key}": float(values[self.key])}
+        return [free(self.name, 0.0, self.size(measurement), self.unit, **self.bounds)]
 
 
 class CoulombFriction(AxisValue):
@@ -66,7 +58,7 @@ class CoulombFriction(AxisValue):
 
     def reported(self, values: Values) -> Reported:
         """The friction."""
-        return {"coulomb": (values[self.key], "N")}
+        return {"coulomb": (values[self.name], "N")}
 
 
 class Asymmetry(AxisValue):
@@ -126,6 +118,7 @@ class Presliding(Effect):
     label = "presliding"
     help = "friction is a spring before it slides"
     kinds = ("axis",)
+    section = "axis"
 
     def applies(self, measurement: Measurement) -> bool:
         """Where no presliding is declared."""
@@ -139,11 +132,6 @@ class Presliding(Effect):
             free("presliding_stiffness", k, 0.3 * k, "N/m", lower=1e-3 * k),
             free("presliding_damping", 1e3, 1e3, "N*s/m", lower=0.0),
         ]
-
-    def patch(self, case: Case, values: Values) -> Patch:
-        """Presliding of the axis."""
-        keys = ("presliding_stiffness", "presliding_damping")
-        return {f"axis.{key}": float(values[key]) for key in keys}
 
     def starts(self, measurement: Measurement) -> list[Values]:
         """Travels before sliding."""
@@ -168,6 +156,7 @@ class WarmUp(Effect):
     label = "warm-up"
     help = "friction falls while the axis moves"
     kinds = ("axis",)
+    section = "axis.warm_up"
 
     def applies(self, measurement: Measurement) -> bool:
         """Where no warm-up is declared."""
@@ -180,7 +169,3 @@ class WarmUp(Effect):
             free("share", 0.0, 0.05, "", lower=-0.9, upper=20.0),
             free("time", 0.4 * total, 0.2 * total, "s", lower=0.02 * total, upper=20.0 * total),
         ]
-
-    def patch(self, case: Case, values: Values) -> Patch:
-        """Warm-up of the axis."""
-        return {"axis.warm_up": {key: float(values[key]) for key in ("share", "time")}}

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from chatter.description.case import Case
 from chatter.explain.effects.effect import Effect, Patch, Values, free
+from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
-from chatter.explain.selection.fitting import Parameter
 
 #: reference thickness of the exponential law where the case has none, m
 _H0 = 1e-4
@@ -20,6 +20,7 @@ class EdgeForce(Effect):
     label = "edge force"
     help = "the edge rubs with a force that does not depend on the chip"
     kinds = ("milling",)
+    section = "material"
 
     def applies(self, measurement: Measurement) -> bool:
         """Of laws with edge coefficients that are not declared."""
@@ -29,10 +30,6 @@ class EdgeForce(Effect):
     def parameters(self, measurement: Measurement) -> list[Parameter]:
         """Edge coefficients."""
         return [free(key, 0.0, 5e3, "N/m", lower=0.0) for key in ("Kte", "Kre")]
-
-    def patch(self, case: Case, values: Values) -> Patch:
-        """Edge coefficients of the material."""
-        return {f"material.{key}": values[key] for key in ("Kte", "Kre")}
 
 
 class ChipExponent(Effect):

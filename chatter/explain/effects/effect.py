@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
 from chatter.description.case import Case
+from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
-from chatter.explain.selection.fitting import Parameter
 
 Values = Mapping[str, float]
 #: paths of a case -> values
@@ -31,12 +31,15 @@ class Effect(ABC):
         What it does, for reports and the docs.
     kinds : tuple of str
         Kinds of measurement in which it shows.
+    section : str
+        Section of the case that the parameters are keys of.
     """
 
     name: ClassVar[str]
     label: ClassVar[str]
     help: ClassVar[str]
     kinds: ClassVar[tuple[str, ...]]
+    section: ClassVar[str] = ""
 
     @property
     def variants(self) -> tuple[Effect, ...]:
@@ -51,9 +54,9 @@ class Effect(ABC):
     def parameters(self, measurement: Measurement) -> Sequence[Parameter]:
         """Numbers that are fitted, with their priors or sizes and bounds, SI."""
 
-    @abstractmethod
     def patch(self, case: Case, values: Values) -> Patch:
-        """Assignments of a case by path."""
+        """Assignments of a case by path; the parameters as keys of the section by default."""
+        return {f"{self.section}.{key}": float(value) for key, value in values.items()}
 
     def starts(self, measurement: Measurement) -> Sequence[Values]:
         """Start values to try, each by name; those of the parameters where none is named."""

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from chatter.description.case import Case
-from chatter.explain.effects.effect import Effect, Patch, Values, free
+from chatter.explain.effects.effect import Effect, Values, free
+from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
-from chatter.explain.selection.fitting import Parameter
 
 
 class Dynamometer(Effect):
@@ -17,6 +16,7 @@ class Dynamometer(Effect):
     label = "dynamometer resonance"
     help = "the force sensor has a resonance of its own"
     kinds = ("milling",)
+    section = "dynamometer"
 
     def applies(self, measurement: Measurement) -> bool:
         """Of forces measured by a sensor without a declared resonance."""
@@ -29,10 +29,6 @@ class Dynamometer(Effect):
             free("frequency", 2000.0, 30.0, "Hz", lower=100.0, upper=5e4),
             Parameter("damping", 0.03, 0.02, 0.002, 0.7, True, ""),
         ]
-
-    def patch(self, case: Case, values: Values) -> Patch:
-        """The dynamometer."""
-        return {"dynamometer": {key: float(values[key]) for key in ("frequency", "damping")}}
 
     def starts(self, measurement: Measurement) -> list[Values]:
         """Frequencies up to beyond the highest that is recorded."""

@@ -8,8 +8,8 @@ import numpy as np
 
 from chatter.description.case import Case
 from chatter.explain.effects.effect import Effect, Patch, Reported, Values, free
+from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
-from chatter.explain.selection.fitting import Parameter
 
 #: force of a typical cut where none was measured, N
 _TYPICAL_FORCE = 100.0
@@ -128,6 +128,7 @@ class Contact(Effect):
     help = "tool and workpiece touch like a spring and a damper while in the cut"
 
     kinds = ("milling", "frf")
+    section = "contact"
 
     def __init__(self, full_engagement_share: float = 1.0) -> None:
         self.full_engagement_share = full_engagement_share
@@ -153,8 +154,8 @@ class Contact(Effect):
 
     def patch(self, case: Case, values: Values) -> Patch:
         """The contact."""
-        given = {key: float(values[key]) for key in ("stiffness", "damping")}
-        return {"contact": {**given, "full_engagement_share": self.full_engagement_share}}
+        share = {"contact.full_engagement_share": self.full_engagement_share}
+        return {**super().patch(case, values), **share}
 
 
 class ContactAtOnce(Contact):

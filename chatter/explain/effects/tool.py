@@ -8,8 +8,8 @@ import numpy as np
 
 from chatter.description.case import Case
 from chatter.explain.effects.effect import Effect, Patch, Reported, Values, free, polar
+from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
-from chatter.explain.selection.fitting import Parameter
 
 
 class Runout(Effect):
@@ -73,6 +73,7 @@ class Wear(Effect):
     label = "tool wear"
     help = "forces grow with the time that the tool has cut"
     kinds = ("milling",)
+    section = "wear"
 
     def applies(self, measurement: Measurement) -> bool:
         """Of runs at several cut times."""
@@ -86,8 +87,3 @@ class Wear(Effect):
             free("edge_radial", 0.0, 3e3 / longest, "N/m/s"),
             free("cutting", 0.0, 0.02 / longest, "1/s"),
         ]
-
-    def patch(self, case: Case, values: Values) -> Patch:
-        """Wear of the tool."""
-        keys = ("edge_tangential", "edge_radial", "cutting")
-        return {"wear": {key: float(values[key]) for key in keys}}

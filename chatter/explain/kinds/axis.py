@@ -11,10 +11,12 @@ from chatter.description.case import Case
 from chatter.explain.data_checks.clock import clock_check
 from chatter.explain.data_checks.motion import wrong_motion
 from chatter.explain.data_checks.samples import Columns, dropouts, sample_checks
+from chatter.explain.fitting import Parameter
 from chatter.explain.kinds import axis_record
 from chatter.explain.kinds.axis_record import AxisRecord
 from chatter.explain.kinds.kind import Kind, Noise, Signals, Trial
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.prior import with_priors
 from chatter.explain.residuals.by_channel import by_channel
 from chatter.explain.residuals.over_runs import over_runs
 from chatter.explain.residuals.over_variable import over_period, over_variable
@@ -24,8 +26,6 @@ from chatter.explain.residuals.variables import (
     AXIS_MEASURES,
     AXIS_VARIABLES,
 )
-from chatter.explain.selection.fitting import Parameter
-from chatter.explain.selection.prior import with_priors
 from dynamics.friction.axis_force import AxisForce
 
 #: steps of the clock that no record of a move has, s

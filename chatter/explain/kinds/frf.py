@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,19 +12,17 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.explain.data_checks.responses import disagreeing_responses, wrong_responses
 from chatter.explain.data_checks.samples import Columns, sample_checks
+from chatter.explain.fitting import Parameter
 from chatter.explain.kinds.kind import (
     Array,
     Deviation,
     Kind,
-    Noise,
     Signals,
-    mean_over_channels,
 )
 from chatter.explain.kinds.milling import structural_paths
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.prior import with_priors
 from chatter.explain.residuals.over_lines import by_condition, over_lines
-from chatter.explain.selection.fitting import Parameter
-from chatter.explain.selection.prior import with_priors
 from dynamics.modal.modes import receptance_matrix
 
 IN_CUT = "in_cut"
@@ -79,21 +77,6 @@ class FrequencyResponse(Kind):
             ]
             runs.append(replace(run, record=FrfRecord(_scatter(run, alike))))
         return measurement.with_runs(runs)
-
-    def noise_floor(
-        self,
-        measurement: Measurement,
-        predict: Callable[[Run], Signals],
-        noise: Noise,
-    ) -> float:
-        """Scatter over the signals, as errors are reported."""
-        shares: dict[str, list[float]] = {channel: [] for channel in _CHANNELS}
-        for run in measurement.runs:
-            scatter = float(np.sqrt(np.mean(run.record.scatter**2)))
-            for channel in _CHANNELS:
-                level = float(np.sqrt(np.mean(run.signals[channel] ** 2)))
-                shares[channel].append((scatter / level) ** 2)
-        return mean_over_channels(shares)
 
     def predict(self, case: Case, run: Run) -> Signals:
         """Receptance of the modes, with the contact where the tool is in the cut."""

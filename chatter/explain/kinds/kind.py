@@ -14,19 +14,20 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.explain.data_checks.finding import Check
-from chatter.explain.measurement import Measurement, Run
-from chatter.explain.residuals.finding import Finding
-from chatter.explain.residuals.noise import white_level
-from chatter.explain.residuals.variables import Condition, Form, Measure, Variable
-from chatter.explain.selection.criteria import (
+from chatter.explain.criteria import (
     AT_NOISE,
     FIRST_NOISE,
     LEAST_GAIN,
     LEAST_GAIN_SHARE,
     NUMERICS,
 )
-from chatter.explain.selection.fitting import Parameter
+from chatter.explain.data_checks.finding import Check
+from chatter.explain.fitting import Parameter
+from chatter.explain.measurement import Measurement, Run
+from chatter.explain.residuals.channel_residual import ChannelResidual
+from chatter.explain.residuals.finding import Finding
+from chatter.explain.residuals.noise import white_level
+from chatter.explain.residuals.variables import Condition, Form, Measure, Variable
 
 Array = NDArray[np.float64]
 Signals = Mapping[str, Array]
@@ -189,19 +190,13 @@ class Kind(ABC):
         level = max(level, least)
         return Deviation(level / weight, level)
 
-    def noise_floor(
-        self,
-        measurement: Measurement,
-        predict: Callable[[Run], Signals],
-        noise: Noise,
-    ) -> float:
+    def noise_floor(self, residuals: Sequence[ChannelResidual]) -> float:
         """Error over the signal that a model has that is right."""
         shares: dict[str, list[float]] = {}
-        for run in measurement.runs:
-            for channel in self.reported_channels(run):
-                level = float(np.sqrt(np.mean(run.signals[channel] ** 2)))
-                share = noise[run.name][channel] / max(level, 1e-300)
-                shares.setdefault(channel, []).append(share**2)
+        for one in residuals:
+            if one.channel in self.reported_channels(one.run):
+                level = max(float(np.mean(one.measured**2)), 1e-300)
+                shares.setdefault(one.channel, []).append(one.noise**2 / level)
         return mean_over_channels(shares)
 
     def trials(self, measurement: Measurement, noise: Noise) -> Sequence[Trial]:

@@ -15,8 +15,10 @@ from chatter.explain.data_checks.displacement import wrong_displacements
 from chatter.explain.data_checks.samples import Columns, dropouts, sample_checks
 from chatter.explain.data_checks.scale import wrong_scales
 from chatter.explain.data_checks.spindle import wrong_speeds, wrong_teeth
+from chatter.explain.fitting import Parameter
 from chatter.explain.kinds.kind import Cuts, Kind, Noise, Signals, Trial
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.prior import with_priors
 from chatter.explain.residuals.by_channel import by_channel
 from chatter.explain.residuals.over_runs import over_runs
 from chatter.explain.residuals.over_time import over_time
@@ -28,8 +30,6 @@ from chatter.explain.residuals.variables import (
     MILLING_MEASURES,
     MILLING_VARIABLES,
 )
-from chatter.explain.selection.fitting import Parameter
-from chatter.explain.selection.prior import with_priors
 from chatter.simulation.setup import set_up
 from chatter.simulation.simulate import run_setup
 

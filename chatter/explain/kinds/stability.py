@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,12 +12,13 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.units import rpm
 from chatter.explain.data_checks.verdicts import wrong_verdicts
+from chatter.explain.fitting import Parameter
 from chatter.explain.kinds.kind import Array, Cuts, Deviation, Kind, Noise, Signals, Trial
 from chatter.explain.kinds.milling import cutting_paths
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.prior import with_priors
+from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.misclassified_tests import misclassified, over_depth, over_speed
-from chatter.explain.selection.fitting import Parameter
-from chatter.explain.selection.prior import with_priors
 from chatter.explain.stability_margin import stability_margins
 
 #: scatter of a critical depth from test to test, as a share, and tests judged wrongly for no reason
@@ -76,19 +77,11 @@ class Stability(Kind):
             ]
         )
 
-    def noise_floor(
-        self,
-        measurement: Measurement,
-        predict: Callable[[Run], Signals],
-        noise: Noise,
-    ) -> float:
+    def noise_floor(self, residuals: Sequence[ChannelResidual]) -> float:
         """Error that a model has that is right: verdicts scatter about their probabilities."""
-        scatter, level = [], []
-        for run in measurement.runs:
-            stable = predict(run)["stable"]
-            scatter.append(np.mean(stable * (1.0 - stable)))
-            level.append(np.mean(run.signals["stable"] ** 2))
-        return float(np.sqrt(np.mean(scatter) / np.mean(level)))
+        scatter = np.mean([np.mean(one.predicted * (1.0 - one.predicted)) for one in residuals])
+        level = np.mean([np.mean(one.measured**2) for one in residuals])
+        return float(np.sqrt(scatter / level))
 
     def predict(self, case: Case, run: Run) -> Signals:
         """Probability of a stable verdict at every point."""

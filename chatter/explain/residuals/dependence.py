@@ -53,21 +53,21 @@ class Dependence(NamedTuple):
     ----------
     share : float
         Of the sum of squares over the noise, by holdout runs; below 0 for noise.
-    chance : float
+    threshold : float
         Share that shifted residuals do not exceed.
     coefficients, errors : (bins,) array
         g of every bin from all runs, nan where there are no samples, and its standard error.
     """
 
     share: float
-    chance: float
+    threshold: float
     coefficients: Array
     errors: Array
 
     @property
     def significant(self) -> bool:
         """Whether it is more than noise gives."""
-        return self.share > max(self.chance, LEAST_SHARE)
+        return self.share > max(self.threshold, LEAST_SHARE)
 
 
 def edges_of(values: Array, count: int = 24) -> Array:
@@ -107,21 +107,21 @@ def dependence(samples: Sequence[Sample], bins: int, seed: int = 0) -> Dependenc
     folds = _without_constant(folds)
     total = sum(float(s.normalised @ s.normalised) for s in samples)
     share = _share(folds, weights, bins) / max(total, 1e-300)
-    chance = np.inf
+    threshold = np.inf
     if share > LEAST_SHARE:
         rng = np.random.default_rng(seed)
         shifted = np.array([_share(_shifted(folds, rng), weights, bins) for _ in range(_SHIFTS)])
         shifted /= max(total, 1e-300)
         # what a shift loses by chance is no measure of how far it may gain
         spread = float(np.std(shifted))
-        chance = max(float(shifted.max()), float(shifted.mean()) + _BEYOND * spread)
+        threshold = max(float(shifted.max()), float(shifted.mean()) + _BEYOND * spread)
     all_weights = np.sum(weights, axis=0)
     products = sum(_sums(s.bins, s.normalised * s.weight, bins) for s in samples)
     known = all_weights > _LEAST_WEIGHT * all_weights.max()
     with np.errstate(divide="ignore", invalid="ignore"):
         coefficients = np.where(known, products / all_weights, np.nan)
         errors = np.where(known, 1.0 / np.sqrt(all_weights), np.nan)
-    return Dependence(share, chance, coefficients, errors)
+    return Dependence(share, threshold, coefficients, errors)
 
 
 def _folds(sample: Sample, runs: int) -> list[Sample]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.compile.structure import structure_of
-from chatter.explain.kinds.kind import AT_NOISE
+from chatter.explain.criteria import AT_NOISE
 from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.finding import Bars, Curve, Curves, Finding
 from chatter.explain.residuals.residual import Residual, over_noise

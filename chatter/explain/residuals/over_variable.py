@@ -76,7 +76,7 @@ def over_period(name: str) -> Diagnostic:
         length = found.length * variable.scale
         if found.significant:
             words = (
-                f"{100.0 * found.share:.2g} % of {target.subject} repeats over {variable.label} "
+                f"{100.0 * found.share:.2g} % of {target.phrase} repeats over {variable.label} "
                 f"with a period of {length:.3g} {variable.unit}."
             )
         numbers = {

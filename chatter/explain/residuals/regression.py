@@ -53,7 +53,7 @@ class Target(NamedTuple):
         return f"{self.name} [{self.unit}]"
 
     @property
-    def subject(self) -> str:
+    def phrase(self) -> str:
         """In sentences: "the residual of Fx, as a share of what is predicted,"."""
         form = f", {self.form.description}," if self.form.description else ""
         return f"the residual of {self.channel}{form}"

@@ -5,14 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from chatter.description.case import Case
-from chatter.explain.kinds.kind import AT_NOISE, Kind, Noise
+from chatter.explain.criteria import AT_NOISE
 from chatter.explain.measurement import Measurement
-from chatter.explain.prediction import Predictions
 from chatter.explain.residuals.channel_residual import ChannelResidual
+
+if TYPE_CHECKING:
+    from chatter.explain.kinds.kind import Kind, Noise
+    from chatter.explain.prediction import Predictions
 
 
 @dataclass(frozen=True, eq=False)

@@ -122,7 +122,7 @@ def _numbers(residual: Residual, target: Target, share: float, **more: Any) -> d
 
 def _by_one(residual: Residual, regression: Regression, variable: Variable) -> ResidualDependence:
     target, share = regression.target, regression.found.share
-    words = f"{100.0 * share:.2g} % of {target.subject} depends on {variable.label}."
+    words = f"{100.0 * share:.2g} % of {target.phrase} depends on {variable.label}."
     numbers = _numbers(residual, target, share, over=[variable.name])
     finding = Finding(_NAME, words, True, numbers, panel_of(variable, [regression]))
     return _with_table(finding, regression, variable)
@@ -157,7 +157,7 @@ def _by_period(
     coefficients = shape.found.coefficients * target.scale
     half = 0.5 * float(np.nanmax(coefficients) - np.nanmin(coefficients))
     words = (
-        f"{100.0 * found.share:.2g} % of {target.subject} depends on {variable.label}, with a "
+        f"{100.0 * found.share:.2g} % of {target.phrase} depends on {variable.label}, with a "
         f"period of {period} and an amplitude of {half:.2g} {target.unit}."
     )
     numbers = _numbers(residual, target, found.share, over=[variable.name], period=length)
@@ -211,7 +211,7 @@ def _by_two(residual: Residual, regression: _OnTwo) -> ResidualDependence:
     x, y = first.reported(edges[0]), second.reported(edges[1])
     values = target.scale * found.coefficients.reshape(y.size - 1, x.size - 1)
     words = (
-        f"{100.0 * found.share:.2g} % of {target.subject} depends on {first.label} and "
+        f"{100.0 * found.share:.2g} % of {target.phrase} depends on {first.label} and "
         f"{second.label} together."
     )
     numbers = _numbers(residual, target, found.share, over=[first.name, second.name])

@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from chatter.description.case import Case
-from chatter.explain.kinds.kind import Noise
 from chatter.explain.measurement import Measurement
-from chatter.explain.prediction import Predictions
 from chatter.explain.residuals.finding import Finding
 from chatter.explain.residuals.residual import Residual, residual_of
 from chatter.explain.residuals.residual_dependence import ResidualDependence, residual_dependence
+
+if TYPE_CHECKING:
+    from chatter.explain.kinds.kind import Noise
+    from chatter.explain.prediction import Predictions
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.compile.structure import structure_of
-from chatter.explain.kinds.kind import AT_NOISE
+from chatter.explain.criteria import AT_NOISE
 from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.finding import Curve, Curves, Finding
 from chatter.explain.residuals.harmonics import Harmonics, Split
@@ -43,10 +43,10 @@ CLASSES = (
 
 
 class Shares(NamedTuple):
-    """Squares beyond the noise by class, their deviation by chance, and the lines of one run."""
+    """Squares beyond the noise by class, their scatter, and the lines of one run."""
 
     squares: Array
-    chance: Array
+    scatter: Array
     lines: Array  # Hz, strongest first
     split: Split
     residual: ChannelResidual
@@ -65,10 +65,10 @@ def spectrum(residual: Residual) -> Finding:
     numbers, reported = {}, {}
     for channel, found in by_channel.items():
         squares = np.sum([one.squares for one in found], axis=0)
-        chance = np.sqrt(np.sum([one.chance**2 for one in found], axis=0))
+        scatter = np.sqrt(np.sum([one.scatter**2 for one in found], axis=0))
         everything = max(float(np.sum(np.maximum(squares, 0.0))), 1e-300)
         shares = np.maximum(squares, 0.0) / everything
-        sure = (squares > _BEYOND * chance) & (shares > _LEAST_SHARE)
+        sure = (squares > _BEYOND * scatter) & (shares > _LEAST_SHARE)
         level = residual.over_noise(channel)
         rule = _rule(found) if sure[3] or sure[2] else None
         numbers[channel] = {
@@ -112,8 +112,8 @@ def _shares(residual: ChannelResidual, split: Split) -> Shares:
     squares[2:] += 2.0 * taken * np.array([near.sum(), 0, rest.sum() + filled.sum()])
     counts = np.array([2 * tooth.sum(), 2 * (~tooth).sum(), 2 * near.sum(), 0, 2 * rest.sum()])
     # beside a window of Hann lines are not independent
-    chance = np.sqrt(2.0 * np.maximum(counts, 1)) * np.array([1.0, 1.0, 1.4, 1.0, 1.4])
-    return Shares(squares, chance, lines, split, residual)
+    scatter = np.sqrt(2.0 * np.maximum(counts, 1)) * np.array([1.0, 1.0, 1.4, 1.0, 1.4])
+    return Shares(squares, scatter, lines, split, residual)
 
 
 def _lines(split: Split, near: NDArray[np.bool_]) -> tuple[Array, NDArray[np.bool_]]:

@@ -10,16 +10,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.explain.effects.effect import Effect
-from chatter.explain.effects.registry import candidates, rank
-from chatter.explain.measurement import Run
-from chatter.explain.selection.criteria import (
+from chatter.explain.criteria import (
     EQUAL,
     FITTED_IN_FULL,
     FOLLOWED_STARTS,
     MOST_EFFECTS,
 )
-from chatter.explain.selection.fitting import WORKERS, Fit, Parameter
+from chatter.explain.effects.effect import Effect
+from chatter.explain.effects.registry import candidates, rank
+from chatter.explain.fitting import WORKERS, Fit, Parameter
+from chatter.explain.measurement import Run
 from chatter.explain.selection.problem import Problem
 
 Progress = Callable[[str, float], None]
@@ -114,7 +114,7 @@ def stage_of(problem: Problem, now: Fit, split: Split, progress: Progress, numbe
     for index, (effect, step) in enumerate(chosen):
         share = _LINEARISED_SHARE + (1.0 - _LINEARISED_SHARE) * index / len(chosen)
         progress(f"fitting {effect.name}", (number + share) / (MOST_EFFECTS + 1))
-        tried.append(fitted(problem, effect, split, step.values, 10, step.jacobian))
+        tried.append(fitted(problem, effect, split, step.values, step.jacobian))
     # what every candidate gains, the nuisance parameters gained by going on
     holdout = problem.cost(now.by_name, split.holdout)
     holdout = min(holdout, max((one.holdout for one in tried), default=holdout))
@@ -126,12 +126,11 @@ def fitted(
     effect: Effect,
     split: Split,
     start: Mapping[str, float],
-    most: int,
     jacobian: NDArray[np.float64] | None = None,
 ) -> Candidate:
-    """Fit a problem with an effect added, in at most so many steps."""
+    """Fit a problem with an effect added."""
     trial = problem.with_effect(effect)
-    found = trial.fit(split.fitted, start, most, jacobian)
+    found = trial.fit(split.fitted, start, jacobian)
     return Candidate(effect, found, trial.cost(found.by_name, split.holdout))
 
 

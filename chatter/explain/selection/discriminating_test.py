@@ -9,9 +9,9 @@ import numpy as np
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
+from chatter.explain.criteria import DISCRIMINATES
 from chatter.explain.kinds.kind import Kind, Noise
 from chatter.explain.measurement import Measurement
-from chatter.explain.selection.criteria import DISCRIMINATES
 
 
 def discriminating_test(

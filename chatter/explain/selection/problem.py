@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
+from chatter.explain.criteria import IMPOSSIBLE
 from chatter.explain.effects.effect import Effect
+from chatter.explain.fitting import Fit, Parameter, fit
 from chatter.explain.kinds.kind import Kind, Noise
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.prediction import Predictions
-from chatter.explain.selection.criteria import IMPOSSIBLE
-from chatter.explain.selection.fitting import Fit, Parameter, fit
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +115,6 @@ class Problem:
         self,
         runs: Sequence[Run],
         start: Mapping[str, float],
-        most: int,
         jacobian: NDArray[np.float64] | None = None,
     ) -> Fit:
         """Fit everything to runs.
@@ -125,8 +124,6 @@ class Problem:
         runs : sequence of Run
         start : mapping of str to float
             Values to start from, by name; declared ones where they are not named.
-        most : int
-            Steps tried at the most.
         jacobian : (n, p) array of float, optional
             Near the start, where it is known.
         """
@@ -137,4 +134,4 @@ class Problem:
         def residuals(values: NDArray[np.float64]) -> NDArray[np.float64]:
             return self.residuals(dict(zip(names, values, strict=True)), runs)
 
-        return fit(parameters, residuals, begin, most, jacobian)
+        return fit(parameters, residuals, begin, jacobian)

@@ -9,6 +9,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from chatter.explain.criteria import (
+    ALTERNATIVES,
+    FITTED_AGAIN,
+    LEAST_SHARE,
+    MOST_EFFECTS,
+    NEAR_NOISE,
+    NO_RESIDUAL,
+)
+from chatter.explain.fitting import Fit, over_groups
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.prediction import Predictions
 from chatter.explain.selection.candidates import (
@@ -20,15 +29,6 @@ from chatter.explain.selection.candidates import (
     split_runs,
     stage_of,
 )
-from chatter.explain.selection.criteria import (
-    ALTERNATIVES,
-    FITTED_AGAIN,
-    LEAST_SHARE,
-    MOST_EFFECTS,
-    NEAR_NOISE,
-    NO_RESIDUAL,
-)
-from chatter.explain.selection.fitting import Fit, over_groups
 from chatter.explain.selection.problem import Problem
 
 
@@ -109,14 +109,14 @@ def search(measurement: Measurement, predictions: Predictions, progress: Progres
     noise = {run.name: kind.first_noise(run) for run in measurement.runs}
     problem = Problem(measurement, predictions, noise)
     progress("refitting the nuisance parameters", 0.0)
-    now = problem.fit(split.fitted, {}, 6)
+    now = problem.fit(split.fitted, {})
     problem = problem.with_noise_beside(now.by_name)
-    now = problem.fit(split.fitted, now.by_name, 5)
+    now = problem.fit(split.fitted, now.by_name)
     base_values = now.by_name
     first = stage_of(problem, now, split, progress, 0)
     path = _best_path(Path([], problem, now), first, split, progress)
     if len(path.stages) > 1:
-        progress("trying again what was added first", 0.85)
+        progress("trying again the effects added first", 0.85)
         path = _tried_again(path, split)
     stages, problem, now = path
     progress("fitting all runs", 0.95)
@@ -125,10 +125,10 @@ def search(measurement: Measurement, predictions: Predictions, progress: Progres
     if measurement is not problem.measurement:
         split = split_runs(measurement.runs)
         problem = replace(problem, measurement=measurement)
-        now = problem.fit(split.fitted, now.by_name, 8)
-    final = problem.fit(measurement.runs, now.by_name, 12)
+        now = problem.fit(split.fitted, now.by_name)
+    final = problem.fit(measurement.runs, now.by_name)
     final = over_groups(final, [problem.count([run]) for run in measurement.runs])
-    base = replace(problem, effects=()).fit(measurement.runs, base_values, 5)
+    base = replace(problem, effects=()).fit(measurement.runs, base_values)
     return Search(split, first, tuple(stages), problem, now, final, base)
 
 
@@ -156,7 +156,7 @@ def _forward(begin: Path, stage: Stage, split: Split, progress: Progress, most: 
         stages.append(stage)
         values = stage.best.fit.by_name
         problem = problem.with_effect(stage.best.effect).with_noise_beside(values)
-        now = problem.fit(split.fitted, values, 8)
+        now = problem.fit(split.fitted, values)
         path = Path(stages, problem, now)
         if len(stages) == most or path.over_noise(split.holdout) < NO_RESIDUAL:
             break
@@ -173,7 +173,7 @@ def _tried_again(path: Path, split: Split) -> Path:
     kept = list(stages)
     for stage in stages[:-1]:
         without = problem.without_effect(stage.best.effect)
-        before = without.fit(split.fitted, now.by_name, 6)
+        before = without.fit(split.fitted, now.by_name)
         holdout = without.cost(before.by_name, split.holdout)
         names = {effect.name for effect in without.effects}
         tried = []
@@ -182,7 +182,7 @@ def _tried_again(path: Path, split: Split) -> Path:
                 continue
             start = {**one.fit.by_name, **before.by_name}
             start = now.by_name if one.effect is stage.best.effect else start
-            tried.append(fitted(without, one.effect, split, start, 6))
+            tried.append(fitted(without, one.effect, split, start))
         found = Stage(before, holdout, ranked(tried))
         index = kept.index(stage)
         if not _is_significant(holdout, found.best.holdout, problem, split):

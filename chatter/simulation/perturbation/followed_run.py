@@ -43,7 +43,7 @@ class FollowedRun:
 
     def __init__(self, case: Case, modes: tuple[Mode, ...], ramp: int) -> None:
         self.setup = set_up_on_modes(case, modes)
-        self.bins = self.setup.resolution.steps_a_turn
+        self.bins = self.setup.resolution.steps_per_revolution
         self._ramp = ramp * self.bins
         self._run = CutRun(self.setup, 1, self.bins)
         tables = self.setup.structure.tables

@@ -1,4 +1,4 @@
-"""A cut with a pushed run and one from rest beside it, followed turn by turn."""
+"""A cut with a perturbed run and one from rest beside it, followed turn by turn."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.simulation.perturbation.followed_run import FollowedRun
-from chatter.simulation.perturbation.lyapunov import Exponents
+from chatter.simulation.perturbation.lyapunov_record import LyapunovRecord
 from dynamics.modal.modes import Mode
 
 Array = NDArray[np.float64]
 
 #: size of the difference after every turn, as a share of the feed, and the share of it that is
 #: rounding
-_PUSH, _ROUNDING = 1e-6, 1e-12
+_PERTURBATION, _ROUNDING = 1e-6, 1e-12
 #: the same where there is friction, for which small is what does not move it at all; and the share
-#: at which a push is gone: when it lets go differs from run to run by rounding
-_RUBBING_PUSH, _GONE = 1e-2, 1e-3
-#: push after every turn while the cut takes hold, as a share of it: no shape is lost for good
+#: at which a perturbation is gone: when it lets go differs from run to run by rounding
+_RUBBING_PERTURBATION, _GONE = 1e-2, 1e-3
+#: perturbation after every revolution of the force ramp, as a share of it: no shape is lost
 _RENEWED = 1e-3
 #: a difference that moves by less than this share of its size, a turn of the lowest mode, is still
 _STILL = 1e-7
@@ -30,7 +30,7 @@ _SAMPLES = 12
 
 
 class _Turn(NamedTuple):
-    """What is kept of a turn; see `Exponents`."""
+    """What is kept of a turn; see `LyapunovRecord`."""
 
     size: float
     distance: float
@@ -42,8 +42,10 @@ class _Turn(NamedTuple):
     rest: Array
 
 
-def follow(case: Case, modes: tuple[Mode, ...], hold: int, watch: int, period: float) -> Exponents:
-    """Follow a cut as it takes hold and after that, with a pushed run and one from rest beside it.
+def follow(
+    case: Case, modes: tuple[Mode, ...], hold: int, watch: int, period: float
+) -> LyapunovRecord:
+    """Follow a cut through its force ramp and on, a perturbed run and one from rest beside it.
 
     Parameters
     ----------
@@ -55,19 +57,19 @@ def follow(case: Case, modes: tuple[Mode, ...], hold: int, watch: int, period: f
     period : float
         Of the variation, turns.
     """
-    leader, pushed, rest = (FollowedRun(case, modes, turns) for turns in (hold, hold, 0))
+    leader, perturbed, rest = (FollowedRun(case, modes, turns) for turns in (hold, hold, 0))
     rubs = leader.setup.structure.rubs
-    push = (_RUBBING_PUSH if rubs else _PUSH) * case.cut.feed_per_tooth
-    gone = (_GONE if rubs else _ROUNDING) * push
+    perturbation = (_RUBBING_PERTURBATION if rubs else _PERTURBATION) * case.cut.feed_per_tooth
+    gone = (_GONE if rubs else _ROUNDING) * perturbation
     frequencies = [mode.frequency for mode in leader.setup.modes]
     a_second = leader.setup.spindle.speed / (2.0 * math.pi)
     stride = _stride(leader.bins, a_second / max(frequencies))
     least = 2.0 * math.pi * min(frequencies) * leader.setup.step * _STILL
-    pushed.displace(push)
+    perturbed.displace(perturbation)
     turns: list[_Turn] = []
     scale, left = 0.0, False
     for number in range(hold + watch):
-        motion, beside, other = leader.revolve(), pushed.revolve(), rest.revolve()
+        motion, beside, other = leader.revolve(), perturbed.revolve(), rest.revolve()
         if motion is None or beside is None:
             left = True
             break
@@ -79,7 +81,7 @@ def follow(case: Case, modes: tuple[Mode, ...], hold: int, watch: int, period: f
         turns.append(
             _Turn(
                 size=math.log(max(moving, least * apart)) + scale,
-                distance=math.log(apart / push) + scale,
+                distance=math.log(apart / perturbation) + scale,
                 scale=scale,
                 still=moving < least * apart or (rubs and apart <= gone),
                 from_rest=away,
@@ -89,15 +91,15 @@ def follow(case: Case, modes: tuple[Mode, ...], hold: int, watch: int, period: f
             )
         )
         # what friction remembers of its way cannot be drawn apart
-        by = max(apart / push, 1.0) if rubs else apart / push
-        pushed.come_closer(leader, 1.0 / by)
+        by = max(apart / perturbation, 1.0) if rubs else apart / perturbation
+        perturbed.come_closer(leader, 1.0 / by)
         scale += math.log(by)
         if number < hold:
-            pushed.displace((-1.0) ** number * _RENEWED * push)
+            perturbed.displace((-1.0) ** number * _RENEWED * perturbation)
     columns = zip(*turns, strict=True) if turns else ((),) * len(_Turn._fields)
     of = dict(zip(_Turn._fields, columns, strict=True))
     numbers = ("size", "distance", "scale", "from_rest", "swing")
-    return Exponents(
+    return LyapunovRecord(
         hold=hold,
         period=period,
         cycle=a_second / min(frequencies),

@@ -16,7 +16,7 @@ from chatter.description.machine.frequency_response import (
     TORQUE_KINDS,
     FrfSection,
     StateSection,
-    parse_place,
+    parse_tested_point,
 )
 from chatter.description.machine.machine_file import MachineFile
 from chatter.description.machine.move import MoveSection
@@ -152,7 +152,7 @@ def _one_frf(
     excited, read = _rows(where, machine, section)
     frequency = np.linspace(*section.band, section.lines)
     linear = machine
-    motor = parse_place(section.excite).motor
+    motor = parse_tested_point(section.excite).motor
     if section.by == "torque multisine":
         # what is identified is what the motor feels with its own loop open
         linear = replace(machine, drives=tuple(d for d in machine.drives if d.axis != motor))
@@ -190,7 +190,7 @@ def _one_frf(
 
 def _turns(text: str) -> bool:
     """Whether a place of a test is a motor, or a rotation."""
-    place = parse_place(text)
+    place = parse_tested_point(text)
     return place.motor is not None or place.direction.startswith("r")
 
 
@@ -273,7 +273,7 @@ def _rows(
 
 
 def _row(where: str, machine: Machine, text: str) -> NDArray[np.float64]:
-    place = parse_place(text)
+    place = parse_tested_point(text)
     if place.motor is not None:
         rows = [drive.row for drive in machine.drives if drive.axis == place.motor]
         if not rows:

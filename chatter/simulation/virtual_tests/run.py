@@ -113,7 +113,7 @@ def run_machine(
     stride = inputs.stride
     record = port_record(total // stride, len(tables.port), stride, stride)
     laws = Laws(
-        _with_injected(tables.held, machine, inputs.injected, total),
+        _with_injected(tables.explicit, machine, inputs.injected, total),
         (TravelLimit(_FURTHEST),),
         tables.implicit,
         (record,),
@@ -128,7 +128,7 @@ def run_machine(
             if ran < count:
                 raise RunError(
                     f"after {done * step:.4g} s the machine has run away: a control loop is "
-                    "unstable, or a force pushes an axis that nothing holds"
+                    "unstable, or a force acts on an axis that nothing holds"
                 )
     except KeyboardInterrupt:
         interrupted = True

@@ -15,7 +15,7 @@ import numpy as np
 from chatter.description.assignments import parse_assignments
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.description.formatting import printable, shown
+from chatter.description.formatting import formatted, printable
 from chatter.description.quantities import QuantityField
 from chatter.description.units import DIMENSIONS, NUMBER, parse, unit_factor
 from chatter.studies.model import PREFIX, field_of, value_of
@@ -99,7 +99,7 @@ def read_variation(text: str, model: Model, count: int | None = None) -> Variati
     path, equals, given = text.partition("=")
     path = path.strip()
     if not equals or not path:
-        raise InputError(f"--vary {shown(text)}: PATH=VALUES is wanted, {_EXAMPLE}")
+        raise InputError(f"--vary {formatted(text)}: PATH=VALUES is wanted, {_EXAMPLE}")
     if not isinstance(model, Case):
         path = path.removeprefix(PREFIX)
     kind = field_of(model, path)
@@ -110,7 +110,7 @@ def read_variation(text: str, model: Model, count: int | None = None) -> Variati
     if not parts:
         raise InputError(f"--vary {path}: there are no values; give some, {_EXAMPLE}")
     if any(not part for part in parts):
-        raise InputError(f"--vary {path}: a value is empty in {shown(given)}")
+        raise InputError(f"--vary {path}: a value is empty in {formatted(given)}")
     if len(parts) == 1 and ".." in parts[0] and kind is not None:
         return _range(path, parts[0], kind, count)
     values = {part: _value(path, part) for part in parts}
@@ -128,7 +128,7 @@ def variation(path: str, values: list[Any], model: Model) -> Variation:
     """
     if len(values) == 0:
         raise InputError(f"{path}: there are no values")
-    pairs = [(value if isinstance(value, str) else shown(value), value) for value in values]
+    pairs = [(value if isinstance(value, str) else formatted(value), value) for value in values]
     return _listed(path, pairs, field_of(model, path))
 
 
@@ -165,8 +165,8 @@ def _refuse_mixed(path: str, values: Mapping[str, Any], kind: QuantityField | No
     with_unit = [text for text, value in values.items() if isinstance(value, str)]
     if bare and with_unit and DIMENSIONS[kind.dimension].unit:
         raise InputError(
-            f"--vary {path}: {shown(bare[0])} has no unit and {shown(with_unit[0])} has one; give "
-            "every value its unit"
+            f"--vary {path}: {formatted(bare[0])} has no unit, {formatted(with_unit[0])} has one; "
+            "give every value its unit"
         )
 
 
@@ -179,7 +179,9 @@ def _listed(path: str, pairs: list[tuple[str, Any]], kind: QuantityField | None)
     for text, given in pairs:
         number = None
         if kind is not None and isinstance(given, (int, float, str)):
-            number = _read(path, kind, given) / unit_factor(unit, kind.alike(str(given)).dimension)
+            number = _read(path, kind, given) / unit_factor(
+                unit, kind.matching(str(given)).dimension
+            )
         elif kind is None and isinstance(given, (int, float)) and not isinstance(given, bool):
             number = float(given)
         label = printable(text.translate(_PLAIN).strip())
@@ -204,7 +206,7 @@ def _unit(path: str, given: list[Any], kind: QuantityField | None) -> str:
     for value in given:
         if isinstance(value, str):
             _read(path, kind, value)
-            found = parse(value, kind.alike(value).dimension).unit
+            found = parse(value, kind.matching(value).dimension).unit
             if found:
                 return found
     return DIMENSIONS[kind.dimension].unit

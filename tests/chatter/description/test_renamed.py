@@ -85,6 +85,12 @@ law = "Coulomb-Stribeck"
 
 [friction.belt]
 law = "smooth Coulomb"
+
+[connector.rail]
+places = [[0, 0, 0]]
+
+[move.circle]
+turns = 2
 """
 
 

@@ -106,7 +106,7 @@ def test_process_damping_is_of_second_order_too():
 
 def test_halving_the_step_matters_little_by_default():
     coarse = simulate(case(material={"Kte": 2e4, "Kre": 3e4}))
-    steps = coarse.setup.resolution.steps_a_turn
+    steps = coarse.setup.resolution.steps_per_revolution
     fine = simulate(case(material={"Kte": 2e4, "Kre": 3e4}, simulation={"steps": 8 * steps}))
     for name in ("force", "displacement"):
         one, other = getattr(coarse, name), getattr(fine, name)[::8]
@@ -200,7 +200,7 @@ def test_rows_and_times():
     found = simulate(case(simulation={"revolutions": 2.5, "steps": 360}))
     assert found.time.size == 901
     assert found.time[-1] == pytest.approx(2.5 * 60.0 / 4000.0)
-    assert found.turns == pytest.approx(2.5)
+    assert found.revolutions == pytest.approx(2.5)
 
 
 VERY_SOFT = [{"frequency": "300 Hz", "damping": 0.01, "stiffness": 2e4, "direction": [0, 1, 0]}]
@@ -242,7 +242,7 @@ def test_interrupt_between_chunks_leaves_the_next_run_as_it_was():
 
     part = simulate(given, progress=interrupt)
     assert part.interrupted
-    assert 0 < part.turns < 100
+    assert 0 < part.revolutions < 100
     assert np.array_equal(part.rows, whole.rows[: len(part.rows)])
     assert any("interrupted" in note for note in part.summary()["notes"])
     assert np.array_equal(simulate(given).rows, whole.rows)

@@ -15,7 +15,7 @@ from chatter.io.shipped_examples import examples
 
 NAMES = ("explain-axis", "explain-frf", "explain-milling", "explain-stability")
 HEADINGS = (
-    "What was added",
+    "Effects added",
     "Error before and after",
     "Where the residual lives",
     "Candidates",

@@ -222,7 +222,7 @@ def test_what_is_wrong_in_the_description_is_named(tmp_path, text, words):
 
 
 def test_missing_columns_are_named_with_those_there_are(tmp_path):
-    from chatter.explain.data_checks.checking import checked
+    from chatter.explain.checking import checked
 
     (tmp_path / "case.toml").write_text(CASE)
     (tmp_path / "a.csv").write_text("time [s],torque [N*m]\n0,1\n1,2\n")

@@ -44,7 +44,7 @@ def case(material=None, tool=None, structure=True, mode="slot", **sections):
 def oscillator(found, axis=0):
     """Frequency (rad/s) and decay rate of free vibration, from the change over a tooth period."""
     resolution = found.setup.resolution
-    period = resolution.steps_a_turn // resolution.stride // found.case.tool.teeth
+    period = resolution.steps_per_revolution // resolution.stride // found.case.tool.teeth
     change = found.displacement[period:, axis] - found.displacement[:-period, axis]
     change = change[np.abs(change) > 0.0][: 4 * period]
     gap = period // 18

@@ -35,10 +35,10 @@ def test_a_record_has_enough_rows_a_turn_and_no_more_than_it_may(teeth):
         resolution = set_up(here).resolution
         # 120 steps within a period of the fastest mode, and hardly more
         wanted = 120.0 * 2100.0 * 60.0 / speed
-        assert wanted <= resolution.steps_a_turn < 1.2 * wanted + 100
-        assert resolution.steps_a_turn % math.lcm(4, teeth) == 0
-        assert resolution.steps_a_turn % resolution.stride == 0
-        rows = resolution.steps_a_turn / resolution.stride
+        assert wanted <= resolution.steps_per_revolution < 1.2 * wanted + 100
+        assert resolution.steps_per_revolution % math.lcm(4, teeth) == 0
+        assert resolution.steps_per_revolution % resolution.stride == 0
+        rows = resolution.steps_per_revolution / resolution.stride
         # six samples from tooth to tooth are the least that a verdict takes
         assert rows >= 150.0
-        assert rows * resolution.turns <= 120_000
+        assert rows * resolution.revolutions <= 120_000

@@ -35,7 +35,7 @@ def free_motion(found):
     Cut where an edge might have left the work: the chip of a mode along x is (f + change) sin(phi).
     """
     resolution = found.setup.resolution
-    steps = resolution.steps_a_turn // resolution.stride // found.case.tool.teeth
+    steps = resolution.steps_per_revolution // resolution.stride // found.case.tool.teeth
     turns = (len(found.rows) - 1) // steps
     x = found.displacement[: turns * steps, 0].reshape(turns, steps)[:, :: steps // 20]
     change = np.diff(x, axis=0)

@@ -68,7 +68,7 @@ def torque_a_tooth(found):
     count = (len(found.rows) - 1) // A_TOOTH
     mean = found.torque[1 : count * A_TOOTH + 1].reshape(count, A_TOOTH).mean(axis=1)
     middle = found.time[A_TOOTH // 2 :: A_TOOTH][:count]
-    return found.setup.path.place_at(middle), mean
+    return found.setup.path.position_at(middle), mean
 
 
 def torque_of(width):
@@ -131,7 +131,7 @@ def test_walls_are_kept_of_what_falls_off(mode, monkeypatch):
     large = in_one_stock(given, monkeypatch)
     monkeypatch.setattr(stock_module, "STEPS_A_CHUNK", 1500)
     moved = run_setup(set_up(given))[0]
-    assert stock_of(moved).box[0] > moved.setup.path.place_at(moved.time[moved.settled])[0, 0]
+    assert stock_of(moved).box[0] > moved.setup.path.position_at(moved.time[moved.settled])[0, 0]
     found, wanted = carved_walls(moved), carved_walls(large)
     assert len(found) == len(wanted) == (2 if mode == "slot" else 1)
     for one, other in zip(found, wanted, strict=True):
@@ -200,7 +200,7 @@ def test_way_through_a_block(chip):
             path=[[-5e-3, 0.0], [50e-3, 0.0]], revolutions=46, resolution="25 um",
         )
     )  # fmt: skip
-    axis = found.setup.path.place_at(found.time)[0]
+    axis = found.setup.path.position_at(found.time)[0]
     size = np.linalg.norm(found.force, axis=1)
     assert size.max() > 100.0
     assert np.all(size[axis + RADIUS < -1e-6] == 0.0)
@@ -274,7 +274,7 @@ def test_corner_of_a_pocket(chip):
     ahead = 2.0 * math.sqrt(2.0 * RADIUS * width - width**2)
     peak = torque[(x > corner - 0.2e-3) & (y < 1e-4)].max()
     assert peak == pytest.approx(torque_of(width + ahead), rel=0.06)
-    before = found.setup.path.place_at(found.time)[0] < corner - 3e-3
+    before = found.setup.path.position_at(found.time)[0] < corner - 3e-3
     size = np.linalg.norm(found.force, axis=1)
     assert size.max() > 1.5 * size[before].max()
     # the edge force alone counts the edges in contact; voxels miss the thinnest chips

@@ -42,6 +42,12 @@ def test_a_former_name_is_read():
     assert "time-domain" in case.notes[0]
 
 
+def test_an_unknown_name_in_a_case_is_named_with_its_key():
+    case = Case.from_dict({**CASE, "lobes": {"method": "magic"}}, name="a.toml")
+    with pytest.raises(InputError, match=r'a\.toml: lobes\.method: .* "magic" is not'):
+        chosen_method(case)
+
+
 def test_an_unknown_name_is_refused_with_those_there_are():
     with pytest.raises(InputError, match=r'method "hugo" is not known; there are "collocation"'):
         chosen_method(Case.from_dict(CASE), "hugo")

@@ -10,8 +10,8 @@ from cutting.engagement.immersion import engagement
 from cutting.force.directional_coefficients import (
     directional_matrix,
     directional_table,
-    mean_coupling,
-    mean_over_turn,
+    mean_directional,
+    mean_over_revolution,
 )
 from cutting.force.exponential import ExponentialLaw
 from cutting.force.linear import LinearLaw
@@ -29,7 +29,7 @@ def table_of(mode="down", ratio=0.3, law=LAW, directions=PLANE, damping=None):
 
 def mean(table, teeth, start, end, lag):
     out = np.empty_like(table.first_integral[:, 0])
-    mean_coupling(table, 2 * math.pi / teeth, start, end, lag, out)
+    mean_directional(table, 2 * math.pi / teeth, start, end, lag, out)
     return out
 
 
@@ -87,7 +87,7 @@ def test_mean_over_turn_is_altintas_and_budak(mode, ratio):
 
     teeth = 3
     alpha = teeth / (2 * math.pi) * (primitive(arc.exit) - primitive(arc.entry))
-    got = mean_over_turn(table_of(mode, ratio), teeth)[0]
+    got = mean_over_revolution(table_of(mode, ratio), teeth)[0]
     # their F = K_t/2 A0 (delta), ours dF = -H d
     assert got == pytest.approx(-0.5 * KT * alpha, rel=1e-12, abs=1e-3)
 
@@ -124,7 +124,7 @@ def test_full_turn_of_helix_has_constant_mean():
     table = table_of("up", 0.05)
     teeth = 2
     lag = 2 * math.pi / teeth
-    expected = mean_over_turn(table, teeth)
+    expected = mean_over_revolution(table, teeth)
     for start in (0.0, 0.37, 2.1):
         assert mean(table, teeth, start, start + 0.05, lag) == pytest.approx(expected, rel=1e-6)
 
@@ -146,12 +146,12 @@ def test_process_damping_is_a_radial_dashpot():
     # cutter with mu = 0 is N/(2 pi) C (pi/2) on the diagonal, and it takes energy away
     damping = ViscousProcessDamping(2e4)
     table = directional_table(engagement("slot", 0.0, 10e-3), LAW, 1e-4, PLANE, damping)
-    got = mean_over_turn(table, 4)[1]
+    got = mean_over_revolution(table, 4)[1]
     assert got == pytest.approx(2e4 * np.eye(2), abs=1e-6)
 
 
 def test_kernel_runs_compiled():
-    compiled = njit(mean_coupling)
+    compiled = njit(mean_directional)
     table = table_of("down", 0.5)
     out = np.empty_like(table.first_integral[:, 0])
     compiled(table, math.pi, 1.0, 1.3, 0.4, out)

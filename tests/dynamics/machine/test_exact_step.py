@@ -6,7 +6,8 @@ import scipy.linalg
 import scipy.optimize
 
 from dynamics.machine.blocks import blocks
-from dynamics.machine.steps import begin_step, correct, end_step, predict, structure_steps
+from dynamics.machine.ports import correct, predict
+from dynamics.machine.steps import begin_step, end_step, structure_steps
 from dynamics.structure.linear_structure import LinearStructure
 
 

@@ -15,7 +15,8 @@ from dynamics.friction.lugre import LuGre, lugre_energy, lugre_force
 from dynamics.friction.tanh_hysteresis import TanhHysteresis, tanh_force, tanh_stored
 from dynamics.machine.description import Friction, Machine
 from dynamics.machine.groups import friction_commit, friction_forces
-from dynamics.machine.steps import begin_step, correct, end_step, predict
+from dynamics.machine.ports import correct, predict
+from dynamics.machine.steps import begin_step, end_step
 from dynamics.machine.tables import machine_tables
 from dynamics.structure.linear_structure import LinearStructure
 

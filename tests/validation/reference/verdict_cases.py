@@ -16,7 +16,7 @@ import numpy as np
 
 import chatter
 from chatter import Case
-from chatter.simulation.perturbation.growth_rate import growth_of
+from chatter.simulation.perturbation.multiplier import simulated_multiplier
 from chatter.simulation.structure_in_time import modes_of
 
 FILE = Path(__file__).with_suffix(".json")
@@ -116,7 +116,7 @@ def radius_of(case, kind):
         found = chatter.check(without_runout(case))
         return found.spectral_radius, found.bifurcation
     longer = case.patch({"simulation.revolutions": 400})
-    growth = growth_of(longer, modes_of(longer)[0])
+    growth = simulated_multiplier(longer, modes_of(longer)[0])
     return growth.radius ** (1.0 / case.tool.teeth), "unknown"
 
 

@@ -28,7 +28,7 @@ from chatter.stability.methods.semi_discretization.step_schemes import (
     fully_discretized,
     semi_discretized,
 )
-from cutting.force.directional_coefficients import mean_coupling
+from cutting.force.directional_coefficients import mean_directional
 
 #: residual of the dominant eigenpair, relative to its magnitude, at which its search stops
 RESIDUAL = 1e-8
@@ -253,7 +253,7 @@ def build_monodromy(scheme, arrays, speed, depth, steps, refinement, free_steps)
                 _free_transition(arrays, duration[step], transition[step])
             else:
                 start = borders[i] + k * width
-                mean_coupling(arrays.table, arrays.tooth_pitch, start, start + width, lag, mean)
+                mean_directional(arrays.table, arrays.tooth_pitch, start, start + width, lag, mean)
                 stiffness[:, :] = depth * mean[0]
                 if couplings > 1:
                     dashpot[:, :] = depth / cutting_speed * mean[1]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from chatter.description.case import Case
 from chatter.description.progress import Progress, no_progress
 from chatter.engine.parallel import sweep
-from chatter.simulation.perturbation.growth_rate import Growth, growth_of
+from chatter.simulation.perturbation.multiplier import SimulatedMultiplier, simulated_multiplier
 from chatter.stability.crossings import find_crossings
 from chatter.stability.limit_curve import LimitCurve, limits_at
 from dynamics.modal.modes import Mode
@@ -38,11 +38,14 @@ def growths(
     speeds: NDArray[np.float64],
     depths: NDArray[np.float64],
     progress: Progress = no_progress,
-) -> list[Growth]:
+) -> list[SimulatedMultiplier]:
     """Growth at n points of speed (rad/s) and depth (m), in parallel threads."""
 
-    def at(points: NDArray[np.int64]) -> list[Growth]:
-        return [growth_of(case_at(case, float(speeds[i]), float(depths[i])), modes) for i in points]
+    def at(points: NDArray[np.int64]) -> list[SimulatedMultiplier]:
+        return [
+            simulated_multiplier(case_at(case, float(speeds[i]), float(depths[i])), modes)
+            for i in points
+        ]
 
     return [growth for chunk in sweep(at, len(speeds), progress, 1) for growth in chunk]
 
@@ -92,7 +95,7 @@ def time_limit_curve(
     return limits_at(at_limits, speeds, crossings, np.zeros(len(speeds), dtype=np.int64))
 
 
-def _logarithms(found: list[Growth]) -> NDArray[np.float64]:
+def _logarithms(found: list[SimulatedMultiplier]) -> NDArray[np.float64]:
     """Logarithm of the spectral radius, within bounds that a root search can use."""
     radius = np.array([growth.radius for growth in found])
     bounded = np.clip(radius, math.exp(-_LARGEST_GROWTH), math.exp(_LARGEST_GROWTH))

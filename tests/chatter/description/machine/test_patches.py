@@ -49,7 +49,7 @@ def test_new_tables_get_headers(line_text):
     patched = file.patch({
         "body.block": {"mass": "20 kg", "size": [0.1, 0.1, 0.1], "centre": [0, 0.1, 0.2]},
         "connector.bolts.between": ["block", "table"],
-        "connector.bolts.places": [[0, 0.1, 0.1], [0.1, 0.1, 0.1], [0, 0.2, 0.1]],
+        "connector.bolts.positions": [[0, 0.1, 0.1], [0.1, 0.1, 0.1], [0, 0.2, 0.1]],
         "connector.bolts.stiffness": {"x": "1e3 N/um", "y": "1e3 N/um", "z": "1e3 N/um"},
         "axis.Y.carries": ["table", "block"],
     })  # fmt: skip
@@ -59,7 +59,7 @@ def test_new_tables_get_headers(line_text):
     assert loads_machine(text) == patched
     # one place instead of several takes these away
     one = patched.patch({"connector.bolts.at": [0, 0.1, 0.1]})
-    assert one.connector["bolts"].places is None
+    assert one.connector["bolts"].positions is None
 
 
 def test_bare_numbers_of_a_rotation_keep_its_unit(line_text):

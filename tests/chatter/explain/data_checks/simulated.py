@@ -11,7 +11,7 @@ import numpy as np
 
 from chatter import simulate
 from chatter.description.case import Case, loads
-from chatter.explain.data_checks.checking import checked
+from chatter.explain.checking import checked
 from chatter.explain.data_checks.finding import SignalFinding
 from chatter.explain.measurement import Measurement, Run
 

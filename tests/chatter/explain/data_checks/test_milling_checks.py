@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from chatter.explain.checking import checked
 from chatter.explain.comparison import compare
-from chatter.explain.data_checks.checking import checked
 from chatter.explain.explanation import explain
 from chatter.explain.measurement_file import read_measurement
 from tests.chatter.explain.data_checks import simulated

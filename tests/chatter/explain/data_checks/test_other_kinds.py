@@ -10,7 +10,7 @@ import pytest
 
 from chatter.compile.structure import structure_of
 from chatter.description.case import loads
-from chatter.explain.data_checks.checking import checked
+from chatter.explain.checking import checked
 from chatter.explain.explanation import explain
 from chatter.explain.measurement import Measurement, Run
 from dynamics.modal.modes import receptance_matrix
@@ -147,7 +147,11 @@ def test_a_gap_in_a_move_is_left_out_and_the_rest_explained():
         force[500:560] = np.nan
         return {**signals, "force": force}
 
-    summary = explain(changed("axis", edit, [0])).summary()
+    result = explain(changed("axis", edit, [0]))
+    made = result.predictions.made
+    summary = result.summary()
+    # the verdict, the errors and the residuals ask again for what the search predicted
+    assert result.predictions.made <= made + len(result.measurement.runs)
     assert [one["severity"] for one in summary["checks"]] == ["samples"]
     assert summary["verdict"] == "explained"
     assert summary["effects"][0]["name"] == "coulomb_friction"

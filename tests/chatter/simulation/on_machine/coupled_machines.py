@@ -119,7 +119,7 @@ def stepped(case, count, outputs=None):
     for name, (part, direction, at) in (outputs or {}).items():
         rows[name] = on.machine.row(name, [Term(part, np.array(direction, float), np.array(at))])
     points = next(
-        (law.points for law in setup.structure.tables.held if hasattr(law, "points")), None
+        (law.points for law in setup.structure.tables.explicit if hasattr(law, "points")), None
     )
     start = np.zeros(on.machine.structure.size)
     if on.spindle_axis is not None:

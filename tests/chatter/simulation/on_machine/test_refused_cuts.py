@@ -99,7 +99,7 @@ def test_no_time_to_come_to_the_feed(tmp_path):
     path = written(tmp_path, slide(True))
     case = cut_case({"machine": str(path), "settling": 0.1})
     setup = set_up(case)
-    points = setup.structure.tables.held[0].points
+    points = setup.structure.tables.explicit[0].points
     cycle = points.steps * setup.step
     # feed of 0.1 mm by four teeth and 50 turns a second
     speed = abs(points.velocity[:, 0])

@@ -176,7 +176,7 @@ def struck(machine, step, duration, speed):
     from dynamics.machine.tables import machine_tables
 
     tables = machine_tables(machine, step, velocity=np.array([speed]))
-    laws, course = Laws(tables.held, (), tables.implicit), []
+    laws, course = Laws(tables.explicit, (), tables.implicit), []
     for number in range(round(duration / step)):
         run.py_func(laws, tables.bus, number, 0, 1)
         course.append(tables.bus.u[0])

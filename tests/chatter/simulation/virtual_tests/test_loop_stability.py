@@ -39,7 +39,7 @@ def test_limit_of_a_velocity_loop(controller, rigid_motor, delay, limit, samples
     assert motion.frequency == pytest.approx(1.0 / (samples * T), rel=0.01)
     # a = 1.01 limit: |z| = a - 1, or sqrt(a)
     factor = 1.01 * limit - 1.0 if delay == 0 else np.sqrt(1.01)
-    assert motion.growth == pytest.approx(np.log(factor) / T, rel=1e-6)
+    assert motion.growth_rate == pytest.approx(np.log(factor) / T, rel=1e-6)
 
 
 def test_rate_of_decay(controller, rigid_motor):
@@ -54,8 +54,8 @@ def test_rate_of_decay(controller, rigid_motor):
     )  # fmt: skip
     rate = np.array([[1.0 - 0.5 * T * a * k_v, T * (1.0 - 0.5 * a)], [-a * k_v, 1.0 - a]])
     wanted = np.log(np.max(np.abs(np.linalg.eigvals(rate)))) / T
-    assert least_stable_motion(rigid_motor(control, J), STEP).growth == pytest.approx(wanted)
-    assert least_stable_motion(rigid_motor(control, J), T).growth == pytest.approx(wanted)
+    assert least_stable_motion(rigid_motor(control, J), STEP).growth_rate == pytest.approx(wanted)
+    assert least_stable_motion(rigid_motor(control, J), T).growth_rate == pytest.approx(wanted)
 
 
 def test_refused_by_name_before_it_runs(controller, rigid_motor):
@@ -69,7 +69,7 @@ def test_limits_do_not_hide_instability(controller, rigid_motor):
     """A torque limit would keep the motion small; the loop is refused all the same."""
     limited = velocity_loop(controller, 2.05, torque_limit=1e-9)
     free = velocity_loop(controller, 2.05)
-    growth = [least_stable_motion(rigid_motor(one, J), STEP).growth for one in (limited, free)]
+    growth = [least_stable_motion(rigid_motor(one, J), STEP).growth_rate for one in (limited, free)]
     assert growth[0] == pytest.approx(growth[1])
     assert growth[0] > 0.0
 

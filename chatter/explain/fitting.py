@@ -27,10 +27,11 @@ _STEP = 1e-3
 _SMALLEST_GAIN, _SMALLEST_STEP = 1e-7, 1e-7
 #: scipy's first trust region is as large as the start is far from zero, which starts are moved to
 _FIRST_REGION = 100.0
-#: share of what the Jacobian promised below which a step asks for new differences
-_LEAST_OF_PROMISE = 0.5
-#: bounds as active sets: many effects start at a bound, zero
-_METHOD = "dogbox"
+#: share of what the Jacobian promised below which a step asks for new differences, where it is
+#: a fall of the sum of squares that matters
+_LEAST_OF_PROMISE, _LEAST_HOPED = 0.8, 1.0
+#: steps tried at the most, without those of finite differences
+_MOST_STEPS = 30
 #: groups from which a scatter between them can be told
 _LEAST_GROUPS = 4
 
@@ -108,7 +109,7 @@ class _Scaled:
 
     Between finite differences the Jacobian is brought up to date by Broyden's (1965) rank-one
     formula: one simulation a step in place of one a parameter. Differences are taken anew where a
-    step gained less than half of what the Jacobian promised.
+    step gained less than most of what the Jacobian promised.
     """
 
     def __init__(
@@ -151,7 +152,8 @@ class _Scaled:
             moved = scaled - self.at
             promised = self.then + np.vstack([self.known, self.priors]) @ moved
             before = self.then @ self.then
-            if before - now @ now < _LEAST_OF_PROMISE * (before - promised @ promised):
+            hoped = before - promised @ promised
+            if hoped > _LEAST_HOPED and before - now @ now < _LEAST_OF_PROMISE * hoped:
                 self.known = None
             else:
                 change = (now - promised)[: len(self.known)]
@@ -184,7 +186,6 @@ def fit(
     parameters: Sequence[Parameter],
     residuals: Residuals,
     start: Vector,
-    most: int,
     jacobian: Matrix | None = None,
 ) -> Fit:
     """Fit parameters to residuals that are scaled to a standard deviation of one.
@@ -196,20 +197,20 @@ def fit(
         (p,) values in SI -> (n,) residuals.
     start : (p,) array of float
         SI.
-    most : int
-        Steps tried at the most, without those of finite differences.
     jacobian : (n, p) array of float, optional
         Near the start, per size of a parameter, where it is known.
     """
     problem = _Scaled(parameters, residuals, jacobian)
     scaled = np.clip(problem.scaled(start), problem.lower, problem.upper)
+    most = _MOST_STEPS
     while parameters and most > 0:
         found = scipy.optimize.least_squares(
             problem.rows,
             scaled,
             problem.jacobian,
             bounds=(problem.lower, problem.upper),
-            method=_METHOD,
+            # bounds as active sets: many effects start at a bound, zero
+            method="dogbox",
             ftol=_SMALLEST_GAIN,
             xtol=_SMALLEST_STEP,
             gtol=None,

@@ -8,10 +8,10 @@ import pytest
 
 import chatter
 from chatter.io.shipped_examples import example
-from chatter.simulation.perturbation.divergence import divergence
 from chatter.simulation.perturbation.followed_run import FollowedRun, force_share
-from chatter.simulation.perturbation.growth_rate import growth_of
-from chatter.simulation.perturbation.lyapunov import Exponents
+from chatter.simulation.perturbation.lyapunov_record import LyapunovRecord
+from chatter.simulation.perturbation.lyapunov_verdict import lyapunov_verdict
+from chatter.simulation.perturbation.multiplier import simulated_multiplier
 from chatter.simulation.structure_in_time import modes_of
 
 #: a variation so weak that the cut is that of a constant speed
@@ -26,7 +26,7 @@ def case():
 
 def judged(case, **changes):
     changed = case.patch(changes)
-    return divergence(changed, modes_of(changed)[0])
+    return lyapunov_verdict(changed, modes_of(changed)[0])
 
 
 def test_difference_dies_out_with_the_spectral_radius(case):
@@ -39,7 +39,7 @@ def test_difference_dies_out_with_the_spectral_radius(case):
 
 @pytest.mark.parametrize("depth", ["2 mm", "3 mm", "5 mm", "8 mm"])
 def test_chatter_grows_whatever_follows(case, depth):
-    """Full chatter settles in a cycle that forgets a push."""
+    """Full chatter settles in a cycle that forgets a perturbation."""
     assert judged(case, **{"cut.axial_depth": depth, **WEAK}).verdict == "chatter"
 
 
@@ -82,8 +82,8 @@ def test_a_difference_is_scaled_as_a_whole(case):
     """What is brought closer goes on as what was pushed less."""
     modes = modes_of(case)[0]
     runs = [FollowedRun(case, modes, 0) for _ in range(3)]
-    for run, push in zip(runs, (0.0, 1e-9, 1e-11), strict=True):
-        run.displace(push)
+    for run, perturbation in zip(runs, (0.0, 1e-9, 1e-11), strict=True):
+        run.displace(perturbation)
         run.revolve()
     runs[1].come_closer(runs[0], 1e-2)
     leader, closer, less = (run.revolve() for run in runs)
@@ -91,14 +91,14 @@ def test_a_difference_is_scaled_as_a_whole(case):
 
 
 def exponents(size, period=1.0, **others):
-    """Exponents of a made-up growth of a push, with 40 turns of taking hold."""
+    """Exponents of a made-up growth of a perturbation, with 40 turns of taking hold."""
     size = np.asarray(size, dtype=float)
     given = {
         "distance": size,
         "from_rest": np.zeros(size.size),
         "still": np.zeros(size.size, dtype=bool),
     } | others
-    return Exponents(
+    return LyapunovRecord(
         hold=40, period=period, cycle=0.3, size=size, scale=np.zeros(size.size), motion=[],
         rest=[], step=1e-5, swing=np.zeros(size.size), left=False, **given,
     )  # fmt: skip
@@ -108,19 +108,19 @@ def test_growth_within_a_period_is_none_over_a_whole_one():
     turns = np.arange(200.0)
     swinging = 4.0 * np.sin(2.0 * math.pi * turns / 25.0)
     found = exponents(swinging - 0.02 * turns, period=25.0)
-    assert found.growth(0, 3.0) is None
+    assert found.rise(0, 3.0) is None
     rate, error = found.settled_rate()
     assert rate == pytest.approx(-0.02, abs=1e-9)
     assert error == pytest.approx(0.0, abs=1e-9)
     growing = exponents(swinging + 0.05 * turns, period=25.0)
-    begin, end = growing.growth(0, 3.0)
+    begin, end = growing.rise(0, 3.0)
     assert growing.rate(begin, end) == pytest.approx(0.05, rel=1e-9)
 
 
 def test_growth_that_stops_is_growth():
     turns = np.arange(100.0)
     size = np.where(turns < 50, -0.5 * turns, np.minimum(0.8 * (turns - 50), 10.0) - 25.0)
-    begin, end = exponents(size).growth(40, 3.0)
+    begin, end = exponents(size).rise(40, 3.0)
     assert 48 <= begin < end <= 60
     assert exponents(size).rate(begin, end) == pytest.approx(0.8, rel=0.15)
 
@@ -162,7 +162,7 @@ def test_growth_of_a_mode_across_the_feed():
         }
     )
     radius = chatter.check(case).spectral_radius
-    assert growth_of(case, modes_of(case)[0]).radius == pytest.approx(radius, rel=2e-3)
+    assert simulated_multiplier(case, modes_of(case)[0]).radius == pytest.approx(radius, rel=2e-3)
 
 
 #: teeth that differ, so that the cut repeats from turn to turn alone; depths of which the last is
@@ -208,7 +208,7 @@ def test_full_chatter_that_nearly_repeats_is_chatter_at_a_constant_speed(name):
         here = case.patch({"cut.axial_depth": depth})
         assert chatter.check(here).stable == (verdict == "stable")
         assert chatter.simulate(here).detection.verdict == verdict
-        radius = growth_of(here, modes_of(here)[0]).radius
+        radius = simulated_multiplier(here, modes_of(here)[0]).radius
         assert (radius < 1.0) == (verdict == "stable")
 
 
@@ -236,4 +236,4 @@ def test_the_cycle_of_full_chatter_is_not_taken_for_a_cut_about_to_be_stable():
         }
     )
     assert chatter.check(case).spectral_radius > 2.5
-    assert growth_of(case, modes_of(case)[0]).radius > 1.0
+    assert simulated_multiplier(case, modes_of(case)[0]).radius > 1.0

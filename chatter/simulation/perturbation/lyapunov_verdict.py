@@ -1,11 +1,12 @@
-"""Whether small pushes on the forced motion of a cut die out: a verdict that needs no period.
+"""Whether small perturbations of the forced motion of a cut die out: a verdict without a period.
 
 Under a varying spindle speed no turn is like the next one, so that turns cannot be compared. What
-tells chatter from forced vibration is how a small push on the forced motion goes on. Full chatter
-must not be asked for it: its cycle attracts too, and forgets a push as a stable cut does.
+tells chatter from forced vibration is how a small perturbation of the forced motion goes on. Full
+chatter must not be asked for it: its cycle attracts too, and forgets a perturbation as a stable cut
+does.
 
 So the cut takes hold of the structure slowly, and the tool keeps to the forced motion until that
-becomes unstable. Beside it goes a run that is pushed a little; the difference of both is brought
+becomes unstable. Beside it goes a run that is perturbed a little; the difference of both is brought
 back to its first size after every turn, and the factors are kept (Benettin, Galgani, Giorgilli and
 Strelcyn 1980, Meccanica 15: largest characteristic exponent). As long as the tool has not left the
 forced motion, growth over whole periods of the variation is growth of chatter, whatever follows
@@ -19,7 +20,7 @@ import math
 from dataclasses import dataclass
 
 from chatter.description.case import Case
-from chatter.simulation.perturbation.lyapunov import Exponents
+from chatter.simulation.perturbation.lyapunov_record import LyapunovRecord
 from chatter.simulation.perturbation.perturbed_runs import follow
 from chatter.simulation.setup import set_up_on_modes
 from dynamics.modal.modes import Mode
@@ -27,9 +28,9 @@ from dynamics.modal.modes import Mode
 #: half the range of a motion, as a share of the feed per tooth, from which on teeth may leave the
 #: cut; chatter that is full moves by more
 LARGE_SWING = 0.25
-#: growth of a push, as a logarithm, that no beating and no change of shape explains
+#: growth of a perturbation, as a logarithm, that no beating and no change of shape explains
 _GROWN = 3.0
-#: a push that shrinks by less than this share a turn stays
+#: a perturbation that shrinks by less than this share a turn stays
 _SUSTAINED = 0.004
 #: a cycle that chatter has settled in is nearly neutral: growth before it and this rate are chatter
 _NEUTRAL = 0.02
@@ -53,8 +54,8 @@ _SAME = 0.05
 
 
 @dataclass(frozen=True)
-class Divergence:
-    """How a small push on the forced motion develops.
+class LyapunovVerdict:
+    """How a small perturbation on the forced motion develops.
 
     Parameters
     ----------
@@ -62,11 +63,12 @@ class Divergence:
         ``"stable"``, ``"chatter"``, or empty where it cannot be told.
     reason : str
     rate : float
-        Growth of the push, logarithm a turn; -inf where it is gone at once, nan if not known.
+        Growth of the perturbation, logarithm per revolution; -inf where it is gone at once, nan if
+        not known.
     frequency : float
         Strongest line of what grows, Hz; nan where nothing does.
     from_rest_alone : bool
-        True where small pushes die out, and only the cut from rest chatters.
+        True where small perturbations die out, and only the cut from rest chatters.
     """
 
     verdict: str
@@ -77,26 +79,26 @@ class Divergence:
 
     @property
     def stable(self) -> bool:
-        """True where the push is forgotten."""
+        """True where the perturbation is forgotten."""
         return self.verdict == "stable"
 
 
 #: what a run says that must be watched for longer, and one that must take hold faster
-_UNCERTAIN = Divergence("", "whether a small push dies out or stays cannot be told")
-_COME_BACK = Divergence(
+_UNCERTAIN = LyapunovVerdict("", "whether a small perturbation dies out or stays cannot be told")
+_COME_BACK = LyapunovVerdict(
     "",
     "vibration grew while the cut took hold and died out when it had: whether the motion that it "
     "has come to is that of a stable cut cannot be told",
 )
-_FAR_MORE = Divergence(
+_FAR_MORE = LyapunovVerdict(
     "",
     "the cut has settled in a motion that repeats, but far larger than the forced vibration while "
     "it took hold: whether it is chatter cannot be told",
 )
 
 
-def divergence(case: Case, modes: tuple[Mode, ...]) -> Divergence:
-    """Push a cut on its forced motion, and follow how the push goes on.
+def lyapunov_verdict(case: Case, modes: tuple[Mode, ...]) -> LyapunovVerdict:
+    """Push a cut on its forced motion, and follow how the perturbation goes on.
 
     Parameters
     ----------
@@ -108,7 +110,7 @@ def divergence(case: Case, modes: tuple[Mode, ...]) -> Divergence:
     hold, watch, period = _lengths(case, modes)
     feed = case.cut.feed_per_tooth
     if watch < _LEAST_PERIODS * period:
-        return Divergence(
+        return LyapunovVerdict(
             "",
             f"a period of the variation takes {period:.4g} turns, more than the {watch} that can "
             "be watched",
@@ -128,7 +130,7 @@ def divergence(case: Case, modes: tuple[Mode, ...]) -> Divergence:
 def _lengths(case: Case, modes: tuple[Mode, ...]) -> tuple[int, int, float]:
     """Turns in which the cut takes hold and that are watched, and turns of a period."""
     setup = set_up_on_modes(case, modes)
-    bins = setup.resolution.steps_a_turn
+    bins = setup.resolution.steps_per_revolution
     a_second = setup.spindle.speed / (2.0 * math.pi)
     slowest = max(1.0 / (mode.damping * mode.natural_frequency) for mode in setup.modes)
     period = a_second / setup.spindle.frequency if setup.spindle.amplitude else 1.0
@@ -142,50 +144,55 @@ def _lengths(case: Case, modes: tuple[Mode, ...]) -> tuple[int, int, float]:
     return hold, watch, period
 
 
-def _judged(found: Exponents, feed: float) -> Divergence:
+def _judged(found: LyapunovRecord, feed: float) -> LyapunovVerdict:
     """Verdict of a run; one that is empty where it must be run in another way."""
-    grown = found.growth(found.hold, _GROWN)
+    grown = found.rise(found.hold, _GROWN)
     if grown:
-        return _chatter(found, *grown, "a small push on the forced motion grows by")
+        return _chatter(found, *grown, "a small perturbation on the forced motion grows by")
     if found.left:
-        return Divergence("chatter", "the tool is thrown out of the cut", math.inf)
+        return LyapunovVerdict("chatter", "the tool is thrown out of the cut", math.inf)
     settled, error = found.settled_rate()
-    grown = found.growth(0, _GROWN)
+    grown = found.rise(0, _GROWN)
     if grown:
         error = error if math.isfinite(error) else 0.0
         if settled + _ERRORS * error > -_NEUTRAL:
-            return _chatter(found, *grown, "while the cut takes hold a small push grows by")
+            return _chatter(found, *grown, "during the force ramp a small perturbation grows by")
         return _COME_BACK
     if settled >= -_SUSTAINED and found.creeps():
-        return Divergence("stable", "a small push creeps back as friction lets it", settled)
+        return LyapunovVerdict(
+            "stable", "a small perturbation creeps back as friction lets it", settled
+        )
     if settled >= -_SUSTAINED:
-        says = "a small push on the forced motion changes by"
+        says = "a small perturbation on the forced motion changes by"
         return _chatter(found, *found.watched_last, says)
     unsure = error if math.isfinite(error) else max(_NEUTRAL + settled, 0.0)
     if settled + _ERRORS * unsure >= -_SUSTAINED:
         return _UNCERTAIN
-    if not found.from_rest_alike(_SAME, _SUSTAINED):
-        return Divergence(
+    if not found.from_rest_converges(_SAME, _SUSTAINED):
+        return LyapunovVerdict(
             "chatter",
-            "the cut from rest stays away from its forced motion, on which small pushes die out",
+            "the cut from rest stays away from its forced motion, "
+            "whose small perturbations die out",
             settled,
             found.frequency_of_rest(*found.watched_last),
             from_rest_alone=True,
         )
     if not found.repeats(_SAME):
-        says = "the motion does not repeat with the variation, though small pushes on it die out"
-        return Divergence("chatter", says, settled)
-    share = f" by {-math.expm1(settled):.1%} a turn" if math.isfinite(settled) else " at once"
-    reason = f"a small push on the forced motion dies out{share}"
+        says = "the motion does not repeat with the variation, though small perturbations die out"
+        return LyapunovVerdict("chatter", says, settled)
+    share = (
+        f" by {-math.expm1(settled):.1%} per revolution" if math.isfinite(settled) else " at once"
+    )
+    reason = f"a small perturbation on the forced motion dies out{share}"
     swing = found.swing[slice(*found.watched_last)].max() / feed
     if swing > _LARGE:
         if swing * feed > _TOO_LARGE * found.swing_of_small_motion(_LARGE * feed):
             return _FAR_MORE
         reason += f"; forced vibration of {swing:.2g} feeds per tooth lets teeth leave the cut"
-    return Divergence("stable", reason, settled)
+    return LyapunovVerdict("stable", reason, settled)
 
 
-def _chatter(found: Exponents, begin: int, end: int, says: str) -> Divergence:
+def _chatter(found: LyapunovRecord, begin: int, end: int, says: str) -> LyapunovVerdict:
     rate = found.rate(begin, end)
-    reason = f"{says} {math.expm1(min(rate, 50.0)):+.1%} a turn"
-    return Divergence("chatter", reason, rate, found.frequency(begin, end))
+    reason = f"{says} {math.expm1(min(rate, 50.0)):+.1%} per revolution"
+    return LyapunovVerdict("chatter", reason, rate, found.frequency(begin, end))

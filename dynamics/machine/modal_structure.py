@@ -16,7 +16,6 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from dynamics.compiled import INLINED
-from dynamics.machine.steps import StructureSteps, steps_of
 from dynamics.modal.modes import Mode
 
 #: of a matrix whose rows sum up to one: the last term is below rounding
@@ -24,15 +23,39 @@ _TAYLOR_TERMS = 20
 _DIRECTIONS = 3
 
 
-def modal_structure(
-    modes: Sequence[Mode], step: float, rubbing: Sequence[int] = ()
-) -> StructureSteps:
-    """Return modes at rest on ports: the tool point along x, y, z, then modes that rub.
+class ModalSteps(NamedTuple):
+    """n modes on p ports, and their state: the tool point along x, y, z, then modes that rub.
+
+    For a few modes on a few ports this takes two thirds of the time of the general table
+    (`machine.steps.StructureSteps`), which the loop would notice.
+    """
+
+    step: float  # s
+    shape: NDArray[np.float64]  # motion of the tool point per modal displacement, (n, 3)
+    rubbing: NDArray[np.int64]  # mode of each port behind those of the tool, (p - 3,)
+    transition: NDArray[np.float64]  # entries 11, 12, 21, 22, (n, 4)
+    constant: NDArray[np.float64]  # state per constant modal force, (n, 2)
+    ramp: NDArray[np.float64]  # per change of the force over the step, (n, 2)
+    step_compliance: NDArray[np.float64]  # displacements per constant force on a row's port, (p, p)
+    step_mobility: NDArray[np.float64]  # velocities, (p, p)
+    state: NDArray[np.float64]  # modal displacement, m, and velocity, m/s, in turns, (2 n,)
+    after: NDArray[np.float64]  # at the end of the step, (2 n,)
+    force: NDArray[np.float64]  # the following as those of `StructureSteps`, (p,)
+    change: NDArray[np.float64]
+    next_force: NDArray[np.float64]
+    u_before: NDArray[np.float64]
+    v_before: NDArray[np.float64]
+    u: NDArray[np.float64]
+    v: NDArray[np.float64]
+    halted: NDArray[np.int64]  # (1,)
+
+
+def modal_structure(modes: Sequence[Mode], step: float, rubbing: Sequence[int] = ()) -> ModalSteps:
+    """Return modes at rest on ports.
 
     Parameters
     ----------
     modes : sequence of Mode
-        Their velocity is the second coordinate of each pair.
     step : float
         s.
     rubbing : sequence of int
@@ -52,21 +75,88 @@ def modal_structure(
     unit = np.stack([np.ones(count), natural], axis=1)
     per_force = unit / stiffness[:, None]
     shape = np.array([mode.direction for mode in modes], dtype=np.float64).reshape(count, 3)
-    ports = np.vstack([shape.T, np.eye(count)[np.array(rubbing, dtype=np.int64)]])
-    motion = np.zeros((2, 2 * count, len(ports)))
-    motion[0, 0::2], motion[1, 1::2] = ports.T, ports.T
-    size = len(ports), 2 * count
-    return steps_of(
-        step,
-        {
-            "dense": np.zeros((0, 0)),
-            "pairs": (over[:, :2, :2] * unit[:, :, None] / unit[:, None, :]).reshape(count, 4).T,
-            "held": (ports[:, :, None] * (over[:, :2, 2] * per_force)).reshape(size),
-            "ramp": (ports[:, :, None] * (over[:, :2, 3] * per_force)).reshape(size),
-            "displacement": motion[0],
-            "velocity": motion[1],
-        },
+    places = np.array(rubbing, dtype=np.int64)
+    ports = np.vstack([shape.T, np.eye(count)[places]])
+    constant = over[:, :2, 2] * per_force
+    fixed = {
+        "shape": shape,
+        "rubbing": places,
+        "transition": (over[:, :2, :2] * unit[:, :, None] / unit[:, None, :]).reshape(count, 4),
+        "constant": constant,
+        "ramp": over[:, :2, 3] * per_force,
+        "step_compliance": (ports * constant[:, 0]) @ ports.T,
+        "step_mobility": (ports * constant[:, 1]) @ ports.T,
+    }
+    for column in fixed.values():
+        column.flags.writeable = False
+    signals = ("force", "change", "next_force", "u_before", "v_before", "u", "v")
+    return ModalSteps(
+        step=step,
+        **fixed,
+        state=np.zeros(2 * count),
+        after=np.zeros(2 * count),
+        **{name: np.zeros(len(ports)) for name in signals},
+        halted=np.zeros(1, dtype=np.int64),
     )
+
+
+@register_jitable(**INLINED)
+def _publish(bus):
+    """Motion of the ports at the end of the step."""
+    ux = uy = uz = vx = vy = vz = 0.0
+    for i in range(bus.shape.shape[0]):
+        q, w = bus.after[2 * i], bus.after[2 * i + 1]
+        x, y, z = bus.shape[i, 0], bus.shape[i, 1], bus.shape[i, 2]
+        ux, uy, uz = ux + x * q, uy + y * q, uz + z * q
+        vx, vy, vz = vx + x * w, vy + y * w, vz + z * w
+    bus.u[0], bus.u[1], bus.u[2] = ux, uy, uz
+    bus.v[0], bus.v[1], bus.v[2] = vx, vy, vz
+    for k in range(bus.rubbing.shape[0]):
+        i = bus.rubbing[k]
+        bus.u[_DIRECTIONS + k], bus.v[_DIRECTIONS + k] = bus.after[2 * i], bus.after[2 * i + 1]
+
+
+@register_jitable(**INLINED)
+def predict_modes(bus):
+    """Motion over the step with all forces constant."""
+    fx, fy, fz = bus.force[0], bus.force[1], bus.force[2]
+    for i in range(bus.shape.shape[0]):
+        q, w = bus.state[2 * i], bus.state[2 * i + 1]
+        f = bus.shape[i, 0] * fx + bus.shape[i, 1] * fy + bus.shape[i, 2] * fz
+        a = bus.transition
+        bus.after[2 * i] = a[i, 0] * q + a[i, 1] * w + bus.constant[i, 0] * f
+        bus.after[2 * i + 1] = a[i, 2] * q + a[i, 3] * w + bus.constant[i, 1] * f
+    for k in range(bus.rubbing.shape[0]):
+        i, f = bus.rubbing[k], bus.force[_DIRECTIONS + k]
+        bus.after[2 * i] += bus.constant[i, 0] * f
+        bus.after[2 * i + 1] += bus.constant[i, 1] * f
+    _publish(bus)
+
+
+@register_jitable(**INLINED)
+def correct_modes(bus):
+    """Let the forces at the tool point vary linearly over the step by their changes."""
+    fx, fy, fz = bus.change[0], bus.change[1], bus.change[2]
+    for i in range(bus.shape.shape[0]):
+        f = bus.shape[i, 0] * fx + bus.shape[i, 1] * fy + bus.shape[i, 2] * fz
+        bus.after[2 * i] += bus.ramp[i, 0] * f
+        bus.after[2 * i + 1] += bus.ramp[i, 1] * f
+    _publish(bus)
+
+
+@register_jitable(**INLINED)
+def add_force_on_mode(bus, p, force):
+    """Add a constant force on a mode that rubs, after it was predicted."""
+    bus.force[p] += force
+    i = bus.rubbing[p - _DIRECTIONS]
+    q, w = bus.constant[i, 0] * force, bus.constant[i, 1] * force
+    bus.after[2 * i] += q
+    bus.after[2 * i + 1] += w
+    for axis in range(_DIRECTIONS):
+        bus.u[axis] += bus.shape[i, axis] * q
+        bus.v[axis] += bus.shape[i, axis] * w
+    bus.u[p] += q
+    bus.v[p] += w
 
 
 def _transition(turn: NDArray[np.float64], damping: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -142,7 +232,7 @@ def modal_energy_forces(group, bus, clock):  # noqa: ARG001
         )
 
 
-def stored_energy(account: ModalEnergy, bus: StructureSteps) -> float:
+def stored_energy(account: ModalEnergy, bus: ModalSteps) -> float:
     """Kinetic and elastic energy of the modes now, J."""
     q, v = bus.state[0::2], bus.state[1::2]
     # a run that was left early may end far out

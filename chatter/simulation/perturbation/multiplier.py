@@ -7,7 +7,7 @@ free of the periodic motion.
 
 Full chatter has multipliers of its own, of 1 or less, and where teeth differ it may repeat from
 turn to turn as forced vibration does. So a motion large enough for teeth to leave the cut is not
-taken for stable by them alone: small pushes tell how vibration grew before.
+taken for stable by them alone: small perturbations tell how vibration grew before.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from chatter.description.case import Case
 from chatter.detection.bifurcation_type import bifurcation_of, bifurcation_of_multiplier
 from chatter.detection.chatter_frequency import strongest_line
 from chatter.simulation.cut_run import CutRun
-from chatter.simulation.perturbation.divergence import LARGE_SWING, divergence
 from chatter.simulation.perturbation.followed_run import displace_modes
+from chatter.simulation.perturbation.lyapunov_verdict import LARGE_SWING, lyapunov_verdict
 from chatter.simulation.setup import Setup, set_up_on_modes
 from cutting.edge_segments.segments import period_angle
 from dynamics.modal.modes import Mode
@@ -58,7 +58,7 @@ _LAST_BEFORE_LEFT = 12
 
 
 @dataclass(frozen=True)
-class Growth:
+class SimulatedMultiplier:
     """Dominant multiplier of a simulated cut.
 
     Parameters
@@ -85,12 +85,12 @@ class Growth:
         return abs(self.multiplier)
 
 
-def periods_a_turn(setup: Setup) -> int:
+def periods_per_revolution(setup: Setup) -> int:
     """Periods in which the cut repeats within a turn: teeth where they are all alike."""
     return round(2.0 * math.pi / period_angle(setup.cutter))
 
 
-def growth_of(case: Case, modes: tuple[Mode, ...]) -> Growth:
+def simulated_multiplier(case: Case, modes: tuple[Mode, ...]) -> SimulatedMultiplier:
     """Simulate a cut that takes hold slowly, and measure how vibration grows.
 
     Parameters
@@ -105,7 +105,7 @@ def growth_of(case: Case, modes: tuple[Mode, ...]) -> Growth:
         If the case cannot be simulated.
     """
     setup = set_up_on_modes(case, modes)
-    period = setup.resolution.steps_a_turn // periods_a_turn(setup) * setup.step
+    period = setup.resolution.steps_per_revolution // periods_per_revolution(setup) * setup.step
     slowest = max(1.0 / (mode.damping * mode.natural_frequency) for mode in setup.modes)
     wanted = max(_RAMP_PERIODS + _WATCHED_PERIODS, math.ceil(_TIME_CONSTANTS * slowest / period))
     count = min(wanted, _MOST_PERIODS)
@@ -122,10 +122,10 @@ def growth_of(case: Case, modes: tuple[Mode, ...]) -> Growth:
     swing = 0.5 * float(np.ptp(watched[len(watched) // 2 :], axis=(0, 1)).max())
     if found.radius >= 1.0 or swing <= LARGE_SWING * feed:
         return found
-    a_turn = periods_a_turn(setup)
+    a_turn = periods_per_revolution(setup)
     if a_turn == setup.cutter.teeth and _dies_out(difference):
         return found
-    apart = divergence(case, modes)
+    apart = lyapunov_verdict(case, modes)
     if apart.verdict != "chatter" or apart.from_rest_alone:
         return found
     if apart.rate <= 0.0:
@@ -141,7 +141,7 @@ def _periods(setup: Setup, ramp: int, count: int) -> NDArray[np.float64]:
 
     There are fewer where the tool leaves the range of the model.
     """
-    samples = setup.resolution.steps_a_turn // periods_a_turn(setup)
+    samples = setup.resolution.steps_per_revolution // periods_per_revolution(setup)
     motion, done = motion_of(setup, count * samples, ramp * samples)
     whole = done // samples
     return motion[: whole * samples].reshape(whole, samples, 3)
@@ -160,22 +160,22 @@ def _as_large(slower: NDArray[np.float64], periods: NDArray[np.float64]) -> bool
     return size > _LEFT_OF_START * before
 
 
-def _full_chatter(periods: NDArray[np.float64], period: float) -> Growth:
+def _full_chatter(periods: NDArray[np.float64], period: float) -> SimulatedMultiplier:
     """Kind and frequency of chatter that is full, or throws the tool out, from its motion."""
     # second differences: free of forced vibration that grows evenly as the cut takes hold
     shown = np.diff(periods[-_MOST_SHOWN:], 2, axis=0)
     size = np.linalg.norm(shown, axis=(1, 2))
     if len(shown) < _LEAST_SHOWN or not size.all():
-        return Growth(complex(math.inf), period, math.nan, "hopf")
+        return SimulatedMultiplier(complex(math.inf), period, math.nan, "hopf")
     growth = max(float(np.polyfit(np.arange(len(size)), np.log(size), 1)[0]), 0.0)
     line = strongest_line(shown, growth)
     kind, _ = bifurcation_of(shown, line, growth, 0.0)
     flip = "flip" if kind == "flip" else "hopf"
-    return Growth(complex(math.inf), period, line.cycles / period, flip)
+    return SimulatedMultiplier(complex(math.inf), period, line.cycles / period, flip)
 
 
 def motion_of(
-    setup: Setup, steps: int, ramp: int = 0, push: float = 0.0
+    setup: Setup, steps: int, ramp: int = 0, perturbation: float = 0.0
 ) -> tuple[NDArray[np.float64], int]:
     """Displacement (steps + 1, 3) of the tool, m, and the steps that were done.
 
@@ -185,10 +185,10 @@ def motion_of(
         With a delayed chip, for one run.
     steps, ramp : int
         Steps of the run, and of them those in which the cut takes hold.
-    push : float
+    perturbation : float
         Displacement of every mode at the start, m.
     """
-    displace_modes(setup, push)
+    displace_modes(setup, perturbation)
     run = CutRun(setup, 1, steps)
     done = run.steps(steps, linear_ramp(ramp) if ramp else None)
     return run.rows[:, 3:6], done + 1
@@ -228,13 +228,13 @@ def _dies_out(difference: NDArray[np.float64]) -> bool:
     return bool(last < _DIED_OUT * first)
 
 
-def _fitted(difference: NDArray[np.float64], period: float) -> Growth:
+def _fitted(difference: NDArray[np.float64], period: float) -> SimulatedMultiplier:
     """Dominant multiplier from differences (k, n, 3) of periods; 0 where there are none."""
     if len(difference) == 0:
-        return Growth(0j, period, math.nan, "hopf")
+        return SimulatedMultiplier(0j, period, math.nan, "hopf")
     multiplier = _dominant(difference)
     kind = bifurcation_of_multiplier(multiplier)
-    return Growth(multiplier, period, _frequency(difference, multiplier, period), kind)
+    return SimulatedMultiplier(multiplier, period, _frequency(difference, multiplier, period), kind)
 
 
 def _dominant(differences: NDArray[np.float64]) -> complex:

@@ -31,7 +31,7 @@ _MOST_TURNS = 100
 
 
 @dataclass(frozen=True, eq=False)
-class Exponents:
+class LyapunovRecord:
     """What two runs beside a leading one tell, turn by turn.
 
     Parameters
@@ -44,7 +44,7 @@ class Exponents:
         Of the lowest mode, turns.
     size, distance : (n,) array of float
         Logarithm of the speed of the difference, and of itself, as if it had never been brought
-        back; the speed over the push a second, the distance over the push.
+        back; the speed over the perturbation a second, the distance over the perturbation.
     from_rest : (n,) array of float
         Speed of the difference of the run from rest, over that of the motion itself.
     still : (n,) array of bool
@@ -78,7 +78,7 @@ class Exponents:
     left: bool
     rubs: bool = False
 
-    def growth(self, first: int, least: float) -> tuple[int, int] | None:
+    def rise(self, first: int, least: float) -> tuple[int, int] | None:
         """Earliest growth by a logarithm, at the least, over whole periods from a turn on.
 
         What friction held and lets go only begins to move: with it the distance must grow as well.
@@ -144,7 +144,7 @@ class Exponents:
             error = float(np.std(np.diff(self.size[places]) / length, ddof=1)) / math.sqrt(parts)
         return self.rate(begin, end), error
 
-    def from_rest_alike(self, share: float, slope: float) -> bool:
+    def from_rest_converges(self, share: float, slope: float) -> bool:
         """Tell whether the run from rest is at the forced motion, or on its way to it."""
         begin, end = self.watched_last
         apart = self.from_rest[begin : end + 1]
@@ -154,7 +154,7 @@ class Exponents:
         return float(np.polyfit(np.arange(len(apart)), logarithm, 1)[0]) < -slope
 
     def creeps(self) -> bool:
-        """Whether friction lets what is left of a push creep: it keeps its shape then.
+        """Whether friction lets what is left of a perturbation creep: it keeps its shape then.
 
         Vibration that does not repeat turns from shape to shape.
         """

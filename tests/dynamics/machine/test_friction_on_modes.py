@@ -9,9 +9,10 @@ from scipy.integrate import solve_ivp
 from dynamics.friction.coulomb_stribeck import CoulombStribeck
 from dynamics.friction.smooth_coulomb import SmoothCoulomb
 from dynamics.machine.groups import friction_commit, friction_forces
-from dynamics.machine.steps import begin_step, correct, end_step, predict
+from dynamics.machine.modal_structure import modal_energy_forces, stored_energy
+from dynamics.machine.ports import correct, predict
+from dynamics.machine.steps import begin_step, end_step
 from dynamics.machine.tables import modal_tables
-from dynamics.modal.modal_structure import modal_energy_forces, stored_energy
 from dynamics.modal.modes import Mode
 
 FREQUENCY, MASS = 100.0, 2.0

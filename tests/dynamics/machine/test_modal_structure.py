@@ -5,13 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from dynamics.machine.steps import begin_step, correct, end_step, predict
-from dynamics.modal.modal_structure import (
+from dynamics.machine.modal_structure import (
     modal_energy,
     modal_energy_forces,
     modal_structure,
     stored_energy,
 )
+from dynamics.machine.ports import correct, predict
+from dynamics.machine.steps import begin_step, correct, end_step, predict
 from dynamics.modal.modes import Mode
 
 MODE = Mode(120.0, 0.03, 0.8, (1.0, 0.0, 0.0), "tool")
