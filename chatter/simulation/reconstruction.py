@@ -231,7 +231,7 @@ def _floor(result: SimulationResult, record: _Record) -> tuple[FloorProfile | No
         return None, "floor: a sharp corner that does not move along z leaves no marks"
     feed_per_revolution = case.cut.feed_per_tooth * cutter.teeth
     spacing = _spacing(result, record.evaluated)
-    # what later turns will still cut is left out at the end
+    # what later revolutions will still cut is excluded at the end
     start = max(
         at.min() + feed_per_revolution, record.evaluated.position[0, 0] + tip_radius * steep
     )

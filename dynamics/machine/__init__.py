@@ -1,17 +1,5 @@
 """A machine: structure, drives, friction and control, stepped together or linearised.
 
-module          responsibility
-=============== =======================================================================
-description     parts, axes and frictions -> `Machine` in a condition (control, brake)
-blocks          coordinates in which the free motion of the structure is cheap and exact
-steps           any structure on its ports over a step: table and kernels (the bus)
-modal_structure modes of tool and workpiece as such a structure
-groups          laws on the bus: controlled drives, constant forces, loads, frictions
-travel_limit    where a run halts
-tables          `Machine`, or modes -> tables for the time loop
-harmonic        response of the linearised machine, loops closed
-=============== =======================================================================
-=============== =======================================================================
 =============== =======================================================================
 module          responsibility
 =============== =======================================================================

@@ -12,7 +12,7 @@ from dynamics.machine.modal_structure import (
     stored_energy,
 )
 from dynamics.machine.ports import correct, predict
-from dynamics.machine.steps import begin_step, correct, end_step, predict
+from dynamics.machine.steps import begin_step, end_step
 from dynamics.modal.modes import Mode
 
 MODE = Mode(120.0, 0.03, 0.8, (1.0, 0.0, 0.0), "tool")
