@@ -57,14 +57,14 @@ def methods() -> str:
 
 def formats() -> str:
     """File formats."""
-    from chatter.io.formats.registry import documentation
+    from chatter.io.formats.format_list import documentation
 
     return documentation().rstrip("\n") + "\n"
 
 
 def effects() -> str:
     """Effects that `chatter explain` may name."""
-    from chatter.explain.effects.registry import EFFECTS
+    from chatter.explain.effects.effect_list import EFFECTS
 
     rows = ([f"`{one.name}`", ", ".join(one.kinds), one.help] for one in EFFECTS)
     return _table(["effect", "measurements", "what it is"], rows)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from chatter.compile.drive_point_check import NOT_PASSIVE, is_passive, with_magnitudes
 from chatter.description.errors import InputError
-from chatter.io.formats.registry import read_frfs
+from chatter.io.formats.format_list import read_frfs
 from dynamics.frf.container import Frf, MeasurementError, Point, on_common_lines
 from dynamics.identification.fit import identify_modes
 from dynamics.identification.prepare import prepare

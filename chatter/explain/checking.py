@@ -8,7 +8,7 @@ from typing import Any
 
 from chatter.explain.data_checks.exclusion import excluding
 from chatter.explain.data_checks.finding import FATAL, FOLLOWS, SignalFinding
-from chatter.explain.kinds.registry import KINDS
+from chatter.explain.kinds.kind_list import KINDS
 from chatter.explain.measurement import Measurement
 
 #: channels without which no prediction can stand beside a signal

@@ -12,7 +12,7 @@ from chatter.explain.checking import checked
 from chatter.explain.data_checks.finding import SignalFinding
 from chatter.explain.errors import ChannelError, errors_of, overall
 from chatter.explain.explanation import as_measurement
-from chatter.explain.kinds.registry import KINDS
+from chatter.explain.kinds.kind_list import KINDS
 from chatter.explain.measurement import Measurement
 from chatter.explain.prediction import Predictions
 from chatter.explain.residuals.signature import Signature, signature_of

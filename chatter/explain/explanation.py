@@ -27,7 +27,7 @@ from chatter.explain.errors import (
     overall,
 )
 from chatter.explain.fitting import Fit
-from chatter.explain.kinds.registry import KINDS
+from chatter.explain.kinds.kind_list import KINDS
 from chatter.explain.lobes_before_after import Added, LobesBeforeAfter, lobes_before_after
 from chatter.explain.measurement import Measurement
 from chatter.explain.measurement_file import read_measurement

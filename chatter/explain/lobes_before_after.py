@@ -15,7 +15,7 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.description.units import rpm
 from chatter.explain.kinds.kind import Cuts
-from chatter.explain.kinds.registry import KINDS
+from chatter.explain.kinds.kind_list import KINDS
 from chatter.explain.measurement import Measurement
 from chatter.stability.diagram import StabilityDiagram
 from chatter.stability.lobes import lobes

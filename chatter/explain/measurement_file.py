@@ -12,7 +12,7 @@ from chatter.description.case import Case, load
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
 from chatter.description.units import QuantityError, parse
-from chatter.explain.kinds.registry import KINDS
+from chatter.explain.kinds.kind_list import KINDS
 from chatter.explain.measurement import Measurement, Run
 from chatter.io.signals import read_signals
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.io.formats.registry import format_of, formats_of
+from chatter.io.formats.format_list import format_of, formats_of
 from chatter.io.formats.units import Channel, channel_unit
 from chatter.io.table import Column, Table
 from dynamics.frf.container import QUANTITY_OF_MOTION, MeasurementError, Point

@@ -10,8 +10,8 @@ import numpy as np
 import scipy.sparse
 from numpy.typing import NDArray
 
+from chatter.io.formats.format_list import format_of
 from chatter.io.formats.matrix_market import require_square
-from chatter.io.formats.registry import format_of
 from dynamics.frf.container import MeasurementError
 from dynamics.structure.imported import refuse_indefinite, symmetrised, tied_structure
 from dynamics.structure.linear_structure import LinearStructure, Matrix, StructureError

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
-from chatter.io.formats.registry import format_of
+from chatter.io.formats.format_list import format_of
 from chatter.io.headings import named
 from chatter.io.table import Column, Table
 from dynamics.frf.container import Frf, MeasurementError

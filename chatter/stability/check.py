@@ -14,7 +14,6 @@ from chatter.detection.bifurcation_type import bifurcation_of_multiplier
 from chatter.io.result_files import as_json, finite_or_none, write_results
 from chatter.stability.forced_vibration import notes_on_steady_cut
 from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.method import Multiplier
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import milling_model
 from chatter.stability.registry import (
@@ -24,6 +23,7 @@ from chatter.stability.registry import (
     with_multiplier,
 )
 from chatter.stability.search_range import depths_at_one_speed
+from chatter.stability.stability_method import Multiplier
 
 
 @dataclass(frozen=True)

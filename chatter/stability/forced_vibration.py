@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.units import rpm
-from chatter.stability.method import StabilityMethod
 from chatter.stability.model import MillingModel
+from chatter.stability.stability_method import StabilityMethod
 from cutting.edge_segments.coupling import arc_at, delay_at, part_below, share_of_height
 from cutting.edge_segments.segments import EdgeSegments
 

@@ -13,13 +13,13 @@ from chatter.description.units import rpm
 from chatter.stability.diagram import DiagramAxis, StabilityDiagram, StabilityMap
 from chatter.stability.forced_vibration import notes_on_steady_cut
 from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.method import StabilityMethod
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.pockets import find_pockets
 from chatter.stability.reference_speeds import natural_frequencies
 from chatter.stability.registry import chosen_method, fixed_steps, with_radius
 from chatter.stability.search_range import axial_depths, maximum_depth, spindle_speeds
+from chatter.stability.stability_method import StabilityMethod
 
 Array = NDArray[np.float64]
 

@@ -6,23 +6,23 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
 from chatter.description.registry import Registry
-from chatter.stability.method import StabilityMethod
-from chatter.stability.methods.collocation.method import COLLOCATION
-from chatter.stability.methods.matrix_free.method import MATRIX_FREE
-from chatter.stability.methods.multi_frequency.method import MULTI_FREQUENCY
-from chatter.stability.methods.semi_discretization import method as semi_discretization
-from chatter.stability.methods.time_domain.method import TIME_DOMAIN
-from chatter.stability.methods.zeroth_order.method import ZEROTH_ORDER
+from chatter.stability.methods.collocation.collocation_method import COLLOCATION
+from chatter.stability.methods.matrix_free.matrix_free_method import MATRIX_FREE
+from chatter.stability.methods.multi_frequency.multi_frequency_method import MULTI_FREQUENCY
+from chatter.stability.methods.semi_discretization import semi_discretization_method
+from chatter.stability.methods.time_domain.time_domain_method import TIME_DOMAIN
+from chatter.stability.methods.zeroth_order.zeroth_order_method import ZEROTH_ORDER
+from chatter.stability.stability_method import StabilityMethod
 
 METHODS: Registry[StabilityMethod] = Registry(
     group="chatter.stability_methods",
     what="stability method",
     built_in=(
         COLLOCATION,
-        semi_discretization.FIRST_ORDER,
-        semi_discretization.ZEROTH_ORDER,
-        semi_discretization.SECOND_ORDER,
-        semi_discretization.FULL_DISCRETIZATION,
+        semi_discretization_method.FIRST_ORDER,
+        semi_discretization_method.ZEROTH_ORDER,
+        semi_discretization_method.SECOND_ORDER,
+        semi_discretization_method.FULL_DISCRETIZATION,
         MATRIX_FREE,
         MULTI_FREQUENCY,
         ZEROTH_ORDER,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from chatter.compile.drive_point_check import with_magnitudes
 from chatter.compile.measured_frf import with_direction
 from chatter.description.errors import InputError
-from chatter.io.formats.registry import read_frfs
+from chatter.io.formats.format_list import read_frfs
 from chatter.io.hammer_records import read_hammer_folder
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, write_results

@@ -10,6 +10,6 @@ structure       missing mode, mode shift, contact, slide friction
 sensor          dynamometer
 axis_friction   Coulomb, Stribeck, presliding, asymmetry, quadratic drag, warm-up
 axis_drive      offset, cogging, backlash
-registry        the list: where a new effect joins
+effect_list     the list: where a new effect joins
 =============== ====================================================================
 """

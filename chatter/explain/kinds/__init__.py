@@ -9,6 +9,6 @@ axis            force of a feed axis along its measured motion
 axis_record     smoothed motion, weights and noise of the record of a move
 stability       cutting tests judged stable or chatter
 frf             receptances at the tool point, idle and in the cut
-registry        the list: where a new kind joins
+kind_list       the list: where a new kind joins
 =============== ====================================================================
 """

@@ -1,6 +1,6 @@
 """Kinds of measurement: everything that the checks, the search and the reports ask of one.
 
-A kind is one module with a subclass of `Kind`, and one line in `chatter.explain.kinds.registry`.
+A kind is one module with a subclass of `Kind`, and one line in `chatter.explain.kinds.kind_list`.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from chatter.explain.criteria import (
     MOST_EFFECTS,
 )
 from chatter.explain.effects.effect import Effect
-from chatter.explain.effects.registry import candidates, rank
+from chatter.explain.effects.effect_list import candidates, rank
 from chatter.explain.fitting import WORKERS, Fit, Parameter
 from chatter.explain.measurement import Run
 from chatter.explain.selection.problem import Problem

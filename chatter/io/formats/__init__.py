@@ -3,7 +3,7 @@
 =============== ============================================================ ===================
 module          responsibility                                               layout
 =============== ============================================================ ===================
-registry        the list of formats; the format of a file
+format_list     the list of formats; the format of a file
 format          what a format is
 uff58           functions of universal files: FRFs and time records          SDRC dataset 58, 58b
 universal       datasets of a universal file, its units                      SDRC dataset 164
@@ -15,6 +15,6 @@ tdms            channels of LabVIEW files                                    npT
 matrix_market   matrices of finite element programs                          NIST Matrix Market
 =============== ============================================================ ===================
 
-A further format is one module with a `format.Format` and one line in `registry.FORMATS`; another
+A further format is one module with a `format.Format` and one line in `format_list.FORMATS`; another
 package adds one with an entry point of the group ``chatter.formats``.
 """

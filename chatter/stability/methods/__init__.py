@@ -1,4 +1,4 @@
-"""Stability methods, a package each; `method` in it is the class that the registry lists.
+"""Stability methods, a package each; the registry lists the class of its `..._method`.
 
 ===================  ===========================================================================
 package              method and source

@@ -8,9 +8,9 @@ import pytest
 
 import chatter
 from chatter.explain.comparison import compare
-from chatter.explain.effects.registry import EFFECTS
+from chatter.explain.effects.effect_list import EFFECTS
 from chatter.explain.kinds.kind import Kind
-from chatter.explain.kinds.registry import KINDS
+from chatter.explain.kinds.kind_list import KINDS
 from chatter.io.shipped_examples import examples
 
 
@@ -18,7 +18,7 @@ from chatter.io.shipped_examples import examples
     "imports",
     [
         "import chatter",
-        "import chatter.explain.kinds.registry",
+        "import chatter.explain.kinds.kind_list",
         "import chatter; chatter.compare; import chatter.explain.effects",
         "from chatter import explain; import chatter",
     ],

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from chatter.stability.limit_curve import LimitCurve
-from chatter.stability.method import Sweep
-from chatter.stability.methods.zeroth_order.method import ZerothOrder
+from chatter.stability.methods.zeroth_order.zeroth_order_method import ZerothOrder
+from chatter.stability.stability_method import Sweep
 
 
 class CautiousZerothOrder(ZerothOrder):

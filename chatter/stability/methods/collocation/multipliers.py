@@ -19,13 +19,13 @@ from chatter.stability.boundary_continuation import continued_crossings
 from chatter.stability.brackets import GrowthRate
 from chatter.stability.limit_curve import LimitCurve, limits_at
 from chatter.stability.limit_search import EvaluatedPoints, growth_rate
-from chatter.stability.method import Multiplier
 from chatter.stability.methods.collocation import drivers
 from chatter.stability.methods.collocation.element_assembly import OperatorArrays, operator_arrays
 from chatter.stability.methods.collocation.element_cut import RESOLUTION, CutAt, ElementCut
 from chatter.stability.methods.collocation.first_use import compile_side_by_side
 from chatter.stability.methods.collocation.varying_speed import rotations, tool_periods, varies
 from chatter.stability.simd_batch import BATCH_SIZE
+from chatter.stability.stability_method import Multiplier
 
 #: resolutions of a single point, one after the other until two agree
 FINER = ((10, 0.7), (12, 0.5), (12, 0.3), (12, 0.15))

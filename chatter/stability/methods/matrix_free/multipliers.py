@@ -25,9 +25,9 @@ from chatter.stability.limit_search import (
     growth_rate,
     limit_curve_by,
 )
-from chatter.stability.method import Multiplier
 from chatter.stability.methods.matrix_free.drivers import dominant_motion, steps_per_period
 from chatter.stability.methods.matrix_free.stepped_cut import CutAt, SteppedCut
+from chatter.stability.stability_method import Multiplier
 
 #: steps per wavelength of the fastest vibration
 STEPS_PER_WAVELENGTH = 12.0

@@ -22,10 +22,10 @@ from chatter.stability.limit_search import (
     frequency_of_motion,
     limit_curve_by,
 )
-from chatter.stability.method import Multiplier
 from chatter.stability.methods.semi_discretization import drivers
 from chatter.stability.methods.semi_discretization.arrays import MillingArrays
 from chatter.stability.methods.semi_discretization.step_schemes import FIRST_ORDER, Scheme
+from chatter.stability.stability_method import Multiplier
 
 #: steps per period of the highest relevant mode; the extrapolated error is then near 1e-4
 _STEPS_PER_PERIOD = 14.0

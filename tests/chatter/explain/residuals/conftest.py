@@ -5,7 +5,7 @@ import pytest
 
 from chatter.description.case import Case
 from chatter.explain.kinds.axis_record import AxisRecord
-from chatter.explain.kinds.registry import KINDS
+from chatter.explain.kinds.kind_list import KINDS
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.residual import Residual

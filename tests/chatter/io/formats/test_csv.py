@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from chatter.io.formats.registry import read_frfs
+from chatter.io.formats.format_list import read_frfs
 from dynamics.frf.container import MeasurementError
 from tests.places import DATA
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from chatter.io.formats.registry import read_frfs
+from chatter.io.formats.format_list import read_frfs
 from dynamics.frf.container import MeasurementError
 
 # as written for the program: the words follow the numbers of the first line, separated by tabs

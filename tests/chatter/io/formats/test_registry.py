@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from chatter.io.formats.format import Format
-from chatter.io.formats.registry import FORMATS, documentation, format_of, read_frfs
+from chatter.io.formats.format_list import FORMATS, documentation, format_of, read_frfs
 from chatter.io.hammer_records import read_hammer_folder
 from chatter.io.signals import read_signals
 from chatter.io.table import Column, Table

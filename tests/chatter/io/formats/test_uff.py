@@ -6,7 +6,7 @@ import struct
 import numpy as np
 import pytest
 
-from chatter.io.formats.registry import read_frfs
+from chatter.io.formats.format_list import read_frfs
 from dynamics.frf.container import MeasurementError, Point
 from tests.places import DATA, EXAMPLES
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.stability.limit_curve import LimitCurve, limits_at
-from chatter.stability.method import StabilityMethod, Sweep
+from chatter.stability.stability_method import StabilityMethod, Sweep
 
 
 class ZerothOrder(StabilityMethod):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.stability.method import Multiplier, StabilityMethod, Sweep
+from chatter.stability.stability_method import Multiplier, StabilityMethod, Sweep
 
 if TYPE_CHECKING:
     from chatter.stability.limit_curve import LimitCurve
