@@ -163,13 +163,15 @@ def _named(identifier: str, pattern: str) -> bool:
     return False
 
 
-def _in_names(file: str, line: int, identifier: str) -> Iterator[Hit]:
+def in_names(file: str, line: int, identifier: str) -> Iterator[Hit]:
+    """Forbidden words in an identifier."""
     for word in WORDS:
         if file.startswith(word.within) and any(_named(identifier, p) for p in word.names.split()):
             yield Hit(file, line, identifier, word.term)
 
 
-def _in_text(file: str, line: int, text: str) -> Iterator[Hit]:
+def in_text(file: str, line: int, text: str) -> Iterator[Hit]:
+    """Forbidden words in a text."""
     for word in WORDS:
         if word.texts and (found := re.search(rf"\b({word.texts})\b", text, re.IGNORECASE)):
             around = text[max(found.start() - 30, 0) : found.end() + 30].replace("\n", " ")
@@ -189,10 +191,10 @@ class _Walk(ast.NodeVisitor):
 
     def name(self, node: ast.AST, identifier: str) -> None:
         if not identifier.startswith("_"):
-            self.hits += _in_names(self.file, node.lineno, identifier)
+            self.hits += in_names(self.file, node.lineno, identifier)
 
     def text(self, node: ast.AST, text: str) -> None:
-        self.hits += _in_text(self.file, node.lineno, text)
+        self.hits += in_text(self.file, node.lineno, text)
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> None:
         self.name(node, node.name)
@@ -255,7 +257,7 @@ def hits_in_source(path: Path) -> list[Hit]:
         return []
     walk = _Walk(file)
     own = path.parent.name if path.stem == "__init__" else path.stem
-    walk.hits += _in_names(file, 1, own)
+    walk.hits += in_names(file, 1, own)
     walk.visit(ast.parse(path.read_text(encoding="utf-8")))
     return walk.hits
 
@@ -264,7 +266,7 @@ def hits_in_document(path: Path) -> list[Hit]:
     """Forbidden words in a document, paragraph by paragraph."""
     file = path.relative_to(ROOT).as_posix()
     lines = path.read_text(encoding="utf-8").splitlines()
-    return [hit for number, line in enumerate(lines, 1) for hit in _in_text(file, number, line)]
+    return [hit for number, line in enumerate(lines, 1) for hit in in_text(file, number, line)]
 
 
 def all_hits() -> list[Hit]:

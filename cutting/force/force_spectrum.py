@@ -200,8 +200,8 @@ _OF_SLICE = ("height", "thickness", "radius", "immersion", "edge_length")
 _OF_TOOTH = ("angle", "lag", "normal_offset")
 
 
-def slices_at(slices: EdgeSlices, places: NDArray[np.int64]) -> EdgeSlices:
-    """Some of the slices of an edge, by their places (k,)."""
-    one = {name: getattr(slices, name)[places] for name in _OF_SLICE}
-    several = {name: getattr(slices, name)[:, places] for name in _OF_TOOTH}
+def slices_at(slices: EdgeSlices, indices: NDArray[np.int64]) -> EdgeSlices:
+    """Some of the slices of an edge, by their indices (k,)."""
+    one = {name: getattr(slices, name)[indices] for name in _OF_SLICE}
+    several = {name: getattr(slices, name)[:, indices] for name in _OF_TOOTH}
     return EdgeSlices(**one, **several)
