@@ -323,7 +323,7 @@ def _kept(
             cache.key(fingerprint(one.case), repr((one.method, one.speeds, one.depths)))
             for one in points
         ]
-        return cache.evaluate(function, points, keys, noun, cluster, progress)
+        return cache.evaluate(function, points, keys, noun, cluster=cluster, progress=progress)
 
 
 def _reasons(found: Sequence[dict[str, Any]], name: str, labels: Sequence[str]) -> tuple[str, ...]:

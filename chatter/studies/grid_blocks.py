@@ -57,7 +57,9 @@ def radius_in_blocks(
     wanted = [speeds[block] for block in blocks]
     with ResultCache(folder, "grid", fingerprint(case), method, repr(depths.tolist())) as cache:
         keys = [cache.key(repr(block.tolist())) for block in wanted]
-        found = cache.evaluate(radius_at, wanted, keys, "blocks of the grid", cluster, progress)
+        found = cache.evaluate(
+            radius_at, wanted, keys, "blocks of the grid", cluster=cluster, progress=progress
+        )
     return np.concatenate([np.array(one, dtype=np.float64) for one in found], axis=1)
 
 

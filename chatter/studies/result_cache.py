@@ -12,7 +12,7 @@ import sqlite3
 from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
 
 import diskcache
 
@@ -21,10 +21,34 @@ from chatter.description.progress import Progress, no_progress
 from chatter.engine.parallel import Executor
 from chatter.studies.executor import open_executor
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
 Item = TypeVar("Item")
 
 #: beside the results of a study
 FOLDER = "result-cache"
+
+
+class Execution(TypedDict, total=False):
+    """How a study is carried out: keyword arguments that studies share.
+
+    Attributes
+    ----------
+    folder : path
+        Keeps finished parts in the result cache there, and reuses those of the same input.
+    progress : callable
+        Called with (done, total) parts.
+    resumed : callable
+        Called once with (finished before, total) parts.
+    cluster : str or Executor
+        Where parts are computed, as for `chatter.studies.executor.open_executor`; None: here.
+    """
+
+    folder: str | Path | None
+    progress: Progress
+    resumed: Callable[[int, int], None] | None
+    cluster: str | Executor | None
 
 
 class _TextDisk(diskcache.Disk):
@@ -133,8 +157,7 @@ class ResultCache:
         items: Sequence[Item],
         keys: Sequence[str],
         noun: str,
-        cluster: str | Executor | None = None,
-        progress: Progress = no_progress,
+        **execution: Unpack[Execution],
     ) -> list[Any]:
         """Records that a function makes of items, in their order; known ones are not computed.
 
@@ -148,18 +171,25 @@ class ResultCache:
             Of the record of each item.
         noun : str
             What the items are, for messages.
-        cluster : str or Executor, optional
-            As for `chatter.studies.executor.open_executor`.
-        progress : callable
-            Called with (done, total) items.
+        **execution
+            As `Execution`; the folder is that of the cache.
 
         Raises
         ------
+        TypeError
+            If a keyword is not known.
         InputError
             As the function does.
         RunError
             If it is interrupted; finished records are in the cache.
         """
+        unknown = execution.keys() - Execution.__annotations__.keys()
+        if unknown:
+            raise TypeError(f"a study takes no argument {min(unknown)!r}")
+        progress = execution.get("progress") or no_progress
+        resumed, before = execution.get("resumed"), self.finished(keys)
+        if before and resumed is not None:
+            resumed(before, len(keys))
         # two items of the same key are computed once
         pairs = zip(keys, items, strict=True)
         missing = list({key: item for key, item in pairs if key not in self}.items())
@@ -167,7 +197,7 @@ class ResultCache:
         done = len(keys) - len(missing)
         progress(done, len(keys))
         try:
-            with open_executor(cluster if missing else None) as executor:
+            with open_executor(execution.get("cluster") if missing else None) as executor:
                 results = executor.results(function, [item for _, item in missing])
                 for index, record in results:
                     key = missing[index][0]

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
-from pathlib import Path
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.description.progress import Progress, no_progress
 from chatter.description.units import rpm
-from chatter.engine.parallel import Executor
 from chatter.io.result_files import SavedResult, as_json, csv_text, finite_or_none
 from chatter.studies.model import fingerprint, patched
-from chatter.studies.result_cache import ResultCache
+from chatter.studies.result_cache import Execution, ResultCache
 from chatter.studies.uncertainty.latin_hypercube import samples
 from chatter.studies.uncertainty.sample_limits import (
     Grid,
@@ -32,6 +29,9 @@ from chatter.studies.uncertainty.uncertain_parameters import (
     correlation_of,
     parameters_of,
 )
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 Array = NDArray[np.float64]
 
@@ -233,10 +233,7 @@ def uncertainty(
     *,
     speeds: int = DEFAULT_SPEEDS,
     method: str | None = None,
-    folder: str | Path | None = None,
-    progress: Progress = no_progress,
-    resumed: Callable[[int, int], None] | None = None,
-    cluster: str | Executor | None = None,
+    **execution: Unpack[Execution],
 ) -> Uncertainty:
     """Propagate the standard deviations of a case, and of its machine, to its limits.
 
@@ -251,14 +248,8 @@ def uncertainty(
         At which limits are computed.
     method : str, optional
         Of stability, as for `chatter.lobes`.
-    folder : path, optional
-        Keeps finished samples in the result cache there, and reuses those of the same input.
-    progress : callable, optional
-        Called with (done, total) samples.
-    resumed : callable, optional
-        Called once with (finished before, total) samples.
-    cluster : str or Executor, optional
-        Where samples are computed, as for `chatter.studies.executor.open_executor`; None: here.
+    **execution
+        Folder, progress, resumed and cluster, as `chatter.studies.result_cache.Execution`.
 
     Returns
     -------
@@ -280,12 +271,9 @@ def uncertainty(
     limits_of_sample = partial(_sample_record, case, paths, grid, method)
     numbered = [(number, row.tolist()) for number, row in enumerate(values, start=1)]
     inputs = (method or "", repr(grid.speeds.tolist()), repr(grid.depths[-1]))
-    with ResultCache(folder, "uncertainty", fingerprint(case), *inputs) as cache:
+    with ResultCache(execution.get("folder"), "uncertainty", fingerprint(case), *inputs) as cache:
         keys = [cache.key(repr(row)) for _, row in numbered]
-        before = cache.finished(keys)
-        if before and resumed is not None:
-            resumed(before, len(keys))
-        records = cache.evaluate(limits_of_sample, numbered, keys, "samples", cluster, progress)
+        records = cache.evaluate(limits_of_sample, numbered, keys, "samples", **execution)
     found = [SampleLimits(**record) for record in records]
     return Uncertainty(
         case=case,

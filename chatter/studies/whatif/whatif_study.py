@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from io import StringIO
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from chatter.description.errors import InputError, RunError
-from chatter.description.progress import Progress, no_progress
-from chatter.engine.parallel import Executor
 from chatter.io.result_files import SavedResult, as_json
 from chatter.studies.model import fingerprint, patched
-from chatter.studies.result_cache import ResultCache
+from chatter.studies.result_cache import Execution, ResultCache
 from chatter.studies.whatif.design import AS_GIVEN, DesignPoint, Layout, chosen_layout, points_of
 from chatter.studies.whatif.measures import Curve, Measure, Outcome, measure_of
 from chatter.studies.whatif.summary import sentences
@@ -23,6 +20,8 @@ from chatter.studies.whatif.variation import Variation, read_variation, variatio
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from typing_extensions import Unpack
 
     from chatter.studies.model import Model
 
@@ -127,10 +126,7 @@ def whatif(
     quantity: str | None = None,
     method: str | None = None,
     only: Sequence[str] = (),
-    folder: str | Path | None = None,
-    progress: Progress = no_progress,
-    resumed: Callable[[int, int], None] | None = None,
-    cluster: str | Executor | None = None,
+    **execution: Unpack[Execution],
 ) -> WhatIf:
     """Ask what would change if values of a case or machine were others.
 
@@ -154,14 +150,8 @@ def whatif(
         Of stability, as for `chatter.lobes`.
     only : sequence of str
         Names of [frf.NAME] of a machine.
-    folder : path, optional
-        Keeps finished points in the result cache there, and reuses those of the same input.
-    progress : callable, optional
-        Called with (done, total) points.
-    resumed : callable, optional
-        Called once with (finished before, total) points.
-    cluster : str or Executor, optional
-        Where points are computed, as for `chatter.studies.executor.open_executor`; here by default.
+    **execution
+        Folder, progress, resumed and cluster, as `chatter.studies.result_cache.Execution`.
 
     Returns
     -------
@@ -184,12 +174,9 @@ def whatif(
     points = points_of(variations, layout)
     models = [patched(model, point.patch) for point in points]
     evaluate = partial(_record, measure.name, method, tuple(only))
-    with ResultCache(folder, measure.name, method or "", ",".join(only)) as cache:
+    with ResultCache(execution.get("folder"), measure.name, method or "", ",".join(only)) as cache:
         keys = [cache.key(fingerprint(each)) for each in models]
-        before = cache.finished(keys)
-        if before and resumed is not None:
-            resumed(before, len(points))
-        records = cache.evaluate(evaluate, models, keys, "points", cluster, progress)
+        records = cache.evaluate(evaluate, models, keys, "points", **execution)
     if all(record["failure"] for record in records):
         messages, failure = records[0]["input_errors"], records[0]["failure"]
         raise InputError(messages) if messages else RunError(failure)
