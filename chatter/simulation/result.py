@@ -115,7 +115,8 @@ class SimulationResult:
     @cached_property
     def settled(self) -> slice:
         """Rows of the last whole turns, after the start has died out."""
-        turns = math.floor(self.revolutions)
+        # the last bit of an angle must not cost a revolution
+        turns = math.floor(self.revolutions + 1e-9)
         if turns < 1:
             return slice(0, len(self.rows))
         kept = max(1, math.floor(turns * _SETTLED_SHARE))
