@@ -204,7 +204,7 @@ def test_an_edited_leaf_is_compiled_anew(sources):
     first = folder()
     assert Path(first).parent == base
     assert folder() == first
-    leaf = sources / "cutting/force/force_law.py"
+    leaf = sources / "cutting/force/linear.py"
     leaf.write_text(leaf.read_text(encoding="utf-8") + "\n", encoding="utf-8")
     assert folder() != first
 

@@ -10,6 +10,7 @@ from chatter.description.case import Case
 from chatter.stability.forced_vibration import forced_vibration, notes_on_steady_cut
 from chatter.stability.methods.time_domain.critical_depths import growths
 from chatter.stability.model import milling_model
+from chatter.stability.registry import METHODS
 
 RPM = math.pi / 30.0
 
@@ -44,7 +45,7 @@ def vibration_of(case):
 
 
 def told(notes):
-    return [note for note in notes if "steady cut" in note]
+    return [note for note in notes if "teeth lose contact" in note]
 
 
 def test_the_example_of_the_docs_is_told_and_its_numbers_are_those():
@@ -60,7 +61,7 @@ def test_the_example_of_the_docs_is_told_and_its_numbers_are_those():
     assert "14%" in told(found.notes)[0]
     short = case.patch({"lobes": {"speeds": {"from": "10900 rpm", "to": "11100 rpm", "count": 3}}})
     assert told(chatter.lobes(short).notes) == told(found.notes)
-    assert not told(chatter.lobes(short, "time").notes)
+    assert not told(chatter.lobes(short, "time-domain").notes)
 
 
 def test_a_shallower_cut_where_both_agree_is_not_told():
@@ -110,7 +111,7 @@ def test_on_the_benchmark_of_unequal_pitch_where_the_simulation_parts(rpm, parts
     model = milling_model(case)
     (simulated,) = growths(case, model.structure.modes, np.array([rpm * RPM]), np.array([depth]))
     assert (abs(simulated.radius - 1.0) > 0.1) == parts
-    assert bool(notes_on_steady_cut(model, "collocation")) == parts
+    assert bool(notes_on_steady_cut(model, METHODS["collocation"])) == parts
 
 
 @pytest.mark.parametrize("depth_mm", [0.6, 1.2])
@@ -134,7 +135,7 @@ def test_it_grows_with_the_feed_and_the_share_missed_does_not():
     small, large = vibration_of(cut_of()), vibration_of(cut_of(cut={"feed_per_tooth": 1.8e-4}))
     assert large.amplitude == pytest.approx(3.0 * small.amplitude, rel=1e-9)
     assert large.chip_change == pytest.approx(3.0 * small.chip_change, rel=1e-9)
-    assert large.missed == pytest.approx(small.missed, abs=1e-9)
+    assert large.loss_of_contact == pytest.approx(small.loss_of_contact, abs=1e-9)
 
 
 def test_one_tooth_that_alone_cuts_keeps_its_chip():

@@ -93,7 +93,7 @@ def test_friction_makes_a_cut_stable_that_chatters_without(limit):
     assert lyapunov_verdict(free, modes_of(free)[0]).verdict == "chatter"
     found = chatter.simulate(rubbing).detection
     assert found.stable
-    assert found.reason == "a small push on the forced motion dies out at once"
+    assert found.reason == "a small perturbation on the forced motion dies out at once"
 
 
 def test_deep_cuts_break_loose(limit):

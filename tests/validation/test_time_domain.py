@@ -12,7 +12,7 @@ from tests.validation.reference import time_domain_check as sets
 from tests.validation.reference.time_domain import nrmse, to_case_dict
 from tests.validation.reference.time_domain_store import REVOLUTIONS, SIGNALS, load, sample_times
 
-MEASUREMENTS = DATA / "measurements"
+MEASUREMENTS = DATA / "whole-measurements"
 CUTS = load()
 
 

@@ -227,7 +227,7 @@ def test_port_in_use_is_told(server):
 
 def test_a_method_too_slow_is_told():
     with pytest.raises(InputError, match="--method"):
-        LiveCase(chatter.load(CASE), "time")
+        LiveCase(chatter.load(CASE), "time-domain")
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*/case.toml")), ids=lambda p: p.parent.name)

@@ -24,8 +24,7 @@ def case(speed, depth, mode="up", immersion=0.05, directions=((1, 0, 0),), helix
             "axial_depth": depth,
             "radial_depth": immersion * 16e-3,
         },
-        simulation={"revolutions": 60, "steps": 1200},
-        **sections,
+        **{"simulation": {"revolutions": 60, "steps": 1200}, **sections},
     )
 
 
@@ -153,7 +152,7 @@ def test_process_damping_alone_is_added_damping():
         1.0,
         process_damping={"coefficient": coefficient},
         # no regeneration; the edge force alone sets the tool moving
-        material={"law": "linear", "Ktc": 1e3, "Kre": 100.0},
+        material={"law": "linear", "Ktc": 1e3, "Krc": 0.0, "Kre": 100.0},
     )
     got = abs(multiplier_of(free_motion(simulate(given))))
     viscous = 2.0 * DAMPING * MASS * 2.0 * math.pi * FREQUENCY

@@ -119,7 +119,7 @@ def test_an_interrupted_run_in_time_is_no_verdict(tmp_path, monkeypatch):
     def cut_short(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("chatter.simulation.simulate.run", cut_short)
+    monkeypatch.setattr("chatter.simulation.cut_run.run", cut_short)
     section = {**NET, "depths": {"to": "1 mm", "count": 5}}
     with pytest.raises(RunError, match="parts of the search are finished"):
         chatter.optimum(end_mill({"optimum": section}), folder=tmp_path)
