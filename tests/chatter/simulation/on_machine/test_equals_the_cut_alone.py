@@ -144,4 +144,4 @@ def test_a_rigid_machine_that_holds_its_speed_equals_a_rigid_tool(tmp_path):
         one, other = getattr(coupled, name), getattr(alone, name)
         difference = np.abs(one - other).reshape(len(other), -1).max(axis=1)
         assert np.mean(difference > 1e-5 * np.abs(other).max()) < 0.02
-    assert coupled.spindle_speed == pytest.approx(np.full(1200, 100.0 * np.pi), rel=1e-9)
+    assert coupled.spindle_speed == pytest.approx(np.full(1201, 100.0 * np.pi), rel=1e-9)
