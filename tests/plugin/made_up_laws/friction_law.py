@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from dynamics.compiled import INLINED
 from dynamics.friction.columns import parameter_columns, port_column
 from dynamics.friction.harmonic import memoryless_describing_function
-from dynamics.friction.implicit import held_force, no_energy, no_force
+from dynamics.friction.implicit import implicit_force, no_energy, no_force
 from dynamics.friction.law import FrictionLawEntry
 from dynamics.keys import Key, check_ranges
 
@@ -77,7 +77,9 @@ def force(law, i, motion, h):
 @register_jitable(**INLINED)
 def step(law, i, dx_free, gx, v_free, g, h):
     stiffness = law.coulomb[i] / law.smoothing_velocity[i] / h
-    return held_force(no_force, _resist, no_energy, law, i, stiffness, dx_free, gx, v_free, g, h)
+    return implicit_force(
+        no_force, _resist, no_energy, law, i, stiffness, dx_free, gx, v_free, g, h
+    )
 
 
 @register_jitable(**INLINED)
