@@ -47,7 +47,7 @@ def test_one_sentence(folder, tmp_path, words, told):
     result = chatter_command(command, folder / file, *options, "--out", out)
     assert result.exit_code == 2, result.output
     lines = result.stderr.strip().splitlines()
-    (line,) = [line for line in lines if not line.startswith("first use")]
+    (line,) = [line for line in lines if line and not line.startswith("first use")]
     assert line.startswith("chatter: ")
     for word in told:
         assert word in line
