@@ -396,4 +396,4 @@ def test_auto_takes_the_contact_along():
     model = model_of({}, SLOT, contact={"stiffness": 4e5})
     assert chosen_method(model.case).name == "matrix-free"
     assert chosen_method(model_of({}, SLOT).case).name == "collocation"
-    assert any("matrix-free and time methods alone" in note for note in model.notes)
+    assert any("only the matrix-free and time-domain methods" in note for note in model.notes)

@@ -337,7 +337,7 @@ def test_zero_order_of_unequal_pitch_makes_the_determinant_vanish():
 def test_methods_for_like_teeth_say_so():
     model = altintas_engin_budak()
     for name in ("semi-discretization", "semi-discretization-0", "full-discretization"):
-        with pytest.raises(InputError, match="evenly"):
+        with pytest.raises(InputError, match="uniform-pitch"):
             METHODS[name].limits(
                 model, np.array([500.0]), np.array([1e-3, 2e-3]), None, no_progress
             )

