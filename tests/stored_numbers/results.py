@@ -280,7 +280,7 @@ def optimum(stored: StoredCase) -> Readings:
             "power": Reading(best["power_W"], "W", rtol),
             "deflection": Reading(best["deflection_um"], "um", rtol),
             "surface error": Reading(best["surface_error_um"], "um", rtol, 1e-3),
-            "verdict in time": Reading((best["in_time"] or {}).get("verdict", "none")),
+            "verdict in time": Reading((best["time_domain"] or {}).get("verdict", "none")),
         }
         if best["probability"] is not None:
             found["probability"] = Reading(best["probability"])
