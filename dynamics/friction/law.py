@@ -49,7 +49,8 @@ class FrictionLawEntry:
     spec : type
         Of the law: a `FrictionLaw`.
     table : type
-        NamedTuple of columns for the kernels, with `port`.
+        NamedTuple of columns for the kernels, with `port`, and with the state `rate` (m/s, of the
+        last step) where `implicit.implicit_force` solves the law.
     columns : callable
         Laws and their ports -> table at rest.
     step : callable

@@ -56,11 +56,14 @@ class ArctanCoulombTable(NamedTuple):
     coulomb: NDArray[np.float64]  # N
     smoothing_velocity: NDArray[np.float64]  # m/s
     port: NDArray[np.int64]
+    rate: NDArray[np.float64]  # mean velocity of the last step, m/s: state, where a search begins
 
 
 def table(laws, ports):
     return ArctanCoulombTable(
-        *parameter_columns(laws, ArctanCoulombTable._fields[:2]), port_column(ports)
+        *parameter_columns(laws, ArctanCoulombTable._fields[:2]),
+        port_column(ports),
+        np.zeros(len(laws)),
     )
 
 
@@ -84,7 +87,7 @@ def step(law, i, dx_free, gx, v_free, g, h):
 
 @register_jitable(**INLINED)
 def advance(law, i, motion, h):
-    return
+    law.rate[i] = motion / h
 
 
 LAW = FrictionLawEntry(
