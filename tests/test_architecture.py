@@ -232,6 +232,7 @@ def test_other_values_and_counts_compile_nothing_new():
         {"process_damping.coefficient": "0.2 N/mm", "cut.mode": "slot", "cut.radial_depth": None},
         {"material": {"law": "exponential", "Ktc": 6e8, "h0": 1e-4, "exponent": 0.7}},
     ]
+    known = None
     for values in patches:
         patched = case.patch(values)
         point = (
@@ -239,7 +240,9 @@ def test_other_values_and_counts_compile_nothing_new():
         )
         value = multipliers(milling_arrays(milling_model(patched)), *point, 24)
         assert abs(value[0]) > 0.0
-    assert len(multipliers_at.signatures) == 1
+        # other tests of the process may have called it with other schemes and read-only arrays
+        known = known or set(multipliers_at.signatures)
+        assert set(multipliers_at.signatures) == known
 
 
 MULTIPLIER = """

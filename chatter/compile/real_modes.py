@@ -76,8 +76,10 @@ def real_modes(
 
 def lines_around(modes: Sequence[Mode], lowest: float, highest: float) -> NDArray[np.float64]:
     """Lines (m,) over a band in Hz, dense around modes."""
-    spread = np.concatenate([-np.geomspace(8.0, 0.1, 8), [0.0], np.geomspace(0.1, 8.0, 8)])
-    around = [mode.frequency * (1.0 + max(mode.damping, 1e-3) * spread) for mode in modes]
+    beside = np.concatenate([-np.geomspace(8.0, 0.1, 8), np.geomspace(0.1, 8.0, 8)])
+    around = [mode.frequency * (1.0 + max(mode.damping, 1e-3) * beside) for mode in modes]
+    # the receptance of an undamped mode is infinite at its own frequency
+    around.append([mode.frequency for mode in modes if mode.damping > _DAMPINGS[0]])
     even = np.linspace(lowest, highest, _EVEN_LINES)
     lines = np.unique(np.concatenate([even, np.geomspace(lowest, highest, _EVEN_LINES), *around]))
     return lines[(lines >= lowest) & (lines <= highest)]

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.progress import Progress, no_progress
+from chatter.engine.interruption import interruptions_held
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -108,17 +109,6 @@ def worker_count() -> int:
     return max(1, os.cpu_count() or 1)
 
 
-@contextmanager
-def _interruptible() -> Iterator[None]:
-    """Pass on Ctrl-C that comes while compiled code returns to Python, which hides it."""
-    try:
-        yield
-    except SystemError as error:
-        if isinstance(error.__cause__, KeyboardInterrupt):
-            raise KeyboardInterrupt from None
-        raise
-
-
 def sweep(
     function: Callable[[NDArray[np.int64]], Result],
     count: int,
@@ -152,7 +142,7 @@ def sweep(
     results: list[Result] = []
     if len(chunks) == 1:
         # a thread would take longer to start
-        with _interruptible():
+        with interruptions_held():
             results.append(function(chunks[0]))
         progress(count, count)
         return results

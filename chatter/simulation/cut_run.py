@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from chatter.description.progress import Progress, no_progress
 from chatter.engine.cut import CutOnPorts, PrescribedSpindle, SpindleOnPort
+from chatter.engine.interruption import interruptions_held
 from chatter.engine.loop import Laws, run
 from chatter.engine.record import COLUMNS, CutRecord, PortRecord, port_record
 from chatter.simulation.carved_workpiece import FollowingStock
@@ -82,7 +83,8 @@ class CutRun:
         structure = self.setup.structure
         if structure.settling:
             laws = Laws(structure.tables.explicit, (), structure.tables.implicit)
-            run(laws, self.bus, 0, 0, structure.settling)
+            with interruptions_held():
+                run(laws, self.bus, 0, 0, structure.settling)
 
     def _carve_before(self) -> None:
         """Carve the workpiece with the tool at rest for the turns before the start."""
@@ -128,7 +130,8 @@ class CutRun:
                 tables.explicit, (self._cut(count, share),), tables.implicit, self._observers
             )
             try:
-                ran = run(laws, self.bus, self.done, before, count)
+                with interruptions_held():
+                    ran = run(laws, self.bus, self.done, before, count)
                 self.done += ran
                 progress(self.done, last)
             except KeyboardInterrupt:

@@ -127,8 +127,12 @@ def structure_receptance(
     seen = rows @ modes.shapes
     damping = modes.shapes.T @ (machine.structure.damping @ modes.shapes)
     result = np.empty((len(frequency), len(rows), len(rows)), dtype=np.complex128)
+    undamped = ~damping.any(axis=0)
     for place, line in enumerate(2.0 * np.pi * frequency):
-        dynamic = np.diag(omega**2 - line**2) + 1j * line * damping
+        stiffness = omega**2 - line**2
+        # infinite there: the least number that can be told from none
+        stiffness[undamped & (stiffness == 0.0)] = np.spacing(line**2)
+        dynamic = np.diag(stiffness) + 1j * line * damping
         result[place] = seen @ np.linalg.solve(dynamic, seen.T)
     return result
 

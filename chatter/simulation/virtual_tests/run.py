@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from chatter.description.errors import InputError, RunError
 from chatter.description.progress import Progress, no_progress
+from chatter.engine.interruption import interruptions_held
 from chatter.engine.loop import Laws, run
 from chatter.engine.record import port_record
 from dynamics.control.sampling import ControlError
@@ -122,7 +123,8 @@ def run_machine(
     try:
         while done < total:
             count = min(_STEPS_A_CHUNK, total - done)
-            ran = run(laws, tables.bus, done, 0, count)
+            with interruptions_held():
+                ran = run(laws, tables.bus, done, 0, count)
             done += ran
             progress(done, total)
             if ran < count:
