@@ -26,7 +26,7 @@ BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser")))
 #: s; a loaded machine starts a browser slowly
 PATIENCE = 60.0
 
-pytestmark = pytest.mark.skipif(BROWSER is None, reason="there is no chromium")
+pytestmark = pytest.mark.browser
 
 
 class Tab:
@@ -152,7 +152,7 @@ def browser(tmp_path_factory):
         until = time.monotonic() + PATIENCE
         while not (told.is_file() and told.read_text().strip()):
             if process.poll() is not None or time.monotonic() > until:
-                pytest.skip("the browser does not start here")
+                pytest.fail("the browser does not start")
             time.sleep(0.05)
         yield int(told.read_text().split()[0])
     finally:

@@ -202,11 +202,7 @@ def test_ready_studies_fit_their_examples(name):
     from chatter.studies.whatif.variation import read_variation
 
     study = preset_studies()[name]
-    try:
-        file = study.file()
-    except InputError:
-        pytest.skip(f"{study.example} is not there")
-    model = patched(load_model(file), study.settings)
+    model = patched(load_model(study.file()), study.settings)
     variations = [read_variation(text, model) for text in study.vary]
     for point in points_of(variations, chosen_layout(variations, study.tornado)):
         patched(model, point.patch)
