@@ -52,10 +52,6 @@ def read_hammer_record(path: str | Path, response: str | None = None) -> HammerR
     response : str, optional
         Name of the response column, where there are several.
 
-    Returns
-    -------
-    HammerRecord
-
     Raises
     ------
     MeasurementError
@@ -98,10 +94,6 @@ def read_hammer_folder(path: str | Path) -> HammerFolder:
         Folder of files as `read_hammer_record` reads them. Files of other extensions are passed
         over; a file that is no record is named with the reason. Hidden files and folders in it
         are passed over too.
-
-    Returns
-    -------
-    HammerFolder
 
     Raises
     ------

@@ -42,10 +42,6 @@ def imported_structure(
     rigid : sequence of RigidSurface
     interpolated : sequence of InterpolatedPoint
 
-    Returns
-    -------
-    LinearStructure
-
     Raises
     ------
     StructureError

@@ -40,12 +40,7 @@ _MODEL_LINES = ("--", "-.", "-")
 
 
 def plot_explanation(explanation: Explanation) -> Figure:
-    """Draw measured signals and residuals of some runs.
-
-    Parameters
-    ----------
-    explanation : Explanation
-    """
+    """Draw measured signals and residuals of some runs."""
     added = " and ".join(explanation.found.effect_names)
     signatures = {"residual of the refitted case": explanation.refitted_signature}
     if explanation.repaired_signature is not None:
@@ -74,12 +69,7 @@ def plot_comparison(comparison: Comparison) -> Figure:
 
 
 def plot_signals(measurement: Measurement) -> Figure:
-    """Draw the signals of the first run as recorded.
-
-    Parameters
-    ----------
-    measurement : Measurement
-    """
+    """Draw the signals of the first run as recorded."""
     run = measurement.runs[0]
     abscissa = next((name for name in _ABSCISSAE if name in run.signals), "")
     channels = [name for name in run.signals if name != abscissa]
@@ -177,12 +167,7 @@ def _abscissa(signals: Signals, count: int) -> tuple[NDArray[np.float64], str]:
 
 
 def plot_errors(errors: BeforeAfter) -> Figure:
-    """Draw errors over the signal by channel, on fitted and on holdout runs, with the noise.
-
-    Parameters
-    ----------
-    errors : BeforeAfter
-    """
+    """Draw errors over the signal by channel, on fitted and on holdout runs, with the noise."""
     figure = style.new_figure(9.5, 3.4)
     panels = figure.subplots(1, 2, sharey=True)
     titles = ("fitted runs", "holdout runs")
@@ -219,12 +204,7 @@ def plot_errors(errors: BeforeAfter) -> Figure:
 
 
 def plot_lobes_before_after(found: LobesBeforeAfter) -> Figure:
-    """Draw limits of the cases over each other, with the cuts that were measured.
-
-    Parameters
-    ----------
-    found : LobesBeforeAfter
-    """
+    """Draw limits of the cases over each other, with the cuts that were measured."""
     figure = style.new_figure(8.5, 4.4)
     axes = figure.subplots()
     top = 0.0

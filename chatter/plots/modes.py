@@ -17,17 +17,7 @@ _UNIT = {"receptance": ("um/N", 1e6), "mobility": ("mm/s/N", 1e3), "accelerance"
 
 
 def plot_fit(fit: ModalFit, title: str) -> Figure:
-    """Draw magnitude and phase of every FRF, measured and fitted.
-
-    Parameters
-    ----------
-    fit : ModalFit
-    title : str
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Draw magnitude and phase of every FRF, measured and fitted."""
     columns = min(len(fit.frfs), _MOST_COLUMNS)
     figure = style.new_figure(max(7.5, 4.2 * columns), 6.0)
     axes = figure.subplots(2, columns, sharex=True, squeeze=False, height_ratios=[2.0, 1.0])
@@ -118,17 +108,7 @@ def draw_phase(axes: Axes, fit: ModalFit, frf: Frf, model: FrfModel) -> None:
 
 
 def plot_stabilisation(fit: ModalFit, title: str) -> Figure:
-    """Draw the poles of all model orders over frequency, with the FRFs behind them.
-
-    Parameters
-    ----------
-    fit : ModalFit
-    title : str
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Draw the poles of all model orders over frequency, with the FRFs behind them."""
     figure = style.new_figure(8.0, 4.6)
     axes = figure.subplots()
     behind = axes.twinx()

@@ -17,12 +17,7 @@ _COLOURS = (style.BLUE, style.RED, style.GREEN, style.ORANGE)
 
 
 def plot_move(result: MoveResult) -> Figure:
-    """Draw position, velocity, errors and effort of every axis, and the contour of a path.
-
-    Parameters
-    ----------
-    result : MoveResult
-    """
+    """Draw position, velocity, errors and effort of every axis, and the contour of a path."""
     plane = result.contour is not None and len(result.axes) >= 2
     figure = style.new_figure(11.0, 8.0)
     figure.suptitle(result.name, fontsize=11.0, x=0.01, ha="left")

@@ -31,16 +31,7 @@ _BOUNDARIES = {
 
 
 def plot_optimum(found: Optimum) -> Figure:
-    """Draw the limits over speed and depth at the best radial depth, and the removal rate.
-
-    Parameters
-    ----------
-    found : Optimum
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Draw the limits over speed and depth at the best radial depth, and the removal rate."""
     over_radial_depths = found.limits.radial_depths.size > 1
     figure = style.new_figure(9.0, 8.4 if over_radial_depths else 6.0)
     grid = figure.add_gridspec(

@@ -18,16 +18,7 @@ _COLOURS = {"alternating": style.ORANGE, "linear": "#CC79A7"}
 
 
 def plot_pitch(found: PitchResult) -> Figure:
-    """Draw the limits before and after, and what the rule and the families give.
-
-    Parameters
-    ----------
-    found : PitchResult
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Draw the limits before and after, and what the rule and the families give."""
     figure = style.new_figure(8.4, 7.4)
     limits, families = figure.subplots(2, 1, height_ratios=[1.6, 1.0])
     draw_limits(limits, found)

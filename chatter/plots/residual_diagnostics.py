@@ -22,13 +22,7 @@ _LEGEND = {"fontsize": 7.5, "frameon": False}
 
 
 def plot_findings(findings: Sequence[Finding], columns: int = 2) -> Figure:
-    """Draw the panels of findings side by side.
-
-    Parameters
-    ----------
-    findings : sequence of Finding
-    columns : int
-    """
+    """Draw the panels of findings side by side."""
     shown = [finding for finding in findings if finding.panel is not None]
     columns = max(1, min(columns, len(shown)))
     rows = max(1, math.ceil(len(shown) / columns))

@@ -39,16 +39,7 @@ _LEAST_HARMONICS = 6
 
 
 def plot_simulation(result: SimulationResult) -> Figure:
-    """Draw forces, motion, spectrum, once-a-turn points and the surface of a run.
-
-    Parameters
-    ----------
-    result : SimulationResult
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Draw forces, motion, spectrum, once-a-turn points and the surface of a run."""
     figure = style.new_figure(11.0, 12.0)
     figure.suptitle(_title(result), fontsize=11.0, x=0.01, ha="left")
     grid = figure.add_gridspec(4, 1, height_ratios=[1.0, 1.0, 1.15, 1.15])

@@ -37,16 +37,7 @@ _RADIUS_COLOURS = LinearSegmentedColormap.from_list(
 
 
 def plot_limits(diagram: StabilityDiagram) -> Figure:
-    """Draw critical depth and chatter frequency over the axis of a diagram.
-
-    Parameters
-    ----------
-    diagram : StabilityDiagram
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Draw critical depth and chatter frequency over the axis of a diagram."""
     figure = style.new_figure(8.0, 7.0 if diagram.is_over_speed else 6.4)
     limit, frequency = figure.subplots(2, 1, sharex=True, height_ratios=[2.2, 1.0])
     _draw_limits(limit, diagram)
@@ -236,16 +227,7 @@ def _name_sides(axes: Axes) -> None:
 
 
 def plot_map(diagram: StabilityMap) -> Figure:
-    """Draw the spectral radius over two axes, with the boundary of stability.
-
-    Parameters
-    ----------
-    diagram : StabilityMap
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Draw the spectral radius over two axes, with the boundary of stability."""
     figure = style.new_figure(8.0, 5.6)
     axes = figure.subplots()
     x, y = diagram.x_axis.values, diagram.y_axis.values

@@ -22,12 +22,7 @@ _DRAWN_SAMPLES = 25
 
 
 def plot_uncertainty(found: Uncertainty) -> Figure:
-    """Draw the band of lobes, the limit at the speed of the cut and the convergence.
-
-    Parameters
-    ----------
-    found : Uncertainty
-    """
+    """Draw the band of lobes, the limit at the speed of the cut and the convergence."""
     figure = style.new_figure(9.0, 7.2)
     figure.suptitle(found.case.title or found.case.name, fontsize=11.0, x=0.01, ha="left")
     grid = figure.add_gridspec(2, 2, height_ratios=[1.6, 1.0])

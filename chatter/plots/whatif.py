@@ -22,12 +22,7 @@ _MOST_WRITTEN = 150
 
 
 def plot_whatif(study: WhatIf) -> Figure:
-    """Draw a study as its layout asks for.
-
-    Parameters
-    ----------
-    study : WhatIf
-    """
+    """Draw a study as its layout asks for."""
     return {"overlay": _overlay, "heat map": _heat_map, "tornado": _tornado}[study.layout](study)
 
 

@@ -113,13 +113,7 @@ def forced_vibration(model: MillingModel, speed: float, depth: float) -> ForcedV
 
 
 def notes_on_steady_cut(model: MillingModel, method: StabilityMethod) -> tuple[str, ...]:
-    """Say where the steady cut of a case is another than linear methods take it for.
-
-    Parameters
-    ----------
-    model : MillingModel
-    method : StabilityMethod
-    """
+    """Say where the steady cut of a case is another than linear methods take it for."""
     speed, depth = model.case.cut.spindle_speed, model.case.cut.axial_depth
     found = forced_vibration(model, speed, depth) if method.is_linear else None
     if found is None:

@@ -29,10 +29,6 @@ def read_table(path: Path) -> Table:
     path : Path
         Text file.
 
-    Returns
-    -------
-    Table
-
     Raises
     ------
     MeasurementError

@@ -72,10 +72,6 @@ def format_of(path: Path, content: Content) -> Format:
 def read_frfs(path: str | Path) -> list[Frf]:
     """Read every FRF of a measured file, whatever its format.
 
-    Parameters
-    ----------
-    path : str or Path
-
     Returns
     -------
     list of Frf

@@ -59,10 +59,6 @@ def max_wavelengths(model: MillingModel, speeds: Array, depths: Array) -> float:
 def extreme_models(models: Sequence[MillingModel]) -> list[MillingModel]:
     """Of models of one case with other values, those whose fast modes differ most.
 
-    Parameters
-    ----------
-    models : sequence of MillingModel
-
     Returns
     -------
     list of MillingModel

@@ -124,10 +124,6 @@ def response_table(
     points : ElementPoints
     longest : float
         s.
-
-    Returns
-    -------
-    ResponseTable
     """
     reach = np.maximum(natural_frequency * longest, _LEAST_REACH)
     # in steps, so that like structures share their series

@@ -109,10 +109,6 @@ def converged_multiplier(
         rad/s, m.
     tolerance : float
         On |mu|, relative to max(1, |mu|).
-
-    Returns
-    -------
-    Multiplier
     """
     point = np.array([speed]), np.array([depth])
     # the first value is there to be compared with: it may be coarser than what is needed
@@ -162,10 +158,6 @@ def limit_curve(
         As in `multipliers`.
     progress : callable, optional
         Called with (done, total) points of the grid.
-
-    Returns
-    -------
-    LimitCurve
     """
     count, refinements = _resolution(arrays, speeds, steps)
 

@@ -51,10 +51,6 @@ def zero_order_limit(
         Uniformly spaced.
     speeds : (n,) array of float
         Spindle speeds, rad/s.
-
-    Returns
-    -------
-    ZeroOrderLimit
     """
     eigenvalues = _continuous(_eigenvalues(receptance @ averaged_directional))
     with np.errstate(divide="ignore", invalid="ignore"):
