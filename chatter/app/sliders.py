@@ -20,35 +20,18 @@ _MOST_TEETH = 12
 
 @dataclass(frozen=True)
 class Slider:
-    """A slider.
+    """A slider."""
 
-    Parameters
-    ----------
-    path : str
-        Into the case.
-    group, label : str
-        Heading that it stands under, and its name there.
-    unit : str
-        Of value, low and high; empty for pure numbers.
-    value, low, high : float
-    whole : bool
-        Only whole numbers.
-    logarithmic : bool
-        Scale of the slider.
-    view : bool
-        A range of the diagram, no part of the cut.
-    """
-
-    path: str
-    group: str
-    label: str
-    unit: str
+    path: str  # into the case
+    group: str  # heading that it stands under
+    label: str  # its name there
+    unit: str  # of value, low and high; empty for pure numbers
     value: float
     low: float
     high: float
-    whole: bool = False
-    logarithmic: bool = False
-    view: bool = False
+    whole: bool = False  # only whole numbers
+    logarithmic: bool = False  # scale of the slider
+    view: bool = False  # a range of the diagram, no part of the cut
 
     def as_json(self) -> dict[str, Any]:
         """Return the slider as the page takes it."""

@@ -22,21 +22,12 @@ _TIME_JITTER = 0.1
 
 @dataclass(frozen=True)
 class HammerFolder:
-    """What a folder of hammer records holds.
+    """What a folder of hammer records holds."""
 
-    Parameters
-    ----------
-    records : tuple of HammerRecord
-        In natural order of their names (tap2 before tap10).
-    unreadable : tuple of (str, str)
-        Name and reason for each file that could not be read as a record.
-    passed_over : tuple of str
-        Names of the files of other extensions.
-    """
-
-    records: tuple[HammerRecord, ...]
+    records: tuple[HammerRecord, ...]  # in natural order of their names (tap2 before tap10)
+    #: name and reason for each file that could not be read as a record
     unreadable: tuple[tuple[str, str], ...] = ()
-    passed_over: tuple[str, ...] = ()
+    passed_over: tuple[str, ...] = ()  # names of the files of other extensions
 
 
 def read_hammer_record(path: str | Path, response: str | None = None) -> HammerRecord:

@@ -20,13 +20,7 @@ _SCRIPT = "run.py"
 
 @dataclass(frozen=True)
 class Example:
-    """One shipped example.
-
-    Parameters
-    ----------
-    name : str
-    folder : Path
-    """
+    """One shipped example."""
 
     name: str
     folder: Path

@@ -19,22 +19,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Column:
-    """One column as stored.
+    """One column as stored."""
 
-    Parameters
-    ----------
-    heading : str
-        Name and unit as written: "Fx [N]".
-    cells : (n,) sequence of str or array of float
-    content : str or None
-        "force", "displacement", ... where the format says so itself; the cells are then in SI.
-    point : Point
-        Where and in which direction it was measured, where the format says so.
-    """
-
-    heading: str
-    cells: Sequence[str] | NDArray
+    heading: str  # name and unit as written: "Fx [N]"
+    cells: Sequence[str] | NDArray  # (n,)
+    #: "force", "displacement", ... where the format says so itself; the cells are then in SI.
     content: Channel | None = None
+    #: where and in which direction it was measured, where the format says so
     point: Point = field(default_factory=Point)
 
     @property
@@ -50,19 +41,11 @@ class Column:
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """Columns of equal length.
-
-    Parameters
-    ----------
-    path : Path
-    columns : tuple of Column
-    lines : (n,) sequence of int, optional
-        Line of the text file each row stood on, from 1.
-    """
+    """Columns of equal length."""
 
     path: Path
     columns: tuple[Column, ...]
-    lines: Sequence[int] | None = None
+    lines: Sequence[int] | None = None  # line of the text file each row stood on, from 1
 
     @property
     def size(self) -> int:

@@ -47,30 +47,15 @@ LIMIT_ERROR = 1e-3
 
 @dataclass(frozen=True)
 class MillingModel:
-    """A case compiled for stability, spindle speed and axial depth left open.
+    """A case compiled for stability, spindle speed and axial depth left open."""
 
-    Parameters
-    ----------
-    case : Case
-        That it was compiled from.
-    structure : Structure
-    basis : (3, r) array of float
-        Orthonormal columns that span the motion of the tool point.
-    cutter : Cutter
-    laws : tuple of ForceLaw
-        One for each tooth.
-    flank : ProcessDampingLaw or None
-    notes : tuple of str
-        Assumptions and limits that the user should know of.
-    """
-
-    case: Case
+    case: Case  # that it was compiled from
     structure: Structure
-    basis: NDArray[np.float64]
+    basis: NDArray[np.float64]  # orthonormal columns that span the motion of the tool point (3, r)
     cutter: Cutter
-    laws: tuple[ForceLaw, ...]
+    laws: tuple[ForceLaw, ...]  # one for each tooth
     flank: ProcessDampingLaw | None
-    notes: tuple[str, ...]
+    notes: tuple[str, ...]  # assumptions and limits that the user should know of
 
     @property
     def teeth(self) -> int:

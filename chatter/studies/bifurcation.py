@@ -29,27 +29,15 @@ _KEPT_REVOLUTIONS = 60
 
 @dataclass(frozen=True)
 class BifurcationPoint:
-    """One cut of the diagram.
+    """One cut of the diagram."""
 
-    Parameters
-    ----------
-    value : float
-        Of the path that varies, SI.
-    poincare_section : (k, 3) array of float
-        Displacement when a tooth is at +y, m, over the last revolutions: every tooth of a
-        uniform tool, else the first one; empty where the tool left the range of the model.
-    verdict : str
-        "stable" or "chatter".
-    bifurcation : str
-    chatter_frequency : float
-        Hz; nan where there is none.
-    """
-
-    value: float
+    value: float  # of the path that varies, SI
+    #: displacement when a tooth is at +y, m, over the last revolutions: every tooth of a uniform
+    #: tool, else the first one; empty where the tool left the range of the model (k, 3)
     poincare_section: NDArray[np.float64]
-    verdict: str
+    verdict: str  # "stable" or "chatter"
     bifurcation: str
-    chatter_frequency: float
+    chatter_frequency: float  # Hz; nan where there is none
 
 
 @dataclass(frozen=True)

@@ -18,27 +18,13 @@ _IDENTIFIER = re.compile(rb"[ \t]*(\d{1,6})(b?)(?![\w.])")
 
 @dataclass(frozen=True)
 class Dataset:
-    """One dataset of a universal file: what stands between two lines of -1.
+    """One dataset of a universal file: what stands between two lines of -1."""
 
-    Parameters
-    ----------
-    number : int
-        Dataset number; 58 is a function at nodal degrees of freedom.
-    identifier : str
-        First line, with the binary layout for 58b.
-    body : bytes
-        Everything after the first line.
-    order : int
-        Place in the file, from 1.
-    line : int
-        Line of the file the body begins on, from 1 (meaningless behind binary content).
-    """
-
-    number: int
-    identifier: str
-    body: bytes
-    order: int
-    line: int
+    number: int  # dataset number; 58 is a function at nodal degrees of freedom
+    identifier: str  # first line, with the binary layout for 58b
+    body: bytes  # everything after the first line
+    order: int  # place in the file, from 1
+    line: int  # line of the file the body begins on, from 1 (meaningless behind binary content)
 
     @property
     def is_binary(self) -> bool:

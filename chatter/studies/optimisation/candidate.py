@@ -29,79 +29,45 @@ _GIVEN_BACK, _MOST_TIMES = 1e-3, 20
 
 @dataclass(frozen=True)
 class Probability:
-    """Probability that a cut is what it must be, of samples of the uncertain values.
+    """Probability that a cut is what it must be, of samples of the uncertain values."""
 
-    Parameters
-    ----------
-    stable : float
-        That it is stable.
-    value : float
-        That it is stable and keeps all limits of [optimum].
-    interval : (float, float)
-        95 % confidence of `value`, from the number of samples.
-    quantiles : dict of str to float
-        Key of [optimum] -> what the stable samples do not exceed with the confidence, SI.
-    """
-
-    stable: float
-    value: float
-    interval: tuple[float, float]
+    stable: float  # that it is stable
+    value: float  # that it is stable and keeps all limits of [optimum]
+    interval: tuple[float, float]  # 95 % confidence of `value`, from the number of samples
+    #: key of [optimum] -> what the stable samples do not exceed with the confidence, SI
     quantiles: dict[str, float]
 
 
 @dataclass(frozen=True)
 class Verification:
-    """The same cut simulated in the time domain.
-
-    Parameters
-    ----------
-    verdict : str
-    power, torque, deflection, surface_error : float
-        SI; nan where the run shows none.
-    verified : bool
-        Stable, and every limit held within the tolerance of the comparison.
-    """
+    """The same cut simulated in the time domain."""
 
     verdict: str
-    power: float
-    torque: float
-    deflection: float
-    surface_error: float
-    verified: bool
+    power: float  # SI; nan where the run shows none
+    torque: float  # SI; nan where the run shows none
+    deflection: float  # SI; nan where the run shows none
+    surface_error: float  # SI; nan where the run shows none
+    verified: bool  # stable, and every limit held within the tolerance of the comparison
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """A cut that keeps all limits, SI.
-
-    Parameters
-    ----------
-    point : OperatingPoint
-    power, torque, deflection, surface_error : float
-        Of the steady cut.
-    critical_depth : float
-        At which stability ends above it, at its own speed; inf where that was not found.
-    usage : dict
-        Share of every limit that is used, the depth that the margins leave among them; nan where
-        that is not known.
-    active : tuple of str
-        Limits that would not be held at a depth 2 % larger, and ends of ranges.
-    probability : Probability or None
-        None where nothing is uncertain.
-    verification : Verification or None
-        None where it was not simulated.
-    """
+    """A cut that keeps all limits, SI."""
 
     point: OperatingPoint
-    power: float
-    torque: float
-    deflection: float
-    surface_error: float
+    power: float  # of the steady cut
+    torque: float  # of the steady cut
+    deflection: float  # of the steady cut
+    surface_error: float  # of the steady cut
+    #: at which stability ends above it, at its own speed; inf where that was not found
     critical_depth: float
+    #: share of every limit that is used, the depth that the margins leave among them; nan where
+    #: that is not known
     usage: dict[str, float]
+    #: limits that would not be held at a depth 2 % larger, and ends of ranges
     active: tuple[str, ...]
-    probability: Probability | None = None
-    verification: Verification | None = None
+    probability: Probability | None = None  # None where nothing is uncertain
+    verification: Verification | None = None  # None where it was not simulated
 
     @property
     def removal_rate(self) -> float:

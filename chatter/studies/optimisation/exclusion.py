@@ -19,24 +19,12 @@ _UNIT = {
 
 @dataclass(frozen=True)
 class Exclusion:
-    """What one limit does to the coarse grid.
+    """What one limit does to the coarse grid."""
 
-    Parameters
-    ----------
-    limit : str
-        Key of [optimum], or "stability".
-    excluded : float
-        Share of all points that it excludes.
-    alone : int
-        Points that hold every other limit, and not this one.
-    smallest : str
-        Smallest value found where the cut is stable; empty for stability.
-    """
-
-    limit: str
-    excluded: float
-    alone: int
-    smallest: str
+    limit: str  # key of [optimum], or "stability"
+    excluded: float  # share of all points that it excludes
+    alone: int  # points that hold every other limit, and not this one
+    smallest: str  # smallest value found where the cut is stable; empty for stability
 
     @property
     def excludes_all(self) -> bool:

@@ -40,33 +40,17 @@ _COARSEST_STEP = 0.01
 
 @dataclass(frozen=True)
 class Limits:
-    """Ranges and limits of a search, SI.
+    """Ranges and limits of a search, SI."""
 
-    Parameters
-    ----------
-    speeds : (n,) array of float
-        Coarse grid, rad/s, each the same share above the one before.
-    depths : (m,) array of float
-        m.
-    radial_depths, feeds : arrays of float
-        m; one value where they are fixed.
-    most : mapping
-        Key of [optimum] -> what is allowed.
-    depth_margin, speed_margin : float
-    confidence : float
-    wavelengths : float
-        Chatter wavelengths that an element of collocation holds at the most.
-    """
-
-    speeds: Array
-    depths: Array
-    radial_depths: Array
-    feeds: Array
-    most: Mapping[str, float]
+    speeds: Array  # coarse grid, rad/s, each the same share above the one before (n,)
+    depths: Array  # m (m,)
+    radial_depths: Array  # m; one value where they are fixed
+    feeds: Array  # m; one value where they are fixed
+    most: Mapping[str, float]  # key of [optimum] -> what is allowed
     depth_margin: float
     speed_margin: float
     confidence: float
-    wavelengths: float
+    wavelengths: float  # chatter wavelengths that an element of collocation holds at the most
 
     @property
     def speed_step(self) -> float:

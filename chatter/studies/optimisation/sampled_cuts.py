@@ -47,20 +47,11 @@ _CUTS_AT_ONCE, _SAMPLES_AT_ONCE, _COUNTED_AT_ONCE = 16, 24, 4
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Values of what is uncertain.
+    """Values of what is uncertain."""
 
-    Parameters
-    ----------
-    model : MillingModel
-        Of the case as it is.
-    parameters : tuple of p UncertainParameter
-    values : (n, p) array of float
-        SI.
-    """
-
-    model: MillingModel
+    model: MillingModel  # of the case as it is
     parameters: tuple[UncertainParameter, ...]
-    values: Array
+    values: Array  # SI (n, p)
 
     def __len__(self) -> int:
         return len(self.values)

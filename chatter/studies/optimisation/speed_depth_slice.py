@@ -31,29 +31,15 @@ _STEP_BESIDE = 0.03
 
 @dataclass(frozen=True, eq=False)
 class SpeedDepthSlice:
-    """Points over depth (m) and speed (n) at one radial depth and feed.
+    """Points over depth (m) and speed (n) at one radial depth and feed."""
 
-    Parameters
-    ----------
-    model : MillingModel
-        At this radial depth and feed.
-    speeds, depths : (n,), (m,) arrays of float
-        rad/s, m.
-    stable : StableDepths
-    kept : (m, n) array of bool
-        Stable with its margins.
-    cuts : SteadyCuts of (m, n) arrays
-        nan where the cut is not stable.
-    usage : dict of (m, n) arrays
-        Share of each limit of [optimum] that is used; nan where the cut is not stable.
-    """
-
-    model: MillingModel
-    speeds: Array
-    depths: Array
+    model: MillingModel  # at this radial depth and feed
+    speeds: Array  # rad/s (n,)
+    depths: Array  # m (m,)
     stable: StableDepths
-    kept: NDArray[np.bool_]
-    cuts: SteadyCuts
+    kept: NDArray[np.bool_]  # stable with its margins (m, n)
+    cuts: SteadyCuts  # nan where the cut is not stable (m, n)
+    #: share of each limit of [optimum] that is used; nan where the cut is not stable (m, n)
     usage: dict[str, Array]
 
     @property

@@ -35,21 +35,11 @@ _FORGOTTEN = 1.5
 
 @dataclass(frozen=True)
 class StableDepths:
-    """Stable intervals of depth at the speeds that were evaluated.
+    """Stable intervals of depth at the speeds that were evaluated."""
 
-    Parameters
-    ----------
-    speeds : (n,) array of float
-        rad/s, ascending.
-    crossings : list of n arrays
-        m; stability is lost at even indices and regained at odd ones.
-    max_depth : float
-        Depth to which was searched, m.
-    """
-
-    speeds: Array
-    crossings: Sequence[Array]
-    max_depth: float
+    speeds: Array  # rad/s, ascending (n,)
+    crossings: Sequence[Array]  # m; stability is lost at even indices and regained at odd ones
+    max_depth: float  # depth to which was searched, m
 
     def intervals(self, index: int) -> Array:
         """Stable intervals (k, 2) at a speed, m."""

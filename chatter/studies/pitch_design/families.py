@@ -46,22 +46,13 @@ def _even_phases(teeth: int, speed: float, frequency: float, count: int) -> Arra
 
 @dataclass(frozen=True)
 class Family:
-    """Pitch angles of one parameter.
-
-    Parameters
-    ----------
-    name : str
-    angles : callable
-        (teeth, difference) -> pitch angles, rad.
-    cancelling : callable
-        (teeth, speed, chatter frequency in rad/s, count) -> differences by the rule, rad.
-    widest : callable
-        (teeth) -> deviation of the largest pitch from the mean, for a difference of one.
-    """
+    """Pitch angles of one parameter."""
 
     name: str
-    angles: Callable[[int, float], Array]
+    angles: Callable[[int, float], Array]  # (teeth, difference) -> pitch angles, rad
+    #: (teeth, speed, chatter frequency in rad/s, count) -> differences by the rule, rad
     cancelling: Callable[[int, float, float, int], Array]
+    #: (teeth) -> deviation of the largest pitch from the mean, for a difference of one
     widest: Callable[[int], float]
 
 

@@ -21,21 +21,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class FamilyCurve:
-    """Designs of a family over its difference.
-
-    Parameters
-    ----------
-    name : str
-    differences : (n,) array of float
-        rad.
-    designs : tuple of n Design
-    rule : (k,) array of float
-        Differences at which regeneration cancels by the rule, rad, within the bounds.
-    """
+    """Designs of a family over its difference."""
 
     name: str
-    differences: Array
+    differences: Array  # rad (n,)
     designs: tuple[Design, ...]
+    #: differences at which regeneration cancels by the rule, rad, within the bounds (k,)
     rule: Array
 
     @property

@@ -35,23 +35,12 @@ _MEAN_WEIGHT = 1e-3
 
 @dataclass(frozen=True)
 class Design:
-    """Pitch angles and the limits that they give.
-
-    Parameters
-    ----------
-    name : str
-    pitch : tuple of float
-        deg, multiples of 0.1.
-    limits : (n,) array of float
-        First limit at every speed, m; the end of the search where none was found.
-    score : float
-        What the goal makes of them.
-    """
+    """Pitch angles and the limits that they give."""
 
     name: str
-    pitch: tuple[float, ...]
-    limits: Array
-    score: float
+    pitch: tuple[float, ...]  # deg, multiples of 0.1
+    limits: Array  # first limit at every speed, m; the end of the search where none was found (n,)
+    score: float  # what the goal makes of them
 
     @property
     def lowest_limit(self) -> float:

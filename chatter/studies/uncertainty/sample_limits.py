@@ -21,37 +21,19 @@ _DEPTHS = 32
 
 @dataclass(frozen=True)
 class Grid:
-    """Speeds and depths that all samples share.
+    """Speeds and depths that all samples share."""
 
-    Parameters
-    ----------
-    speeds : (n,) array of float
-        rad/s.
-    depths : (m,) array of float
-        m, ascending.
-    """
-
-    speeds: NDArray[np.float64]
-    depths: NDArray[np.float64]
+    speeds: NDArray[np.float64]  # rad/s (n,)
+    depths: NDArray[np.float64]  # m, ascending (m,)
 
 
 @dataclass(frozen=True)
 class SampleLimits:
-    """Limits of a sample.
+    """Limits of a sample."""
 
-    Parameters
-    ----------
-    limits : list of float
-        At every speed, m; inf where none was found.
-    operating : float
-        At the speed of the cut, m.
-    stable : bool
-        Whether the cut is.
-    """
-
-    limits: list[float]
-    operating: float
-    stable: bool
+    limits: list[float]  # at every speed, m; inf where none was found
+    operating: float  # at the speed of the cut, m
+    stable: bool  # whether the cut is
 
 
 def shared_grid(case: Case, speed_count: int) -> Grid:

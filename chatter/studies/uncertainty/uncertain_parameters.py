@@ -22,22 +22,13 @@ _SMALLEST = 1e-12
 
 @dataclass(frozen=True)
 class UncertainParameter:
-    """A normal distribution, truncated to what the key allows and to the sign of its mean.
-
-    Parameters
-    ----------
-    path : str
-    mean, deviation : float
-        Of the normal distribution before it is truncated, SI.
-    low, high : float
-        Bounds, SI; infinite where there are none.
-    """
+    """A normal distribution, truncated to what the key allows and to the sign of its mean."""
 
     path: str
-    mean: float
-    deviation: float
-    low: float = -np.inf
-    high: float = np.inf
+    mean: float  # of the normal distribution before it is truncated, SI
+    deviation: float  # of the same, SI
+    low: float = -np.inf  # bound, SI; infinite where there is none
+    high: float = np.inf  # bound, SI; infinite where there is none
 
     def at(self, probability: NDArray[np.float64]) -> NDArray[np.float64]:
         """Quantiles (n,), SI, at probabilities between 0 and 1."""

@@ -18,19 +18,10 @@ AS_GIVEN = "as given"
 
 @dataclass(frozen=True)
 class DesignPoint:
-    """Values of one point.
+    """Values of one point."""
 
-    Parameters
-    ----------
-    labels : tuple of str
-        For each variation; "as given" where it is not changed.
-    indices : tuple of int or None
-        Index of its value; None where it is not changed.
-    patch : mapping of str to object
-    """
-
-    labels: tuple[str, ...]
-    indices: tuple[int | None, ...]
+    labels: tuple[str, ...]  # for each variation; "as given" where it is not changed
+    indices: tuple[int | None, ...]  # index of its value; None where it is not changed
     patch: Mapping[str, Any]
 
 

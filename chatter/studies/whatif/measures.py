@@ -26,87 +26,45 @@ _SIGNIFICANT = 7
 
 @dataclass(frozen=True)
 class Curve:
-    """A line of the picture.
+    """A line of the picture."""
 
-    Parameters
-    ----------
-    panel : str
-        Label of the vertical axis; panels with the same label are one.
-    name : str
-        Which of several of a point.
-    x, y : list of float or None
-        None leaves a gap.
-    across : str
-        Label of the horizontal axis.
-    """
-
-    panel: str
-    name: str
-    x: list[float | None]
-    y: list[float | None]
-    across: str
+    panel: str  # label of the vertical axis; panels with the same label are one
+    name: str  # which of several of a point
+    x: list[float | None]  # None leaves a gap
+    y: list[float | None]  # None leaves a gap
+    across: str  # label of the horizontal axis
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """Result at a point.
-
-    Parameters
-    ----------
-    numbers : mapping of str to float or None
-    words : mapping of str to str
-        Such as the verdict.
-    curves : tuple of Curve
-    failure : str
-        Why there is no result; empty where there is one.
-    units : mapping of str to str
-        Of numbers whose quantity leaves the unit open.
-    """
+    """Result at a point."""
 
     numbers: Mapping[str, float | None] = field(default_factory=dict)
-    words: Mapping[str, str] = field(default_factory=dict)
+    words: Mapping[str, str] = field(default_factory=dict)  # such as the verdict
     curves: tuple[Curve, ...] = ()
-    failure: str = ""
+    failure: str = ""  # why there is no result; empty where there is one
+    #: of numbers whose quantity leaves the unit open
     units: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number that a study can show.
+    """A number that a study can show."""
 
-    Parameters
-    ----------
-    title : str
-        In a sentence; "{speed}" stands for the speed of the cut.
-    unit : str
-    beyond : str
-        Number that it lies above where it is None.
-    """
-
-    title: str
+    title: str  # in a sentence; "{speed}" stands for the speed of the cut
     unit: str
-    beyond: str = ""
+    beyond: str = ""  # number that it lies above where it is None
 
 
 @dataclass(frozen=True)
 class Measure:
-    """A kind of result.
-
-    Parameters
-    ----------
-    name : str
-    quantities : mapping of str to Quantity
-        The first is the main one.
-    evaluate : callable
-        Of model, method and names, returns an Outcome.
-    logarithmic : bool
-        Scale of the curves.
-    """
+    """A kind of result."""
 
     name: str
-    quantities: Mapping[str, Quantity]
+    quantities: Mapping[str, Quantity]  # the first is the main one
+    #: of model, method and names, returns an Outcome
     evaluate: Callable[[Model, str | None, tuple[str, ...]], Outcome]
-    logarithmic: bool = False
+    logarithmic: bool = False  # scale of the curves
 
 
 def _numbers(values: NDArray[np.float64]) -> list[float | None]:

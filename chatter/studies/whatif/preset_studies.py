@@ -15,32 +15,16 @@ from chatter.description.wording import nearest
 
 @dataclass(frozen=True)
 class PresetStudy:
-    """A study with its paths and values.
-
-    Parameters
-    ----------
-    name : str
-    question : str
-    example : str
-        Shipped example that it is made for, as folder/file.
-    vary : sequence of str
-        As on the command line.
-    result : str
-    settings : mapping of str to object
-        Patch of the case before anything varies.
-    only : sequence of str
-        Names of [frf.NAME].
-    quantity : str, optional
-    tornado : bool
-    """
+    """A study with its paths and values."""
 
     name: str
     question: str
-    example: str
-    vary: Sequence[str]
+    example: str  # shipped example that it is made for, as folder/file
+    vary: Sequence[str]  # as on the command line
     result: str
+    #: patch of the case before anything varies
     settings: Mapping[str, Any] = field(default_factory=dict)
-    only: Sequence[str] = ()
+    only: Sequence[str] = ()  # names of [frf.NAME]
     quantity: str | None = None
     tornado: bool = False
 

@@ -35,38 +35,20 @@ _EXAMPLE = 'such as cut.axial_depth="1 mm, 2 mm" or cut.spindle_speed="3000 rpm.
 
 @dataclass(frozen=True)
 class Value:
-    """One value of a path.
+    """One value of a path."""
 
-    Parameters
-    ----------
-    label : str
-        As people read it.
-    patch : mapping of str to object
-        What it changes.
-    number : float, optional
-        In the unit of the variation; None for what is no quantity.
-    """
-
-    label: str
-    patch: Mapping[str, Any] = field(hash=False)
-    number: float | None = None
+    label: str  # as people read it
+    patch: Mapping[str, Any] = field(hash=False)  # what it changes
+    number: float | None = None  # in the unit of the variation; None for what is no quantity
 
 
 @dataclass(frozen=True)
 class Variation:
-    """A path and its values.
-
-    Parameters
-    ----------
-    path : str
-    values : tuple of Value
-    unit : str
-        Of the numbers.
-    """
+    """A path and its values."""
 
     path: str
     values: tuple[Value, ...]
-    unit: str = ""
+    unit: str = ""  # of the numbers
 
     @property
     def numbers(self) -> list[float] | None:
