@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from cutting.chip.delayed_chip import DelayedCut, delayed_commit, delayed_forces
 from cutting.chip.discrete_chip import DiscreteCut, discrete_commit, discrete_forces
-from cutting.chip.tool_point import Rotation, ToolPoint
+from cutting.chip.tool_point import Rotation, ToolPoint, tool_point
 from cutting.compiled import INLINED, by_table, for_each
 from cutting.process_damping.contact import ToolContact, contact_commit, contact_forces
 
@@ -58,6 +58,23 @@ class SpindleOnPort(NamedTuple):
     bins: int  # of a revolution
 
 
+class ToolOnModes(NamedTuple):
+    """Tool whose motion is that of the first ports, one an axis, and lies in the same arrays.
+
+    It spares a copy in each step, which a cut on a few modes would notice.
+    """
+
+    ports: int = 3
+
+
+class ToolOnPorts(NamedTuple):
+    """Tool against the workpiece on any ports, fed by the structure."""
+
+    port: NDArray[np.int64]  # along x, y, z of the cut, (3,)
+    origin: NDArray[np.float64]  # displacement of the ports where the cut begins, m, (3,)
+    carried: NDArray[np.float64]  # feed of the tool by the structure, m/s, (3,)
+
+
 class CutOnPorts(NamedTuple):
     """Cut between tool and workpiece, which ports of a structure move."""
 
@@ -65,10 +82,14 @@ class CutOnPorts(NamedTuple):
     spindle: PrescribedSpindle | SpindleOnPort
     path: PrescribedPath
     point: ToolPoint
-    port: NDArray[np.int64]  # of the tool against the workpiece along x, y, z of the cut, (3,)
-    origin: NDArray[np.float64]  # displacement of the ports where the cut begins, m, (3,)
-    carried: NDArray[np.float64]  # feed of the tool by the structure, m/s, (3,)
+    tool: ToolOnModes | ToolOnPorts
     furthest: float  # displacement beyond which the model of the cut no longer holds, m
+
+
+def tool_point_on_modes(bus) -> ToolPoint:
+    """Return a tool point in the arrays of the first three ports of a structure."""
+    motion = (signal[:3] for signal in (bus.u, bus.v, bus.u_before, bus.v_before))
+    return tool_point()._replace(**dict(zip(ToolPoint._fields[:4], motion, strict=True)))
 
 
 @register_jitable(**INLINED)
@@ -152,16 +173,36 @@ _commit_torque = by_table({PrescribedSpindle: _no_torque, SpindleOnPort: _leave_
 
 
 @register_jitable(**INLINED)
-def _take_motion(cut, bus, clock):
+def _shared(tool, point, bus, clock):
+    """Take nothing: the motion of the ports is that of the tool point."""
+
+
+@register_jitable(**INLINED)
+def _motion_of_ports(tool, point, bus, clock):
     """Displacement of the tool from its nominal motion at both ends of the step."""
     before, now = clock.step * bus.step, (clock.step + 1) * bus.step
-    point = cut.point
     for axis in range(3):
-        p, origin, feed = cut.port[axis], cut.origin[axis], cut.carried[axis]
+        p, origin, feed = tool.port[axis], tool.origin[axis], tool.carried[axis]
         point.displacement_before[axis] = bus.u_before[p] - origin - feed * before
         point.velocity_before[axis] = bus.v_before[p] - feed
         point.displacement[axis] = bus.u[p] - origin - feed * now
         point.velocity[axis] = bus.v[p] - feed
+
+
+@register_jitable(**INLINED)
+def _port_of_mode(tool, axis):  # noqa: ARG001
+    """Port of an axis."""
+    return axis
+
+
+@register_jitable(**INLINED)
+def _port(tool, axis):
+    """Port of an axis."""
+    return tool.port[axis]
+
+
+_take_motion = by_table({ToolOnModes: _shared, ToolOnPorts: _motion_of_ports})
+_port_of = by_table({ToolOnModes: _port_of_mode, ToolOnPorts: _port})
 
 
 @register_jitable(**INLINED)
@@ -178,12 +219,12 @@ def _clear(point):
 def cut_forces(cut, bus, clock):
     """Evaluate the cut at the predicted motion; its force grows to that over the step."""
     point = cut.point
-    _take_motion(cut, bus, clock)
+    _take_motion(cut.tool, point, bus, clock)
     _clear(point)
     _forces_at_tool(cut.laws, _rotation(cut.spindle, cut.path, bus, clock), point)
     share = cut.path.share[clock.row + 1]
     for axis in range(3):
-        p = cut.port[axis]
+        p = _port_of(cut.tool, axis)
         point.force[axis] *= share
         bus.change[p] += point.force[axis] - bus.next_force[p]
     _put_torque(cut.spindle, point, bus)
@@ -193,7 +234,7 @@ def cut_forces(cut, bus, clock):
 def cut_commit(cut, bus, clock):
     """Take the corrected motion into the memory of the laws; halt where it is too large."""
     point = cut.point
-    _take_motion(cut, bus, clock)
+    _take_motion(cut.tool, point, bus, clock)
     rotation = _rotation(cut.spindle, cut.path, bus, clock)
     reach = 0.0
     for axis in range(3):
@@ -204,5 +245,5 @@ def cut_commit(cut, bus, clock):
         return
     _commit_at_tool(cut.laws, rotation, point)
     for axis in range(3):
-        bus.next_force[cut.port[axis]] = point.force[axis]
+        bus.next_force[_port_of(cut.tool, axis)] = point.force[axis]
     _commit_torque(cut.spindle, point, bus)

@@ -10,7 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.progress import Progress, no_progress
-from chatter.engine.cut import CutOnPorts, PrescribedSpindle, SpindleOnPort
+from chatter.engine.cut import (
+    CutOnPorts,
+    PrescribedSpindle,
+    SpindleOnPort,
+    ToolOnModes,
+    ToolOnPorts,
+    tool_point_on_modes,
+)
 from chatter.engine.interruption import interruptions_held
 from chatter.engine.loop import Laws, run
 from chatter.engine.record import COLUMNS, CutRecord, PortRecord, port_record
@@ -24,7 +31,7 @@ from chatter.simulation.spindle import (
 )
 from chatter.simulation.workpiece import STEPS_A_CHUNK, follows, reach_of, steps_a_chunk
 from cutting.chip.discrete_chip import DiscreteCut
-from cutting.chip.tool_point import tool_point
+from cutting.chip.tool_point import ToolPoint, tool_point
 from cutting.dexel.stock import DexelStock
 from dynamics.machine.tables import modal_tables
 
@@ -58,15 +65,14 @@ class CutRun:
         self.interrupted = False
         self.stock = _following_stock(setup)
         self.bus = setup.structure.tables.bus
-        self.point = tool_point()
+        self.point = _tool_point(setup)
         self.ports: PortRecord | None = None
         if setup.on_machine is not None:
             self.ports = port_record(steps // stride + 1, len(self.bus.u), stride, 0)
         self.record(stride, 0, steps)
         self._run_in_the_air()
         port = setup.structure.tables.port
-        self._port = np.array([port[f"tool {axis}"] for axis in "xyz"], dtype=np.int64)
-        self._origin = self.bus.u[self._port]
+        self._tool = _tool(setup)
         if setup.turned_by_port:
             self.angle = float(self.bus.u[port["tool turn"]])
         self.done = -1
@@ -164,9 +170,7 @@ class CutRun:
             spindle=self._spindle(number, time),
             path=path,
             point=self.point,
-            port=self._port,
-            origin=self._origin,
-            carried=_carried(setup),
+            tool=self._tool,
             furthest=setup.furthest if setup.modes or setup.on_machine else math.inf,
         )
 
@@ -182,10 +186,21 @@ class CutRun:
         return prescribed_spindle(setup.spindle, time, bins_at(setup.spindle, time, bins), bins)
 
 
-def _carried(setup: Setup) -> NDArray[np.float64]:
-    """Feed of the tool by the axes of a machine, m/s; what they do not carry is prescribed."""
-    carried = setup.on_machine is not None and bool(setup.on_machine.feeds)
-    return np.array([setup.path.feed if carried else 0.0, 0.0, 0.0])
+def _tool_point(setup: Setup) -> ToolPoint:
+    """Tool point at rest."""
+    if setup.on_machine is None:
+        return tool_point_on_modes(setup.structure.tables.bus)
+    return tool_point()
+
+
+def _tool(setup: Setup) -> ToolOnModes | ToolOnPorts:
+    """Ports of the tool; what the axes of a machine do not feed is prescribed."""
+    if setup.on_machine is None:
+        return ToolOnModes()
+    tables = setup.structure.tables
+    port = np.array([tables.port[f"tool {axis}"] for axis in "xyz"], dtype=np.int64)
+    feed = setup.path.feed if setup.on_machine.feeds else 0.0
+    return ToolOnPorts(port, tables.bus.u[port], np.array([feed, 0.0, 0.0]))
 
 
 def _following_stock(setup: Setup) -> FollowingStock | None:

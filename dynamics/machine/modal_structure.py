@@ -215,21 +215,24 @@ def modal_energy(modes: Sequence[Mode]) -> ModalEnergy:
 def modal_energy_forces(group, bus, clock):  # noqa: ARG001
     """Add work and dissipation of the step, whose motion is corrected."""
     h = bus.step
+    x0, y0, z0 = bus.force[0], bus.force[1], bus.force[2]
+    x1, y1, z1 = x0 + bus.change[0], y0 + bus.change[1], z0 + bus.change[2]
+    work = dissipated = 0.0
     for i in range(group.mass.shape[0]):
-        f0 = f1 = 0.0
-        for axis in range(_DIRECTIONS):
-            f0 += group.shape[i, axis] * bus.force[axis]
-            f1 += group.shape[i, axis] * (bus.force[axis] + bus.change[axis])
+        x, y, z = group.shape[i, 0], group.shape[i, 1], group.shape[i, 2]
+        f0, f1 = x * x0 + y * y0 + z * z0, x * x1 + y * y1 + z * z1
         q0, v0 = bus.state[2 * i], bus.state[2 * i + 1]
         q1, v1 = bus.after[2 * i], bus.after[2 * i + 1]
         # mean displacement and square of velocity by Hermite quadrature, of fourth order
         mean = 0.5 * (q0 + q1) + h / 12.0 * (v0 - v1)
-        a0 = (f0 - group.damping[i] * v0 - group.stiffness[i] * q0) / group.mass[i]
-        a1 = (f1 - group.damping[i] * v1 - group.stiffness[i] * q1) / group.mass[i]
-        group.energy[0] += f1 * q1 - f0 * q0 - (f1 - f0) * mean
-        group.energy[1] += group.damping[i] * (
-            0.5 * h * (v0 * v0 + v1 * v1) + h * h / 6.0 * (v0 * a0 - v1 * a1)
+        p0 = f0 - group.damping[i] * v0 - group.stiffness[i] * q0
+        p1 = f1 - group.damping[i] * v1 - group.stiffness[i] * q1
+        work += f1 * q1 - f0 * q0 - (f1 - f0) * mean
+        dissipated += group.damping[i] * (
+            0.5 * h * (v0 * v0 + v1 * v1) + h * h / 6.0 * (v0 * p0 - v1 * p1) / group.mass[i]
         )
+    group.energy[0] += work
+    group.energy[1] += dissipated
 
 
 def stored_energy(account: ModalEnergy, bus: ModalSteps) -> float:
