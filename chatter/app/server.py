@@ -153,7 +153,7 @@ class _Handler(BaseHTTPRequestHandler):
         if path not in _PAGE:
             raise _RefusedError(HTTPStatus.NOT_FOUND, "there is no such page")
         name, kind = _PAGE[path]
-        return files("chatter.app").joinpath("page", name).read_bytes(), kind
+        return (files("chatter.app") / "page" / name).read_bytes(), kind
 
     def _post(self, path: str) -> tuple[bytes, str]:
         known = {"diagram": self._diagram, "simulation": self._simulation, "case": self._case}

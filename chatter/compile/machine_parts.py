@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
+from typing import TypeVar
 
 import numpy as np
 
@@ -27,6 +28,9 @@ from dynamics.reduction.imported_part import ImportedPart, reduced_part
 from dynamics.structure.bodies import Connector
 from dynamics.structure.spring_coupling import Coupling, Term
 from dynamics.structure.surface_constraint import InterpolatedPoint, RigidSurface
+
+#: what a section of a machine file is made into
+Made = TypeVar("Made")
 
 
 def assembled_machine(
@@ -126,7 +130,7 @@ def machine_parts(
     )
 
 
-def _made(file: MachineFile, key: str, make: Callable[[], object]) -> object:
+def _made(file: MachineFile, key: str, make: Callable[[], Made]) -> Made:
     with machine_errors(file.name, key):
         return make()
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from types import GenericAlias
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, WithJsonSchema
@@ -201,7 +202,8 @@ def quantities(count: int, dimension: str, **bounds: float) -> Any:
         "maxItems": count,
         "description": f"{count} quantities, each {field.noun}",
     }
-    return Annotated[tuple[(float,) * count], BeforeValidator(read), WithJsonSchema(schema), field]
+    numbers: Any = GenericAlias(tuple, (float,) * count)
+    return Annotated[numbers, BeforeValidator(read), WithJsonSchema(schema), field]
 
 
 def quantity_list(dimension: str, fewest: int, most: int, **bounds: float) -> Any:

@@ -21,6 +21,7 @@ from dynamics.control.current_loop import RegulatedMotor
 from dynamics.control.sampling import ControlError
 from dynamics.machine.description import Machine
 from dynamics.machine.groups import ControlledDrives
+from dynamics.machine.steps import StructureSteps
 from dynamics.machine.tables import StructureTables, machine_tables
 from dynamics.structure.linear_structure import StructureError
 
@@ -163,6 +164,11 @@ def _states(tables: StructureTables, drives: ControlledDrives) -> list[NDArray[n
     ]
 
 
+def _ports_follow_state(bus: StructureSteps) -> None:
+    bus.u[:] = bus.state @ bus.displacement
+    bus.v[:] = bus.state @ bus.velocity
+
+
 def _map_over(
     tables: StructureTables, drives: ControlledDrives, period: int
 ) -> NDArray[np.float64]:
@@ -175,8 +181,7 @@ def _map_over(
             for state in states:
                 state[:] = 0.0
             chosen[place] = 1.0
-            tables.bus.u[:] = tables.bus.state @ tables.bus.displacement
-            tables.bus.v[:] = tables.bus.state @ tables.bus.velocity
+            _ports_follow_state(tables.bus)
             run(laws, tables.bus, 0, 0, period)
             transition[:, column] = np.concatenate(states)
             column += 1
@@ -205,8 +210,7 @@ def _heard(
     for state in states:
         state[:] = motion[start : start + state.size].reshape(state.shape)
         start += state.size
-    tables.bus.u[:] = tables.bus.state @ tables.bus.displacement
-    tables.bus.v[:] = tables.bus.state @ tables.bus.velocity
+    _ports_follow_state(tables.bus)
     # what is linear may be scaled at each step, so that no growth leaves the numbers
     kept = math.exp(-growth * tables.bus.step)
     laws = Laws(tables.explicit)

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
@@ -64,7 +65,7 @@ def draw_slice(axes: Axes, found: Optimum) -> None:
         linewidths=0.6, alpha=0.8,
     )  # fmt: skip
     axes.clabel(lines, fmt="%g", fontsize=7.0)
-    handles = [_handle(style.GREY, "-", "removal rate [cm³/min]")]
+    handles: list[Artist] = [_handle(style.GREY, "-", "removal rate [cm³/min]")]
     for key, usage in grid_slice.usage.items():
         name, colour, line = _BOUNDARIES[key]
         known = np.ma.masked_invalid(usage)

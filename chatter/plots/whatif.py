@@ -7,13 +7,17 @@ from typing import TYPE_CHECKING
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 
+from chatter.description.case import Case
+from chatter.description.sections.cut import Cut
 from chatter.description.units import rpm
 from chatter.plots import style
 from chatter.studies.whatif.summary import ranked, title_of, unit_of, value_text
 
 if TYPE_CHECKING:
+    from chatter.studies.whatif.variation import Variation
     from chatter.studies.whatif.whatif_study import WhatIf
 
 _LONGEST_LABEL = 60
@@ -78,16 +82,15 @@ def _draw_curves(axes: Axes, study: WhatIf, panel: str, name: str, colours: list
         axes.set_yscale("log")
     else:
         axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
-    if study.measure.name == "lobes":
-        _mark_operating_point(axes, study)
+    if study.measure.name == "lobes" and isinstance(study.model, Case):
+        _mark_operating_point(axes, study.model.cut)
     axes.margins(x=0.0)
     axes.set_xlabel(across)
     axes.set_ylabel(panel if not name else f"{name}\n{panel}")
     style.finish(axes)
 
 
-def _mark_operating_point(axes: Axes, study: WhatIf) -> None:
-    cut = study.model.cut
+def _mark_operating_point(axes: Axes, cut: Cut) -> None:
     axes.plot(
         rpm(cut.spindle_speed),
         cut.axial_depth * 1e3,
@@ -173,7 +176,7 @@ def _heat_map(study: WhatIf) -> Figure:
     return figure
 
 
-def _ticks(axis: object, one: object) -> None:
+def _ticks(axis: Axis, one: Variation) -> None:
     step = -(-len(one.values) // _MOST_TICKS)
     indices = range(0, len(one.values), step)
     axis.set_ticks(list(indices), [one.values[k].label[: _LONGEST_LABEL // 2] for k in indices])

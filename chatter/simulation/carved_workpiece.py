@@ -69,12 +69,14 @@ class FollowingStock:
     def follow(self, x: float) -> DiscreteCut:
         """Move the stock up to the place of the tool axis, m, and return the cut through it."""
         stock = self.cut.stock
-        dexels = isinstance(stock, DexelStock)
-        rear, size = (stock.box[0], stock.spacing) if dexels else (stock.x_min, stock.cell)
+        if isinstance(stock, DexelStock):
+            rear, size = stock.box[0], stock.spacing
+        else:
+            rear, size = stock.x_min, stock.cell
         a_move = size * self._kind.cells_a_move
         moves = math.floor((x - self._reach - rear) / a_move + 1e-6)
         if moves > 0:
-            if dexels:
+            if isinstance(stock, DexelStock):
                 self._keep_walls(stock, moves)
             self.cut = self.cut._replace(stock=self._kind.advanced(stock, moves * a_move))
         return self.cut

@@ -181,7 +181,9 @@ def finish_from_profiles(
     cut_off = cut_off_for(feed_per_revolution)
     found = tuple(_wall_finish(wall, cut_off) for wall in walls)
     below = None if floor is None else _floor_finish(floor, cut_off)
-    evaluated = [one.texture for one in (*found, below) if one is not None]
+    evaluated = [wall.texture for wall in found]
+    if below is not None:
+        evaluated.append(below.texture)
     return Finish(found, below, (*notes, *_length_notes(evaluated, cut_off)))
 
 

@@ -181,7 +181,9 @@ class SimulationResult:
                 "resolution_um": spacing * 1e6,
                 "layers": len(self.setup.slices.height),
                 "removed_volume_mm3": float(cut.removed[0]) * 1e9,
-                "memory_MB": sum(part.nbytes for part in cut.stock if hasattr(part, "nbytes"))
+                "memory_MB": sum(
+                    part.nbytes for part in cut.stock if isinstance(part, (np.ndarray, np.generic))
+                )
                 / 1e6,
             }
         }

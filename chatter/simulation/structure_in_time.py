@@ -218,14 +218,14 @@ def _set_points(
         time - 0.5 * ramp,
     )
     gain = np.where(share < 1.0, 0.5 * np.pi / ramp * np.sin(np.pi * share), 0.0)
-    columns = [np.zeros((time.size, max(len(machine.axes), 1))) for _ in range(3)]
-    for axis, velocity in cut.velocities(feed, speed).items():
+    position, velocity, acceleration = np.zeros((3, time.size, max(len(machine.axes), 1)))
+    for axis, full in cut.velocities(feed, speed).items():
         place = machine.axes.index(axis)
         turning = axis == cut.spindle_axis
-        columns[0][:, place] = velocity * (time if turning else way)
-        columns[1][:, place] = velocity * (1.0 if turning else rising)
-        columns[2][:, place] = 0.0 if turning else velocity * gain
-    return SetPoints(*columns, round(cycle / cut.file.step))
+        position[:, place] = full * (time if turning else way)
+        velocity[:, place] = full * (1.0 if turning else rising)
+        acceleration[:, place] = 0.0 if turning else full * gain
+    return SetPoints(position, velocity, acceleration, round(cycle / cut.file.step))
 
 
 def _tables(cut: MachineCut, case: Case, step: float, points: SetPoints) -> StructureTables:

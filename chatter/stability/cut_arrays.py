@@ -94,8 +94,10 @@ def cut_arrays(
         rad.
     variation : SpeedVariation
     """
+    natural, damping, shape, force_gain = modes
     fastest = CHATTER_ABOVE_NATURAL * relevant_frequency(*modes)
+    position, weight = _edge_rules()
     return CutArrays(
-        *modes, np.ascontiguousarray(basis), segments, period_angle, variation, PeriodFit(),
-        fastest, _stiffening(modes, segments), *_edge_rules(),
+        natural, damping, shape, force_gain, np.ascontiguousarray(basis), segments, period_angle,
+        variation, PeriodFit(), fastest, _stiffening(modes, segments), position, weight,
     )  # fmt: skip

@@ -155,7 +155,7 @@ def _edge_points(segments: EdgeSegments, depth: float) -> EdgePoints:
                 )
             )  # fmt: skip
     table = [np.array(column) for column in zip(*columns, strict=True)]
-    return EdgePoints(*table) if table else EdgePoints(*[np.zeros(0)] * 8, np.zeros((0, 3)))
+    return EdgePoints(*(table or [*[np.zeros(0)] * 8, np.zeros((0, 3))]))
 
 
 def _between(ends: NDArray[np.float64], share: float) -> float:

@@ -69,7 +69,8 @@ def joined_limits(
     crossings = [found for curve in curves for found in curve.crossings]
     return LimitCurve(
         speeds,
-        *(np.concatenate([curve[column] for curve in curves])[order] for column in (1, 2)),
+        np.concatenate([curve.critical_depth for curve in curves])[order],
+        np.concatenate([curve.chatter_frequency for curve in curves])[order],
         tuple(kinds[i] for i in order),
         tuple(crossings[i] for i in order),
         np.concatenate([curve.steps for curve in curves])[order],

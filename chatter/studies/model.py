@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from chatter.description.machine.machine_file import MachineFile
 
     Model: TypeAlias = Case | MachineFile
+    AnyModel = TypeVar("AnyModel", bound=Model)
 
 #: beginning of paths into the machine of a case
 PREFIX = "machine."
@@ -52,7 +53,7 @@ def machine_of(model: Model) -> MachineFile | None:
     return model.machine_file() if on_machine else None
 
 
-def patched(model: Model, values: Mapping[str, Any]) -> Model:
+def patched(model: AnyModel, values: Mapping[str, Any]) -> AnyModel:
     """Return a model with some values changed.
 
     Parameters

@@ -47,4 +47,8 @@ class Rotation(NamedTuple):
 
 def tool_point() -> ToolPoint:
     """Return a tool point at rest."""
-    return ToolPoint(*(np.zeros(3) for _ in range(6)), np.zeros(1), np.zeros(1))
+    return ToolPoint(
+        displacement=np.zeros(3), velocity=np.zeros(3), displacement_before=np.zeros(3),
+        velocity_before=np.zeros(3), force=np.zeros(3), sample=np.zeros(3), torque=np.zeros(1),
+        contact=np.zeros(1),
+    )  # fmt: skip

@@ -151,7 +151,7 @@ def _as_arrays(
         radius=table.radius, delay_index=delay_index, distinct_delay=np.array(distinct),
         cutting=table.cutting, feed=feed, radial_offset=table.radial_offset,
         axial_offset=table.axial_offset, corner=table.corner,
-        vanishing=table.vanishing.astype(np.int64), exponent=power.exponent,
+        vanishing=np.asarray(table.vanishing, dtype=np.int64), exponent=power.exponent,
         reference=power.reference, damping=damping, turning=turning,
         first_of_group=first_of_group,
         outline=np.array([cutter.radius, cutter.corner_radius, cutter.edge_angle]),

@@ -152,9 +152,7 @@ class BeamLine:
         object.__setattr__(self, "axis", finite(where, "axis", self.axis, (3,)))
         if not np.any(self.axis):
             raise StructureError(f"{where}: axis has no length")
-        for item in (*self.discs, *self.bearings):
-            self._within(item.station)
-        for station in self.stations:
+        for station in self._stations_with_nodes():
             self._within(station)
         _ = self.axes
 
@@ -180,7 +178,7 @@ class BeamLine:
     @cached_property
     def nodes(self) -> NDArray[np.float64]:
         """(nodes,): positions of the nodes along the line, m."""
-        asked = [item.station for item in (*self.discs, *self.bearings)] + list(self.stations)
+        asked = self._stations_with_nodes()
         marks = [0.0]
         start = 0.0
         for segment in self.segments:
@@ -282,6 +280,14 @@ class BeamLine:
     def _station(self, position: ArrayLike) -> float:
         where = finite(f'beam "{self.name}"', "position", position, (3,))
         return self._within(float(self.axes[0] @ (where - self.origin)))
+
+    def _stations_with_nodes(self) -> list[float]:
+        """Positions of discs and bearings, and further ones that are asked for, m."""
+        return [
+            *(disc.station for disc in self.discs),
+            *(bearing.station for bearing in self.bearings),
+            *self.stations,
+        ]
 
     def _within(self, station: float) -> float:
         if not -1e-9 * self.length <= station <= (1.0 + 1e-9) * self.length:

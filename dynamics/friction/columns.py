@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 
-def parameter_columns(laws: Sequence[Any], names: Sequence[str]) -> list[NDArray[np.float64]]:
+def parameter_columns(laws: Sequence[Any], names: Sequence[str]) -> dict[str, NDArray[np.float64]]:
     """Columns (n,) of the parameters of n laws, by their names; not writeable."""
-    return [
-        _fixed(np.array([getattr(law, name) for law in laws], dtype=np.float64)) for name in names
-    ]
+    return {
+        name: _fixed(np.array([getattr(law, name) for law in laws], dtype=np.float64))
+        for name in names
+    }
 
 
 def port_column(ports: Sequence[int]) -> NDArray[np.int64]:

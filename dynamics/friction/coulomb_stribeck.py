@@ -115,7 +115,7 @@ def coulomb_stribeck_table(
 ) -> CoulombStribeckTable:
     """Return frictions at rest on ports."""
     columns = parameter_columns(laws, CoulombStribeckTable._fields[:5])
-    return CoulombStribeckTable(*columns, port_column(ports), np.zeros(len(laws)))
+    return CoulombStribeckTable(**columns, port=port_column(ports), rate=np.zeros(len(laws)))
 
 
 @register_jitable(**INLINED)

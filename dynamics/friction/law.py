@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +13,12 @@ from dynamics.keys import Key, with_defaults
 
 
 class FrictionLaw(Protocol):
-    """Parameters of one friction, SI; along a rotation read N m, rad for N, m."""
+    """Parameters of one friction, SI; along a rotation read N m, rad for N, m.
+
+    A frozen dataclass.
+    """
+
+    __dataclass_fields__: ClassVar[dict[str, Any]]
 
     def steady_state_force(self, velocity: ArrayLike) -> NDArray[np.float64]:
         """Force at constant velocities in m/s, N."""
@@ -29,6 +34,15 @@ class FrictionLaw(Protocol):
 
     def describing_function(self, amplitude: float, frequency: float) -> tuple[float, float]:
         """Equivalent stiffness, N/m, and damping, N s/m, of x = A sin(w t); m, Hz."""
+        ...
+
+
+class FrictionTable(Protocol):
+    """Frictions of one law as the kernels see them: a NamedTuple of columns."""
+
+    @property
+    def port(self) -> NDArray[np.int64]:
+        """(n,): where each acts."""
         ...
 
 
@@ -69,7 +83,7 @@ class FrictionLawEntry:
     keys: Sequence[Key]
     spec: type
     table: type
-    columns: Callable[[Sequence[Any], Sequence[int]], NamedTuple]
+    columns: Callable[[Sequence[Any], Sequence[int]], FrictionTable]
     step: Callable
     force: Callable
     advance: Callable

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from dynamics.compiled import by_table
 from dynamics.friction.coulomb_stribeck import COULOMB_STRIBECK
-from dynamics.friction.law import FrictionLaw, FrictionLawEntry
+from dynamics.friction.law import FrictionLaw, FrictionLawEntry, FrictionTable
 from dynamics.friction.lugre import LUGRE
 from dynamics.friction.smooth_coulomb import SMOOTH_COULOMB
 from dynamics.friction.tanh_hysteresis import TANH_HYSTERESIS
@@ -43,7 +43,7 @@ friction_advance = by_table(_ADVANCE)
 class Frictions(NamedTuple):
     """Frictions of one law, with what the time loop remembers of each."""
 
-    law: NamedTuple  # table of the law; its column `port` says where each acts
+    law: FrictionTable
     force: NDArray[np.float64]  # held over the last step, N, (n,)
     beyond: NDArray[np.float64]  # by which the law moves further than its port, m, (n,)
 

@@ -155,7 +155,8 @@ class LuGreTable(NamedTuple):
 def lugre_table(laws: Sequence[LuGre], ports: Sequence[int]) -> LuGreTable:
     """Return frictions at rest on ports, with unbent bristles."""
     columns = parameter_columns(laws, LuGreTable._fields[:9])
-    return LuGreTable(*columns, port_column(ports), np.zeros(len(laws)), np.zeros(len(laws)))
+    deflection, rate = np.zeros(len(laws)), np.zeros(len(laws))
+    return LuGreTable(**columns, port=port_column(ports), deflection=deflection, rate=rate)
 
 
 @register_jitable(**INLINED)

@@ -101,7 +101,7 @@ class SmoothCoulombTable(NamedTuple):
 def smooth_coulomb_table(laws: Sequence[SmoothCoulomb], ports: Sequence[int]) -> SmoothCoulombTable:
     """Return frictions at rest on ports."""
     columns = parameter_columns(laws, SmoothCoulombTable._fields[:3])
-    return SmoothCoulombTable(*columns, port_column(ports), np.zeros(len(laws)))
+    return SmoothCoulombTable(**columns, port=port_column(ports), rate=np.zeros(len(laws)))
 
 
 @register_jitable(**INLINED)

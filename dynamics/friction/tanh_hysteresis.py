@@ -136,9 +136,11 @@ class TanhTable(NamedTuple):
 def tanh_table(laws: Sequence[TanhHysteresis], ports: Sequence[int]) -> TanhTable:
     """Return frictions on ports that have not moved yet."""
     columns = parameter_columns(laws, TanhTable._fields[:5])
+    count, value, length, side, travel = reversal_columns(len(laws))
     return TanhTable(
-        *columns, port_column(ports), *reversal_columns(len(laws)), np.zeros(len(laws))
-    )
+        **columns, port=port_column(ports), count=count, value=value, length=length, side=side,
+        travel=travel, rate=np.zeros(len(laws)),
+    )  # fmt: skip
 
 
 @register_jitable(**INLINED)

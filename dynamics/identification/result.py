@@ -235,11 +235,12 @@ def synthesis_error(
     SynthesisError
     """
     factor = (2.0 * np.pi * frf.frequency) ** -DERIVATIVE_ORDER[frf.quantity]
-    results = []
+    rms, maximum = [], []
     for scale in (np.ones_like(factor), factor):
         deviation = np.abs(values - frf.values) * scale
         peak = float(np.max(np.abs(frf.values) * scale))
         peak = peak if peak > 0.0 else 1.0
-        results += [float(np.sqrt(np.mean(deviation**2))) / peak, float(np.max(deviation)) / peak]
+        rms.append(float(np.sqrt(np.mean(deviation**2))) / peak)
+        maximum.append(float(np.max(deviation)) / peak)
     level = float(np.sqrt(np.mean(noise**2))) / max(float(np.max(np.abs(frf.values))), 1e-300)
-    return SynthesisError(*results, level)
+    return SynthesisError(rms[0], maximum[0], rms[1], maximum[1], level)

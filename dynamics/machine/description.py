@@ -26,6 +26,10 @@ CONDITIONS: tuple[Condition, ...] = ("control", "brake", "free")
 class FeedDrive(Protocol):
     """Drive of an axis: what it adds to the structure."""
 
+    @property
+    def transmission(self) -> float:
+        """Travel of the axis per angle of the motor, m/rad; 1 for a linear motor."""
+
     def parts(self, axis: DrivenAxis) -> DriveParts:
         """Rotors, springs and motors of the drive on an axis."""
 
@@ -264,8 +268,12 @@ def reduced(full: Machine, highest: float, kept_points: Sequence[str] | None = N
     structure = full.structure
     names = structure.points if kept_points is None else kept_points
     forces = [structure.port(name, way) for name in names for way in np.eye(3)]
-    places = [*full.drives, *full.frictions, *full.preloads]
-    loads = np.array([*(one.row for one in places), *forces]).reshape(-1, structure.size)
+    places = [
+        *(drive.row for drive in full.drives),
+        *(friction.row for friction in full.frictions),
+        *(preload.row for preload in full.preloads),
+    ]
+    loads = np.array([*places, *forces]).reshape(-1, structure.size)
     compact, basis = with_static_shapes(structure, undamped_modes(structure, highest), loads)
     return replace(
         full,

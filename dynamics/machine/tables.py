@@ -36,7 +36,8 @@ class StructureTables(NamedTuple):
 
 def resting_set_points(axes: int) -> SetPoints:
     """Set points of axes that stay where they are."""
-    return SetPoints(*(np.zeros((1, max(axes, 1))) for _ in range(3)), 1)
+    position, velocity, acceleration = np.zeros((3, 1, max(axes, 1)))
+    return SetPoints(position, velocity, acceleration, 1)
 
 
 def machine_tables(

@@ -102,7 +102,9 @@ class ModalModel:
             self.residual,
         )
 
-    def in_order(self, order: ArrayLike, signs: ArrayLike = 1.0) -> ModalModel:
+    def in_order(
+        self, order: NDArray[np.int64], signs: float | NDArray[np.float64] = 1.0
+    ) -> ModalModel:
         """Modes (k,) picked by their places, each times a sign."""
         return ModalModel(
             self.frequency[order],

@@ -56,7 +56,7 @@ class PointPort:
 
     def ends(self) -> list[tuple[str, NDArray[np.float64]]]:
         """Points and directions (6,) that add up to the port."""
-        along = np.concatenate([self.direction, np.zeros(6 - self.direction.size)])
+        along = np.concatenate([self.direction, np.zeros(6 - np.size(self.direction))])
         return [(self.point, along)] + ([(self.against, -along)] if self.against else [])
 
 

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from dynamics.receptance.coupling import joint_matrix
 from dynamics.reduction.modal_truncation import ROUNDING, undamped_modes
-from dynamics.structure.linear_structure import LinearStructure, Matrix, StructureError
+from dynamics.structure.linear_structure import LinearStructure, Matrix, StructureError, dense
 from dynamics.structure.rigid_body_motion import DIRECTIONS
 
 # Of rows scaled to unit length: below it, a row follows from the others.
@@ -118,8 +118,10 @@ def super_element(
     constraint = _static_shapes(stiffness[inside, inside], stiffness[inside, :held])
     shapes = np.zeros((inner_size, 0))
     if count != 0 and inner_size:
-        blocks = (part[inside, inside] for part in (mass, damping, stiffness))
-        modes = undamped_modes(LinearStructure(*blocks, points={}), highest, count)
+        held_structure = LinearStructure(
+            mass[inside, inside], damping[inside, inside], stiffness[inside, inside], points={}
+        )
+        modes = undamped_modes(held_structure, highest, count)
         if np.any(modes.frequency == 0.0):
             raise StructureError(MOVES_FREELY)
         shapes = modes.shapes
@@ -295,7 +297,7 @@ def _static_shapes(stiffness: Matrix, coupling: Matrix) -> NDArray[np.float64]:
             # exactly singular
             raise StructureError(MOVES_FREELY) from error
         pivots = factors.U.diagonal() / stiffness.diagonal()[np.argsort(factors.perm_c)]
-        shapes = -factors.solve(coupling.toarray())
+        shapes = -factors.solve(dense(coupling))
     else:
         try:
             factor = scipy.linalg.cho_factor(stiffness, lower=True)
@@ -318,5 +320,4 @@ def _congruent(matrix: Matrix, basis: Matrix) -> Matrix:
 def _block_diagonal(blocks: Sequence[Matrix]) -> Matrix:
     if all(scipy.sparse.issparse(block) for block in blocks):
         return scipy.sparse.block_diag(blocks, format="csr")
-    dense = [block.toarray() if scipy.sparse.issparse(block) else block for block in blocks]
-    return scipy.linalg.block_diag(*dense)
+    return scipy.linalg.block_diag(*(dense(block) for block in blocks))

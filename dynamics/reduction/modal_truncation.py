@@ -18,7 +18,7 @@ import scipy.sparse.linalg
 from numpy.typing import ArrayLike, NDArray
 
 from dynamics.receptance.coupling import PointPort, residual_compliance
-from dynamics.structure.linear_structure import LinearStructure, StructureError
+from dynamics.structure.linear_structure import LinearStructure, StructureError, dense
 
 # Square of a frequency below which strain energy is rounding, over what its sum is made of.
 ROUNDING = 1e3 * np.finfo(np.float64).eps
@@ -250,8 +250,8 @@ def with_static_shapes(
     mass = np.eye(basis.shape[1])
     stiffness[:size, :] = stiffness[:, :size] = 0.0
     stiffness[:size, :size] = np.diag((2.0 * np.pi * modes.frequency) ** 2)
-    symmetric = (0.5 * (part + part.T) for part in (mass, damping, stiffness))
-    return LinearStructure(*symmetric, points), basis
+    mass, damping, stiffness = (0.5 * (part + part.T) for part in (mass, damping, stiffness))
+    return LinearStructure(mass, damping, stiffness, points), basis
 
 
 def _ratios(damping: ArrayLike, count: int) -> NDArray[np.float64]:
@@ -337,8 +337,7 @@ def state_space(
         If the mass is singular or a point is unknown.
     """
     mass, damping, stiffness = (
-        part.toarray() if scipy.sparse.issparse(part) else part
-        for part in (structure.mass, structure.damping, structure.stiffness)
+        dense(part) for part in (structure.mass, structure.damping, structure.stiffness)
     )
     force = np.array([port.row(structure) for port in inputs]).reshape(-1, structure.size).T
     seen = np.array([port.row(structure) for port in outputs]).reshape(-1, structure.size)

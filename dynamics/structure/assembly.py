@@ -107,15 +107,18 @@ def assembly(
     if not parts:
         raise StructureError("a structure needs at least one body or beam")
     columns = _columns({name: part.mass_matrix.shape[0] for name, part in parts.items()})
-    blocks = (
-        scipy.linalg.block_diag(*(getattr(part, f"{what}_matrix") for part in parts.values()))
-        for what in ("mass", "damping", "stiffness")
+    loose = LinearStructure(
+        mass=scipy.linalg.block_diag(*(part.mass_matrix for part in parts.values())),
+        damping=scipy.linalg.block_diag(*(part.damping_matrix for part in parts.values())),
+        stiffness=scipy.linalg.block_diag(*(part.stiffness_matrix for part in parts.values())),
+        points={},
     )
-    bare = Assembly(LinearStructure(*blocks, points={}), parts, columns)
+    bare = Assembly(loose, parts, columns)
     deformations = [joint.deformation(_relative_motion(joint, bare)) for joint in joints]
     deformations += [bare.row(f'coupling "{one.name}"', one.terms)[None, :] for one in couplings]
-    stiffness = [np.atleast_1d(one.stiffness) for one in (*joints, *couplings)]
-    damping = [np.atleast_1d(one.damping) for one in (*joints, *couplings)]
+    links: list[Connector | Coupling] = [*joints, *couplings]
+    stiffness = [np.atleast_1d(one.stiffness) for one in links]
+    damping = [np.atleast_1d(one.damping) for one in links]
     _refuse_free_parts(parts, deformations, stiffness, allowed_rigid_motions)
     whole = LinearStructure(
         bare.structure.mass,

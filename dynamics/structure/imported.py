@@ -48,7 +48,8 @@ def tied_structure(
     StructureError
         If a point cannot be tied, or two have one name.
     """
-    names = [*bare.points, *(tie.name for tie in (*rigid, *interpolated))]
+    tied = [*(surface.name for surface in rigid), *(point.name for point in interpolated)]
+    names = [*bare.points, *tied]
     for name in names:
         if names.count(name) > 1:
             raise StructureError(f'point "{name}" is there twice; names must differ')

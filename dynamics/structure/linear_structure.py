@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
 import numpy as np
 import scipy.linalg
 import scipy.sparse
 from numpy.typing import ArrayLike, NDArray
 
-Matrix = NDArray[np.float64] | scipy.sparse.csr_array
+Matrix: TypeAlias = NDArray[np.float64] | scipy.sparse.csr_array
 
 
 class StructureError(ValueError):
@@ -78,7 +79,7 @@ class LinearStructure:
     def natural_frequencies(self, count: int | None = None) -> NDArray[np.float64]:
         """Undamped natural frequencies (count,), Hz, ascending; rigid-body motion has 0."""
         squared = scipy.linalg.eigh(
-            _dense(self.stiffness), _dense(self.mass), eigvals_only=True, check_finite=True
+            dense(self.stiffness), dense(self.mass), eigvals_only=True, check_finite=True
         )
         frequency = np.sqrt(np.maximum(squared, 0.0)) / (2.0 * np.pi)
         return frequency[:count]
@@ -96,7 +97,7 @@ class LinearStructure:
         rows = np.atleast_2d(ports)
         result = np.empty((np.size(frequency), len(rows), len(rows)), dtype=np.complex128)
         mass, damping, stiffness = (
-            _dense(part) for part in (self.mass, self.damping, self.stiffness)
+            dense(part) for part in (self.mass, self.damping, self.stiffness)
         )
         for index, line in enumerate(np.atleast_1d(np.asarray(frequency, dtype=np.float64))):
             omega = 2.0 * np.pi * line
@@ -105,5 +106,6 @@ class LinearStructure:
         return result
 
 
-def _dense(matrix: Matrix) -> NDArray[np.float64]:
-    return matrix.toarray() if scipy.sparse.issparse(matrix) else np.asarray(matrix)
+def dense(matrix: Matrix) -> NDArray[np.float64]:
+    """Matrix as an array, whether it is sparse or not."""
+    return np.asarray(matrix) if isinstance(matrix, np.ndarray) else matrix.toarray()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -38,7 +39,12 @@ def require_positive(part: str, key: str, value: float) -> None:
         raise TrajectoryError(f"{part}: {key} is {value}; a finite number above 0 is needed")
 
 
-def axes_vector(part: str, key: str, value: ArrayLike, axes: int | None = None) -> NDArray:
+def axes_vector(
+    part: str,
+    key: str,
+    value: float | Sequence[float] | NDArray[np.float64],
+    axes: int | None = None,
+) -> NDArray[np.float64]:
     """Return a finite vector over axes as an array, or raise TrajectoryError."""
     vector = np.atleast_1d(np.asarray(value, dtype=np.float64))
     if vector.ndim != 1 or vector.size == 0 or not np.isfinite(vector).all():

@@ -133,7 +133,7 @@ class PathMotion:
         """Greatest speed between a line and the following one."""
         elements = self.path.elements[line : following + 1]
         sharp = any(_turn(*pair) > _STRAIGHT for pair in pairwise(elements))
-        arcs = elements[1:-1]
+        arcs = [element for element in elements[1:-1] if isinstance(element, Arc)]
         if sharp and arcs:
             raise TrajectoryError(f"path motion: sharp corner at an arc behind element {line}")
         if sharp:

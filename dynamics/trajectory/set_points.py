@@ -59,7 +59,8 @@ def set_points(
         math.ceil(time / cycle - _WHOLE) for time in (standstill, trajectory.duration)
     )
     motion = trajectory.at(cycle * np.arange(-waiting, moving + 1))
-    return SetPoints(*(np.ascontiguousarray(column) for column in motion), steps)
+    position, velocity, acceleration = (np.ascontiguousarray(column) for column in motion)
+    return SetPoints(position, velocity, acceleration, steps)
 
 
 @register_jitable(**INLINED)

@@ -11,8 +11,9 @@ from chatter.description.machine.drive import DriveSection
 from chatter.description.machine.fields import Direction, Position
 from chatter.description.quantities import either_quantity, quantity
 from chatter.description.section import Section, raise_if_any
+from dynamics.control.cascade import DriveController
 from dynamics.drive.parts import DrivenAxis
-from dynamics.machine.description import MachineAxis
+from dynamics.machine.description import FeedDrive, MachineAxis
 from dynamics.structure.bodies import GROUND
 
 
@@ -118,7 +119,7 @@ class AxisSection(Section):
             *(() if self.brake is None else ((self.brake.stiffness, self.brake.damping),)),
         )
 
-    def controllers(self, drive: object) -> tuple:
+    def controllers(self, drive: FeedDrive) -> tuple[DriveController, ...]:
         """Controllers of a drive: none, one for all motors, or one each."""
         if self.control is None:
             return ()

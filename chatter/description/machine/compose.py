@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,7 +39,7 @@ class Composition:
                 moved += self.positions[name] * np.asarray(axis.direction)
         return moved
 
-    def makers(self) -> Iterator[tuple[str, Callable[[], object]]]:
+    def makers(self) -> Iterator[tuple[str, Callable[[], Any]]]:
         """Path of every section that can be wrong by itself, and what makes its part."""
         file = self.file
         for kind in ("body", "beam"):

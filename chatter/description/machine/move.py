@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
@@ -21,13 +21,13 @@ from dynamics.trajectory.periodic import CircleMotion, ConstantSpeedMove, SineMo
 _LENGTH = QuantityField("length")
 
 
-def _lengths(given: object) -> tuple[float, ...]:
+def _lengths(given: Any) -> tuple[float, ...]:
     if not isinstance(given, (list, tuple)):
         given = [given]
     return tuple(_LENGTH.read(one) for one in given)
 
 
-def _plane_points(given: object) -> tuple[tuple[float, float], ...]:
+def _plane_points(given: Any) -> tuple[tuple[float, float], ...]:
     fits = isinstance(given, (list, tuple)) and len(given) >= 2
     if not fits or not all(isinstance(one, (list, tuple)) and len(one) == 2 for one in given):
         raise ValueError(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -115,17 +116,17 @@ class Axis(Kind):
 
     def predict(self, case: Case, run: Run) -> Signals:
         """Force at the samples kept, N, and travel of the motor ahead of the slide, m."""
-        law, record = axis_force(case), run.record
-        motion, motor = record.motion, record.motor
+        law, motor = axis_force(case), run.record.motor
+        record: axis_record.AxisRecord = run.record
         acceleration = None if motor is None else motor.acceleration
-        force = law.along(*motion, record.step, record.begun, acceleration)
+        force = law.along(*record.motion, record.step, record.begun, acceleration)
         found = {"force": axis_record.kept(force)}
         if motor is not None:
             ahead = 0.5 * case.axis.backlash * axis_record.driving_flank(_slide_force(law, run))
             found["backlash"] = axis_record.centred(axis_record.kept(ahead), motor.weights)
         return found
 
-    def known_noise(self, run: Run) -> Signals:
+    def known_noise(self, run: Run) -> Mapping[str, float]:
         """Standard deviation of the noise of every channel, from its scatter."""
         return run.record.noise
 
@@ -173,7 +174,8 @@ def axis_force(case: Case) -> AxisForce:
 def _slide_force(law: AxisForce, run: Run) -> axis_record.Array:
     """Force (n,), N, that the slide asks of its drive."""
     slide = replace(law, backlash=0.0, motor_mass=0.0)
-    return slide.along(*run.record.motion, run.record.step)
+    record: axis_record.AxisRecord = run.record
+    return slide.along(*record.motion, record.step)
 
 
 def _move(speed: float) -> Run:

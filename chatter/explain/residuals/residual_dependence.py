@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -87,7 +88,7 @@ def residual_dependence(residual: Residual, findings: Sequence[Finding]) -> Resi
     regressions = [(best_regression(residual, c, v), v) for c in channels for v in kind.variables]
     regressions.sort(key=lambda one: -one[0].found.share)
     trials = [
-        _Trial(one.found.share, lambda one=one, v=v: _by_one(residual, one, v))
+        _Trial(one.found.share, partial(_by_one, residual, one, v))
         for one, v in regressions
         if one.found.significant
     ]
@@ -98,7 +99,7 @@ def residual_dependence(residual: Residual, findings: Sequence[Finding]) -> Resi
         strongest = next((v for one, v in regressions if one.found.significant), None)
         enough = _PERIODIC_ENOUGH if strongest is periodic else 1.0
         if best is None or period.found.share > enough * best.share:
-            best = _Trial(period.found.share, lambda: _by_period(residual, period, periodic))
+            best = _Trial(period.found.share, partial(_by_period, residual, period, periodic))
     leading = list(dict.fromkeys(variable for _, variable in regressions))[:_PAIRED]
     two = _best_of_two(residual, channels, leading)
     if two is not None and two.share > (best.share + _LEAST_ADDED if best else 0.0):
@@ -202,7 +203,7 @@ def _best_of_two(
             found = dependence(samples, columns * rows)
             if found.significant:
                 one = _OnTwo(target, pair, edges, found)
-                trials.append(_Trial(found.share, lambda one=one: _by_two(residual, one)))
+                trials.append(_Trial(found.share, partial(_by_two, residual, one)))
     return max(trials, key=lambda trial: trial.share, default=None)
 
 

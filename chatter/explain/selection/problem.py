@@ -77,9 +77,9 @@ class Problem:
         own: dict[str, dict[str, float]] = {effect.name: {} for effect in self.effects}
         given: dict[str, Any] = {}
         for name, value in values.items():
-            effect, _, key = name.partition(".")
-            if effect in own:
-                own[effect][key] = value
+            owner, _, key = name.partition(".")
+            if owner in own:
+                own[owner][key] = value
             else:
                 given[name] = float(value)
         case = self.measurement.with_values(given)

@@ -173,6 +173,7 @@ def read_time_records(path: Path) -> Table:
     """
     columns: list[Column] = []
     held: Counter[str] = Counter()
+    first = np.empty(0)
     for function in _functions(path, held):
         heading, where = function.heading, function.where
         abscissa, factor = _content(heading.abscissa, function.units, where)
@@ -181,8 +182,8 @@ def read_time_records(path: Path) -> Table:
             continue
         time, values = function.values()
         if not columns:
-            columns.append(Column("time [s]", time * factor))
-        first = columns[0].cells
+            first = time * factor
+            columns.append(Column("time [s]", first))
         if time.size != first.size or not np.allclose(time * factor, first, rtol=1e-6, atol=1e-9):
             raise MeasurementError(f"{where}: has other times than the first record")
         content, unit = _content(heading.numerator, function.units, where)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,8 @@ from dynamics.frf.container import Frf
 from dynamics.machine.description import Machine
 from dynamics.structure.linear_structure import StructureError
 from dynamics.trajectory.motion import TrajectoryError
+
+Section = TypeVar("Section", FrfSection, MoveSection)
 
 _AXES = ("x", "y", "z", "rx", "ry", "rz")
 #: velocity below which an axis rests, m/s
@@ -112,7 +115,9 @@ def frf(
     """
     if not file.frf and not names:
         return frfs(file, default_frfs(file), progress)
-    return frfs(file, {name: _named(file, "frf", name) for name in names or file.frf}, progress)
+    return frfs(
+        file, {name: _named(file, "frf", file.frf, name) for name in names or file.frf}, progress
+    )
 
 
 def move(file: MachineFile, name: str, progress: Progress = no_progress) -> MoveResult:
@@ -125,7 +130,7 @@ def move(file: MachineFile, name: str, progress: Progress = no_progress) -> Move
     RunError
         If the machine runs away.
     """
-    return file_move(file, name, _named(file, "move", name), progress)
+    return file_move(file, name, _named(file, "move", file.move, name), progress)
 
 
 def one_frf(
@@ -255,8 +260,7 @@ def _told_with(where: str, file: str) -> Iterator[None]:
         ) from error
 
 
-def _named(file: MachineFile, kind: str, name: str) -> FrfSection | MoveSection:
-    sections = getattr(file, kind)
+def _named(file: MachineFile, kind: str, sections: Mapping[str, Section], name: str) -> Section:
     if name not in sections:
         known = ", ".join(sections) or "none"
         raise InputError(f"{file.name}: there is no [{kind}.{name}]; there are {known}")

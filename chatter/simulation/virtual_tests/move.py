@@ -269,13 +269,13 @@ def _set_points(machine: Machine, plan: MovePlan, step: float) -> SetPoints:
         if axis not in machine.axes:
             known = ", ".join(f'"{one}"' for one in machine.axes)
             raise InputError(f'the move asks for axis "{axis}"; the machine has {known}')
-    full = [np.zeros((len(points.position), len(machine.axes))) for _ in range(3)]
+    position, velocity, acceleration = np.zeros((3, len(points.position), len(machine.axes)))
     columns = [machine.axes.index(axis) for axis in plan.axes]
     # the machine stands at rest where the move begins
-    full[0][:, columns] = points.position - points.position[0]
-    full[1][:, columns] = points.velocity
-    full[2][:, columns] = points.acceleration
-    return SetPoints(*full, points.steps)
+    position[:, columns] = points.position - points.position[0]
+    velocity[:, columns] = points.velocity
+    acceleration[:, columns] = points.acceleration
+    return SetPoints(position, velocity, acceleration, points.steps)
 
 
 def _at_tool(run: MachineRun, tool: NDArray, ways: Sequence[NDArray]) -> NDArray[np.float64]:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
-from chatter.description.sections.optimisation import Optimum
+from chatter.description.sections.optimisation import Feeds, Optimum, RadialDepths
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel
 from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
@@ -136,5 +136,5 @@ def _depths(case: Case, section: Optimum, model: MillingModel) -> Array:
     return np.concatenate([even[0] / 2.0 ** np.arange(_HALVINGS, 0, -1), even])
 
 
-def _values(given: object, fixed: float) -> Array:
+def _values(given: RadialDepths | Feeds | None, fixed: float) -> Array:
     return np.array([fixed]) if given is None else np.linspace(given.from_, given.to, given.count)

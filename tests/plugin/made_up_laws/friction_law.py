@@ -61,9 +61,9 @@ class ArctanCoulombTable(NamedTuple):
 
 def table(laws, ports):
     return ArctanCoulombTable(
-        *parameter_columns(laws, ArctanCoulombTable._fields[:2]),
-        port_column(ports),
-        np.zeros(len(laws)),
+        **parameter_columns(laws, ArctanCoulombTable._fields[:2]),
+        port=port_column(ports),
+        rate=np.zeros(len(laws)),
     )
 
 

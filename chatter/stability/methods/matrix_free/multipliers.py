@@ -80,7 +80,10 @@ def multipliers(
             np.array([_multiplier(cut, float(speeds[i]), float(depths[i]), r) for i in index])
             for r in refinements
         ]
-        return values[0] if len(values) == 1 else extrapolated(*values, _ORDER, _LARGEST_CORRECTION)
+        if len(values) == 1:
+            return values[0]
+        coarse, fine = values
+        return extrapolated(coarse, fine, _ORDER, _LARGEST_CORRECTION)
 
     return np.concatenate(sweep(at, len(speeds), progress, points_a_chunk=8))
 

@@ -200,6 +200,9 @@ def _at_points(
     def chunk(index: NDArray[np.int64]) -> NDArray[np.complex128]:
         points = speeds[index], depths[index], steps[index]
         values = [drivers.multipliers_at(scheme, arrays, *points, r) for r in refinements]
-        return values[0] if len(values) == 1 else extrapolated(*values, _ORDER, _LARGEST_CORRECTION)
+        if len(values) == 1:
+            return values[0]
+        coarse, fine = values
+        return extrapolated(coarse, fine, _ORDER, _LARGEST_CORRECTION)
 
     return np.concatenate(sweep(chunk, len(speeds), progress))
