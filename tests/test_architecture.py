@@ -22,6 +22,9 @@ from tests.places import ROOT
 FOREIGN = {"chatter", "matplotlib", "pint", "pydantic", "typer", "rich", "tomlkit"}
 HEAVY = ["numba", "scipy", "numpy", "matplotlib", "pint", "pydantic", "tomlkit", "typer", "rich"]
 
+#: arguments that a function may take which is no kernel
+MOST_ARGUMENTS = 8
+
 CASE = tomlkit.parse(TOOL_OF_922_HERTZ).unwrap()
 
 
@@ -113,6 +116,48 @@ def test_modules_are_small():
     for package in ("chatter", "cutting", "dynamics"):
         for path in modules(package):
             assert len(path.read_text(encoding="utf-8").splitlines()) < 600, path
+
+
+def is_kernel(function, targets):
+    """Whether numba compiles a function, or it stands for one that an overload compiles."""
+    decorators = [d.func if isinstance(d, ast.Call) else d for d in function.decorator_list]
+    names = {decorator.id for decorator in decorators if isinstance(decorator, ast.Name)}
+    return bool(names & {"njit", "register_jitable", "overload"}) or function.name in targets
+
+
+def functions_outside_kernels(tree):
+    """Functions of a module; not kernels, and not what is defined in them."""
+    targets = {
+        node.args[0].id
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call)
+        and isinstance(node.func, ast.Name)
+        and node.func.id == "overload"
+        and isinstance(node.args[0], ast.Name)
+    }
+    waiting = [tree]
+    while waiting:
+        for node in ast.iter_child_nodes(waiting.pop()):
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                if is_kernel(node, targets):
+                    continue
+                yield node
+            waiting.append(node)
+
+
+def test_functions_outside_kernels_have_few_arguments():
+    seen, long = 0, []
+    for package in ("chatter", "cutting", "dynamics"):
+        for path in modules(package):
+            tree = ast.parse(path.read_text(encoding="utf-8"))
+            for function in functions_outside_kernels(tree):
+                given = function.args
+                count = len([*given.posonlyargs, *given.args, *given.kwonlyargs])
+                seen += 1
+                if count > MOST_ARGUMENTS:
+                    long.append(f"{path.relative_to(ROOT)}: {function.name} takes {count}")
+    assert seen > 1000
+    assert not long, long
 
 
 def python(code, **variables):

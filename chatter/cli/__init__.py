@@ -1,13 +1,14 @@
 """The command line: a command is a function of its name in a module of its name, and a line here.
 
-========== ===================================================================================
-module     responsibility
-========== ===================================================================================
-options    options that commands share; case and machine files with their patches
-progress   progress bars; what the first use takes
-results    what every command does with its result
-errors     one clear message and an exit code for every error
-========== ===================================================================================
+============== ===============================================================================
+module         responsibility
+============== ===============================================================================
+options        options that commands share; case and machine files with their patches
+options_as_one commands of many options take them as one dataclass
+progress       progress bars; what the first use takes
+results        what every command does with its result
+errors         one clear message and an exit code for every error
+============== ===============================================================================
 """
 
 from __future__ import annotations

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -14,6 +15,7 @@ from chatter.cli.options import (
     output_folder,
     patched_machine,
 )
+from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import announce_compilation, progress_bar
 from chatter.cli.results import present
 from chatter.report.console import print_line, print_table
@@ -24,74 +26,83 @@ if TYPE_CHECKING:
 Pairs = list[str] | None
 
 
-def frf(
-    machine: MachinePath,
-    assignments: Assignments = None,
+@dataclass(frozen=True)
+class FrfOptions:
+    """What `chatter frf` is given."""
+
+    machine: MachinePath
+    assignments: Assignments = None
     only: Annotated[
         Pairs, typer.Option("--only", help="Name of a [frf.NAME] to run; repeatable.")
-    ] = None,
+    ] = None
     excite: Annotated[
         str | None,
         typer.Option(
             "--excite",
             help='A test of your own: "table:y", "tool/table:y" or "motor:Y" (torque).',
         ),
-    ] = None,
-    read: Annotated[str | None, typer.Option("--read", help="What is read in it.")] = None,
+    ] = None
+    read: Annotated[str | None, typer.Option("--read", help="What is read in it.")] = None
     by: Annotated[
         str | None,
         typer.Option(
             "--by",
             help="hammer, chirp, multisine, torque impulse, torque multisine or linearised.",
         ),
-    ] = None,
+    ] = None
     level: Annotated[
         str | None, typer.Option("--level", help='Peak of the excitation, "100 N".')
-    ] = None,
+    ] = None
     band: Annotated[
         str | None, typer.Option("--band", help='Lowest and highest frequency, "5 Hz, 500 Hz".')
-    ] = None,
+    ] = None
     moving: Annotated[
         Pairs, typer.Option("--moving", help='Axis in motion, "Y=420 mm/min"; repeatable.')
-    ] = None,
+    ] = None
     position: Annotated[
         Pairs, typer.Option("--position", help='Place of an axis, "Y=100 mm"; repeatable.')
-    ] = None,
-    brake: Annotated[Pairs, typer.Option("--brake", help="Axis held by its brake.")] = None,
-    free: Annotated[Pairs, typer.Option("--free", help="Axis held by nothing.")] = None,
-    no_friction: Annotated[
-        bool, typer.Option("--no-friction", help="Leave all frictions out.")
-    ] = False,
+    ] = None
+    brake: Annotated[Pairs, typer.Option("--brake", help="Axis held by its brake.")] = None
+    free: Annotated[Pairs, typer.Option("--free", help="Axis held by nothing.")] = None
+    no_friction: Annotated[bool, typer.Option("--no-friction", help="Leave all frictions out.")] = (
+        False
+    )
     in_cut: Annotated[bool, typer.Option("--in-cut", help="With the couplings of [contact].")] = (
         False
-    ),
-    out: OutputFolder = None,
-    json: Json = False,
-) -> None:
+    )
+    out: OutputFolder = None
+    json: Json = False
+
+
+@takes_options
+def frf(options: FrfOptions) -> None:
     """Frequency responses of a machine: at rest, moving, brake on, control on, in the cut."""
     from chatter.cli.machine_tests import frf_sections
     from chatter.engine.loop import run
     from chatter.simulation.virtual_tests.from_file import frfs
 
-    file = patched_machine(machine, assignments)
+    file = patched_machine(options.machine, options.assignments)
+    band = options.band
     changes = {
-        "excite": excite,
-        "read": read,
-        "by": by,
-        "level": level,
+        "excite": options.excite,
+        "read": options.read,
+        "by": options.by,
+        "level": options.level,
         "band": None if band is None else [part.strip() for part in band.split(",")],
-        "moving": moving,
-        "position": position,
-        "brake": brake,
-        "free": free,
-        "friction": False if no_friction else None,
-        "in_cut": True if in_cut else None,
+        "moving": options.moving,
+        "position": options.position,
+        "brake": options.brake,
+        "free": options.free,
+        "friction": False if options.no_friction else None,
+        "in_cut": True if options.in_cut else None,
     }
-    sections = frf_sections(file, only, {key: v for key, v in changes.items() if v is not None})
+    given = {key: value for key, value in changes.items() if value is not None}
+    sections = frf_sections(file, options.only, given)
     announce_compilation(run)
     with progress_bar("time steps") as progress:
         result = frfs(file, sections, progress)
-    present(result, output_folder(out, machine.stem), json=json, words=_print_peaks)
+    folder = output_folder(options.out, options.machine.stem)
+    present(result, folder, json=options.json, words=_print_peaks)
 
 
 def _print_peaks(result: FrfResult) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -17,6 +17,7 @@ from chatter.cli.options import (
     output_folder,
     patched_case,
 )
+from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import announce_compilation, progress_bar
 from chatter.cli.results import present, print_sentences
 from chatter.description.case import Case
@@ -27,10 +28,13 @@ if TYPE_CHECKING:
     from chatter.stability.diagram import StabilityDiagram
 
 
-def lobes(
-    case: CaseFile,
-    assignments: Assignments = None,
-    method: Method = None,
+@dataclass(frozen=True)
+class LobesOptions:
+    """What `chatter lobes` is given."""
+
+    case: CaseFile
+    assignments: Assignments = None
+    method: Method = None
     x: Annotated[
         str | None,
         typer.Option(
@@ -38,7 +42,7 @@ def lobes(
             metavar="PATH=FROM..TO[:COUNT]",
             help='Critical depth over any value, such as cut.radial_depth="0.5 mm..10 mm:40".',
         ),
-    ] = None,
+    ] = None
     y: Annotated[
         str | None,
         typer.Option(
@@ -46,78 +50,77 @@ def lobes(
             metavar="PATH=FROM..TO[:COUNT]",
             help="Map of the spectral radius over this and --x, else over spindle speed.",
         ),
-    ] = None,
+    ] = None
     grid: Annotated[
         bool, typer.Option("--grid", help="Also write the spectral radius on the whole grid.")
-    ] = False,
-    cluster: Cluster = None,
+    ] = False
+    cluster: Cluster = None
     live: Annotated[
         bool, typer.Option("--live", help="Show a page in the browser that follows sliders.")
-    ] = False,
-    port: Annotated[int, typer.Option("--port", help="Of --live; by default a free one.")] = 0,
+    ] = False
+    port: Annotated[int, typer.Option("--port", help="Of --live; by default a free one.")] = 0
     no_browser: Annotated[
         bool, typer.Option("--no-browser", help="With --live, open no browser.")
-    ] = False,
-    out: OutputFolder = None,
-    json: Json = False,
-) -> None:
+    ] = False
+    out: OutputFolder = None
+    json: Json = False
+
+
+@takes_options
+def lobes(options: LobesOptions) -> None:
     """Compute the stability lobe diagram of a case."""
-    description = patched_case(case, assignments)
-    if x or y:
-        if live or grid or port or no_browser:
+    description = patched_case(options.case, options.assignments)
+    live, grid, of_live = options.live, options.grid, options.port or options.no_browser
+    if options.x or options.y:
+        if live or grid or of_live:
             raise InputError("--x and --y draw a diagram of their own; leave --live, --grid out")
-        _over_paths(description, x, y, method, cluster, output_folder(out, case.stem), json)
+        _over_paths(description, options)
         return
-    if live and (grid or json or out or cluster):
+    if live and (grid or options.json or options.out or options.cluster):
         raise InputError("--live shows a page and writes no files; leave --grid, --json, --out out")
-    if not live and (port or no_browser):
+    if not live and of_live:
         raise InputError("--port and --no-browser belong to --live; give it with them")
     if live:
-        _serve(description, method, port, no_browser)
+        _serve(description, options)
         return
-    if cluster is not None and not grid:
+    if options.cluster is not None and not grid:
         raise InputError(
             "--cluster computes the grid of a diagram, or one over --x and --y; give one of them"
         )
     from chatter.studies.diagram_over_axes import lobes as run_lobes
 
     announce_compilation()
-    folder = output_folder(out, case.stem)
+    folder = output_folder(options.out, options.case.stem)
     with progress_bar("stability limits") as progress:
-        diagram = run_lobes(description, method, grid, progress, cluster, folder)
-    present(diagram, folder, json=json, words=_print_diagram, notes=diagram.notes)
+        diagram = run_lobes(description, options.method, grid, progress, options.cluster, folder)
+    present(diagram, folder, json=options.json, words=_print_diagram, notes=diagram.notes)
 
 
-def _over_paths(
-    case: Case,
-    x: str | None,
-    y: str | None,
-    method: str | None,
-    cluster: str | None,
-    folder: Path,
-    json: bool,
-) -> None:
+def _over_paths(case: Case, options: LobesOptions) -> None:
     """Compute and write a diagram over other paths than the spindle speed."""
     from chatter.studies.diagram_over_axes import lobes_over
 
     announce_compilation()
+    folder = output_folder(options.out, options.case.stem)
     with progress_bar("stability") as progress:
-        diagram = lobes_over(case, x, y, method, progress, cluster, folder)
-    present(diagram, folder, json=json, words=print_sentences, notes=diagram.notes)
+        diagram = lobes_over(
+            case, options.x, options.y, options.method, progress, options.cluster, folder
+        )
+    present(diagram, folder, json=options.json, words=print_sentences, notes=diagram.notes)
 
 
-def _serve(description: Case, method: str | None, port: int, no_browser: bool) -> None:
+def _serve(description: Case, options: LobesOptions) -> None:
     """Serve the page until Ctrl-C."""
     from chatter.app.live_case import LiveCase
     from chatter.app.server import LiveServer
     from chatter.description.progress import no_progress
 
     announce_compilation()
-    page = LiveCase(description, method)
+    page = LiveCase(description, options.method)
     page.diagram({}, "coarse", no_progress)
-    server = LiveServer(page, port)
+    server = LiveServer(page, options.port)
     typer.echo(f"{server.url}  (Ctrl-C ends)")
-    if not no_browser:
+    if not options.no_browser:
         import webbrowser
 
         webbrowser.open(server.url)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
@@ -17,6 +18,7 @@ from chatter.cli.options import (
     output_folder,
     patched_case,
 )
+from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import announce_compilation, announce_resumed, progress_bar
 from chatter.cli.results import present
 
@@ -24,36 +26,42 @@ if TYPE_CHECKING:
     from chatter.studies.uncertainty.monte_carlo import Uncertainty
 
 
-def uncertainty(
-    case: CaseFile,
-    samples: Annotated[int, typer.Option("--samples", help="Number of samples.")] = 200,
-    seed: Annotated[int, typer.Option("--seed", help="Of the random numbers.")] = 1,
-    speeds: Annotated[int, typer.Option("--speeds", help="Speeds of the band.")] = 31,
-    assignments: Assignments = None,
-    method: Method = None,
-    cluster: Cluster = None,
-    out: OutputFolder = None,
-    json: Json = False,
-) -> None:
+@dataclass(frozen=True)
+class UncertaintyOptions:
+    """What `chatter uncertainty` is given."""
+
+    case: CaseFile
+    samples: Annotated[int, typer.Option("--samples", help="Number of samples.")] = 200
+    seed: Annotated[int, typer.Option("--seed", help="Of the random numbers.")] = 1
+    speeds: Annotated[int, typer.Option("--speeds", help="Speeds of the band.")] = 31
+    assignments: Assignments = None
+    method: Method = None
+    cluster: Cluster = None
+    out: OutputFolder = None
+    json: Json = False
+
+
+@takes_options
+def uncertainty(options: UncertaintyOptions) -> None:
     """Propagate values such as "1650 +- 80 MPa" to a band of lobes and a probability."""
-    description = patched_case(case, assignments)
+    description = patched_case(options.case, options.assignments)
     from chatter.studies.uncertainty.monte_carlo import uncertainty as run_uncertainty
 
     announce_compilation()
-    folder = output_folder(out, case.stem)
+    folder = output_folder(options.out, options.case.stem)
     with progress_bar("samples") as progress:
         found = run_uncertainty(
             description,
-            samples,
-            seed,
-            speeds=speeds,
-            method=method,
+            options.samples,
+            options.seed,
+            speeds=options.speeds,
+            method=options.method,
             folder=folder,
             progress=progress,
             resumed=partial(announce_resumed, "samples"),
-            cluster=cluster,
+            cluster=options.cluster,
         )
-    present(found, folder, json=json, words=_print_probability)
+    present(found, folder, json=options.json, words=_print_probability)
 
 
 def _print_probability(found: Uncertainty) -> None:

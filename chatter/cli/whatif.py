@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from chatter.cli.options import Assignments, Cluster, Json, Method, OutputFolder, output_folder
+from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import announce_compilation, announce_resumed, progress_bar
 from chatter.cli.results import present, print_sentences
 from chatter.description.assignments import parse_assignments
@@ -18,11 +20,14 @@ if TYPE_CHECKING:
     from chatter.studies.whatif.preset_studies import PresetStudy
 
 
-def whatif(
+@dataclass(frozen=True)
+class WhatIfOptions:
+    """What `chatter whatif` is given."""
+
     file: Annotated[
         Path | None,
         typer.Argument(metavar="CASE|MACHINE", help="Case or machine file; a study has its own."),
-    ] = None,
+    ] = None
     vary: Annotated[
         list[str] | None,
         typer.Option(
@@ -31,45 +36,49 @@ def whatif(
             help='"1 mm, 2 mm", "1 mm..4 mm" or "+-10%"; once for an overlay, twice for a heat '
             "map, more with --tornado. Paths into the machine of a case begin with machine.",
         ),
-    ] = None,
-    count: Annotated[int | None, typer.Option("--count", help="Values of a range [5].")] = None,
+    ] = None
+    count: Annotated[int | None, typer.Option("--count", help="Values of a range [5].")] = None
     result: Annotated[
         str | None,
         typer.Option("--result", help="lobes, critical depth, forces, surface or frf."),
-    ] = None,
+    ] = None
     tornado: Annotated[
         bool, typer.Option("--tornado", help="Each path low and high, one at a time.")
-    ] = False,
+    ] = False
     quantity: Annotated[
         str | None, typer.Option("--quantity", help="Number to show, by its column in whatif.csv.")
-    ] = None,
+    ] = None
     study: Annotated[
         str | None, typer.Option("--study", metavar="NAME", help="A preset study.")
-    ] = None,
-    studies: Annotated[bool, typer.Option("--studies", help="List the preset studies.")] = False,
+    ] = None
+    studies: Annotated[bool, typer.Option("--studies", help="List the preset studies.")] = False
     only: Annotated[
         list[str] | None, typer.Option("--only", help="Name of a [frf.NAME]; repeatable.")
-    ] = None,
-    assignments: Assignments = None,
-    method: Method = None,
-    cluster: Cluster = None,
-    out: OutputFolder = None,
-    json: Json = False,
-) -> None:
+    ] = None
+    assignments: Assignments = None
+    method: Method = None
+    cluster: Cluster = None
+    out: OutputFolder = None
+    json: Json = False
+
+
+@takes_options
+def whatif(options: WhatIfOptions) -> None:
     """Ask what would change: lobes, limits, forces, surface or FRFs over values of any path."""
-    if studies:
+    if options.studies:
         _list_studies()
         return
-    chosen = _chosen(study, vary)
+    file, study = options.file, options.study
+    chosen = _chosen(study, options.vary)
     if file is None:
         if chosen is None:
             raise InputError("a case or machine file is wanted, or --study NAME; --studies lists")
         file = chosen.file()
     from chatter.studies.model import load_model, patched
 
-    model = patched(load_model(file), parse_assignments(assignments or []))
+    model = patched(load_model(file), parse_assignments(options.assignments or []))
     name = file.parent.name if chosen is not None else file.stem
-    folder = output_folder(out, f"{name}-{study}" if study else name)
+    folder = output_folder(options.out, f"{name}-{study}" if study else name)
     if chosen is not None:
         model = _fitted(chosen, lambda: patched(model, chosen.settings))
     from chatter.studies.whatif.whatif_study import whatif as run_whatif
@@ -80,20 +89,20 @@ def whatif(
             chosen,
             lambda: run_whatif(
                 model,
-                vary or (chosen.vary if chosen else []),
-                result or (chosen.result if chosen else None),
-                tornado=tornado or (chosen is not None and chosen.tornado),
-                count=count,
-                quantity=quantity or (chosen.quantity if chosen else None),
-                method=method,
-                only=only or (chosen.only if chosen else ()),
+                options.vary or (chosen.vary if chosen else []),
+                options.result or (chosen.result if chosen else None),
+                tornado=options.tornado or (chosen is not None and chosen.tornado),
+                count=options.count,
+                quantity=options.quantity or (chosen.quantity if chosen else None),
+                method=options.method,
+                only=options.only or (chosen.only if chosen else ()),
                 folder=folder,
                 progress=progress,
                 resumed=partial(announce_resumed, "points"),
-                cluster=cluster,
+                cluster=options.cluster,
             ),
         )
-    present(found, folder, json=json, words=print_sentences)
+    present(found, folder, json=options.json, words=print_sentences)
 
 
 def _chosen(study: str | None, vary: list[str] | None) -> PresetStudy | None:
