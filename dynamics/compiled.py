@@ -1,37 +1,25 @@
-"""How leaves of compiled code are decorated, and chosen by the type of their table.
+"""How compiled code is decorated, and calls what is chosen by the type of a table.
+
+Compiled code that calls leaves has its `njit` from here, or its presets from
+`chatter.engine.presets`: the leaves of laws wait for this module (see `leaves` beside it).
 
 `cutting` and `dynamics` know nothing of each other: both have this module, and a test keeps the
-two alike. The drivers of `chatter` build on it.
+two alike.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
-from numba import types
+from numba import njit as njit
 from numba.extending import overload
 
-#: nothing is allocated in a time loop, so that references need no counting: it costs more there
-#: than the physics
-UNCOUNTED = {"error_model": "numpy", "_nrt": False}
-#: leaves become part of the loop that calls them
-INLINED = {**UNCOUNTED, "forceinline": True}
+from dynamics.leaves import INLINED as INLINED
+from dynamics.leaves import UNCOUNTED as UNCOUNTED
+from dynamics.leaves import by_table as by_table
+from dynamics.leaves import hand_over
 
-
-def by_table(kernels: Mapping[type, Callable]) -> Callable:
-    """Return a function that calls the kernel of the type of its first argument, a table.
-
-    In compiled code the kernel is chosen when the driver is compiled.
-    """
-
-    def call(table, *rest):
-        return kernels[type(table)](table, *rest)
-
-    @overload(call, jit_options=INLINED, strict=False)
-    def _compiled(table, *rest):  # noqa: ARG001
-        return kernels.get(getattr(table, "instance_class", types.NoneType))
-
-    return call
+hand_over()
 
 
 def for_each(call: Callable) -> Callable:

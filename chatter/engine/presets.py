@@ -1,7 +1,7 @@
 """Decorator presets of the compiled code, and the folder that keeps it between sessions.
 
-Physics leaves in `cutting` and `dynamics` are `register_jitable`: plain functions to Python,
-inlined by the drivers here (see `cutting.compiled`). numba's disk cache looks only at the file of
+Physics leaves in `cutting` and `dynamics` are plain functions to Python, inlined by the drivers
+here (see `cutting.compiled` and `cutting.leaves`). numba's disk cache looks only at the file of
 the cached function, so that an edit of a leaf would go unseen; the cache folder is therefore named
 by a hash of all sources.
 """

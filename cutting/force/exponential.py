@@ -10,10 +10,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba.extending import register_jitable
 from numpy.typing import NDArray
 
-from cutting.compiled import INLINED
 from cutting.force.law import (
     CUTTING_KEYS,
     EDGE_KEYS,
@@ -23,6 +21,7 @@ from cutting.force.law import (
     SlopePower,
 )
 from cutting.keys import Key
+from cutting.leaves import leaf
 
 
 class ExponentialTable(NamedTuple):
@@ -34,7 +33,7 @@ class ExponentialTable(NamedTuple):
     exponent: float  # p
 
 
-@register_jitable(**INLINED)
+@leaf
 def exponential_force(law, tooth, chip):
     """Tangential, radial and axial force per length of edge, N/m, at a chip thickness > 0, m."""
     # a power, by exponential and logarithm: a tenth of the whole time step less

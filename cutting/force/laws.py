@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from cutting.compiled import by_table
 from cutting.force.exponential import EXPONENTIAL
 from cutting.force.law import ForceLaw, ForceLawEntry
 from cutting.force.linear import LINEAR
 from cutting.force.oblique import OBLIQUE
+from cutting.leaves import by_table
 
 #: the laws of this package, in the order in which they are listed
 LAWS: tuple[ForceLawEntry, ...] = (LINEAR, EXPONENTIAL, OBLIQUE)

@@ -7,10 +7,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba.extending import register_jitable
 from numpy.typing import NDArray
 
-from cutting.compiled import INLINED
 from cutting.force.law import (
     CUTTING_KEYS,
     EDGE_KEYS,
@@ -19,6 +17,7 @@ from cutting.force.law import (
     ForceLawEntry,
     SlopePower,
 )
+from cutting.leaves import leaf
 
 
 class LinearTable(NamedTuple):
@@ -28,7 +27,7 @@ class LinearTable(NamedTuple):
     edge: NDArray[np.float64]  # N/m, (N, 3)
 
 
-@register_jitable(**INLINED)
+@leaf
 def linear_force(law, tooth, chip):
     """Tangential, radial and axial force per length of edge, N/m, at a chip thickness > 0, m."""
     return (

@@ -12,15 +12,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba.extending import register_jitable
 from numpy.typing import ArrayLike, NDArray
 
-from dynamics.compiled import INLINED
 from dynamics.friction.columns import parameter_columns, port_column
 from dynamics.friction.harmonic import memoryless_describing_function
 from dynamics.friction.implicit import implicit_force, no_energy, no_force
 from dynamics.friction.law import FrictionLawEntry
 from dynamics.keys import Key, check_ranges
+from dynamics.leaves import leaf
 
 KEYS = (
     Key("coulomb", "force", "Coulomb friction", needed=True, at_least=0.0),
@@ -118,7 +117,7 @@ def coulomb_stribeck_table(
     return CoulombStribeckTable(**columns, port=port_column(ports), rate=np.zeros(len(laws)))
 
 
-@register_jitable(**INLINED)
+@leaf
 def _resist(law, i, sign, way, h):  # noqa: ARG001
     speed = way / h
     ratio = speed / law.stribeck_velocity[i]
@@ -127,7 +126,7 @@ def _resist(law, i, sign, way, h):  # noqa: ARG001
     return dry + law.viscous[i] * speed
 
 
-@register_jitable(**INLINED)
+@leaf
 def coulomb_stribeck_force(law, i, motion, h):
     """Force, N, of a motion (m) at constant velocity in a time h (s); 0 without motion."""
     if motion == 0.0:
@@ -136,13 +135,13 @@ def coulomb_stribeck_force(law, i, motion, h):
     return sign * _resist(law, i, sign, abs(motion), h)
 
 
-@register_jitable(**INLINED)
+@leaf
 def coulomb_stribeck_step(law, i, dx_free, gx, v_free, g, h):
     """Held force, N, and motion of the law, m; see `implicit.implicit_force`."""
     return implicit_force(no_force, _resist, no_energy, law, i, math.inf, dx_free, gx, v_free, g, h)
 
 
-@register_jitable(**INLINED)
+@leaf
 def coulomb_stribeck_advance(law, i, motion, h):
     """Note a motion, m, in a time h, s."""
     law.rate[i] = motion / h

@@ -13,9 +13,7 @@ from __future__ import annotations
 
 import math
 
-from numba.extending import register_jitable
-
-from dynamics.compiled import INLINED
+from dynamics.leaves import leaf
 
 #: halvings that end any search; few are needed
 _ITERATIONS = 100
@@ -26,19 +24,19 @@ _SHARES = 4
 _CONTRACTIONS, _CLOSING = 5, 0.1
 
 
-@register_jitable(**INLINED)
+@leaf
 def no_force(law, i):  # noqa: ARG001
     """Force at no motion of a law without memory."""
     return 0.0
 
 
-@register_jitable(**INLINED)
+@leaf
 def no_energy(law, i, motion, h):  # noqa: ARG001
     """Change of the stored energy of a law that stores none, J."""
     return 0.0
 
 
-@register_jitable(**INLINED)
+@leaf
 def implicit_force(rest, opposing, stored, law, i, stiffness, dx_free, gx, v_free, g, h):
     """Force held over the step and motion of the law.
 
@@ -86,7 +84,7 @@ def implicit_force(rest, opposing, stored, law, i, stiffness, dx_free, gx, v_fre
     return force, motion
 
 
-@register_jitable(**INLINED)
+@leaf
 def _solve(rest, opposing, law, i, free, compliance, h):
     """Force and motion d with d = free - compliance F(d)."""
     at_rest = rest(law, i)
@@ -105,7 +103,7 @@ def _solve(rest, opposing, law, i, free, compliance, h):
     return sign * opposing(law, i, sign, way, h), sign * way
 
 
-@register_jitable(**INLINED)
+@leaf
 def _way(opposing, law, i, sign, h, free, compliance, high, guess):
     """Root of way - free + compliance opposing(way) in [0, high], that next to the guess.
 
@@ -141,7 +139,7 @@ def _way(opposing, law, i, sign, h, free, compliance, high, guess):
     return _root(opposing, law, i, sign, h, free, compliance, low, f_low, top, f_top)
 
 
-@register_jitable(**INLINED)
+@leaf
 def _contracted(opposing, law, i, sign, h, free, compliance, high, guess):
     """Root by putting the way in again and again, or 0 where that does not close in at once.
 
@@ -160,7 +158,7 @@ def _contracted(opposing, law, i, sign, h, free, compliance, high, guess):
     return 0.0
 
 
-@register_jitable(**INLINED)
+@leaf
 def _root(opposing, law, i, sign, h, free, compliance, a, fa, b, fb):
     """Root between fa < 0 < fb (Chandrupatla 1997, Adv. Eng. Software 28:145, eqs. 1-4)."""
     c, fc = a, fa

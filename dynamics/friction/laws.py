@@ -8,12 +8,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.compiled import by_table
 from dynamics.friction.coulomb_stribeck import COULOMB_STRIBECK
 from dynamics.friction.law import FrictionLaw, FrictionLawEntry, FrictionTable
 from dynamics.friction.lugre import LUGRE
 from dynamics.friction.smooth_coulomb import SMOOTH_COULOMB
 from dynamics.friction.tanh_hysteresis import TANH_HYSTERESIS
+from dynamics.leaves import by_table
 
 #: the laws of this package, in the order in which they are listed
 LAWS: tuple[FrictionLawEntry, ...] = (LUGRE, TANH_HYSTERESIS, COULOMB_STRIBECK, SMOOTH_COULOMB)

@@ -18,15 +18,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba.extending import register_jitable
 from numpy.typing import ArrayLike, NDArray
 
-from dynamics.compiled import INLINED
 from dynamics.friction.columns import parameter_columns, port_column
 from dynamics.friction.harmonic import describing_function
 from dynamics.friction.implicit import implicit_force
 from dynamics.friction.law import FrictionLawEntry
 from dynamics.keys import Key, check_ranges
+from dynamics.leaves import leaf
 
 #: exponent of the Stribeck curve beyond which it is below rounding
 _FAR_SLIDING = 60.0
@@ -159,7 +158,7 @@ def lugre_table(laws: Sequence[LuGre], ports: Sequence[int]) -> LuGreTable:
     return LuGreTable(**columns, port=port_column(ports), deflection=deflection, rate=rate)
 
 
-@register_jitable(**INLINED)
+@leaf
 def lugre_bent(law, i, speed):
     """g, m: deflection in steady sliding at a speed >= 0, m/s."""
     force = law.coulomb[i]
@@ -172,7 +171,7 @@ def lugre_bent(law, i, speed):
     return force / law.bristle_stiffness[i]
 
 
-@register_jitable(**INLINED)
+@leaf
 def _bend(law, i, sign, way, h):
     """Mean and final deflection along sign over a motion at constant speed, and g, m."""
     start = sign * law.deflection[i]
@@ -185,7 +184,7 @@ def _bend(law, i, sign, way, h):
     return slip + away * mean, start - away * kept, slip
 
 
-@register_jitable(**INLINED)
+@leaf
 def _resist(law, i, sign, way, h):
     mean, end, slip = _bend(law, i, sign, way, h)
     start = sign * law.deflection[i]
@@ -195,12 +194,12 @@ def _resist(law, i, sign, way, h):
     return max(force, 0.0) if start > slip else force
 
 
-@register_jitable(**INLINED)
+@leaf
 def _rest(law, i):
     return law.bristle_stiffness[i] * law.deflection[i]
 
 
-@register_jitable(**INLINED)
+@leaf
 def _stored(law, i, motion, h):
     sign = 1.0 if motion >= 0.0 else -1.0
     _, end, _ = _bend(law, i, sign, abs(motion), h)
@@ -208,21 +207,21 @@ def _stored(law, i, motion, h):
     return 0.5 * law.bristle_stiffness[i] * (end - start) * (end + start)
 
 
-@register_jitable(**INLINED)
+@leaf
 def lugre_force(law, i, motion, h):
     """Mean force, N, over a motion (m) at constant velocity in a time h (s)."""
     sign = 1.0 if motion >= 0.0 else -1.0
     return sign * _resist(law, i, sign, abs(motion), h)
 
 
-@register_jitable(**INLINED)
+@leaf
 def lugre_step(law, i, dx_free, gx, v_free, g, h):
     """Held force, N, and motion of the law, m; see `implicit.implicit_force`."""
     stiffness = law.bristle_stiffness[i] + (law.bristle_damping[i] + law.viscous[i]) / h
     return implicit_force(_rest, _resist, _stored, law, i, stiffness, dx_free, gx, v_free, g, h)
 
 
-@register_jitable(**INLINED)
+@leaf
 def lugre_advance(law, i, motion, h):
     """Bend the bristle by a motion, m, in a time h, s."""
     sign = 1.0 if motion >= 0.0 else -1.0
@@ -231,7 +230,7 @@ def lugre_advance(law, i, motion, h):
     law.rate[i] = motion / h
 
 
-@register_jitable(**INLINED)
+@leaf
 def lugre_energy(law, i):
     """Energy stored in the bristle, J."""
     return 0.5 * law.bristle_stiffness[i] * law.deflection[i] * law.deflection[i]

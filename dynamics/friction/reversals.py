@@ -11,10 +11,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba.extending import register_jitable
 from numpy.typing import NDArray
 
-from dynamics.compiled import INLINED
+from dynamics.leaves import leaf
 
 #: reversals remembered; beyond it, the two between which least happened are forgotten
 _DEPTH = 64
@@ -40,7 +39,7 @@ def reversal_columns(
     )
 
 
-@register_jitable(**INLINED)
+@leaf
 def branch_value(law, i):
     """Value of r now."""
     n = law.count[i]
@@ -49,7 +48,7 @@ def branch_value(law, i):
     return law.value[i, n - 1] + law.side[i] * 2.0 * math.tanh(law.travel[i])
 
 
-@register_jitable(**INLINED)
+@leaf
 def _tanh_over(start, width):
     """Integral of tanh over a width from start >= 0."""
     if start > _SATURATED:
@@ -65,13 +64,13 @@ def _tanh_over(start, width):
     return width + last - math.log1p(math.exp(-2.0 * start))
 
 
-@register_jitable(**INLINED)
+@leaf
 def _rise_over(start, width, height):
     """Integral of height tanh(u), the rise of a branch, over a width from start >= 0."""
     return height * _tanh_over(start, width)
 
 
-@register_jitable(**INLINED)
+@leaf
 def _lost_over(start, width, height):  # noqa: ARG001
     """Integral of tanh(u) - u / cosh(u)^2 over a width from start >= 0.
 
@@ -82,12 +81,12 @@ def _lost_over(start, width, height):  # noqa: ARG001
     return lost - (end * math.tanh(end) - start * math.tanh(start))
 
 
-@register_jitable(**INLINED)
+@leaf
 def _nothing(start, width, height):  # noqa: ARG001
     return 0.0
 
 
-@register_jitable(**INLINED)
+@leaf
 def _along(over, share, law, i, sign, distance):
     """Integral along a distance >= 0 (m) in a direction, and where it ends.
 
@@ -133,7 +132,7 @@ def _along(over, share, law, i, sign, distance):
     return total, n, u
 
 
-@register_jitable(**INLINED)
+@leaf
 def branch_mean(law, i, sign, distance):
     """Mean of r along a distance >= 0 (m) in a direction, counted along it."""
     if distance <= 0.0:
@@ -142,14 +141,14 @@ def branch_mean(law, i, sign, distance):
     return total / distance
 
 
-@register_jitable(**INLINED)
+@leaf
 def branch_lost(law, i, sign, distance):
     """Dissipated energy per sliding force, m, along a distance > 0 (m) in a direction."""
     lost, _, _ = _along(_lost_over, 0.0, law, i, sign, distance)
     return lost
 
 
-@register_jitable(**INLINED)
+@leaf
 def move_along(law, i, motion):
     """Move by a motion, m: note a reversal, forget loops that close."""
     if motion == 0.0:
@@ -169,7 +168,7 @@ def move_along(law, i, motion):
     law.travel[i] = u
 
 
-@register_jitable(**INLINED)
+@leaf
 def _forget_least(law, i):
     """Forget the two neighbouring reversals whose branches differ least in length."""
     n = law.count[i]

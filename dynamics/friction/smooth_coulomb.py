@@ -13,15 +13,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba.extending import register_jitable
 from numpy.typing import ArrayLike, NDArray
 
-from dynamics.compiled import INLINED
 from dynamics.friction.columns import parameter_columns, port_column
 from dynamics.friction.harmonic import memoryless_describing_function
 from dynamics.friction.implicit import implicit_force, no_energy, no_force
 from dynamics.friction.law import FrictionLawEntry
 from dynamics.keys import Key, check_ranges
+from dynamics.leaves import leaf
 
 KEYS = (
     Key("coulomb", "force", "Coulomb friction", needed=True, at_least=0.0),
@@ -104,20 +103,20 @@ def smooth_coulomb_table(laws: Sequence[SmoothCoulomb], ports: Sequence[int]) ->
     return SmoothCoulombTable(**columns, port=port_column(ports), rate=np.zeros(len(laws)))
 
 
-@register_jitable(**INLINED)
+@leaf
 def _resist(law, i, sign, way, h):  # noqa: ARG001
     speed = way / h
     return law.coulomb[i] * math.tanh(speed / law.smoothing_velocity[i]) + law.viscous[i] * speed
 
 
-@register_jitable(**INLINED)
+@leaf
 def smooth_coulomb_force(law, i, motion, h):
     """Force, N, of a motion (m) at constant velocity in a time h (s)."""
     sign = 1.0 if motion >= 0.0 else -1.0
     return sign * _resist(law, i, sign, abs(motion), h)
 
 
-@register_jitable(**INLINED)
+@leaf
 def smooth_coulomb_step(law, i, dx_free, gx, v_free, g, h):
     """Held force, N, and motion of the law, m; see `implicit.implicit_force`."""
     stiffness = (law.coulomb[i] / law.smoothing_velocity[i] + law.viscous[i]) / h
@@ -126,7 +125,7 @@ def smooth_coulomb_step(law, i, dx_free, gx, v_free, g, h):
     )
 
 
-@register_jitable(**INLINED)
+@leaf
 def smooth_coulomb_advance(law, i, motion, h):
     """Note a motion, m, in a time h, s."""
     law.rate[i] = motion / h

@@ -27,10 +27,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba.extending import register_jitable
 from numpy.typing import ArrayLike, NDArray
 
-from dynamics.compiled import INLINED
 from dynamics.friction.columns import parameter_columns, port_column
 from dynamics.friction.harmonic import describing_function
 from dynamics.friction.implicit import implicit_force
@@ -43,6 +41,7 @@ from dynamics.friction.reversals import (
     reversal_columns,
 )
 from dynamics.keys import Key, check_ranges
+from dynamics.leaves import leaf
 
 KEYS = (
     Key("coulomb", "force", "Coulomb friction", needed=True, above=0.0),
@@ -143,7 +142,7 @@ def tanh_table(laws: Sequence[TanhHysteresis], ports: Sequence[int]) -> TanhTabl
     )  # fmt: skip
 
 
-@register_jitable(**INLINED)
+@leaf
 def _resist(law, i, sign, way, h):
     mean = branch_mean(law, i, sign, way)
     speed = way / h
@@ -151,12 +150,12 @@ def _resist(law, i, sign, way, h):
     return law.coulomb[i] * mean + (law.viscous[i] + slow) * speed * max(mean, 0.0)
 
 
-@register_jitable(**INLINED)
+@leaf
 def _rest(law, i):
     return law.coulomb[i] * branch_value(law, i)
 
 
-@register_jitable(**INLINED)
+@leaf
 def _stored(law, i, motion, h):  # noqa: ARG001
     sign = 1.0 if motion >= 0.0 else -1.0
     way = abs(motion)
@@ -166,14 +165,14 @@ def _stored(law, i, motion, h):  # noqa: ARG001
     return law.coulomb[i] * (branch_mean(law, i, sign, way) * way - lost)
 
 
-@register_jitable(**INLINED)
+@leaf
 def tanh_force(law, i, motion, h):
     """Mean force, N, over a motion (m) at constant velocity in a time h (s)."""
     sign = 1.0 if motion >= 0.0 else -1.0
     return sign * _resist(law, i, sign, abs(motion), h)
 
 
-@register_jitable(**INLINED)
+@leaf
 def tanh_step(law, i, dx_free, gx, v_free, g, h):
     """Held force, N, and motion of the law, m; see `implicit.implicit_force`."""
     stiffness = 2.0 * law.hysteresis_slope[i] * law.coulomb[i]
@@ -181,14 +180,14 @@ def tanh_step(law, i, dx_free, gx, v_free, g, h):
     return implicit_force(_rest, _resist, _stored, law, i, stiffness, dx_free, gx, v_free, g, h)
 
 
-@register_jitable(**INLINED)
+@leaf
 def tanh_advance(law, i, motion, h):
     """Move along the branches by a motion, m, in a time h, s."""
     move_along(law, i, motion)
     law.rate[i] = motion / h
 
 
-@register_jitable(**INLINED)
+@leaf
 def tanh_stored(law, i, motion):
     """Change of the stored energy, J, over a motion, m."""
     return _stored(law, i, motion, 1.0)

@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from dynamics.compiled import njit
 from dynamics.frf.container import MeasurementError
 from dynamics.friction.identification.filtering import LowPass
 from dynamics.friction.identification.intervals import Estimate

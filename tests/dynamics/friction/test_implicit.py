@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from numba import njit
 from scipy.integrate import solve_ivp
 
+from dynamics.compiled import njit
 from dynamics.friction import lugre, tanh_hysteresis
 from dynamics.friction.coulomb_stribeck import (
     CoulombStribeck,

@@ -6,12 +6,11 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numba.extending import register_jitable
 from numpy.typing import NDArray
 
-from cutting.compiled import INLINED
 from cutting.force.law import ForceLaw, ForceLawEntry, SlopePower
 from cutting.keys import Key
+from cutting.leaves import leaf
 
 
 class RootTable(NamedTuple):
@@ -22,7 +21,7 @@ class RootTable(NamedTuple):
     reference: float  # h0, m
 
 
-@register_jitable(**INLINED)
+@leaf
 def root_force(law, tooth, chip):
     tangential = law.specific[tooth] * np.sqrt(law.reference * chip)
     return tangential, law.ratio[tooth] * tangential, 0.0 * tangential

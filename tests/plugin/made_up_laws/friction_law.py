@@ -7,15 +7,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba.extending import register_jitable
 from numpy.typing import NDArray
 
-from dynamics.compiled import INLINED
 from dynamics.friction.columns import parameter_columns, port_column
 from dynamics.friction.harmonic import memoryless_describing_function
 from dynamics.friction.implicit import implicit_force, no_energy, no_force
 from dynamics.friction.law import FrictionLawEntry
 from dynamics.keys import Key, check_ranges
+from dynamics.leaves import leaf
 
 KEYS = (
     Key("coulomb", "force", "Coulomb friction", needed=True, at_least=0.0),
@@ -67,17 +66,17 @@ def table(laws, ports):
     )
 
 
-@register_jitable(**INLINED)
+@leaf
 def _resist(law, i, sign, way, h):
     return 2.0 / math.pi * law.coulomb[i] * math.atan(way / h / law.smoothing_velocity[i])
 
 
-@register_jitable(**INLINED)
+@leaf
 def force(law, i, motion, h):
     return _resist(law, i, 1.0, motion, h)
 
 
-@register_jitable(**INLINED)
+@leaf
 def step(law, i, dx_free, gx, v_free, g, h):
     stiffness = law.coulomb[i] / law.smoothing_velocity[i] / h
     return implicit_force(
@@ -85,7 +84,7 @@ def step(law, i, dx_free, gx, v_free, g, h):
     )
 
 
-@register_jitable(**INLINED)
+@leaf
 def advance(law, i, motion, h):
     law.rate[i] = motion / h
 
