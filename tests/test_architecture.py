@@ -22,6 +22,8 @@ from tests.places import ROOT
 FOREIGN = {"chatter", "matplotlib", "pint", "pydantic", "typer", "rich", "tomlkit"}
 HEAVY = ["numba", "scipy", "numpy", "matplotlib", "pint", "pydantic", "tomlkit", "typer", "rich"]
 
+#: decorators of kernels
+COMPILED = {"njit", "register_jitable", "overload", "leaf"}
 #: arguments that a function may take which is no kernel
 MOST_ARGUMENTS = 8
 
@@ -122,7 +124,7 @@ def is_kernel(function, targets):
     """Whether numba compiles a function, or it stands for one that an overload compiles."""
     decorators = [d.func if isinstance(d, ast.Call) else d for d in function.decorator_list]
     names = {decorator.id for decorator in decorators if isinstance(decorator, ast.Name)}
-    return bool(names & {"njit", "register_jitable", "overload"}) or function.name in targets
+    return bool(names & COMPILED) or function.name in targets
 
 
 def functions_outside_kernels(tree):
