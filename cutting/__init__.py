@@ -6,7 +6,7 @@ module          responsibility
 tool            geometry of the tool, edges cut into slices
 engagement      entry and exit angles of the teeth, cutting speed
 force           force laws, directional coefficients, force spectrum
-material        published cutting coefficients with their sources; oblique transformation
+material        published cutting coefficients with their sources
 edges           edge slices as the kernels see them; force of an edge on the tool
 tool_point      where the cut meets the machine
 delayed_chip    chip against the motion of the last turn

@@ -36,14 +36,14 @@ def _laws(laws: Iterable) -> str:
 
 def friction_laws() -> str:
     """Friction laws of `[friction.NAME]`."""
-    from chatter.description.laws import FRICTION_LAWS
+    from chatter.description.law_section import FRICTION_LAWS
 
     return _laws(FRICTION_LAWS)
 
 
 def force_laws() -> str:
     """Force laws of `[material]`."""
-    from chatter.description.laws import FORCE_LAWS
+    from chatter.description.law_section import FORCE_LAWS
 
     return _laws(FORCE_LAWS)
 

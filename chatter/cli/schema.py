@@ -20,7 +20,7 @@ def schema(
     import json
 
     if machine:
-        from chatter.description.machine.machine_schema import machine_schema as content
+        from chatter.description.json_schema import machine_schema as content
     else:
         from chatter.stability.case_schema import schema as content
     if out is None:

@@ -9,8 +9,7 @@ measured_frf        structure of measured FRFs; `drive_point_check`: signs and p
 real_modes          real modes fitted to a receptance
 machine_parts       machine file to an assembled machine
 machine_cut         machine of a case: who feeds, what turns, where the cut acts
-rigid_motion        motion of all freedoms with the axes
-linearised_friction frictions linearised about the motion of a machine, FRFs with them
+linearised_friction motion free of strain, frictions linearised about it, FRFs with them
 linearised_machine  receptance and modes of a machine at the tool point
 =================== =================================================================
 """

@@ -30,10 +30,6 @@ _MOST_WRONG = 0.1
 def is_passive(frf: Frf) -> bool:
     """Tell whether an FRF can be that of a drive point, sign of the sensor aside.
 
-    Parameters
-    ----------
-    frf : Frf
-
     Returns
     -------
     bool
@@ -51,10 +47,6 @@ def is_passive(frf: Frf) -> bool:
 
 def with_magnitudes(fit: ModalFit) -> ModalFit:
     """Give the modes of a drive point that is none the mass that the magnitude of its FRF means.
-
-    Parameters
-    ----------
-    fit : ModalFit
 
     Returns
     -------

@@ -117,12 +117,7 @@ def tool_receptance(
 ) -> NDArray[np.complex128]:
     """Receptance (m, 3, 3) of the tool against the workpiece in the directions of the cut, m/N.
 
-    Parameters
-    ----------
-    case : Case
-    cut : MachineCut
-    frequency : (m,) array of float
-        Hz, above 0.
+    Frequencies (m,) in Hz, above 0.
     """
     moving = _moving(case, cut)
     frictions = linearised_frictions(cut.machine, moving, _amplitudes(case, cut))

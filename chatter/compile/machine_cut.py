@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.compile.linearised_friction import rigid_motion
 from chatter.compile.machine_parts import assembled_machine, machine_parts
-from chatter.compile.rigid_motion import rigid_motion
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.machine.machine_file import MachineFile

@@ -9,11 +9,10 @@ from typing import TypeVar
 import numpy as np
 
 from chatter.description.errors import InputError
-from chatter.description.machine.bodies import SIX
+from chatter.description.machine.bodies import SIX, ImportedSection
 from chatter.description.machine.compose import Composition
 from chatter.description.machine.errors_by_key import machine_errors
 from chatter.description.machine.friction import FrictionSection
-from chatter.description.machine.imported import ImportedSection
 from chatter.description.machine.machine_file import MachineFile
 from chatter.io.matrices import imported_structure
 from dynamics.machine.description import (

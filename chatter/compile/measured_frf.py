@@ -17,8 +17,7 @@ from dynamics.frf.container import Frf, MeasurementError, Point, on_common_lines
 from dynamics.identification.fit import identify_modes
 from dynamics.identification.prepare import prepare
 from dynamics.identification.result import ModalFit
-from dynamics.modal.frequency_lines import frequency_lines
-from dynamics.modal.modes import Mode, Side, receptance_matrix
+from dynamics.modal.modes import Mode, Side, frequency_lines, receptance_matrix
 
 if TYPE_CHECKING:
     from chatter.description.case import Case
@@ -29,20 +28,12 @@ _AXES = "xyz"
 
 @dataclass(frozen=True)
 class MeasuredSide:
-    """All FRFs of the tool or of the workpiece, in the directions of the case.
-
-    Parameters
-    ----------
-    side : str
-    frfs : tuple of Frf
-        Those at the tool point and, for better poles, others of the same structure.
-    node : str or None
-        Node of the tool point.
-    """
+    """All FRFs of the tool or of the workpiece, in the directions of the case."""
 
     side: Side
+    #: those at the tool point and, for better poles, others of the same structure
     frfs: tuple[Frf, ...]
-    node: str | None = None
+    node: str | None = None  # node of the tool point
 
     def tool_point_frfs(self) -> tuple[Frf, ...]:
         """FRFs with force and response at the tool point."""
@@ -114,23 +105,8 @@ def measured_sides(
 ) -> tuple[tuple[MeasuredSide, ...], tuple[str, ...]]:
     """Read FRFs of a case.
 
-    Parameters
-    ----------
-    case : Case
-    entries : sequence of MeasuredFrf
-        Those of its files that count.
-
-    Returns
-    -------
-    sides : tuple of MeasuredSide
-        Tool side, workpiece side, as far as measured.
-    notes : tuple of str
-        Assumptions made.
-
-    Raises
-    ------
-    InputError
-        If a file cannot be read, or files do not say at which point or in which direction.
+    Tool side and workpiece side of the files that count, as far as measured, and assumptions made.
+    InputError if a file cannot be read, or files do not say at which point or in which direction.
     """
     notes: list[str] = []
     problems: list[str] = []

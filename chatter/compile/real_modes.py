@@ -39,19 +39,9 @@ def real_modes(
 ) -> tuple[Mode, ...]:
     """Fit real modes to a receptance.
 
-    Parameters
-    ----------
-    frequency : (m,) array of float
-        Hz, dense around the modes.
-    receptance : (m, 3, 3) array of complex
-        m/N; its symmetric part is fitted.
-    start : sequence of Mode
-        First guess.
-
-    Returns
-    -------
-    tuple of Mode
-        The last ones may lie above the band and stand for what is there.
+    Of a receptance (m, 3, 3), m/N, at frequencies (m,), Hz, dense around the modes, the symmetric
+    part is fitted, from a first guess. The last modes may lie above the band and stand for what is
+    there.
     """
     omega = 2.0 * np.pi * np.asarray(frequency, dtype=np.float64)
     wanted = 0.5 * (receptance + receptance.transpose(0, 2, 1))

@@ -14,8 +14,7 @@ from chatter.description.errors import InputError
 from chatter.description.units import rpm
 from dynamics.frf.container import MeasurementError
 from dynamics.identification.result import ModalFit
-from dynamics.modal.frequency_lines import frequency_lines
-from dynamics.modal.modes import Mode, receptance_matrix
+from dynamics.modal.modes import Mode, frequency_lines, receptance_matrix
 
 if TYPE_CHECKING:
     from chatter.description.case import Case
@@ -26,17 +25,10 @@ _HIGHEST_CHATTER = 4.0
 
 @dataclass(frozen=True)
 class GivenModes:
-    """Structure described by modes.
-
-    Parameters
-    ----------
-    modes : tuple of Mode
-    notes : tuple of str
-        Assumptions; none here.
-    """
+    """Structure described by modes."""
 
     modes: tuple[Mode, ...]
-    notes: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()  # assumptions; none here
 
     @property
     def directions(self) -> NDArray[np.float64]:
@@ -53,17 +45,10 @@ class GivenModes:
 
 @dataclass(frozen=True)
 class MeasuredStructure:
-    """Structure described by measured FRFs; modes are fitted when they are first asked for.
-
-    Parameters
-    ----------
-    sides : tuple of MeasuredSide
-    notes : tuple of str
-        Assumptions made on reading.
-    """
+    """Structure described by measured FRFs; modes are fitted when they are first asked for."""
 
     sides: tuple[MeasuredSide, ...]
-    notes: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()  # assumptions made on reading
 
     @cached_property
     def directions(self) -> NDArray[np.float64]:

@@ -7,7 +7,7 @@ case                Case: what a case file says
 sections            the sections of a case file
 machine             the machine file and its sections
 patchable           reading, patching, writing back; shared by both files
-laws, law_section   registries of force and friction laws; sections made from them
+law_section         registries of force and friction laws; sections made from them
 registry            entries by name, ours and those of installed packages
 renamed             keys with a new name; the old one is read for one release
 units               quantities with units; the one units registry
@@ -18,6 +18,6 @@ case_checks         checks across sections; plausibility: numbers that must be w
 keys_of_kind        keys that belong to a kind or a law alone
 wording, formatting sentences for what is wrong; values in messages
 errors, progress    InputError and RunError; how far a computation is
-case_schema         JSON schema of the case file; json_schema: of any file
+json_schema         JSON schemas of the case file and the machine file
 =================== ================================================================
 """

@@ -20,15 +20,7 @@ def engagement_problems(
 ) -> list[tuple[str, str]]:
     """Check the radial depth (m) against the diameter (m) of the tool.
 
-    Parameters
-    ----------
-    mode, radial_depth, diameter
-        None where it is not known.
-
-    Returns
-    -------
-    list of (str, str)
-        Path and sentence of what is wrong.
+    None stands for what is not known. Path and sentence of what is wrong are returned.
     """
     if radial_depth is None or diameter is None:
         return []

@@ -1,9 +1,12 @@
-"""JSON schema of a kind of file, from the same declarations that read it."""
+"""JSON schemas of the case file and the machine file, from the declarations that read them."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
+from chatter.description.case import Case
+from chatter.description.machine.machine_file import MachineFile
 from chatter.description.patchable import Description
 
 
@@ -54,3 +57,29 @@ def _without_null(node: dict) -> dict:
 def _description(*nodes: dict) -> dict:
     texts = [node["description"] for node in nodes if "description" in node]
     return {"description": ": ".join(texts)} if texts else {}
+
+
+def case_schema(methods: Sequence[str]) -> dict[str, Any]:
+    """Return the JSON schema (draft 2020-12) of the case file.
+
+    Parameters
+    ----------
+    methods : sequence of str
+        Names of the stability methods, for [lobes].
+    """
+    content = schema_of(
+        Case,
+        "chatter case file",
+        "Tool, material, cut and structure: what milling stability depends on.",
+    )
+    content["$defs"]["Lobes"]["properties"]["method"]["enum"] = list(methods)
+    return content
+
+
+def machine_schema() -> dict[str, Any]:
+    """Return the JSON schema (draft 2020-12) of the machine file."""
+    return schema_of(
+        MachineFile,
+        "chatter machine file",
+        "Bodies, joints, beams, drives, control and friction of a machine tool.",
+    )

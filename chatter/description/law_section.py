@@ -10,6 +10,10 @@ from pydantic import Field, create_model, model_validator
 from chatter.description.keys_of_kind import key_problems
 from chatter.description.registry import Registry
 from chatter.description.section import Section, raise_if_any
+from cutting.force import laws as force_laws
+from cutting.force.law import ForceLawEntry
+from dynamics.friction import laws as friction_laws
+from dynamics.friction.law import FrictionLawEntry
 
 
 class Key(Protocol):
@@ -113,3 +117,16 @@ def _widest(
     widest = choose(strict if strict is not None else loose for strict, loose in pairs)
     inclusive = any(loose == widest for _, loose in pairs)
     return {names[1] if inclusive else names[0]: widest}
+
+
+FORCE_LAWS: Registry[ForceLawEntry] = Registry(
+    group="chatter.force_laws", what="force law", built_in=force_laws.LAWS
+)
+FRICTION_LAWS: Registry[FrictionLawEntry] = Registry(
+    group="chatter.friction_laws", what="friction law", built_in=friction_laws.LAWS
+)
+
+for _force_law in FORCE_LAWS:
+    force_laws.include(_force_law)
+for _friction_law in FRICTION_LAWS:
+    friction_laws.include(_friction_law)

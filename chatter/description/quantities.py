@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from types import GenericAlias
 from typing import Annotated, Any
@@ -174,67 +175,60 @@ def either_quantity(*dimensions: str, **bounds: float) -> Any:
     return Annotated[float, BeforeValidator(field.read), WithJsonSchema(field.json_schema()), field]
 
 
-def quantities(count: int, dimension: str, **bounds: float) -> Any:
-    """Return the field type of a list of quantities of one dimension.
-
-    Parameters
-    ----------
-    count : int
-        How many there must be.
-    dimension : str
-    **bounds : float
-        As for `quantity`.
-    """
-    field = QuantityField(dimension, **bounds)
-    example = f"[{', '.join([field.example] * count)}]"
-
-    def read(given: Any) -> tuple[float, ...]:
-        if not isinstance(given, (list, tuple)) or len(given) != count:
-            raise ValueError(
-                f"{formatted(given)} is given; {count} quantities are wanted, such as {example}"
-            )
-        return tuple(field.read(part) for part in given)
-
+def list_type(
+    kind: Any,
+    read: Callable[[Any], Any],
+    field: QuantityField,
+    description: str = "",
+    fewest: int | None = None,
+    most: int | None = None,
+) -> Any:
+    """Return the field type of a list, by what reads it and the quantity of its entries."""
+    keywords = {"minItems": fewest, "maxItems": most, "description": description or None}
     schema = {
         "type": "array",
         "items": {"anyOf": field.json_schema()["anyOf"]},
-        "minItems": count,
-        "maxItems": count,
-        "description": f"{count} quantities, each {field.noun}",
+        **{key: value for key, value in keywords.items() if value is not None},
     }
-    numbers: Any = GenericAlias(tuple, (float,) * count)
-    return Annotated[numbers, BeforeValidator(read), WithJsonSchema(schema), field]
+    return Annotated[kind, BeforeValidator(read), WithJsonSchema(schema), field]
 
 
-def quantity_list(dimension: str, fewest: int, most: int, **bounds: float) -> Any:
-    """Return the field type of a list of any number of quantities of one dimension.
-
-    Parameters
-    ----------
-    dimension : str
-    fewest, most : int
-        Entries that there may be.
-    **bounds : float
-        As for `quantity`.
-    """
-    field = QuantityField(dimension, **bounds)
+def list_reader(
+    field: QuantityField, wanted: str, fewest: int = 0, most: float = math.inf
+) -> Callable[[Any], tuple[float, ...]]:
+    """Return what reads a list of quantities and says what is wanted where it is none."""
 
     def read(given: Any) -> tuple[float, ...]:
         if not isinstance(given, (list, tuple)) or not fewest <= len(given) <= most:
-            raise ValueError(
-                f"{formatted(given)} is given; a list of {fewest} to {most} quantities is wanted, "
-                f"such as [{field.example}, ...]"
-            )
+            raise ValueError(f"{formatted(given)} {wanted}")
         return tuple(field.read(part) for part in given)
 
-    schema = {
-        "type": "array",
-        "items": {"anyOf": field.json_schema()["anyOf"]},
-        "minItems": fewest,
-        "maxItems": most,
-        "description": f"quantities, each {field.noun}",
-    }
-    return Annotated[tuple[float, ...], BeforeValidator(read), WithJsonSchema(schema), field]
+    return read
+
+
+def quantities(count: int, dimension: str, **bounds: float) -> Any:
+    """Return the field type of so many quantities of one dimension; bounds as for `quantity`."""
+    field = QuantityField(dimension, **bounds)
+    example = f"[{', '.join([field.example] * count)}]"
+    wanted = f"is given; {count} quantities are wanted, such as {example}"
+    read = list_reader(field, wanted, count, count)
+    description = f"{count} quantities, each {field.noun}"
+    kind = GenericAlias(tuple, (float,) * count)
+    return list_type(kind, read, field, description, count, count)
+
+
+def quantity_list(dimension: str, fewest: int, most: int, **bounds: float) -> Any:
+    """Return the field type of a list of quantities of one dimension; bounds as for `quantity`."""
+    field = QuantityField(dimension, **bounds)
+    read = list_reader(
+        field,
+        f"is given; a list of {fewest} to {most} quantities is wanted, such as "
+        f"[{field.example}, ...]",
+        fewest,
+        most,
+    )
+    description = f"quantities, each {field.noun}"
+    return list_type(tuple[float, ...], read, field, description, fewest, most)
 
 
 #: no cutter is larger, so that a number meant in mm is not taken for one in m
@@ -244,22 +238,17 @@ Length = quantity("length", at_least=0.0, at_most=_LARGEST_LENGTH)
 PositiveLength = quantity("length", above=0.0, at_most=_LARGEST_LENGTH)
 
 
-def _whole(given: Any) -> int:
-    if isinstance(given, bool) or not isinstance(given, int):
-        raise ValueError(f"{formatted(given)} is no whole number")
-    return given
-
-
 def whole_number(at_least: int, at_most: int, meaning: str) -> Any:
     """Return the field type of a whole number within limits."""
 
     def read(given: Any) -> int:
-        value = _whole(given)
-        if not at_least <= value <= at_most:
+        if isinstance(given, bool) or not isinstance(given, int):
+            raise ValueError(f"{formatted(given)} is no whole number")
+        if not at_least <= given <= at_most:
             raise ValueError(
-                f"{formatted(value)} is out of range; {meaning} go from {at_least} to {at_most}"
+                f"{formatted(given)} is out of range; {meaning} go from {at_least} to {at_most}"
             )
-        return value
+        return given
 
     schema = {"type": "integer", "minimum": at_least, "maximum": at_most}
     return Annotated[int, BeforeValidator(read), WithJsonSchema(schema)]

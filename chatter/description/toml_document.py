@@ -89,18 +89,8 @@ def _reason(error: Exception) -> str:
 def plain(value: Any, steps: tuple[Step, ...] = (), noun: str = "case") -> Any:
     """Return a value of Python as one of TOML; None stands for a key that is not there.
 
-    Parameters
-    ----------
-    value : object
-    steps : tuple
-        Its place, for messages.
-    noun : str
-        What the document describes, for messages.
-
-    Raises
-    ------
-    InputError
-        If TOML has nothing for it.
+    Steps and noun, what the document describes, are for the message of an InputError where TOML has
+    nothing for it.
     """
     if hasattr(value, "tolist"):
         # numbers and arrays of numpy

@@ -31,21 +31,11 @@ class QuantityError(ValueError):
 
 @dataclass(frozen=True)
 class Dimension:
-    """A physical dimension that a key may have.
+    """A physical dimension that a key may have."""
 
-    Parameters
-    ----------
-    name : str
-        With its article, as in messages.
-    unit : str
-        SI unit of a bare number.
-    example : str
-        How such a quantity is written.
-    """
-
-    name: str
-    unit: str
-    example: str
+    name: str  # with its article, as in messages
+    unit: str  # SI unit of a bare number
+    example: str  # how such a quantity is written
 
 
 #: every dimension that keys of a case or machine have; the later ones are named first
@@ -301,10 +291,6 @@ def parse(given: Any, dimension: str) -> Quantity:
     dimension : str
         Key of `DIMENSIONS`.
 
-    Returns
-    -------
-    Quantity
-
     Raises
     ------
     QuantityError
@@ -359,17 +345,7 @@ def _finite(value: float, given: Any) -> float:
 def write(value: float, unit: str, dimension: str) -> str | float:
     """Write an SI value in a unit so that it reads back to 1e-12 relative.
 
-    Parameters
-    ----------
-    value : float
-        SI.
-    unit : str
-        Empty for a bare number.
-    dimension : str
-
-    Returns
-    -------
-    str or float
+    The unit is empty for a bare number.
     """
     if not unit:
         return value

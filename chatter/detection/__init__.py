@@ -8,7 +8,6 @@ poincare_sections  signals over the spindle angle, whole periods, once-per-revol
 deviations         differences between periods, noise removed, their growth rate
 chatter_frequency  argument of the multiplier and chatter frequency
 bifurcation_type   Hopf, flip or period-n
-period_doubling    period doubled within a revolution while the runout is not known
-chatter_detection  `detect_chatter`
+chatter_detection  `detect_chatter`; period doubled while the runout is not known
 ================== ===================================================================
 """

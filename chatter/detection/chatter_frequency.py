@@ -46,10 +46,6 @@ def strongest_line(
         Logarithm of the growth a period.
     rotation : float, optional
         rad a period, where it is known; fitted otherwise.
-
-    Returns
-    -------
-    ChatterLine
     """
     count, points, channels = values.shape
     matrix = values.reshape(count, -1)

@@ -90,11 +90,6 @@ class CutRecord:
         return float(self.spindle_angle[-1] - self.spindle_angle[0]) / _REVOLUTION
 
     @property
-    def revolution_period(self) -> float:
-        """Mean time of a revolution of the spindle, s."""
-        return float(self.time[-1] - self.time[0]) / self.revolutions
-
-    @property
     def has_equal_pitch(self) -> bool:
         """Whether the teeth are equally spaced."""
         angles = np.sort(np.mod(self.tooth_angles - self.tooth_angles[0] + 1e-9, _REVOLUTION))

@@ -30,13 +30,7 @@ def deviations_of(values: NDArray[np.float64]) -> Deviations:
     motion that does not repeat, and singular values that noise alone would reach are dropped
     (bound of the largest singular value of a random matrix: Davidson and Szarek, 2001).
 
-    Parameters
-    ----------
-    values : (periods, points, k) array of float
-
-    Returns
-    -------
-    Deviations
+    Values are (periods, points, k).
     """
     differences = np.diff(values, axis=0)
     count, points, channels = differences.shape
@@ -90,15 +84,8 @@ def slowest_growth_rate(rows: NDArray[np.float64]) -> tuple[float, float]:
     the last rows. It sees a motion that grows below a transient that still outweighs it. Where the
     motion is not linear, it says nothing.
 
-    Parameters
-    ----------
-    rows : (n, m) array of float
-
-    Returns
-    -------
-    float, float
-        Logarithm, -inf if there is nothing in the rows; share of the rms of the rows that the map
-        does not predict.
+    Rows are (n, m); -inf if there is nothing in them. The misfit is the share of the rms of the
+    rows that the map does not predict.
     """
     left, singular = directions_of(rows)
     rank = int(np.count_nonzero(singular > _WEAKEST * singular[0])) if singular[0] > 0.0 else 0

@@ -43,15 +43,7 @@ def cut_into_periods(record: CutRecord, per_revolution: int) -> Periods:
 
     What follows from a speed that varies is subtracted.
 
-    Parameters
-    ----------
-    record : CutRecord
-    per_revolution : int
-        Periods per revolution of the spindle: 1, or the number of teeth of a symmetric tool.
-
-    Returns
-    -------
-    Periods
+    A revolution has 1 period, or one a tooth of a symmetric tool.
     """
     angle, signals = _averaged(record)
     samples = len(angle) / ((angle[-1] - angle[0]) / _REVOLUTION)
@@ -82,16 +74,7 @@ def _without_speed_variation(
     The motion of a stable cut depends on the spindle speed, steeply near a resonance. Where the
     speed differs between revolutions so does the motion, and that is no chatter.
 
-    Parameters
-    ----------
-    values : (periods, points, k) array of float
-    durations : (periods,) array of float
-        s, of each period.
-
-    Returns
-    -------
-    (periods, points, k) array of float
-        The same values if the speed is constant.
+    Values (periods, points, k) and durations of the periods (periods,), s.
     """
     relative = 1.0 / durations
     relative = relative / relative.mean() - 1.0

@@ -9,12 +9,11 @@ module              responsibility
 measurement         runs with their signals, and the declared case
 measurement_file    measurement folders
 criteria            every tuned number of the search and the verdict, with its reason
-fitting             least squares with priors
-prior               standard deviations of declared values
+fitting             least squares with priors, which declared values have
 residuals           where the residual lives
 data_checks         checks of the signals before anything is blamed on physics
 kinds               milling, axis, stability, frf: predictions, nuisance parameters
-checking            the checks of a kind, one after the other
+checking            the checks of a kind, and the exclusion of what they find
 prediction          predictions of a case for every run, each made once
 effects             what a case may lack, each a patch of it
 selection           candidates, search, discriminating tests

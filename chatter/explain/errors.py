@@ -111,15 +111,8 @@ def before_after(
 ) -> BeforeAfter:
     """Errors of several models by channel.
 
-    Parameters
-    ----------
-    cases : mapping of str to Case
-        Model -> case, the declared one first.
-    predictions : Predictions
-    runs : (sequence of Run, sequence of Run)
-        For fitting, and held out.
-    residual : Residual
-        Of the refitted case, for the noise.
+    Cases by model, the declared one first; runs for fitting, and those held out. The noise is that
+    of the residual of the refitted case.
     """
     fitted, holdout = (
         {model: by_channel(errors_of(case, predictions, some)) for model, case in cases.items()}

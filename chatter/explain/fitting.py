@@ -15,6 +15,8 @@ import scipy.optimize
 import scipy.stats
 from numpy.typing import NDArray
 
+from chatter.explain.measurement import Measurement
+
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Residuals = Callable[[Vector], Vector]
@@ -38,30 +40,15 @@ _LEAST_GROUPS = 4
 
 @dataclass(frozen=True)
 class Parameter:
-    """A number that is fitted.
+    """A number that is fitted."""
 
-    Parameters
-    ----------
-    name : str
-        Path in the case, or name within an effect.
-    start : float
-        SI.
-    size : float
-        Standard deviation of the prior, or a typical size where there is none.
-    lower, upper : float
-    prior : bool
-        Whether the start is a declared value with a standard deviation.
-    unit : str
-        SI unit, for reports.
-    """
-
-    name: str
-    start: float
-    size: float
+    name: str  # path in the case, or name within an effect
+    start: float  # SI
+    size: float  # standard deviation of the prior, or a typical size where there is none
     lower: float = -np.inf
     upper: float = np.inf
-    prior: bool = True
-    unit: str = ""
+    prior: bool = True  # whether the start is a declared value with a standard deviation
+    unit: str = ""  # SI unit, for reports
 
 
 @dataclass(frozen=True, eq=False)
@@ -265,3 +252,47 @@ def over_groups(fit: Fit, sizes: Sequence[int]) -> Fit:
     own = np.maximum(np.diag(inverse), 1e-300)
     factor = np.maximum(1.0, wider * np.sqrt(np.maximum(np.diag(spread), 0.0) / own))
     return replace(fit, covariance=fit.covariance * np.outer(factor, factor))
+
+
+#: last key of a path -> relative standard deviation of a declared value
+TOLERANCES = {
+    "frequency": 0.02,
+    "damping": 0.20,
+    "mass": 0.08,
+    "stiffness": 0.10,
+    "Ktc": 0.10,
+    "Krc": 0.10,
+    "Kac": 0.10,
+    "Kte": 0.15,
+    "Kre": 0.15,
+    "Kae": 0.15,
+    "coefficient": 0.20,
+    "offset": 0.20,
+    "moving_mass": 0.10,
+    "viscous_friction": 0.15,
+    "coulomb_friction": 0.10,
+}
+_OTHERS = 0.05
+
+
+def with_priors(measurement: Measurement, paths: Sequence[str]) -> list[Parameter]:
+    """Declared values as parameters with a prior.
+
+    The standard deviation is that of the measurement's [tolerance], by path or last key, or that
+    written in the case ("1650 +- 80 MPa"), or a few percent by the kind of value.
+    """
+    declared = measurement.case.deviations()
+    found = []
+    for path in paths:
+        value = float(measurement.case.get(path))
+        key = path.rpartition(".")[2]
+        share = measurement.tolerances.get(path, measurement.tolerances.get(key))
+        if share is not None:
+            deviation = share * abs(value)
+        elif path in declared:
+            deviation = declared[path]
+        else:
+            deviation = TOLERANCES.get(key, _OTHERS) * abs(value)
+        if deviation > 0.0:
+            found.append(Parameter(path, value, deviation, lower=0.02 * value))
+    return found

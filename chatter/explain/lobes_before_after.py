@@ -37,21 +37,11 @@ _SAME = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class LobesBeforeAfter:
-    """Diagrams over the same speeds and depths, and the cuts that were measured.
+    """Diagrams over the same speeds and depths, and the cuts that were measured."""
 
-    Parameters
-    ----------
-    diagrams : dict of str to StabilityDiagram
-        By model: declared, refitted, repaired.
-    cuts : Cuts
-        Measured.
-    description : tuple of str
-        Sentences.
-    """
-
-    diagrams: dict[str, StabilityDiagram]
-    cuts: Cuts
-    description: tuple[str, ...]
+    diagrams: dict[str, StabilityDiagram]  # by model: declared, refitted, repaired
+    cuts: Cuts  # measured
+    description: tuple[str, ...]  # sentences
 
 
 class Added(NamedTuple):
@@ -66,13 +56,7 @@ def lobes_before_after(
 ) -> LobesBeforeAfter | None:
     """Compute lobes before and after; None where the case holds no cut.
 
-    Parameters
-    ----------
-    measurement : Measurement
-    cases : mapping of str to Case
-        Model -> case, the repaired one last where there is one.
-    added : Added, optional
-        Where there is a repaired case.
+    Cases by model, the repaired one, if there is one, last; `added` goes with it.
     """
     if any(getattr(measurement.case, section) is None for section in _NEEDED):
         return None

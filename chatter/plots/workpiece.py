@@ -83,5 +83,5 @@ def _of_voxels(stock: VoxelStock, layer: int) -> Plan:
     cells = np.unpackbits(octets, axis=1, bitorder="little")[:, : stock.columns].astype(bool)
     step = -(-max(cells.shape) // _CELLS)
     low = (stock.x_min, stock.y_min)
-    high = (low[0] + stock.columns * stock.cell, low[1] + stock.rows * stock.cell)
+    high = (low[0] + stock.columns * stock.spacing, low[1] + stock.rows * stock.spacing)
     return low, high, cells[::step, ::step]

@@ -31,18 +31,10 @@ _LEAST_POINTS = 16
 
 @dataclass(frozen=True, eq=False)
 class WallPiece:
-    """Walls of a part of the stock that has fallen off behind the tool.
+    """Walls of a part of the stock that has fallen off behind the tool."""
 
-    Parameters
-    ----------
-    x : (n,) array of float
-        Of the lines, m.
-    y : dict
-        Side -> (layers, n) array of float, m.
-    """
-
-    x: NDArray[np.float64]
-    y: dict[str, NDArray[np.float64]]
+    x: NDArray[np.float64]  # (n,), of the lines, m
+    y: dict[str, NDArray[np.float64]]  # side -> (layers, n) array of float, m
 
 
 class FollowingStock:
@@ -69,11 +61,8 @@ class FollowingStock:
     def follow(self, x: float) -> DiscreteCut:
         """Move the stock up to the place of the tool axis, m, and return the cut through it."""
         stock = self.cut.stock
-        if isinstance(stock, DexelStock):
-            rear, size = stock.box[0], stock.spacing
-        else:
-            rear, size = stock.x_min, stock.cell
-        a_move = size * self._kind.cells_a_move
+        rear = stock.box[0] if isinstance(stock, DexelStock) else stock.x_min
+        a_move = stock.spacing * self._kind.cells_a_move
         moves = math.floor((x - self._reach - rear) / a_move + 1e-6)
         if moves > 0:
             if isinstance(stock, DexelStock):
@@ -103,16 +92,8 @@ def after_run(setup: Setup, stock: FollowingStock) -> Setup:
 def carved_walls(result: SimulationResult) -> list[WallProfiles]:
     """Walls behind the tool over the settled part of a straight run.
 
-    Parameters
-    ----------
-    result : SimulationResult
-        With a dexel or voxel chip.
-
-    Returns
-    -------
-    list of WallProfiles
-        Empty where the tool has not come far enough for a finished wall, and where voxels have
-        fallen off behind the tool.
+    Of a run with a dexel or voxel chip. Empty where the tool has not come far enough for a finished
+    wall, and where voxels have fallen off behind the tool.
     """
     cut: DiscreteCut = result.setup.groups[0]
     if isinstance(cut.stock, DexelStock):
@@ -123,7 +104,7 @@ def carved_walls(result: SimulationResult) -> list[WallProfiles]:
     a_turn = result.case.cut.feed_per_tooth * result.case.tool.teeth
     unfinished = math.sqrt(2.0 * float(slices.radius.max()) * swing) + a_turn
     low, high = float(place[0, 0]), float(place[0, 1]) - unfinished
-    spacing = cut.stock.spacing if isinstance(cut.stock, DexelStock) else cut.stock.cell
+    spacing = cut.stock.spacing
     count = min(_MOST_POINTS, int((high - low) / spacing))
     if count < _LEAST_POINTS:
         return []
@@ -186,7 +167,7 @@ def set_up_on(case: Case, before: SimulationResult) -> Setup:
     """
     carved = before.setup.groups[0]
     _refuse_other_workpiece(case, before.case, carved)
-    size = carved.stock.spacing if isinstance(carved.stock, DexelStock) else carved.stock.cell
+    size = carved.stock.spacing
     stock = before.case.stock.model_dump(mode="json", exclude_unset=True)
     setup = set_up(case.patch({"stock": stock, "simulation.resolution": size}))
     _refuse_other_layers(case, setup.slices, before.setup.slices)
@@ -212,7 +193,7 @@ def _refuse_other_workpiece(case: Case, before: Case, carved: object) -> None:
             f"{case.name}: stock differs from that of the run before, which has left the workpiece;"
             " leave [stock] out"
         )
-    size = carved.stock.spacing if isinstance(carved.stock, DexelStock) else carved.stock.cell
+    size = carved.stock.spacing
     given = case.simulation.resolution
     if given is not None and not math.isclose(given, size, rel_tol=1e-9):
         raise InputError(

@@ -32,7 +32,6 @@ from chatter.simulation.spindle import (
 from chatter.simulation.workpiece import STEPS_A_CHUNK, follows, reach_of, steps_a_chunk
 from cutting.chip.discrete_chip import DiscreteCut
 from cutting.chip.tool_point import ToolPoint, tool_point
-from cutting.dexel.stock import DexelStock
 from dynamics.machine.tables import modal_tables
 
 
@@ -208,5 +207,5 @@ def _following_stock(setup: Setup) -> FollowingStock | None:
     cut = setup.groups[0]
     if not (isinstance(cut, DiscreteCut) and follows(setup.case, setup.path)):
         return None
-    size = cut.stock.spacing if isinstance(cut.stock, DexelStock) else cut.stock.cell
+    size = cut.stock.spacing
     return FollowingStock(setup.case, cut, reach_of(setup.case, setup.cutter, setup.slices, size))

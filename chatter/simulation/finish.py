@@ -26,21 +26,12 @@ _SAMPLING_LENGTHS = 5.0
 
 @dataclass(frozen=True, eq=False)
 class WallFinish:
-    """A wall and its numbers.
-
-    Parameters
-    ----------
-    profiles : WallProfiles
-    location_errors : (L,) array of float
-        Mean deviation at each height, m; positive where too much was removed.
-    location_error : float
-        Mean deviation of the wall, m.
-    texture : Texture
-    """
+    """A wall and its numbers."""
 
     profiles: WallProfiles
+    #: (L,), mean deviation at each height, m; positive where too much was removed
     location_errors: NDArray[np.float64]
-    location_error: float
+    location_error: float  # mean deviation of the wall, m
     texture: Texture
 
     @property
@@ -51,37 +42,20 @@ class WallFinish:
 
 @dataclass(frozen=True, eq=False)
 class FloorFinish:
-    """A floor and its numbers.
-
-    Parameters
-    ----------
-    profile : FloorProfile
-    location_error : float
-        Depth by which too much was removed in the mean, m.
-    texture : Texture
-    """
+    """A floor and its numbers."""
 
     profile: FloorProfile
-    location_error: float
+    location_error: float  # depth by which too much was removed in the mean, m
     texture: Texture
 
 
 @dataclass(frozen=True, eq=False)
 class Finish:
-    """Surface of a cut.
+    """Surface of a cut."""
 
-    Parameters
-    ----------
-    walls : tuple of WallFinish
-        One for each side; empty where the run is too short.
-    floor : FloorFinish or None
-    notes : tuple of str
-        What could not be evaluated, and why.
-    """
-
-    walls: tuple[WallFinish, ...] = ()
+    walls: tuple[WallFinish, ...] = ()  # one for each side; empty where the run is too short
     floor: FloorFinish | None = None
-    notes: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()  # what could not be evaluated, and why
 
     @property
     def location_error(self) -> float | None:
@@ -146,12 +120,7 @@ def _heights(letter: str, found: Sequence[HeightParameters | None]) -> dict[str,
 
 
 def finish_of(result: SimulationResult) -> Finish:
-    """Evaluate the surface that a cut leaves behind over its last settled turns.
-
-    Parameters
-    ----------
-    result : SimulationResult
-    """
+    """Evaluate the surface that a cut leaves behind over its last settled turns."""
     walls, floor, notes = surface_profiles(result)
     cut = result.setup.groups[0]
     if walls and isinstance(cut, DiscreteCut) and isinstance(cut.stock, DexelStock):
@@ -169,14 +138,8 @@ def finish_from_profiles(
 ) -> Finish:
     """Evaluate profiles, whether reconstructed from a motion or carved out of a stock.
 
-    Parameters
-    ----------
-    walls : sequence of WallProfiles
-    floor : FloorProfile or None
-    feed_per_revolution : float
-        Longest spacing of marks that belong to the roughness, m; it chooses the cut-off.
-    notes : sequence of str
-        What is already known to be missing.
+    The feed per revolution, m, is the longest spacing of marks that belong to the roughness; it
+    chooses the cut-off. Notes say what is already known to be missing.
     """
     cut_off = cut_off_for(feed_per_revolution)
     found = tuple(_wall_finish(wall, cut_off) for wall in walls)

@@ -47,43 +47,22 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class WallProfiles:
-    """Wall over the feed and the height.
+    """Wall over the feed and the height."""
 
-    Parameters
-    ----------
-    side : str
-        ``"+y"`` or ``"-y"``.
-    x : (n,) array of float
-        Along the feed, evenly spaced, m.
-    height : (L,) array of float
-        Above the tip of the tool, m.
-    deviation : (L, n) array of float
-        Along its normal from the nominal place, m; positive where too much was removed.
-    weight : (L,) array of float
-        Share of each height in means over the wall.
-    """
-
-    side: str
-    x: Array
-    height: Array
+    side: str  # ``"+y"`` or ``"-y"``
+    x: Array  # (n,), along the feed, evenly spaced, m
+    height: Array  # (L,), above the tip of the tool, m
+    #: (L, n), along its normal from the nominal place, m; positive where too much was removed
     deviation: Array
-    weight: Array
+    weight: Array  # (L,), share of each height in means over the wall
 
 
 @dataclass(frozen=True, eq=False)
 class FloorProfile:
-    """Floor along the feed.
+    """Floor along the feed."""
 
-    Parameters
-    ----------
-    x : (n,) array of float
-        Evenly spaced, m.
-    height : (n,) array of float
-        Over the nominal floor, m.
-    """
-
-    x: Array
-    height: Array
+    x: Array  # (n,), evenly spaced, m
+    height: Array  # (n,), over the nominal floor, m
 
 
 def surface_profiles(
@@ -91,17 +70,7 @@ def surface_profiles(
 ) -> tuple[list[WallProfiles], FloorProfile | None, list[str]]:
     """Reconstruct wall and floor of a straight cut from the motion of its tool.
 
-    Parameters
-    ----------
-    result : SimulationResult
-
-    Returns
-    -------
-    walls : list of WallProfiles
-        Empty where the run is too short.
-    floor : FloorProfile or None
-    notes : list of str
-        What is missing, and why.
+    Walls (none where the run is too short), floor, and what is missing and why.
     """
     case = result.case
     if case.stock is not None or (case.simulation and case.simulation.path):

@@ -70,14 +70,7 @@ def shortest_arc(case: Case, cutter: Cutter) -> float:
 
 
 def resolution_of(case: Case, cutter: Cutter, modes: Sequence[Mode]) -> Resolution:
-    """Choose steps, slices and length of a run.
-
-    Parameters
-    ----------
-    case : Case
-    cutter : Cutter
-    modes : sequence of Mode
-    """
+    """Choose steps, slices and length of a run."""
     section = case.simulation
     steps = section.steps if section and section.steps else None
     if steps is None:

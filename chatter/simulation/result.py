@@ -20,7 +20,6 @@ from chatter.simulation.carved_workpiece import carving_notes
 from chatter.simulation.finish import Finish, finish_of
 from chatter.simulation.setup import Setup
 from cutting.chip.discrete_chip import DiscreteCut
-from cutting.dexel.stock import DexelStock
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -175,7 +174,7 @@ class SimulationResult:
         cut = self.setup.groups[0]
         if not isinstance(cut, DiscreteCut):
             return {}
-        spacing = cut.stock.spacing if isinstance(cut.stock, DexelStock) else cut.stock.cell
+        spacing = cut.stock.spacing
         return {
             "workpiece": {
                 "resolution_um": spacing * 1e6,

@@ -40,36 +40,18 @@ _FURTHEST = 0.2
 
 @dataclass(frozen=True)
 class Setup:
-    """What the time loop needs to run a case, once.
-
-    Parameters
-    ----------
-    case : Case
-    cutter : Cutter
-    slices : EdgeSlices
-    structure : StructureInTime
-        It holds the state of one run.
-    spindle : Spindle
-    path : ToolPath
-    groups : tuple
-        Laws at the tool point; the cut comes first. They hold the state of one run.
-    furthest : float
-        Displacement at which the run stops, m.
-    notes : tuple of str
-    left_behind : tuple of WallPiece
-        Walls of what is no longer held of the stock, along x, after a run.
-    """
+    """What the time loop needs to run a case, once."""
 
     case: Case
     cutter: Cutter
     slices: EdgeSlices
-    structure: StructureInTime
+    structure: StructureInTime  # it holds the state of one run
     spindle: Spindle
     path: ToolPath
-    groups: tuple
-    furthest: float
+    groups: tuple  # laws at the tool point; the cut comes first. They hold the state of one run
+    furthest: float  # displacement at which the run stops, m
     notes: tuple[str, ...]
-    left_behind: tuple = ()
+    left_behind: tuple = ()  # walls of what is no longer held of the stock, along x, after a run
 
     @property
     def revolutions_before(self) -> int:

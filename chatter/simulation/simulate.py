@@ -4,20 +4,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
+
+import numpy as np
+import scipy.signal
+from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.description.progress import Progress, no_progress
+from chatter.description.units import rpm
 from chatter.simulation.carved_workpiece import after_run, set_up_on
 from chatter.simulation.cut_run import CutRun
-from chatter.simulation.dynamometer import as_measured
-from chatter.simulation.machine_result import MachineResult
 from chatter.simulation.result import SimulationResult
 from chatter.simulation.setup import Setup, set_up
 from chatter.simulation.verdict import with_verdict
 from dynamics.machine.groups import FrictionsOnPorts
 from dynamics.machine.modal_structure import stored_energy
+from dynamics.matrix_exponential import exact_step
 
 #: a run may be this long, in steps
 _MOST_STEPS = 2_000_000_000
@@ -123,3 +129,111 @@ def _energy(cut: CutRun) -> dict[str, float]:
         "dissipated": float(dissipated + rubbed),
         "stored": stored_energy(account, cut.bus),
     }
+
+
+_FORCES = slice(0, 3)
+
+
+def as_measured(case: Case, rows: NDArray[np.float64], step: float) -> NDArray[np.float64]:
+    """Rows of a record whose forces have gone through the dynamometer of a case.
+
+    Rows (n, c) with the forces, N, in the first three columns, a step apart, s; the same where the
+    case has no [dynamometer].
+    """
+    sensor = case.dynamometer
+    if sensor is None or len(rows) < 2:
+        return rows
+    measured = rows.copy()
+    measured[:, _FORCES] = through_resonance(
+        rows[:, _FORCES], sensor.frequency, sensor.damping, step
+    )
+    return measured
+
+
+def through_resonance(
+    force: NDArray[np.float64], frequency: float, damping: float, step: float
+) -> NDArray[np.float64]:
+    """Answer (n, k) of m''/w^2 + 2 D m'/w + m = f to forces (n, k) that are linear in steps.
+
+    Natural frequency, Hz, damping D and step, s; the sensor is at rest before. Exact for a force
+    that varies linearly from row to row.
+    """
+    omega = 2.0 * math.pi * frequency
+    matrix = omega * np.array([[0.0, 1.0], [-1.0, -2.0 * damping]])
+    transition, held, ramp = exact_step(matrix, np.array([[0.0], [omega]]), step)
+    held, ramp = held[:, 0], ramp[:, 0]
+    # z transfer from the force at the beginning and at the end of a step
+    trace, determinant = np.trace(transition), np.linalg.det(transition)
+    ahead, behind = ramp, held - ramp
+    first = [0.0, ahead[0], transition[0, 1] * ahead[1] - transition[1, 1] * ahead[0]]
+    last = [0.0, behind[0], transition[0, 1] * behind[1] - transition[1, 1] * behind[0]]
+    numerator = np.array([first[1], first[2] + last[1], last[2]])
+    return scipy.signal.lfilter(numerator, [1.0, -trace, determinant], force, axis=0)
+
+
+#: port of the rotation of the tool
+_TURNING = "tool turn"
+
+
+@dataclass(frozen=True)
+class MachineResult(SimulationResult):
+    """Signals of a cut on a machine.
+
+    Parameters
+    ----------
+    ports : mapping of str to int
+        Column of each port of the machine in the following.
+    moved, moving, driven : (n, p) array of float
+        Displacement, m (rad), velocity, m/s, and force, N (N m), of the machine's ports: drives
+        ("drive Y"), scales ("scale Y"), frictions ("friction guide"), the tool ("tool x").
+    start_angle : float
+        Of the spindle where the cut begins, rad.
+    """
+
+    ports: Mapping[str, int] = None
+    moved: NDArray[np.float64] = None
+    moving: NDArray[np.float64] = None
+    driven: NDArray[np.float64] = None
+    start_angle: float = 0.0
+
+    @cached_property
+    def spindle_angle(self) -> NDArray[np.float64]:
+        """Angle (n,) turned by the spindle since the cut began, rad."""
+        if not self.setup.turned_by_port:
+            return super().spindle_angle
+        return self.moved[:, self.ports[_TURNING]] - self.start_angle
+
+    @cached_property
+    def spindle_speed(self) -> NDArray[np.float64]:
+        """Speed (n,) of the spindle, rad/s."""
+        if not self.setup.turned_by_port:
+            return super().spindle_speed
+        return self.moving[:, self.ports[_TURNING]]
+
+    def torque_of(self, drive: str) -> NDArray[np.float64]:
+        """Torque (n,) of a drive by its name, N m (N of a linear one)."""
+        return self.driven[:, self.ports[f"drive {drive}"]]
+
+    def position_of(self, drive: str) -> NDArray[np.float64]:
+        """Position (n,) at the scale of a drive's axis, m."""
+        return self.moved[:, self.ports[f"scale {drive}"]]
+
+    def summary(self) -> dict:
+        """Return the content of summary.json."""
+        told = super().summary()
+        machine = self.setup.on_machine.machine
+        told["machine"] = {
+            "file": self.setup.on_machine.file.name,
+            "drives": {
+                drive.name: {
+                    "peak_effort": float(np.abs(self.torque_of(drive.name)).max(initial=0.0)),
+                    "mean_effort": float(self.torque_of(drive.name)[self.settled].mean()),
+                }
+                for drive in machine.drives
+            },
+            "spindle_speed_rpm": {
+                "least": float(rpm(self.spindle_speed.min())),
+                "mean": float(rpm(self.spindle_speed[self.settled].mean())),
+            },
+        }
+        return told

@@ -18,24 +18,12 @@ Bins = tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]
 
 @dataclass(frozen=True)
 class Spindle:
-    """Prescribed rotation: a mean speed, and a variation around it where there is one.
+    """Prescribed rotation: a mean speed, and a variation around it where there is one."""
 
-    Parameters
-    ----------
-    speed : float
-        Mean, rad/s.
-    amplitude : float
-        Share of the mean by which the speed varies; 0 for none.
-    frequency : float
-        Of the variation, Hz.
-    shape : str
-        ``"sine"`` or ``"triangle"``.
-    """
-
-    speed: float
-    amplitude: float = 0.0
-    frequency: float = 1.0
-    shape: str = "sine"
+    speed: float  # mean, rad/s
+    amplitude: float = 0.0  # share of the mean by which the speed varies; 0 for none
+    frequency: float = 1.0  # of the variation, Hz
+    shape: str = "sine"  # ``"sine"`` or ``"triangle"``
 
     def speed_at(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
         """Speed, rad/s."""
@@ -69,18 +57,11 @@ def _triangle_integral(cycle: NDArray[np.float64]) -> NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class ToolPath:
-    """Straight lines from corner to corner, run through at a constant feed.
+    """Straight lines from corner to corner, run through at a constant feed."""
 
-    Parameters
-    ----------
-    corners : (c, 2) array of float
-        m; the tool starts at the first, and runs on beyond the last.
-    feed : float
-        m/s.
-    """
-
+    #: (c, 2), m; the tool starts at the first, and runs on beyond the last
     corners: NDArray[np.float64]
-    feed: float
+    feed: float  # m/s
 
     def position_at(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
         """Place (2, ...) of the tool axis, m; before time zero it came straight to the first."""

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.compile.linearised_friction import rigid_motion
 from chatter.compile.machine_cut import MachineCut, machine_cut
-from chatter.compile.rigid_motion import rigid_motion
 from chatter.compile.structure import structure_of
 from chatter.description.case import Case
 from chatter.description.errors import InputError
@@ -41,34 +41,17 @@ _MOST_ROWS = 200_000
 
 @dataclass(frozen=True, eq=False)
 class StructureInTime:
-    """What stands behind the ports of the time loop, at rest, and its steps.
+    """What stands behind the ports of the time loop, at rest, and its steps."""
 
-    Parameters
-    ----------
-    modes : tuple of Mode
-        Empty for a rigid tool; of a machine those of its structure, for resolution and pictures.
-    resolution : Resolution
-    step : float
-        Time step, s.
-    steps : int
-        Of the cut.
-    tables : StructureTables
-        They hold the state of one run.
-    notes : tuple of str
-    on_machine : MachineCut, optional
-        Where a machine makes the cut.
-    settling : int
-        Steps that it runs in the air before.
-    """
-
+    #: empty for a rigid tool; of a machine those of its structure, for resolution and pictures
     modes: tuple[Mode, ...]
     resolution: Resolution
-    step: float
-    steps: int
-    tables: StructureTables
+    step: float  # time step, s
+    steps: int  # of the cut
+    tables: StructureTables  # they hold the state of one run
     notes: tuple[str, ...] = ()
-    on_machine: MachineCut | None = None
-    settling: int = 0
+    on_machine: MachineCut | None = None  # where a machine makes the cut
+    settling: int = 0  # steps that it runs in the air before
 
     @property
     def rubs(self) -> bool:
@@ -81,17 +64,8 @@ def structure_in_time(
 ) -> StructureInTime:
     """Compile the structure of a case for the time domain.
 
-    Parameters
-    ----------
-    case : Case
-    cutter : Cutter
-    modes : tuple of Mode, optional
-        Of the structure, where they are known already; a machine has its own.
-
-    Raises
-    ------
-    InputError
-        If the structure cannot be read or the machine cannot make the cut.
+    Modes where they are known already; a machine has its own. InputError if the structure cannot be
+    read or the machine cannot make the cut.
     """
     if case.structure is not None and case.structure.machine is not None:
         return machine_in_time(case, cutter)

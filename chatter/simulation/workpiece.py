@@ -19,12 +19,23 @@ from chatter.description.errors import InputError
 from chatter.simulation.resolution import Resolution
 from chatter.simulation.spindle import Spindle, ToolPath
 from cutting.chip.discrete_chip import DiscreteCut
-from cutting.dexel.stock import DexelStock, dexel_remove_path, dexel_stock, dexel_wall_profile
-from cutting.dexel.window import dexel_advanced
+from cutting.dexel.stock import (
+    DexelStock,
+    dexel_advanced,
+    dexel_remove_path,
+    dexel_stock,
+    dexel_wall_profile,
+)
 from cutting.tool.cutter import Cutter, EdgeSlices
 from cutting.tool.edge_table import edge_table
-from cutting.voxel.stock import VoxelStock, voxel_remove_path, voxel_stock, voxel_wall_profile
-from cutting.voxel.window import CELLS_A_WORD, voxel_advanced
+from cutting.voxel.stock import (
+    CELLS_A_WORD,
+    VoxelStock,
+    voxel_advanced,
+    voxel_remove_path,
+    voxel_stock,
+    voxel_wall_profile,
+)
 from dynamics.modal.modes import Mode
 
 #: stock left behind the wall and ahead of the last place of the tool, in radii
@@ -54,29 +65,17 @@ Rectangle = tuple[float, float, float, float]
 
 @dataclass(frozen=True)
 class DiscreteChip:
-    """A kind of discrete workpiece.
+    """A kind of discrete workpiece."""
 
-    Parameters
-    ----------
-    build, remove_path, wall_profile : callable
-        Of the module of the workpiece.
-    resolution : callable
-        Spacing (m) for a case, where it gives none.
-    memory : callable
-        Bytes for a rectangle, a number of layers and a spacing.
-    advanced : callable
-        Moves the workpiece along x.
-    cells_a_move : int
-        Lines or cells by whose multiples it moves.
-    """
-
-    build: Callable[..., DexelStock | VoxelStock]
-    remove_path: Callable[..., None]
-    wall_profile: Callable[..., NDArray[np.float64]]
+    build: Callable[..., DexelStock | VoxelStock]  # of the module of the workpiece
+    remove_path: Callable[..., None]  # of the module of the workpiece
+    wall_profile: Callable[..., NDArray[np.float64]]  # of the module of the workpiece
+    #: spacing (m) for a case, where it gives none
     resolution: Callable[[Case, tuple[Mode, ...]], float]
+    #: bytes for a rectangle, a number of layers and a spacing
     memory: Callable[[Rectangle, int, float], float]
-    advanced: Callable[..., DexelStock | VoxelStock]
-    cells_a_move: int
+    advanced: Callable[..., DexelStock | VoxelStock]  # moves the workpiece along x
+    cells_a_move: int  # lines or cells by whose multiples it moves
 
 
 def _dexel_spacing(case: Case, modes: tuple[Mode, ...]) -> float:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from chatter.description import case_schema
+from chatter.description.json_schema import case_schema
 from chatter.stability.registry import AUTO, METHODS
 
 
 def schema() -> dict[str, Any]:
     """Return the JSON schema (draft 2020-12) of the case file."""
-    return case_schema.schema((AUTO, *METHODS.names()))
+    return case_schema((AUTO, *METHODS.names()))

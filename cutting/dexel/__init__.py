@@ -3,8 +3,7 @@
 ======= ============================================================================
 module  responsibility
 ======= ============================================================================
-stock   layout in memory, shaping before the cut, measurement after it
-window  the part of the workpiece near the tool, moving along with it
+stock   layout in memory, shaping before the cut, moving along with the tool, measurement
 carving kernels: material that an edge takes away, chip thickness that it meets
 ======= ============================================================================
 """

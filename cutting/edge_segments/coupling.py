@@ -152,16 +152,8 @@ def first_and_last_revolution(segments, segment, top, spindle):
 def chip_at(segments, segment, position, height, sine, sine_of_edge, cosine_of_edge):
     """Chip of a rigid tool, m, below zero where the edge misses.
 
-    Parameters
-    ----------
-    segments : EdgeSegments
-    segment : int
-    position, height : float
-        Share of the length and of the height of the segment.
-    sine : float
-        Of the immersion angle.
-    sine_of_edge, cosine_of_edge : float
-        Of the axial immersion angle.
+    At a share of the length and of the height of a segment, by the sine of the immersion angle and
+    sine and cosine of the axial immersion angle.
     """
     # flutes of different helix leave each other more or less of the feed from height to height
     first, last = segments.delay[segment, 0], segments.delay[segment, 1]

@@ -227,19 +227,8 @@ def _changes(edges: Edges, tooth: int, positions: Array) -> Array:
 def segment_borders(edges: Edges, tooth: int, borders: Array, relative_length: float) -> Array:
     """Borders of the segments of a tooth, so close that arcs vary nearly linearly between them.
 
-    Parameters
-    ----------
-    edges : Edges
-    tooth : int
-    borders : (B,) array of float
-        Lengths of edge beyond the tip between which the nominal edge is smooth, m.
-    relative_length : float
-        1 or less.
-
-    Returns
-    -------
-    (L,) array of float
-        m.
+    Borders (B,) are lengths of edge beyond the tip, m, between which the nominal edge is smooth;
+    the relative length is 1 or less. Returned (L,), m.
     """
     changes = _changes(edges, tooth, _samples(borders, edges.cutter))
     same = _SAME_POSITION * borders[-1]

@@ -82,20 +82,8 @@ def edge_line(
 ) -> EdgeLine:
     """Profile of the nominal edge from the tip to a height.
 
-    Parameters
-    ----------
-    cutter : Cutter
-    max_depth, radial_depth : float
-        m.
-    mode : {"up", "down", "slot"}
-    heights : list of float
-        Borders of segments above the corner, m.
-    arc_step : float
-        By which a corner turns within a segment, and its arc changes, rad.
-
-    Returns
-    -------
-    EdgeLine
+    Depths in m; `heights` are borders of segments above the corner, m; by `arc_step`, rad, a corner
+    turns within a segment, and its arc changes.
     """
     corner = cutter.corner_radius
     height, radius = [0.0], [cutter.radius - corner]

@@ -56,20 +56,8 @@ def segments_of_one_pass(
 ) -> tuple[list[Segment], list[Owner]]:
     """Segments of teeth that each cut what the one before them has left.
 
-    Parameters
-    ----------
-    cutter : Cutter
-    line : EdgeLine
-    mode : {"up", "down", "slot"}
-    radial_depth : float
-        m.
-    slopes : list of (3,) arrays of float
-        Of the force law of each tooth at the reference chip, N/m^2.
-
-    Returns
-    -------
-    segments : list of Segment
-    owners : list of Owner
+    Radial depth in m; slopes (3,) of the force law of each tooth at the reference chip, N/m^2.
+    Returned with the owner of each segment.
     """
     lag = np.tan(np.asarray(cutter.helix)) / cutter.radius
     segments: list[Segment] = []
@@ -110,21 +98,8 @@ def segments_of_passes(
 ) -> tuple[list[Segment], list[Owner]]:
     """Segments of teeth for each of which the earlier pass is found that left the surface.
 
-    Parameters
-    ----------
-    edges : Edges
-    line : EdgeLine
-    max_depth : float
-        m.
-    slopes
-        As of `segments_of_one_pass`.
-    relative_length : float
-        1 or less.
-
-    Returns
-    -------
-    segments : list of Segment
-    owners : list of Owner
+    Depth in m, slopes as of `segments_of_one_pass`, relative length 1 or less. Returned with the
+    owner of each segment.
     """
     borders = np.concatenate([[0.0], np.cumsum(line.length)])
     # the line runs on to the end of the corner

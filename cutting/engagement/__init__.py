@@ -3,7 +3,6 @@
 =============== ====================================================================
 module          responsibility
 =============== ====================================================================
-immersion       entry and exit angles, cutting speed, removal rate
-removed_section cross-section of what a tool removes
+immersion       entry and exit angles, cutting speed, removal rate, section removed
 =============== ====================================================================
 """

@@ -8,6 +8,8 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from cutting.tool.cutter import Cutter, corner_height
+
 MillingMode = Literal["up", "down", "slot"]
 
 
@@ -33,10 +35,6 @@ def engagement(mode: MillingMode, radial_depth: float, diameter: float) -> Engag
         Up-milling starts with zero chip thickness, down-milling ends with it.
     radial_depth, diameter : float
         m; the radial depth is not used for a slot.
-
-    Returns
-    -------
-    Engagement
 
     Raises
     ------
@@ -104,3 +102,54 @@ def removal_rate(
     """Volume removed per time, m^3/s; lengths in m, spindle speed in rad/s."""
     feed_speed = feed_per_tooth * teeth * spindle_speed / (2.0 * math.pi)
     return axial_depth * radial_depth * feed_speed
+
+
+_POINTS = 2000
+
+
+def removed_section(
+    cutter: Cutter, mode: MillingMode, radial_depth: float, depths: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Area that the tool sweeps through the stock, seen along the feed.
+
+    Parameters
+    ----------
+    cutter : Cutter
+    mode : {"up", "down", "slot"}
+    radial_depth : float
+        m; not used for a slot.
+    depths : (n,) array of float
+        Axial depths, m, > 0.
+
+    Returns
+    -------
+    (n,) array of float
+        m^2; times the feed speed it is the removal rate.
+
+    Notes
+    -----
+    The stock ends R - a_e from the axis; at a height where the edge has the radius r the tool takes
+    r - (R - a_e) of it, and no more than 2 r.
+    """
+    deepest = float(np.max(depths))
+    edge = np.linspace(0.0, deepest, _POINTS + 1)
+    height = 0.5 * (edge[1:] + edge[:-1])
+    radius = _radius(cutter, height)
+    if mode == "slot":
+        width = 2.0 * radius
+    else:
+        width = np.clip(radius - (cutter.radius - radial_depth), 0.0, 2.0 * radius)
+    area = np.concatenate([[0.0], np.cumsum(width * np.diff(edge))])
+    return np.interp(depths, edge, area)
+
+
+def _radius(cutter: Cutter, height: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Radius of the envelope at heights above the tip, m."""
+    corner, top = cutter.corner_radius, corner_height(cutter)
+    below = np.clip(corner - height, 0.0, corner)
+    on_corner = cutter.radius - corner + np.sqrt(np.maximum(corner**2 - below**2, 0.0))
+    slope = 0.0
+    if cutter.edge_angle < 0.5 * math.pi - 1e-9:
+        slope = 1.0 / math.tan(cutter.edge_angle)
+    start = cutter.radius - corner * (1.0 - math.sin(cutter.edge_angle))
+    return np.where(height < top, on_corner, start + slope * (height - top))

@@ -96,10 +96,6 @@ def directional_table(
         Adds the coupling to velocity.
     intervals : int
         Intervals of the table.
-
-    Returns
-    -------
-    DirectionalTable
     """
 
     def cutting_coupling(angle: NDArray[np.float64]) -> NDArray[np.float64]:

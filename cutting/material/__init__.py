@@ -1,1 +1,1 @@
-"""Material data: published cutting coefficients (`table`), orthogonal cutting data (`oblique`)."""
+"""Material data: published cutting coefficients (`table`)."""

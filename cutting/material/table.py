@@ -9,19 +9,10 @@ _CJME = "Chinese Journal of Mechanical Engineering 2021, 10.1186/s10033-021-0053
 
 @dataclass(frozen=True)
 class MaterialRow:
-    """Coefficients of the linear force law for one pair of tool and material.
+    """Coefficients of the linear force law for one pair of tool and material."""
 
-    Parameters
-    ----------
-    cutting : (3,) tuple of float
-        K_tc, K_rc, K_ac, N/m^2; 0 where the source gives none.
-    edge : (3,) tuple of float
-        K_te, K_re, K_ae, N/m.
-    source : str
-    """
-
-    cutting: tuple[float, float, float]
-    edge: tuple[float, float, float]
+    cutting: tuple[float, float, float]  # K_tc, K_rc, K_ac, N/m^2; 0 where the source gives none
+    edge: tuple[float, float, float]  # K_te, K_re, K_ae, N/m
     source: str
 
     def coefficients(self) -> dict[str, float]:

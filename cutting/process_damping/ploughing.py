@@ -165,14 +165,8 @@ def _area_above(left, right, width):
 def ploughing_force(flank, tooth, segment, position, rate, speed):  # noqa: ARG001
     """Tangential and radial force per length of edge, N/m.
 
-    Parameters
-    ----------
-    flank : PloughingFlank
-    tooth, segment : int
-    position : float
-        Of the edge along its outward normal, m, in the frame of the samples.
-    rate, speed : float
-        Not used: the wave itself says how fast the edge moves.
+    The position of the edge along its outward normal is in the frame of the samples, m. Rate and
+    speed are not used: the wave itself says how fast the edge moves.
     """
     count = flank.filled[tooth, segment]
     samples = flank.surface.shape[2]

@@ -64,15 +64,8 @@ class ViscousFlank(NamedTuple):
 def viscous_force(flank, tooth, segment, position, rate, speed):  # noqa: ARG001
     """Tangential and radial force per length of edge, N/m.
 
-    Parameters
-    ----------
-    flank : ViscousFlank
-    tooth, segment : int
-        Not used: all edges are alike.
-    position : float
-        Not used.
-    rate, speed : float
-        Velocity of the edge along its outward normal, and cutting speed, m/s.
+    By the velocity of the edge along its outward normal, and the cutting speed, m/s; all edges are
+    alike wherever they are, so that nothing else is used.
     """
     radial = flank.coefficient * rate / speed
     return flank.friction * radial, radial

@@ -71,25 +71,14 @@ class ToolMotion:
 
 @dataclass(frozen=True)
 class WallPasses:
-    """Passes of the edges by a wall at one height of the tool.
+    """Passes of the edges by a wall at one height of the tool."""
 
-    Parameters
-    ----------
-    angle : (P,) array of float
-        Of the spindle when the edge points at the wall, rad.
-    radius : (P,) array of float
-        Of the edge that passes, m.
-    radius_per_lift : float
-        Change of the radius at a fixed height as the tool rises, minus the cotangent of the axial
-        immersion angle; 0 for a cylinder.
-    side : float
-        +1 for a wall at +y, -1 for one at -y.
-    """
-
-    angle: Array
-    radius: Array
+    angle: Array  # (P,), of the spindle when the edge points at the wall, rad
+    radius: Array  # (P,), of the edge that passes, m
+    #: change of the radius at a fixed height as the tool rises, minus the cotangent of the axial
+    #: immersion angle; 0 for a cylinder
     radius_per_lift: float
-    side: float
+    side: float  # +1 for a wall at +y, -1 for one at -y
 
     def reach_at_pass(self, motion: ToolMotion) -> tuple[Array, Array]:
         """Place x and furthest reach (P,) of every pass, m."""

@@ -19,32 +19,18 @@ _LONGEST_CUT_OFF = 8e-3
 
 @dataclass(frozen=True)
 class HeightParameters:
-    """Heights of a profile about its mean line after ISO 4287, m.
+    """Heights of a profile about its mean line after ISO 4287, m."""
 
-    Parameters
-    ----------
-    mean : float
-        Arithmetic mean deviation, Ra or Wa.
-    rms : float
-        Root mean square deviation, Rq or Wq.
-    depth : float
-        Highest peak to deepest valley, mean over the sampling lengths: Rz or Wz.
-    """
-
-    mean: float
-    rms: float
-    depth: float
+    mean: float  # arithmetic mean deviation, Ra or Wa
+    rms: float  # root mean square deviation, Rq or Wq
+    depth: float  # highest peak to deepest valley, mean over the sampling lengths: Rz or Wz
 
 
 def height_parameters(profile: Array, samples: int) -> HeightParameters:
     """Heights of a profile about its mean.
 
-    Parameters
-    ----------
-    profile : (n,) array of float
-        m.
-    samples : int
-        Points of a sampling length; the profile counts as one if it is shorter than two.
+    Profile (n,), m; `samples` are the points of a sampling length, and a profile shorter than two
+    of them counts as one.
     """
     off = profile - profile.mean()
     parts = np.array_split(off, max(1, off.size // max(samples, 1)))
@@ -58,18 +44,9 @@ def height_parameters(profile: Array, samples: int) -> HeightParameters:
 def mean_line(profile: Array, spacing: float, cut_off: float) -> Array:
     """Waviness of a profile by the Gaussian filter of ISO 16610-21.
 
-    Parameters
-    ----------
-    profile : (..., n) array of float
-    spacing : float
-        Between points, m.
-    cut_off : float
-        Wavelength of which half the amplitude passes, m.
-
-    Returns
-    -------
-    (..., n) array of float
-        Within half a cut-off of the ends the weights are renormed to the points that there are.
+    Profile (..., n), spacing of its points, m, and cut_off, the wavelength of which half the
+    amplitude passes, m. Within half a cut-off of the ends the weights are renormed to the points
+    that there are.
     """
     half = min(int(cut_off / spacing), profile.shape[-1] - 1)
     place = np.arange(-half, half + 1) * spacing / (_ALPHA * cut_off)
@@ -87,23 +64,13 @@ def cut_off_for(mark_spacing: float) -> float:
 
 @dataclass(frozen=True)
 class Texture:
-    """Roughness and waviness of profiles over the feed.
-
-    Parameters
-    ----------
-    roughness : HeightParameters
-    waviness : HeightParameters or None
-        None where the profile is shorter than two cut-offs; roughness is then unfiltered.
-    cut_off : float
-        m.
-    length : float
-        Evaluated, m.
-    """
+    """Roughness and waviness of profiles over the feed."""
 
     roughness: HeightParameters
+    #: none where the profile is shorter than two cut-offs; roughness is then unfiltered
     waviness: HeightParameters | None
-    cut_off: float
-    length: float
+    cut_off: float  # m
+    length: float  # evaluated, m
 
 
 def texture(profiles: Array, weight: Array, spacing: float, cut_off: float) -> Texture:

@@ -18,18 +18,10 @@ _SLICES_A_WAVE = 16
 
 @dataclass(frozen=True)
 class Serration:
-    """Sinusoidal wave of the edge along the axis, shifted from tooth to tooth by 1/N of a wave.
+    """Sinusoidal wave of the edge along the axis, shifted from tooth to tooth by 1/N of a wave."""
 
-    Parameters
-    ----------
-    depth : float
-        Crest to valley, m.
-    wavelength : float
-        m.
-    """
-
-    depth: float
-    wavelength: float
+    depth: float  # crest to valley, m
+    wavelength: float  # m
 
     def radius_change(self, height: NDArray[np.float64], tooth: int, teeth: int) -> NDArray:
         """Return the change of the radius, m, zero at a crest and -depth in a valley."""
@@ -111,35 +103,17 @@ class Cutter:
 
 @dataclass(frozen=True)
 class EdgeSlices:
-    """Edges of a tool cut into L slices along the axis, for N teeth.
+    """Edges of a tool cut into L slices along the axis, for N teeth."""
 
-    Parameters
-    ----------
-    height : (L,) array of float
-        Of the middle of the slice above the tip, m.
-    thickness : (L,) array of float
-        Along the axis, m.
-    radius : (L,) array of float
-        Of the nominal edge, m.
-    immersion : (L,) array of float
-        Axial immersion angle: between the axis and the normal of the edge, rad.
-    edge_length : (L,) array of float
-        Length of edge in the plane of its profile, m.
-    angle : (N, L) array of float
-        Of the middle of the slice on the tool, rad.
-    lag : (N, L) array of float
-        By which the upper end trails the lower one, rad.
-    normal_offset : (N, L) array of float
-        Deviation of the edge from its nominal place along its normal, outwards, m.
-    """
-
-    height: NDArray[np.float64]
-    thickness: NDArray[np.float64]
-    radius: NDArray[np.float64]
+    height: NDArray[np.float64]  # (L,), of the middle of the slice above the tip, m
+    thickness: NDArray[np.float64]  # (L,), along the axis, m
+    radius: NDArray[np.float64]  # (L,), of the nominal edge, m
+    #: (L,), axial immersion angle: between the axis and the normal of the edge, rad
     immersion: NDArray[np.float64]
-    edge_length: NDArray[np.float64]
-    angle: NDArray[np.float64]
-    lag: NDArray[np.float64]
+    edge_length: NDArray[np.float64]  # (L,), length of edge in the plane of its profile, m
+    angle: NDArray[np.float64]  # (N, L), of the middle of the slice on the tool, rad
+    lag: NDArray[np.float64]  # (N, L), by which the upper end trails the lower one, rad
+    #: (N, L), deviation of the edge from its nominal place along its normal, outwards, m
     normal_offset: NDArray[np.float64]
 
 
@@ -216,10 +190,6 @@ def edge_slices(cutter: Cutter, depth: float, counts: tuple[int, int]) -> EdgeSl
         m.
     counts : (int, int)
         Slices of the corner and of the straight edge, as from `slice_counts`.
-
-    Returns
-    -------
-    EdgeSlices
 
     Notes
     -----

@@ -77,7 +77,7 @@ def _quadrilateral(stock, layer, ax, ay, bx, by, px, py, qx, qy, keep):
 
     See `_span` for `keep`. Cells off the stock count among all.
     """
-    cell = stock.cell
+    cell = stock.spacing
     bottom = (min(ay, by, py, qy) - stock.y_min) / cell - 0.5
     top = (max(ay, by, py, qy) - stock.y_min) / cell - 0.5
     number, every = 0, 0
@@ -116,8 +116,8 @@ def _inner_end(stock, cx, cy, ex, ey):
 def _out_of_reach(stock, cx, cy, ex, ey):
     """Whether a rake line cannot meet the stock: edge and axis beyond the same side of its box."""
     margin = stock.window
-    x_max = stock.x_min + stock.columns * stock.cell
-    y_max = stock.y_min + stock.rows * stock.cell
+    x_max = stock.x_min + stock.columns * stock.spacing
+    y_max = stock.y_min + stock.rows * stock.spacing
     return (
         max(ex, cx) < stock.x_min - margin
         or min(ex, cx) > x_max + margin
@@ -144,9 +144,9 @@ def _reaches_deeper(stock, layer, cx, cy, ix, iy):
     what is on it.
     """
     length = math.hypot(ix - cx, iy - cy)
-    if length < stock.cell:
+    if length < stock.spacing:
         return False
-    ux, uy = 1.5 * stock.cell * (ix - cx) / length, 1.5 * stock.cell * (iy - cy) / length
+    ux, uy = 1.5 * stock.spacing * (ix - cx) / length, 1.5 * stock.spacing * (iy - cy) / length
     ax, ay, bx, by = ix - uy, iy + ux, ix + uy, iy - ux
     px, py, qx, qy = bx - 2.0 * ux, by - 2.0 * uy, ax - 2.0 * ux, ay - 2.0 * uy
     number, _ = _quadrilateral(stock, layer, ax, ay, bx, by, px, py, qx, qy, _ALL)
@@ -203,22 +203,9 @@ def voxel_chip_thickness(stock, layer, tooth, cx0, cy0, ex0, ey0, cx1, cy1, ex1,
 
 @register_jitable(**UNCOUNTED)
 def voxel_carve(stock, layer, tooth, cx0, cy0, ex0, ey0, cx1, cy1, ex1, ey1):
-    """Remove what the rake line of a tooth sweeps in a step.
+    """Remove what the rake line of a tooth sweeps in a step; the area removed, m^2.
 
-    Parameters
-    ----------
-    stock : VoxelStock
-        Changed.
-    layer, tooth : int
-    cx0, cy0, ex0, ey0 : float
-        Tool axis and edge at the start of the step, m.
-    cx1, cy1, ex1, ey1 : float
-        The same at its end; the step is short against the radius.
-
-    Returns
-    -------
-    float
-        Area removed, m^2.
+    Parameters as of `voxel_chip_thickness`; the stock is changed.
     """
     zero = _ALL ^ _ALL
     number, every, beyond = 0, 0, 0
@@ -236,4 +223,4 @@ def voxel_carve(stock, layer, tooth, cx0, cy0, ex0, ey0, cx1, cy1, ex1, ey1):
     stock.recent[layer, tooth, k, 1] = every
     stock.recent[layer, tooth, k, 2] = movement
     stock.recent[layer, tooth, k, 3] = rotation
-    return (number + beyond) * stock.cell * stock.cell
+    return (number + beyond) * stock.spacing * stock.spacing

@@ -1,4 +1,4 @@
-"""Workpiece of voxels: its layout in memory, its shaping before the cut, its measurement.
+"""Workpiece of voxels: layout in memory, shaping, moving along with the tool, measurement.
 
 A layer of the workpiece is a bitmap, 64 cells along x to a word; a cell is material or air by its
 centre.
@@ -28,12 +28,12 @@ class VoxelStock(NamedTuple):
     """Layers of bitmaps, with the recent removals of each tooth.
 
     Bit i of word w in row j is the cell whose centre is at
-    ``(x_min + (64 w + i + 1/2) cell, y_min + (j + 1/2) cell)``. `recent` holds, for
+    ``(x_min + (64 w + i + 1/2) spacing, y_min + (j + 1/2) spacing)``. `recent` holds, for
     the last steps of a tooth, the material cells and all cells swept, the movement of the edge
     (m) and its rotation (rad).
     """
 
-    cell: float  # m, side of a cell
+    spacing: float  # m, side of a cell
     window: float  # m, depth from the edge inward that is looked at in every step
     smooth: float  # m, edge movement over which the thickness is averaged, if the step is shorter
     x_min: float  # m
@@ -55,34 +55,15 @@ def voxel_stock(
 ) -> VoxelStock:
     """Build a workpiece from rectangles.
 
-    Parameters
-    ----------
-    boxes : sequence over layers of sequences of ((x0, x1, y0, y1), adds)
-        m; each rectangle adds (True) or removes (False) material, in this order.
-    layers : int
-        Number of layers, the length of `boxes`.
-    resolution : float
-        Side of a cell, m.
-    teeth : int
-        Number of cutting edges per layer that will carve the stock.
-    window : float
-        Largest chip thickness expected, m. Material deeper under the edge than this is removed
-        but not counted in the thickness; `VoxelStock.deep` counts the steps that met it.
-
-    Returns
-    -------
-    VoxelStock
-
-    Raises
-    ------
-    ValueError
-        If a rectangle or a number makes no sense.
+    Parameters and errors as of `cutting.dexel.stock.dexel_stock`; `resolution` is the side of a
+    cell, m. Material deeper under the edge than `window` is removed but not counted in the
+    thickness; `VoxelStock.deep` counts the steps that met it.
     """
     x0, x1, y0, y1 = checked_boxes(boxes, layers, resolution, teeth, window)
     # 1e-9: a length that is a multiple of the cell but for rounding needs no further cell
     columns, rows = (math.ceil((b - a) / resolution - 1e-9) for a, b in ((x0, x1), (y0, y1)))
     stock = VoxelStock(
-        cell=float(resolution),
+        spacing=float(resolution),
         window=float(window),
         smooth=_AVERAGED_CELLS * resolution,
         x_min=float(x0),
@@ -107,11 +88,11 @@ def voxel_stock(
 
 
 def _column_centres(stock: VoxelStock) -> NDArray[np.float64]:
-    return stock.x_min + stock.cell * (np.arange(stock.columns) + 0.5)
+    return stock.x_min + stock.spacing * (np.arange(stock.columns) + 0.5)
 
 
 def _row_centres(stock: VoxelStock) -> NDArray[np.float64]:
-    return stock.y_min + stock.cell * (np.arange(stock.rows) + 0.5)
+    return stock.y_min + stock.spacing * (np.arange(stock.rows) + 0.5)
 
 
 def packed(cells: NDArray[np.bool_]) -> NDArray[np.uint64]:
@@ -131,17 +112,7 @@ def _cells(words: NDArray[np.uint64], columns: int) -> NDArray[np.bool_]:
 def voxel_remove_path(
     stock: VoxelStock, layer: int, x0: float, y0: float, x1: float, y1: float, radius: float
 ) -> None:
-    """Remove what a disc clears as its centre moves straight from (x0, y0) to (x1, y1).
-
-    Parameters
-    ----------
-    stock : VoxelStock
-    layer : int
-    x0, y0, x1, y1 : float
-        Ends of the path of the centre, m.
-    radius : float
-        Of the disc, m.
-    """
+    """Remove what a disc clears on a straight way, as `cutting.dexel.stock.dexel_remove_path`."""
     x, y = _column_centres(stock), _row_centres(stock)
     reached = np.flatnonzero((y > min(y0, y1) - radius) & (y < max(y0, y1) + radius))
     along, across = x1 - x0, y1 - y0
@@ -155,37 +126,46 @@ def voxel_remove_path(
 def voxel_remaining_area(stock: VoxelStock, layer: int) -> float:
     """Area of material in a layer, m^2."""
     octets = np.ascontiguousarray(stock.words[layer]).view(np.uint8)
-    return float(_BITS_OF_BYTE[octets].sum()) * stock.cell**2
+    return float(_BITS_OF_BYTE[octets].sum()) * stock.spacing**2
 
 
 def voxel_wall_profile(
     stock: VoxelStock, layer: int, x: ArrayLike, side: int, reference: float = 0.0
 ) -> NDArray[np.float64]:
-    """Surface that bounds the material nearest to y = reference on one side of it.
+    """Surface that bounds the material on one side, as `cutting.dexel.stock.dexel_wall_profile`.
 
-    Parameters
-    ----------
-    stock : VoxelStock
-    layer : int
-    x : (n,) array of float
-        m.
-    side : int
-        +1 for the lower end of the material above the reference, -1 for the upper end of the
-        material below it.
-    reference : float
-        m.
-
-    Returns
-    -------
-    (n,) array of float
-        y, m, of the side of the cell in the column that holds x; NaN where there is none.
+    It is the side of the cell in the column that holds x.
     """
     x = np.asarray(x, dtype=np.float64)
-    column = np.floor((x - stock.x_min) / stock.cell).astype(np.int64)
+    column = np.floor((x - stock.x_min) / stock.spacing).astype(np.int64)
     inside = (column >= 0) & (column < stock.columns)
     y = _row_centres(stock)
     beyond = side * (y - reference) > 0.0
     material = _cells(stock.words[layer], stock.columns)[:, np.where(inside, column, 0)]
     distance = np.where(material & beyond[:, None], side * y[:, None], np.inf).min(axis=0)
     found = inside & np.isfinite(distance)
-    return side * np.where(found, distance - 0.5 * stock.cell, np.nan)
+    return side * np.where(found, distance - 0.5 * stock.spacing, np.nan)
+
+
+#: cells of a word, which move together
+CELLS_A_WORD = 64
+#: a distance that lacks this share of a cell is whole but for rounding
+_ROUNDING = 1e-6
+
+
+def voxel_advanced(stock: VoxelStock, distance: float) -> VoxelStock:
+    """Move the workpiece along +x by the most whole words that are not above a distance.
+
+    Otherwise as `cutting.dexel.stock.dexel_advanced`.
+    """
+    moved = math.floor((distance / stock.spacing + _ROUNDING) / CELLS_A_WORD)
+    if moved <= 0:
+        return stock
+    width = stock.words.shape[2]
+    kept = max(width - moved, 0)
+    fresh = packed(np.arange(stock.columns) >= stock.columns - moved * CELLS_A_WORD)
+    for words in stock.words:
+        words[:, :kept] = words[:, width - kept :]
+        words[:, kept:] = 0
+        words |= fresh
+    return stock._replace(x_min=stock.x_min + moved * CELLS_A_WORD * stock.spacing)

@@ -163,13 +163,7 @@ def shape_functions(segment: Segment, length: float, position: float) -> NDArray
     Axis along x; per node u, v, w and rotations about x, y, z. Friedman and Kosmatka
     1993; in the x-z plane the slope is minus the rotation about y.
 
-    Parameters
-    ----------
-    segment : Segment
-    length : float
-        Of the element, m.
-    position : float
-        0 at the first node, 1 at the second.
+    Position 0 at the first node, 1 at the second; length of the element, m.
     """
     s, phi = position, segment.shear_parameter / length**2
     deflection = np.array(

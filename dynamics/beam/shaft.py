@@ -22,7 +22,14 @@ from dynamics.beam.element import (
     positive,
     shape_functions,
 )
-from dynamics.structure.bodies import GROUND, Connector, finite, rigid_motion
+from dynamics.structure.bodies import (
+    GROUND,
+    Connector,
+    finite,
+    radial_direction,
+    refuse_ground,
+    rigid_motion,
+)
 from dynamics.structure.linear_structure import StructureError
 
 __all__ = ["BeamLine", "Bearing", "Disc", "Material", "Segment", "cowper", "hutchinson"]
@@ -142,8 +149,7 @@ class BeamLine:
 
     def __post_init__(self) -> None:
         where = f'beam "{self.name}"'
-        if self.name == GROUND:
-            raise StructureError(f'{where}: "{GROUND}" is what does not move; name it otherwise')
+        refuse_ground(where, self.name)
         if not self.segments:
             raise StructureError(f"{where} has no segments")
         if not (np.isfinite(self.stiffness_damping) and self.stiffness_damping >= 0.0):
@@ -165,14 +171,7 @@ class BeamLine:
     def axes(self) -> NDArray[np.float64]:
         """(3, 3): rows are the axis, the first and the second radial direction."""
         along = self.axis / np.linalg.norm(self.axis)
-        if self.first_radial is None:
-            guide = np.roll(np.eye(3)[np.argmax(np.abs(along))], 1)
-        else:
-            guide = finite(f'beam "{self.name}"', "first_radial", self.first_radial, (3,))
-        first = guide - (guide @ along) * along
-        if np.linalg.norm(first) <= 1e-6 * np.linalg.norm(guide):
-            raise StructureError(f'beam "{self.name}": first_radial lies along the axis')
-        first /= np.linalg.norm(first)
+        first = radial_direction(f'beam "{self.name}"', along, self.first_radial)
         return np.array([along, first, np.cross(along, first)])
 
     @cached_property

@@ -4,12 +4,11 @@
 module           responsibility
 ================ ===================================================================
 sampling         sample times as whole steps, holds and delays in the z-domain
-filters          general second-order filters: coefficients, leaf, response
-reference_model  the second-order lag before the integral part
+filters          second-order filters and the reference model: coefficients, leaf, response
 current_loop     how the torque follows its set point: ideal, lag, or PI on a motor
 measurement      encoder and scale: ratio, resolution, velocity from positions
 cascade          the specification of a drive: controllers, limits, dead times
-drive_table      specification -> columns, and a drive at rest
+drive_table      specification -> columns
 drive_step       one step of time of the cascade (kernel)
 response         closed-form frequency response of the same cascade
 ================ ===================================================================

@@ -16,9 +16,8 @@ import math
 from dataclasses import dataclass
 
 from dynamics.control.current_loop import CurrentLoop, IdealCurrentLoop
-from dynamics.control.filters import SecondOrderFilter
+from dynamics.control.filters import ReferenceModel, SecondOrderFilter
 from dynamics.control.measurement import MeasuringSystem
-from dynamics.control.reference_model import ReferenceModel
 from dynamics.control.sampling import (
     require_limit,
     require_not_negative,

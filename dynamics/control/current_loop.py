@@ -52,25 +52,25 @@ class InputLaw(NamedTuple):
     back_emf: float  # V s/rad
 
 
-def _unregulated() -> InputLaw:
-    return InputLaw(1.0, 0.0, 0.0, math.inf, 1.0, 0.0)
+class _Unregulated:
+    """Current loop that is a plant alone."""
+
+    def input_law(self, sample_time: float) -> InputLaw:  # noqa: ARG002
+        """Return the sampled input law."""
+        return InputLaw(1.0, 0.0, 0.0, math.inf, 1.0, 0.0)
 
 
 @dataclass(frozen=True)
-class IdealCurrentLoop:
+class IdealCurrentLoop(_Unregulated):
     """The torque is its set point."""
 
     def plant(self) -> CurrentPlant:
         """Return the continuous plant."""
         return CurrentPlant(-np.eye(2), np.zeros(2), np.zeros(2), 1.0)
 
-    def input_law(self, sample_time: float) -> InputLaw:  # noqa: ARG002
-        """Return the sampled input law."""
-        return _unregulated()
-
 
 @dataclass(frozen=True)
-class FirstOrderCurrentLoop:
+class FirstOrderCurrentLoop(_Unregulated):
     """T m' + m = set point.
 
     Parameters
@@ -94,13 +94,9 @@ class FirstOrderCurrentLoop:
         rate = 1.0 / self.time_constant
         return CurrentPlant(-rate * np.eye(2), np.array([rate, 0.0]), np.array([1.0, 0.0]), 0.0)
 
-    def input_law(self, sample_time: float) -> InputLaw:  # noqa: ARG002
-        """Return the sampled input law."""
-        return _unregulated()
-
 
 @dataclass(frozen=True)
-class SecondOrderCurrentLoop:
+class SecondOrderCurrentLoop(_Unregulated):
     """m''/w^2 + 2 D m'/w + m = set point.
 
     Parameters
@@ -128,10 +124,6 @@ class SecondOrderCurrentLoop:
         w = 2.0 * math.pi * self.natural_frequency
         matrix = w * np.array([[0.0, 1.0], [-1.0, -2.0 * self.damping]])
         return CurrentPlant(matrix, np.array([0.0, w]), np.array([1.0, 0.0]), 0.0)
-
-    def input_law(self, sample_time: float) -> InputLaw:  # noqa: ARG002
-        """Return the sampled input law."""
-        return _unregulated()
 
 
 @dataclass(frozen=True)

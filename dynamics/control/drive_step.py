@@ -46,14 +46,7 @@ def clipped(value, limit):
 def summed_unless_limited(total, increment, others, limit):
     """Sum of an integral part, and output with it; the sum grows no further than to the limit.
 
-    Parameters
-    ----------
-    total, increment : float
-        Sum so far and what this sample adds.
-    others : float
-        Rest of the output.
-    limit : float
-        Of the output, either sign.
+    `others` is the rest of the output; the limit holds for either sign.
     """
     summed = total + increment
     if increment > 0.0 and others + summed > limit:

@@ -1,4 +1,4 @@
-"""Columns of k drives for the time loop, from their specifications, and drives at rest."""
+"""Columns of k drives for the time loop, from their specifications."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from dynamics.control.cascade import DriveController
-from dynamics.control.filters import UNFILTERED, resting_states
+from dynamics.control.filters import UNFILTERED
 from dynamics.control.sampling import ControlError
 
 #: columns of `ControlTable.state`: set points held between samples, sums, filter and plant states
@@ -109,63 +109,8 @@ def control_table(controllers: Sequence[DriveController], step: float) -> Contro
     return table
 
 
-def rest_at(
-    table: ControlTable,
-    k: int,
-    x_set: float,
-    x_motor: float,
-    x_scale: float = 0.0,
-    torque: float = 0.0,
-) -> None:
-    """Set a drive as if it had rested for ever, holding a torque by its integral part.
-
-    Parameters
-    ----------
-    table : ControlTable
-        Its state is written.
-    k : int
-        Row of the drive.
-    x_set, x_scale : float
-        Set point and position of the scale, m.
-    x_motor : float
-        Angle of the motor, rad.
-    torque : float
-        N m, within the limits; without integral part it stays as a constant offset.
-
-    Notes
-    -----
-    A deviation of the measured from the set position makes the drive move at the first step, as
-    it should. The voltage that the resting torque needs is within its limit unchecked.
-    """
-    state, history = table.state[k], table.history[k]
-    resolution = table.resolution[k]
-    angle = _rounded(x_motor, resolution[0])
-    scale = _rounded(x_scale, resolution[1])
-    state[:], history[:] = 0.0, 0.0
-    state[LAST_ANGLE] = angle
-    history[SET_POSITION] = x_set
-    history[MEASURED_POSITION] = scale if table.scale[k] else table.transmission[k] * angle
-    state[TORQUE_SET] = state[TORQUE_SUM] = torque
-    history[VELOCITY_OUTPUT] = torque
-    for place, coefficients in enumerate(table.filters[k]):
-        table.filter_state[k, place] = resting_states(coefficients, torque)
-    transition, entry = table.plant[k, :4].reshape(2, 2), table.plant[k, 4:6]
-    output, feedthrough = table.plant[k, 6:8], table.plant[k, 8]
-    per_input = np.linalg.solve(np.eye(2) - transition, entry)
-    held = torque / (output @ per_input + feedthrough)
-    state[CURRENT_INPUT], history[CURRENT_OUTPUT] = held, held
-    state[PLANT_FIRST : PLANT_SECOND + 1] = held * per_input
-    history[MEASURED_CURRENT] = held * per_input[0]
-    through = table.input_law[k, 0]
-    state[VOLTAGE_SUM] = (1.0 - through) * held
-
-
 def _column(values: ArrayLike) -> NDArray[np.float64]:
     return np.array(values, dtype=np.float64)
-
-
-def _rounded(value: float, resolution: float) -> float:
-    return resolution * np.floor(value / resolution + 0.5) if resolution > 0.0 else value
 
 
 def _difference(drive: DriveController) -> float:

@@ -131,7 +131,34 @@ def second_order_sample(b0, b1, b2, a1, a2, first, second, value):
     return output, b1 * value - a1 * output + second, b2 * value - a2 * output
 
 
-def resting_states(coefficients: NDArray[np.float64], value: float) -> tuple[float, float]:
-    """Return the two states of a filter that has rested at a value (gain 1 at rest)."""
-    b0, _, b2, _, a2 = coefficients
-    return (1.0 - b0) * value, (b2 - a2) * value
+@dataclass(frozen=True)
+class ReferenceModel:
+    """Second-order lag before the integral part of a velocity controller.
+
+    It stands for the loop under proportional control, so that the integral part answers
+    disturbances only and a step of the set point does not overshoot; the proportional part sees
+    the set point itself (Groß, Hamann and Wiegärtner 2001, Electrical Feed Drives in Automation).
+
+    Parameters
+    ----------
+    natural_frequency : float
+        f_r, Hz.
+    damping : float
+        D_r.
+
+    Raises
+    ------
+    ControlError
+        If one of them is not above 0.
+    """
+
+    natural_frequency: float
+    damping: float
+
+    def __post_init__(self):
+        require_positive("reference model", "natural frequency", self.natural_frequency)
+        require_positive("reference model", "damping", self.damping)
+
+    def sampled(self, sample_time: float) -> NDArray[np.float64]:
+        """Return b0, b1, b2, a1, a2 at a sample time, s; see `filters`."""
+        return low_pass(self.natural_frequency, self.damping).sampled(sample_time)

@@ -49,19 +49,8 @@ def require_samples(part: str, key: str, value: int) -> None:
 def whole_ratio(loop: str, sample_time: float, name: str, unit: float) -> int:
     """Return sample_time / unit as a whole number.
 
-    Parameters
-    ----------
-    loop : str
-        Whose sample time it is, for the message.
-    sample_time, unit : float
-        s.
-    name : str
-        What the unit is, for the message.
-
-    Raises
-    ------
-    ControlError
-        Unless the sample time is a whole multiple of the unit, one at least.
+    Both in s; loop and name of the unit are for the message of the ControlError that is raised
+    unless the sample time is a whole multiple of the unit, one at least.
     """
     ratio = sample_time / unit
     count = round(ratio)
@@ -86,14 +75,7 @@ def sample_and_hold_response(
 ) -> NDArray[np.complex128]:
     """Return the response at the same frequency of a hold over count finer samples.
 
-    Parameters
-    ----------
-    frequencies : array_like of float
-        Hz.
-    finer : float
-        Time between the finer samples, s.
-    count : int
-        Finer samples per held sample.
+    Frequencies in Hz, finer time step in s.
     """
     w = 2.0 * np.pi * np.asarray(frequencies, dtype=np.float64)
     return np.exp(-1j * w[..., None] * finer * np.arange(count)).mean(axis=-1)

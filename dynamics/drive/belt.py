@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from dynamics.beam.element import positive
 from dynamics.drive.checks import require_not_negative, require_stiffness
 from dynamics.drive.gear_train import Spring, Stage
@@ -51,14 +49,6 @@ class Belt:
             driven_inertia=self.driven_inertia,
         )
 
-    @classmethod
-    def from_teeth(
-        cls, driver_teeth: int, driven_teeth: int, pitch: float, stiffness: float, **further: float
-    ) -> Belt:
-        """Belt on pulleys of so many teeth, with the pitch of the teeth in m."""
-        around = pitch / (2.0 * np.pi)
-        return cls(driver_teeth * around, driven_teeth * around, stiffness, **further)
-
     @property
     def ratio(self) -> float:
         """Angle of the driven over angle of the driving pulley."""
@@ -82,16 +72,8 @@ def belt_stages(
 ) -> list[Stage]:
     """Motor and driven pulley, with what lies behind the pulley.
 
-    Parameters
-    ----------
-    prefix : str
-        Of the names.
-    motor_inertia : float
-        kg m^2.
-    belt : Belt
-    travel : float
-        Of the axis per angle of the driven pulley, m/rad.
-    behind : Spring
+    Inertia of the motor, kg m^2, and travel of the axis per angle of the driven pulley, m/rad; the
+    prefix is that of names.
     """
     strands = belt.spring(f"{prefix}belt", travel)
     inertia = motor_inertia + belt.driver_inertia

@@ -40,20 +40,11 @@ class Stage(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Housing:
-    """What the rotors' angles count against.
-
-    Parameters
-    ----------
-    part : str
-    at : (3,) array of float
-        m.
-    axis : (3,) array of float
-        Unit vector that the rotors turn about.
-    """
+    """What the rotors' angles count against."""
 
     part: str
-    at: ArrayLike
-    axis: ArrayLike
+    at: ArrayLike  # (3,), m
+    axis: ArrayLike  # (3,), unit vector that the rotors turn about
 
     def turning(self, factor: float) -> Term:
         """Rotation about the axis, times a factor."""
@@ -106,22 +97,10 @@ def gear_train(
     Stages that a rigid spring joins turn as one: as the first if that is the motor, else as the
     last of them. Across a stage without inertia the springs act in a row.
 
-    Parameters
-    ----------
-    where : str
-        Begins the message of an error.
-    stages : sequence of Stage
-        From the motor on.
-    end : sequence of Term
-        Motion behind the last spring: the travel that the last stage, turning against its
-        housing, would give if nothing gave way.
-    housing : Housing
-
-    Raises
-    ------
-    StructureError
-        If every spring is rigid, so that nothing ties the motor's inertia to the axis, the
-        motor in front of a spring has no inertia, or a rigid spring has damping.
+    Stages from the motor on; `end` is the motion behind the last spring: the travel that the last
+    stage, turning against its housing, would give if nothing gave way. StructureError, whose
+    message begins with `where`, if every spring is rigid, so that nothing ties the motor's inertia
+    to the axis, the motor in front of a spring has no inertia, or a rigid spring has damping.
     """
     for stage in stages:
         if np.isinf(stage.spring.stiffness) and stage.spring.damping > 0.0:

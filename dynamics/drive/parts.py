@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dynamics.structure.bodies import Connector, finite
+from dynamics.structure.bodies import Connector, finite, unit_vector
 from dynamics.structure.linear_structure import StructureError
 from dynamics.structure.rotor import Rotor
 from dynamics.structure.spring_coupling import Coupling, Term
@@ -45,10 +45,7 @@ class DrivenAxis:
 
     def __post_init__(self) -> None:
         where = f'axis "{self.name}"'
-        direction = finite(where, "direction", self.direction, (3,))
-        if not np.any(direction):
-            raise StructureError(f"{where}: direction has no length")
-        object.__setattr__(self, "direction", direction / np.linalg.norm(direction))
+        object.__setattr__(self, "direction", unit_vector(where, "direction", self.direction))
         object.__setattr__(self, "at", finite(where, "at", self.at, (3,)))
         if not np.isfinite(self.position):
             raise StructureError(f"{where}: position is {self.position}; a finite length, in m")

@@ -20,7 +20,7 @@ from dynamics.drive.gear_train import (
     reflected_inertia,
 )
 from dynamics.drive.parts import DrivenAxis, DriveParts, Motor
-from dynamics.structure.bodies import finite
+from dynamics.structure.bodies import finite, unit_vector
 from dynamics.structure.linear_structure import StructureError
 from dynamics.structure.spring_coupling import Term
 
@@ -55,10 +55,8 @@ class RackMotor:
     def __post_init__(self) -> None:
         where = "motor of rack and pinion"
         positive(where, "inertia", self.inertia)
-        normal = finite(where, "towards_pinion", self.towards_pinion, (3,))
-        if not np.any(normal):
-            raise StructureError(f"{where}: towards_pinion has no length")
-        object.__setattr__(self, "towards_pinion", normal / np.linalg.norm(normal))
+        normal = unit_vector(where, "towards_pinion", self.towards_pinion)
+        object.__setattr__(self, "towards_pinion", normal)
         object.__setattr__(self, "offset", finite(where, "offset", self.offset, (3,)))
         if not np.isfinite(self.preload):
             raise StructureError(f"{where}: preload is {self.preload}; a finite torque, in N m")

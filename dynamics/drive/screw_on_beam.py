@@ -20,7 +20,7 @@ from dynamics.drive.gear_train import (
     turning,
 )
 from dynamics.drive.parts import DrivenAxis, DriveParts, Motor
-from dynamics.structure.bodies import Connector, finite
+from dynamics.structure.bodies import Connector, finite, radial_direction
 from dynamics.structure.linear_structure import StructureError
 from dynamics.structure.spring_coupling import Coupling, Term
 
@@ -181,12 +181,5 @@ class ScrewOnBeam:
     def _axes(self, where: str, axis: DrivenAxis) -> NDArray[np.float64]:
         """(3, 3): rows are the two radial directions and the axis."""
         along = np.asarray(axis.direction)
-        if self.first_radial is None:
-            guide = np.roll(np.eye(3)[np.argmax(np.abs(along))], 1)
-        else:
-            guide = finite(where, "first_radial", self.first_radial, (3,))
-        first = guide - (guide @ along) * along
-        if np.linalg.norm(first) <= 1e-6 * np.linalg.norm(guide):
-            raise StructureError(f"{where}: first_radial lies along the axis")
-        first /= np.linalg.norm(first)
+        first = radial_direction(where, along, self.first_radial)
         return np.array([first, np.cross(along, first), along])

@@ -23,27 +23,10 @@ def describing_function(
 ) -> tuple[float, float]:
     """First harmonic of the steady cycle x = A sin(w t).
 
-    Parameters
-    ----------
-    force, advance : callable
-        Leaves of the law: (law, row, motion, time).
-    law : NamedTuple
-        Table with one row, at rest; left in motion.
-    amplitude : float
-        A, m.
-    frequency : float
-        Hz.
-
-    Returns
-    -------
-    stiffness : float
-        N/m; from the part of the force in phase with the displacement.
-    damping : float
-        N s/m; from the work of a cycle over pi A^2 w.
-
-    Notes
-    -----
-    Krylov and Bogoliubov's harmonic balance (Nayfeh and Mook 1979, section 3.3).
+    By the leaves of the law, called with (law, row, motion, time), on a table with one row at rest,
+    which is left in motion; amplitude in m, frequency in Hz. Stiffness, N/m, from the part of the
+    force in phase with the displacement, and damping, N s/m, from the work of a cycle over pi A^2
+    w: Krylov and Bogoliubov's harmonic balance (Nayfeh and Mook 1979, section 3.3).
     """
     if not (amplitude > 0.0 and frequency > 0.0):
         raise ValueError(
@@ -70,19 +53,8 @@ def memoryless_describing_function(
 ) -> tuple[float, float]:
     """First harmonic of x = A sin(w t), of a law whose force depends on velocity alone.
 
-    Parameters
-    ----------
-    steady_state_force : callable
-        Velocities, m/s -> forces, N.
-    amplitude, frequency : float
-        A, m, and Hz.
-
-    Returns
-    -------
-    stiffness : float
-        0.
-    damping : float
-        N s/m; the mean over the cycle.
+    Forces, N, of velocities, m/s; amplitude in m, frequency in Hz. Stiffness, 0, and damping, N
+    s/m, the mean over the cycle.
     """
     peak = 2.0 * np.pi * frequency * amplitude
     angle = (np.arange(_SAMPLES) + 0.5) * (0.5 * np.pi / _SAMPLES)

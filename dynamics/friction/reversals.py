@@ -90,19 +90,9 @@ def _nothing(start, width, height):  # noqa: ARG001
 def _along(over, share, law, i, sign, distance):
     """Integral along a distance >= 0 (m) in a direction, and where it ends.
 
-    Parameters
-    ----------
-    over : function
-        Integral over a piece of a branch, of start and width in u and the branch's height.
-    share : float
-        Of r where the branch begins that is added.
-
-    Returns
-    -------
-    total : float
-        m.
-    branch, travel : int, float
-        At the end.
+    `over` is the integral over a piece of a branch, of start and width in u and the branch's
+    height; `share` the part of r where the branch begins that is added. Total, m, and branch and
+    travel at the end.
     """
     a = law.hysteresis_slope[i]
     n, u = law.count[i], law.travel[i]

@@ -41,19 +41,11 @@ BANDWIDTHS_OF_A_MODE = 1.5
 
 @dataclass(frozen=True)
 class Band:
-    """Part of the frequency axis that is fitted.
+    """Part of the frequency axis that is fitted."""
 
-    Parameters
-    ----------
-    lowest, highest : float
-        Hz.
-    reason : str
-        Why it begins and ends there, for people.
-    """
-
-    lowest: float
-    highest: float
-    reason: str
+    lowest: float  # Hz
+    highest: float  # Hz
+    reason: str  # why it begins and ends there, for people
 
 
 def usable_bands(
@@ -70,22 +62,10 @@ def usable_bands(
     end lines are dropped, too, while the receptance there stands above every resonance: drift, a
     mass line or noise divided by the square of a small frequency.
 
-    Parameters
-    ----------
-    frequency : (n,) array of float
-        Hz, above zero.
-    receptance : (n, k) array of complex
-        m/N.
-    noise : (n, k) array of float
-        Standard deviation of the noise of `receptance`.
-    derivative : int
-        0, 1 or 2: the measured quantity, receptance, mobility or accelerance.
-    coherence : (n, k) array of float, optional
-
-    Returns
-    -------
-    searched, clean : Band
-        Lines in which modes are looked for, and the part of them with little noise.
+    Frequencies (n,), Hz, above zero; receptance (n, k), m/N, the standard deviation of its noise,
+    and coherence where it is known; derivative 0, 1 or 2 of the quantity measured, receptance,
+    mobility or accelerance. The band in which modes are looked for, and the part of it with little
+    noise.
     """
     signal = np.stack([_running_median(np.abs(h)) for h in receptance.T], axis=1)
     ratio = np.max(signal / noise, axis=1)
@@ -128,17 +108,7 @@ def widened(
 ) -> Band:
     """Widen a band to hold the modes that were found in its noisy surroundings.
 
-    Parameters
-    ----------
-    clean, searched : Band
-    frequency, damping : (m,) array of float
-        Hz and 1.
-    spacing : float
-        Distance of the lines, Hz.
-
-    Returns
-    -------
-    Band
+    Modes by frequency, Hz, and damping (m,); spacing of the lines, Hz.
     """
     inside = (frequency >= searched.lowest) & (frequency <= searched.highest)
     reach = BANDWIDTHS_OF_A_MODE * 2.0 * (damping * frequency)[inside]

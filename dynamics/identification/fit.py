@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from dynamics.frf.container import Frf, MeasurementError
 from dynamics.identification.band import Band, widened
+from dynamics.identification.mode_quality import LEAST_MISFIT
 from dynamics.identification.polynomial import polyreference_poles
 from dynamics.identification.prepare import (
     FrfSet,
@@ -27,8 +28,7 @@ from dynamics.identification.report import (
     mode_of,
     real_frf_model,
 )
-from dynamics.identification.residual_terms import add_curvature, choose_terms
-from dynamics.identification.residues import ALL_TERMS, Records
+from dynamics.identification.residues import ALL_TERMS, CURVATURE_TERMS, Records
 from dynamics.identification.result import (
     FrfModel,
     IdentifiedMode,
@@ -43,6 +43,7 @@ from dynamics.identification.stabilisation import (
     stable_poles,
 )
 from dynamics.identification.tool_point import ToolPointFit, fit_tool_point
+from dynamics.least_squares import ROUGH
 
 #: largest order of the pLSCF model unless there are few lines
 HIGHEST_ORDER = 80
@@ -93,10 +94,6 @@ def identify_modes(
         Largest order of the stabilisation diagram.
     tool_point : str, optional
         Node at which the modal masses are wanted; that of the first drive point where not given.
-
-    Returns
-    -------
-    ModalFit
 
     Raises
     ------
@@ -280,3 +277,33 @@ def _delay_note(tool: ToolPointFit) -> list[str]:
     return [
         f"the response lags the force by {model.delay * 1e6:.2f} us; this was taken off the modes"
     ]
+
+
+def add_curvature(records: Records, model: ModalModel) -> ModalModel:
+    """Add the next residual terms of the modes beyond the lines where the data support them."""
+    for power in CURVATURE_TERMS:
+        grown = refine(records, _with_terms(records, model, (*model.terms, power)), ROUGH)
+        if _supports(records, grown, model):
+            model = refine(records, grown)
+    return model
+
+
+def choose_terms(records: Records, model: ModalModel) -> ModalModel:
+    """Leave out the residual terms that the data do not support (Schwarz 1978)."""
+    for power in model.terms:
+        terms = tuple(p for p in model.terms if p != power)
+        lesser = refine(records, _with_terms(records, model, terms))
+        if not _supports(records, model, lesser):
+            model = lesser
+    return model
+
+
+def _supports(records: Records, larger: ModalModel, smaller: ModalModel) -> bool:
+    """True where one more residual term an FRF is worth its unknowns."""
+    misfit = max(larger.chi_square / (2.0 * records.values.size), LEAST_MISFIT)
+    price = records.count * np.log(2.0 * records.values.size)
+    return bool((smaller.chi_square - larger.chi_square) / misfit > price)
+
+
+def _with_terms(records: Records, model: ModalModel, terms: tuple[int, ...]) -> ModalModel:
+    return fit_residues(records, model.natural_frequency, model.damping, terms)

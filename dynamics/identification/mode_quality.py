@@ -38,29 +38,15 @@ TINY = 1e-300
 
 @dataclass(frozen=True)
 class ModeQuality:
-    """What one mode is worth.
+    """What one mode is worth."""
 
-    Parameters
-    ----------
-    gain : float
-        Fall of the chi-square that the mode brings, over the chi-square per degree of freedom
-        near it and over what a mode without substance would bring (Schwarz 1978): above 1 it
-        is supported.
-    local_share : float
-        Largest contribution over the largest FRF value within its half-power band.
-    peak_share : float
-        Largest contribution over the peak of an FRF, see `largest_share`.
-    resolved : bool
-        False where it cannot be told from a neighbour or a single line.
-    inside : bool
-        False where it stands for modes beyond the lines: then only the gain counts.
-    """
-
+    #: fall of the chi-square that the mode brings, over the chi-square per degree of freedom near
+    #: it and over what a mode without substance would bring (Schwarz 1978): above 1 it is supported
     gain: float
-    local_share: float
-    peak_share: float
-    resolved: bool
-    inside: bool
+    local_share: float  # largest contribution over the largest FRF value within its half-power band
+    peak_share: float  # largest contribution over the peak of an FRF, see `largest_share`
+    resolved: bool  # false where it cannot be told from a neighbour or a single line
+    inside: bool  # false where it stands for modes beyond the lines: then only the gain counts
 
     @property
     def supported(self) -> bool:
@@ -149,18 +135,7 @@ def mode_quality(
 ) -> ModeQuality:
     """Weigh one mode of a model against the model without it.
 
-    Parameters
-    ----------
-    records : Records
-    model : ModalModel
-    mode : int
-        Index of the mode in `model`.
-    without : ModalModel
-        The best fit without that mode.
-
-    Returns
-    -------
-    ModeQuality
+    `without` is the best fit without that mode.
     """
     misfit = max(local_misfit(records, model, mode), LEAST_MISFIT)
     price = parameters_of_a_mode(records) * np.log(2.0 * records.values.size)
@@ -189,16 +164,8 @@ def peak_share(records: Records, model: ModalModel, mode: int) -> float:
 def largest_share(records: Records, contribution: NDArray[np.complex128]) -> float:
     """Largest contribution over the peak of the FRF, in the quantity where it is largest.
 
-    Parameters
-    ----------
-    records : Records
-    contribution : (n, k) array of complex
-        In the quantity of the records.
-
-    Returns
-    -------
-    float
-        The largest of all FRFs, as receptance, mobility or accelerance.
+    Contribution (n, k) in the quantity of the records; the largest of all FRFs as receptance,
+    mobility or accelerance.
     """
     size = np.abs(records.laplace[:, None])
     shares = []

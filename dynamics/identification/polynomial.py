@@ -17,20 +17,12 @@ BAND_OVERSHOOT = 1.02
 
 @dataclass(frozen=True)
 class OrderPoles:
-    """Poles that one model order gives.
+    """Poles that one model order gives."""
 
-    Parameters
-    ----------
-    order : int
-        Polynomial order of the matrix denominator; each reference adds `order` poles.
-    poles : (p,) array of complex
-        rad/s, those with positive frequency only; unstable ones included.
-    participation : (p, references) array of complex
-        Modal participation of each pole, unit norm.
-    """
-
-    order: int
+    order: int  # polynomial order of the matrix denominator; each reference adds `order` poles
+    #: (p,), rad/s, those with positive frequency only; unstable ones included
     poles: NDArray[np.complex128]
+    #: (p, references), modal participation of each pole, unit norm
     participation: NDArray[np.complex128]
 
 
@@ -43,19 +35,9 @@ def polynomial_basis(
     orthogonalised one by one (Arnoldi; Brubeck, Nakatsukasa and Trefethen 2021) they span the
     same spaces and stay independent for any band and weight.
 
-    Parameters
-    ----------
-    z : (n,) array of complex
-    start : (n,) array of float
-        Weight of the points, unit norm: the polynomial of degree zero.
-    order : int
-
-    Returns
-    -------
-    basis : (n, order + 1) array of complex
-        Weight times the polynomial of degree k in column k; real coefficients.
-    hessenberg : (order + 1, order) array of float
-        z * basis[:, :-1] = basis @ hessenberg.
+    Points z (n,), and the polynomial of degree zero: their weight, of unit norm. Column k of the
+    basis (n, order + 1) is the weight times the polynomial of degree k, with real coefficients; z *
+    basis[:, :-1] = basis @ hessenberg, (order + 1, order).
     """
     columns = np.zeros((2 * z.size, order + 1))
     columns[: z.size, 0] = start
@@ -97,20 +79,9 @@ def polyreference_poles(
     that only describe noise then come out unstable and the diagram stays clear (Cauberghe,
     Guillaume, Verboven, Vanlanduit and Parloo 2005).
 
-    Parameters
-    ----------
-    frequency : (n,) array of float
-        Hz.
-    values : (n, responses, references) array of complex
-        Each response already divided by its noise level.
-    weight : (n,) array of float
-        Weight of the lines, common to all responses.
-    orders : sequence of int
-        Orders of the denominator; each adds `references` poles an order.
-
-    Returns
-    -------
-    list of OrderPoles
+    Lines (n,), Hz, values (n, responses, references), each response divided by its noise level, and
+    the weight of the lines (n,). Each order of the denominator adds as many poles as there are
+    references.
     """
     lines, responses, references = values.shape
     largest = max(orders)

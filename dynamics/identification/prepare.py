@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
+from scipy.ndimage import median_filter
 
 from dynamics.frf.container import DERIVATIVE_ORDER, Frf, MeasurementError, Point, on_common_lines
 from dynamics.identification.band import Band, usable_bands
-from dynamics.identification.noise import noise_level
 from dynamics.identification.real_modes import ToolPointRecords
 from dynamics.identification.residues import Records
 
@@ -20,24 +21,14 @@ LEAST_LINES = 16
 
 @dataclass(frozen=True)
 class FrfSet:
-    """FRFs that share degrees of freedom, and so their poles.
+    """FRFs that share degrees of freedom, and so their poles."""
 
-    Parameters
-    ----------
-    members : tuple of int
-        Positions of the FRFs in the sequence given.
-    pairs : tuple of (int, int) or None
-        Per member the response and reference axis at the tool point, see ToolPointRecords.
-    axes : tuple of str
-        Directions measured at the tool point; empty where there is no drive point.
-    reason : str
-        Why there is no drive point; empty where there is one.
-    """
-
-    members: tuple[int, ...]
+    members: tuple[int, ...]  # positions of the FRFs in the sequence given
+    #: per member the response and reference axis at the tool point, see ToolPointRecords
     pairs: tuple[tuple[int, int] | None, ...]
+    #: directions measured at the tool point; empty where there is no drive point
     axes: tuple[str, ...]
-    reason: str
+    reason: str  # why there is no drive point; empty where there is one
 
 
 @dataclass(frozen=True)
@@ -83,10 +74,6 @@ def prepare(frfs: Sequence[Frf], band: tuple[float, float] | None) -> Measuremen
     frfs : sequence of Frf
     band : (float, float), optional
         Lowest and highest frequency chosen by the user, Hz.
-
-    Returns
-    -------
-    Measurement
 
     Raises
     ------
@@ -169,15 +156,7 @@ def sets_with_common_poles(frfs: Sequence[Frf], tool_point: str | None) -> list[
     Drive points in x and y without a cross term between them say nothing of each other: the two
     directions then have modes of their own.
 
-    Parameters
-    ----------
-    frfs : sequence of Frf
-    tool_point : str, optional
-        Node of the tool point; the node of the first drive point where it is not given.
-
-    Returns
-    -------
-    list of FrfSet
+    The tool point is the node of the first drive point where it is not given.
     """
     unknown = [i for i, frf in enumerate(frfs) if frf.response == frf.reference == Point()]
     if len(frfs) > 1 and unknown:
@@ -236,17 +215,9 @@ def tool_point_records(records: Records, frf_set: FrfSet) -> ToolPointRecords:
 def response_reference_matrix(records: Records, frfs: Sequence[Frf]) -> NDArray[np.complex128]:
     """FRFs over their noise as a matrix of responses and references where they form one.
 
-    Parameters
-    ----------
-    records : Records
-    frfs : sequence of Frf
-        In the order of the columns.
-
-    Returns
-    -------
-    (n, responses, references) array of complex
-        No more references than responses (a structure is reciprocal); one reference where the
-        FRFs do not fill a matrix. Every column is divided by its median noise level.
+    (n, responses, references): no more references than responses (a structure is reciprocal); one
+    reference where the FRFs, in the order of the columns, do not fill a matrix. Every column is
+    divided by its median noise level.
     """
     scaled = records.values / np.median(records.noise, axis=0)
     responses = list(dict.fromkeys((f.response.node, f.response.direction) for f in frfs))
@@ -263,3 +234,64 @@ def response_reference_matrix(records: Records, frfs: Sequence[Frf]) -> NDArray[
     if len(filled) != len(frfs):
         return scaled[:, :, None]
     return matrix if len(references) <= len(responses) else matrix.transpose(0, 2, 1)
+
+
+#: lines on either side of the one whose noise is estimated
+HALF_WINDOW = 5
+
+#: lines on either side over which the estimates are averaged by their median
+HALF_SMOOTHING = 20
+
+#: smallest noise taken for real, relative to the largest value (rounding in a printed file)
+RELATIVE_FLOOR = 1e-7
+
+
+def noise_level(frequency: NDArray[np.float64], values: NDArray[np.complex128]) -> NDArray:
+    """Standard deviation of the noise on each line of one FRF.
+
+    Around every line a rational function of low order, a quadratic over a first-order
+    polynomial in frequency, is fitted to the few lines beside it (the local rational method of
+    McKelvey and Guerin 2012, in the linearised form); a resonance narrower than the window is
+    followed by it, so that what is left over is noise. A running median removes the scatter of
+    an estimate with few degrees of freedom.
+
+    Lines (n,), Hz, ascending; values (n,) of any quantity. The standard deviation of the complex
+    noise (root mean square of its magnitude), (n,), in their unit, is never zero.
+    """
+    peak = float(np.max(np.abs(values)))
+    floor = peak * RELATIVE_FLOOR if peak > 0.0 else 1.0
+    half = min(HALF_WINDOW, (values.size - 1) // 2)
+    freedom = 2 * half + 1 - 4
+    if freedom < 1:
+        return np.full(values.size, max(floor, 0.01 * peak))
+    variance = _local_rational_variance(frequency, values, half)
+    # the median of a chi-square variable lies below its mean (Wilson-Hilferty)
+    median_to_mean = (1.0 - 2.0 / (9.0 * 2.0 * freedom)) ** 3
+    reach = min(HALF_SMOOTHING, variance.size // 2)
+    smooth = median_filter(variance, size=2 * reach + 1, mode="nearest") / median_to_mean
+    smooth = np.concatenate([np.full(half, smooth[0]), smooth, np.full(half, smooth[-1])])
+    return np.maximum(np.sqrt(smooth), floor)
+
+
+def _local_rational_variance(
+    frequency: NDArray[np.float64], values: NDArray[np.complex128], half: int
+) -> NDArray[np.float64]:
+    """Mean square residual of the local rational fits, for lines half .. n - 1 - half."""
+    width = 2 * half + 1
+    f = sliding_window_view(frequency, width)
+    h = sliding_window_view(values, width)
+    x = (f - f[:, half : half + 1]) / (0.5 * (f[:, -1:] - f[:, :1]))
+    scale = np.max(np.abs(h), axis=1, keepdims=True)
+    h = h / np.where(scale > 0.0, scale, 1.0)
+    columns = np.stack([np.ones_like(h), x.astype(complex), (x**2).astype(complex), -h * x], axis=2)
+    basis, triangle = np.linalg.qr(columns)
+    projected = np.einsum("wki,wk->wi", basis.conj(), h)
+    residual = h - np.einsum("wki,wi->wk", basis, projected)
+    # equation error -> output error: divide by the denominator that was fitted
+    pivot = triangle[:, 3, 3]
+    safe = np.abs(pivot) > 1e-10
+    slope = np.where(safe, projected[:, 3] / np.where(safe, pivot, 1.0), 0.0)
+    denominator = np.abs(1.0 + slope[:, None] * x)
+    residual = residual / np.maximum(denominator, 0.05)
+    mean_square = np.sum(np.abs(residual) ** 2, axis=1) / (width - 4)
+    return mean_square * scale[:, 0] ** 2

@@ -121,19 +121,9 @@ def starting_vectors(
     The symmetric matrix of the real residues (the mean where both cross terms were measured) is
     replaced by the nearest matrix of rank one, from its largest eigenvalue.
 
-    Parameters
-    ----------
-    tool : ToolPointRecords
-    model : ModalModel
-        Complex modes of the same FRFs.
-
-    Returns
-    -------
-    vectors : (m, axes) array of float
-        1/sqrt(kg); zero where no eigenvalue is positive.
-    eigenvalues : (m, axes) array of float
-        1/kg, largest first: the second tells of a second mode at the same frequency, a negative
-        one of a residue that no drive point has.
+    Vectors (m, axes), 1/sqrt(kg), zero where no eigenvalue is positive, and eigenvalues (m, axes),
+    1/kg, largest first: the second tells of a second mode at the same frequency, a negative one of
+    a residue that no drive point has.
     """
     axes = len(tool.axes)
     total = np.zeros((model.count, axes, axes))
@@ -184,21 +174,8 @@ def refine_real_modes(
     Poles, mode vectors at the tool point and one delay are nonlinear unknowns; residual terms and
     the residues of other FRFs are linear and eliminated (variable projection).
 
-    Parameters
-    ----------
-    tool : ToolPointRecords
-    natural_frequency, damping : (m,) array of float
-        rad/s and 1: where to begin.
-    vectors : (m, axes) array of float
-        1/sqrt(kg): where to begin.
-    terms : tuple of int
-        Powers of s of the residual terms.
-    delay : float or None
-        Where to begin, s; None for a measurement without delay.
-
-    Returns
-    -------
-    RealModel
+    It begins at frequencies, rad/s, damping ratios (m,), vectors (m, axes), 1/sqrt(kg), and a
+    delay, s, None for a measurement without one; terms are powers of s of the residual terms.
     """
     modes, axes = vectors.shape
 

@@ -86,16 +86,7 @@ def fit_residues(
 ) -> ModalModel:
     """Least-squares residues and residual terms for known poles (LSFD).
 
-    Parameters
-    ----------
-    records : Records
-    natural_frequency, damping : (m,) array of float
-        rad/s and 1.
-    terms : tuple[int, ...]
-
-    Returns
-    -------
-    ModalModel
+    Natural frequencies, rad/s, and damping ratios (m,).
     """
     shapes = mode_shapes_in_frequency(
         records.laplace, natural_frequency, damping, records.derivative
@@ -129,18 +120,8 @@ def refine(records: Records, start: ModalModel, least_gain: float = PRECISE) -> 
     Pereyra 1973, with the Jacobian of Kaufman 1975); what is left is a small problem in
     [ln w, ln zeta].
 
-    Parameters
-    ----------
-    records : Records
-    start : ModalModel
-        Poles and residual terms to begin with.
-    least_gain : float
-        Relative fall of the chi-square in one step at which the iteration ends.
-
-    Returns
-    -------
-    ModalModel
-        Never worse than `start` with residues refitted.
+    It ends at a relative fall of the chi-square in one step below `least_gain`, and is never worse
+    than `start` with residues refitted.
     """
     modes = start.count
 
@@ -161,16 +142,7 @@ def bounded_poles(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Poles from [ln w, ln zeta, ...], kept within two octaves of the band and damped.
 
-    Parameters
-    ----------
-    records : Records
-    parameters : (p,) array of float
-    modes : int
-
-    Returns
-    -------
-    natural_frequency, damping : (m,) array of float
-        rad/s and 1.
+    Frequencies, rad/s, and damping ratios (m,).
     """
     lowest, highest = 2.0 * np.pi * np.array(pole_range(records))
     natural_frequency = np.exp(np.clip(parameters[:modes], np.log(lowest), np.log(highest)))

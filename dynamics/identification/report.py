@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -63,42 +66,66 @@ def real_frf_model(tool: ToolPointRecords, model: RealModel, k: int, sense: floa
     )
 
 
-def identified_complex_modes(records: Records, model: ModalModel) -> list[IdentifiedMode]:
-    """Report of modes without mass."""
-    error = (records.values - model.synthesis(records)) / records.noise
-    covariance = _covariance(model.normal)
-    found = []
+class _Resonance(NamedTuple):
+    """A fitted mode within the lines: its place in the model, pole and how sure that is."""
+
+    place: int
+    hertz: float
+    damping: float
+    std_frequency: float  # Hz
+    std_damping: float
+    inflation: float  # of standard deviations, for correlated errors
+    fit_error: float
+
+
+def _resonances(
+    records: Records,
+    model: ModalModel | RealModel,
+    synthesis: NDArray[np.complex128],
+    covariance: NDArray[np.float64],
+) -> Iterator[_Resonance]:
+    """Modes of a model but those that stand for modes beyond the band."""
+    error = (records.values - synthesis) / records.noise
     for r in range(model.count):
         hertz = float(model.natural_frequency[r] / (2.0 * np.pi))
-        if not records.frequency[0] <= hertz <= records.frequency[-1]:
-            continue  # stands for modes beyond the band
-        damping = float(model.damping[r])
-        inflation = _inflation(records, error, hertz, damping)
-        real = model.coefficients[r]
-        quadrature = model.coefficients[model.count + r]
-        residues = real + 1j * quadrature
-        std_frequency = hertz * inflation * np.sqrt(covariance[r, r])
-        std_damping = damping * inflation * np.sqrt(covariance[r + model.count][r + model.count])
-        fit_error = _fit_error(records, model.synthesis(records), hertz, damping)
-        weight = peak_share(records, model, r)
-        phase = _phase_deviation(residues, 0.0)
-        warning = _warning(damping, std_damping, None, fit_error, weight, phase)
-        found.append(
-            IdentifiedMode(
+        if records.frequency[0] <= hertz <= records.frequency[-1]:
+            damping, k = float(model.damping[r]), model.count + r
+            inflation = _inflation(records, error, hertz, damping)
+            yield _Resonance(
+                r,
                 hertz,
                 damping,
-                float(std_frequency),
-                float(std_damping),
-                residues,
-                None,
-                None,
-                None,
-                fit_error,
-                weight,
-                phase,
-                warning,
+                float(hertz * inflation * np.sqrt(covariance[r, r])),
+                float(damping * inflation * np.sqrt(covariance[k, k])),
+                inflation,
+                _fit_error(records, synthesis, hertz, damping),
             )
-        )
+
+
+def _identified(
+    one: _Resonance,
+    residues: NDArray[np.complex128],
+    weight: float,
+    phase: float,
+    warning: str,
+    mass: tuple[float, float, tuple[float, float, float]] | None = None,
+) -> IdentifiedMode:
+    """Report of a mode; mass, its standard deviation and direction where it is felt."""
+    pole = one.hertz, one.damping, one.std_frequency, one.std_damping
+    return IdentifiedMode(
+        *pole, residues, *(mass or (None,) * 3), one.fit_error, weight, phase, warning
+    )
+
+
+def identified_complex_modes(records: Records, model: ModalModel) -> list[IdentifiedMode]:
+    """Report of modes without mass."""
+    found = []
+    for one in _resonances(records, model, model.synthesis(records), _covariance(model.normal)):
+        r = one.place
+        residues = model.coefficients[r] + 1j * model.coefficients[model.count + r]
+        weight, phase = peak_share(records, model, r), _phase_deviation(residues, 0.0)
+        warning = _warning(one, None, weight, phase)
+        found.append(_identified(one, residues, weight, phase, warning))
     return found
 
 
@@ -106,51 +133,27 @@ def identified_real_modes(
     tool: ToolPointRecords, model: RealModel, complex_model: ModalModel
 ) -> list[IdentifiedMode]:
     """Report of real modes with mass and direction at the tool point."""
-    records = tool.records
-    synthesis = model.synthesis(tool)
-    error = (records.values - synthesis) / records.noise
     covariance = _covariance(model.normal)
-    residues = model.residues(tool.pairs)
+    residues = model.residues(tool.pairs).astype(np.complex128)
     axes = len(tool.axes)
     found = []
-    for r in range(model.count):
-        hertz = float(model.natural_frequency[r] / (2.0 * np.pi))
-        if not records.frequency[0] <= hertz <= records.frequency[-1]:
-            continue  # stands for modes beyond the band
-        damping = float(model.damping[r])
-        inflation = _inflation(records, error, hertz, damping)
-        std_frequency = hertz * inflation * np.sqrt(covariance[r, r])
-        std_damping = damping * inflation * np.sqrt(covariance[model.count + r, model.count + r])
+    for one in _resonances(tool.records, model, model.synthesis(tool), covariance):
+        r = one.place
         vector = model.vectors[r]
         inverse_mass = float(vector @ vector)
         own = slice(2 * model.count + r * axes, 2 * model.count + (r + 1) * axes)
         # 1/m = u.u, so that the relative deviation of m is 2 u.du / u.u
         variance = float(vector @ covariance[own, own] @ vector)
-        mass_std = 2.0 * inflation * np.sqrt(max(variance, 0.0)) / inverse_mass**2
+        mass_std = 2.0 * one.inflation * np.sqrt(max(variance, 0.0)) / inverse_mass**2
         mass = 1.0 / inverse_mass
-        fit_error = _fit_error(records, synthesis, hertz, damping)
         weight = share_of_real_mode(tool, model, r)
         phase = _complex_phase(complex_model, model.natural_frequency[r], model.delay or 0.0)
-        warning = _warning(damping, std_damping, mass_std / mass, fit_error, weight, phase)
+        warning = _warning(one, mass_std / mass, weight, phase)
         felt = mass_std < UNFELT_STD * mass
         if not felt:
             warning = "; ".join(part for part in (UNFELT, warning) if part)
-        found.append(
-            IdentifiedMode(
-                hertz,
-                damping,
-                float(std_frequency),
-                float(std_damping),
-                residues[r].astype(np.complex128),
-                mass if felt else None,
-                float(mass_std) if felt else None,
-                _direction(tool.axes, vector) if felt else None,
-                fit_error,
-                weight,
-                phase,
-                warning,
-            )
-        )
+        at_tool = (mass, float(mass_std), _direction(tool.axes, vector)) if felt else None
+        found.append(_identified(one, residues[r], weight, phase, warning, at_tool))
     return found
 
 
@@ -228,22 +231,15 @@ def _complex_phase(model: ModalModel, natural_frequency: float, delay: float) ->
     return _phase_deviation(residues, natural_frequency * delay)
 
 
-def _warning(
-    damping: float,
-    damping_std: float,
-    relative_mass_std: float | None,
-    fit_error: float,
-    weight: float,
-    phase: float,
-) -> str:
+def _warning(one: _Resonance, relative_mass_std: float | None, weight: float, phase: float) -> str:
     """What makes a mode doubtful, in words; empty where nothing does."""
     said = []
-    if damping_std > DOUBTFUL_STD * damping:
-        said.append(f"damping uncertain by {100 * damping_std / damping:.0f} %")
+    if one.std_damping > DOUBTFUL_STD * one.damping:
+        said.append(f"damping uncertain by {100 * one.std_damping / one.damping:.0f} %")
     if relative_mass_std is not None and relative_mass_std > DOUBTFUL_STD:
         said.append(f"mass uncertain by {100 * relative_mass_std:.0f} %")
-    if fit_error > DOUBTFUL_FIT:
-        said.append(f"the fit misses the resonance by {100 * fit_error:.0f} %")
+    if one.fit_error > DOUBTFUL_FIT:
+        said.append(f"the fit misses the resonance by {100 * one.fit_error:.0f} %")
     if weight < DOUBTFUL_WEIGHT:
         said.append(f"weak: adds {100 * weight:.1f} % of the peak")
     if phase > DOUBTFUL_PHASE:

@@ -90,18 +90,8 @@ def mode_shapes_in_frequency(
 ) -> Shapes:
     """Single-degree-of-freedom responses of all modes.
 
-    Parameters
-    ----------
-    s : (n,) array of complex
-        rad/s.
-    natural_frequency, damping : (m,) array of float
-        rad/s and 1.
-    derivative : int
-        0 for receptance, 1 for mobility, 2 for accelerance.
-
-    Returns
-    -------
-    Shapes
+    At s (n,), rad/s, of natural frequencies, rad/s, and damping ratios (m,); derivative 0 for
+    receptance, 1 for mobility, 2 for accelerance.
     """
     viscous = 2.0 * s[:, None] * (damping * natural_frequency)
     inverse = 1.0 / (s[:, None] ** 2 + viscous + natural_frequency**2)

@@ -221,18 +221,8 @@ def synthesis_error(
 ) -> SynthesisError:
     """Deviation of synthesised values from a measured FRF on the same lines.
 
-    Parameters
-    ----------
-    frf : Frf
-        All lines above 0 Hz.
-    values : (n,) array of complex
-        In the quantity of `frf`.
-    noise : (n,) array of float
-        Standard deviation of the noise of `frf`.
-
-    Returns
-    -------
-    SynthesisError
+    The FRF has lines above 0 Hz; values (n,) in its quantity, and the standard deviation of its
+    noise.
     """
     factor = (2.0 * np.pi * frf.frequency) ** -DERIVATIVE_ORDER[frf.quantity]
     rms, maximum = [], []

@@ -33,16 +33,7 @@ MOST_ADDED = 30
 def drop_unsupported(records: Records, model: ModalModel) -> ModalModel:
     """Leave out, one by one, the modes that the data do not support, weakest first.
 
-    Parameters
-    ----------
-    records : Records
-    model : ModalModel
-        Refined.
-
-    Returns
-    -------
-    ModalModel
-        Refined; every mode in it is supported.
+    The model is refined, and so is the one returned, in which every mode is supported.
     """
     while model.count:
         astray = _astray(records, model)
@@ -83,16 +74,7 @@ def _distance(model: ModalModel, mode: int) -> float:
 def add_missing(records: Records, model: ModalModel) -> ModalModel:
     """Add modes where the residual still has structure, as long as the data support them.
 
-    Parameters
-    ----------
-    records : Records
-    model : ModalModel
-        Refined.
-
-    Returns
-    -------
-    ModalModel
-        Refined.
+    The model is refined, and so is the one returned.
     """
     for _ in range(MOST_ADDED):
         grown = _best_addition(records, model)
@@ -105,17 +87,8 @@ def add_missing(records: Records, model: ModalModel) -> ModalModel:
 def with_mode_count(records: Records, model: ModalModel, count: int) -> ModalModel:
     """Bring a model to a number of modes that the user wants.
 
-    Parameters
-    ----------
-    records : Records
-    model : ModalModel
-        Refined.
-    count : int
-
-    Returns
-    -------
-    ModalModel
-        Fewer modes only where no more could be placed inside the band.
+    The model is refined; it has fewer modes than asked for only where no more could be placed
+    inside the band.
     """
     while np.sum(inside(records, model)) > count:
         lesser = [refine(records, without_mode(records, model, r)) for r in range(model.count)]

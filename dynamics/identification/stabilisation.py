@@ -25,23 +25,12 @@ LEAST_APPEARANCES = 3
 
 @dataclass(frozen=True)
 class StabilisationDiagram:
-    """All stable-system poles of all orders, one entry a pole.
+    """All stable-system poles of all orders, one entry a pole."""
 
-    Parameters
-    ----------
-    order : (p,) array of int
-        Polynomial order that gave the pole.
-    frequency : (p,) array of float
-        Undamped natural frequency, Hz.
-    damping : (p,) array of float
-        Damping ratio, 1.
-    stable : (p,) array of bool
-        True where frequency, damping and participation agree with the order before.
-    """
-
-    order: NDArray[np.int64]
-    frequency: NDArray[np.float64]
-    damping: NDArray[np.float64]
+    order: NDArray[np.int64]  # (p,), polynomial order that gave the pole
+    frequency: NDArray[np.float64]  # (p,), undamped natural frequency, Hz
+    damping: NDArray[np.float64]  # (p,), damping ratio, 1
+    #: (p,), true where frequency, damping and participation agree with the order before
     stable: NDArray[np.bool_]
 
 
@@ -50,16 +39,7 @@ def stabilisation_diagram(
 ) -> StabilisationDiagram:
     """Collect the poles inside a band and compare every order with the one before.
 
-    Parameters
-    ----------
-    orders : sequence of OrderPoles
-        By rising order.
-    lowest, highest : float
-        Band, Hz.
-
-    Returns
-    -------
-    StabilisationDiagram
+    By rising order; the band is in Hz.
     """
     order, frequency, damping, stable = [], [], [], []
     before: tuple[NDArray, NDArray, NDArray] | None = None
@@ -107,14 +87,7 @@ def stable_poles(
     The stable entries are gathered from the highest order down; each either joins the group
     whose running median it agrees with or opens a new one.
 
-    Parameters
-    ----------
-    diagram : StabilisationDiagram
-
-    Returns
-    -------
-    frequency, damping : (c,) array of float
-        Hz and 1, by rising frequency.
+    Frequencies, Hz, and damping ratios (c,), by rising frequency.
     """
     groups: list[list[int]] = []
     for i in np.flatnonzero(diagram.stable)[::-1]:

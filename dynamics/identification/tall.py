@@ -30,14 +30,7 @@ def blocks(matrix: NDArray, rows: int = ROWS) -> NDArray:
 def gram(left: NDArray, right: NDArray) -> NDArray:
     """Conjugate transpose of `left` times `right`.
 
-    Parameters
-    ----------
-    left : (n, k) array
-    right : (n, j) array
-
-    Returns
-    -------
-    (k, j) array
+    (n, k) and (n, j) make (k, j).
     """
     a, b = blocks(padded(left)), blocks(padded(right))
     return np.sum(a.conj().transpose(0, 2, 1) @ b, axis=0)
@@ -46,14 +39,7 @@ def gram(left: NDArray, right: NDArray) -> NDArray:
 def product(left: NDArray, right: NDArray) -> NDArray:
     """Tall matrix times small one.
 
-    Parameters
-    ----------
-    left : (n, k) array
-    right : (k, j) array
-
-    Returns
-    -------
-    (n, j) array
+    (n, k) and (k, j) make (n, j).
     """
     whole = blocks(padded(left)) @ right
     return whole.reshape(whole.shape[0] * ROWS, right.shape[1])[: left.shape[0]]
@@ -62,16 +48,7 @@ def product(left: NDArray, right: NDArray) -> NDArray:
 def factorise(matrix: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """QR factors of a tall matrix, by those of its blocks (Demmel et al. 2012, TSQR).
 
-    Parameters
-    ----------
-    matrix : (n, k) array of float
-        n >= k.
-
-    Returns
-    -------
-    basis : (n, k) array of float
-        Orthonormal columns.
-    triangle : (k, k) array of float
+    Of (n, k), n >= k: orthonormal columns (n, k) and a triangle (k, k).
     """
     rows, columns = matrix.shape
     if rows <= 2 * FACTORISED_ROWS or 2 * columns > FACTORISED_ROWS:

@@ -27,24 +27,12 @@ LEAST_SECOND_SHARE = 0.01
 
 @dataclass(frozen=True)
 class ToolPointFit:
-    """Real modes of the tool point, or why there are none.
-
-    Parameters
-    ----------
-    model : RealModel or None
-    tool : ToolPointRecords
-        With the sense of reversed sensors corrected.
-    senses : (k,) array of float
-        -1 for the FRFs whose sign was turned.
-    reason : str
-        Why `model` is None; empty otherwise.
-    notes : tuple of str
-    """
+    """Real modes of the tool point, or why there are none."""
 
     model: RealModel | None
-    tool: ToolPointRecords
-    senses: NDArray[np.float64]
-    reason: str
+    tool: ToolPointRecords  # with the sense of reversed sensors corrected
+    senses: NDArray[np.float64]  # (k,), -1 for the FRFs whose sign was turned
+    reason: str  # why `model` is None; empty otherwise
     notes: tuple[str, ...]
 
 
@@ -56,10 +44,6 @@ def fit_tool_point(tool: ToolPointRecords, model: ModalModel) -> ToolPointFit:
     tool : ToolPointRecords
     model : ModalModel
         Complex modes of the same FRFs.
-
-    Returns
-    -------
-    ToolPointFit
     """
     tool, model, senses, notes = _with_senses(tool, model)
     vectors, eigenvalues = starting_vectors(tool, model)

@@ -38,23 +38,12 @@ class Blocks(NamedTuple):
 def blocks(structure: LinearStructure, ports: NDArray[np.float64]) -> Blocks:
     """Split a structure into blocks.
 
-    Parameters
-    ----------
-    structure : LinearStructure
-    ports : (p, n) array of float
-        Rows along which forces act and motions are read.
-
-    Raises
-    ------
-    StructureError
-        If the matrices are not those of a structure.
-
-    Notes
-    -----
-    The modes of the undamped structure are the first change of coordinates; damping then couples
-    them. Invariant subspaces come from an ordered real Schur form and eigenvectors (Golub and Van
-    Loan 2013, Matrix Computations, section 7.6); where they are ill-conditioned - two motions that
-    are almost one - everything is left as one block, which is as exact, only slower.
+    Ports (p, n) are rows along which forces act and motions are read. The modes of the undamped
+    structure are the first change of coordinates; damping then couples them. Invariant subspaces
+    come from an ordered real Schur form and eigenvectors (Golub and Van Loan 2013, Matrix
+    Computations, section 7.6); where they are ill-conditioned - two motions that are almost one -
+    everything is left as one block, which is as exact, only slower. StructureError if the matrices
+    are not those of a structure.
     """
     modes = undamped_modes(structure)
     count = modes.frequency.size

@@ -66,21 +66,13 @@ class MachineAxis:
 
 @dataclass(frozen=True, eq=False)
 class FrictionAt:
-    """Friction along a motion.
-
-    Parameters
-    ----------
-    name : str
-    law : LuGre, TanhHysteresis or CoulombStribeck
-    terms : sequence of Term
-        Motion that it resists, as the sum of these; none if `mode` is given.
-    mode : int, optional
-        Number, from 0, of the undamped mode whose coordinate (mass-normalised) it resists.
-    """
+    """Friction along a motion."""
 
     name: str
     law: FrictionLaw
+    #: motion that it resists, as the sum of these; none if `mode` is given
     terms: Sequence[Term] = ()
+    #: number, from 0, of the undamped mode whose coordinate (mass-normalised) it resists
     mode: int | None = None
 
 
@@ -180,14 +172,6 @@ class Machine:
         """Same machine without its frictions."""
         return replace(self, frictions=())
 
-    def axis_row(self, name: str) -> NDArray[np.float64]:
-        """Row of the first controlled drive of an axis times its transmission: travel, m."""
-        for drive in self.drives:
-            if drive.axis == name:
-                return drive.row * drive.controller.measuring.transmission
-        known = ", ".join(f'"{drive.axis}"' for drive in self.drives)
-        raise StructureError(f'axis "{name}" is not under control; there are {known or "none"}')
-
 
 def machine(parts: MachineParts, conditions: Mapping[str, Condition] | None = None) -> Machine:
     """Assemble a machine.
@@ -197,10 +181,6 @@ def machine(parts: MachineParts, conditions: Mapping[str, Condition] | None = No
     parts : MachineParts
     conditions : mapping of str to {"control", "brake", "free"}, optional
         Of axes by name; "control" by default where there is a controller, else "free".
-
-    Returns
-    -------
-    Machine
 
     Raises
     ------
@@ -256,14 +236,8 @@ def machine(parts: MachineParts, conditions: Mapping[str, Condition] | None = No
 def reduced(full: Machine, highest: float, kept_points: Sequence[str] | None = None) -> Machine:
     """Machine of the modes up to a frequency, with the static answer of the others.
 
-    Parameters
-    ----------
-    full : Machine
-    highest : float
-        Hz.
-    kept_points : sequence of str, optional
-        Points whose static answer to forces is kept, besides that of drives and frictions; all
-        by default.
+    The frequency is in Hz. The static answer to forces is kept at drives, frictions and the points
+    named; all points by default.
     """
     structure = full.structure
     names = structure.points if kept_points is None else kept_points

@@ -53,18 +53,9 @@ class ModalSteps(NamedTuple):
 def modal_structure(modes: Sequence[Mode], step: float, rubbing: Sequence[int] = ()) -> ModalSteps:
     """Return modes at rest on ports.
 
-    Parameters
-    ----------
-    modes : sequence of Mode
-    step : float
-        s.
-    rubbing : sequence of int
-        Modes whose modal displacement is a port.
-
-    Notes
-    -----
-    The force acts on the tool and, reversed, on the workpiece; the relative displacement counts
-    a workpiece mode backwards too, so that both sides add up alike.
+    Modal displacements of the modes that rub are ports too; step in s. The force acts on the tool
+    and, reversed, on the workpiece; the relative displacement counts a workpiece mode backwards
+    too, so that both sides add up alike.
     """
     count = len(modes)
     stiffness = np.array([mode.stiffness for mode in modes], dtype=np.float64)

@@ -3,8 +3,7 @@
 =============== =================================================================
 module          responsibility
 =============== =================================================================
-modes           modes of a structure and their receptance
-frequency_lines lines over frequency that resolve the resonances
+modes           modes of a structure, their receptance and lines that resolve it
 mode_tracking   modes of a structure over a parameter, each followed by its shape
 =============== =================================================================
 """

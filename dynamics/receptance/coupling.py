@@ -64,25 +64,16 @@ class PointPort:
 class Component:
     """Receptances of a component with a near and a far end, m/N and kin.
 
-    Parameters
-    ----------
-    near : (m, p, p) array of complex
-        Motion of the near end by loads there.
-    near_far : (m, p, q) array of complex
-        Motion of the near end by loads at the far end.
-    far_near : (m, q, p) array of complex
-    far : (m, q, q) array of complex
-
     Raises
     ------
     StructureError
         If the shapes do not fit together.
     """
 
-    near: NDArray[np.complex128]
-    near_far: NDArray[np.complex128]
-    far_near: NDArray[np.complex128]
-    far: NDArray[np.complex128]
+    near: NDArray[np.complex128]  # (m, p, p), motion of the near end by loads there
+    near_far: NDArray[np.complex128]  # (m, p, q), motion of the near end by loads at the far end
+    far_near: NDArray[np.complex128]  # (m, q, p)
+    far: NDArray[np.complex128]  # (m, q, q)
 
     def __post_init__(self) -> None:
         lines, p, q = self.near_far.shape

@@ -252,14 +252,7 @@ def _solved_for(
 
     Freedoms to solve for are picked by pivoting; rows that follow from others are left out.
 
-    Parameters
-    ----------
-    rows : (b, n) array of float
-
-    Returns
-    -------
-    given : (n, b) sparse array of float
-    free : (n, n - rank) sparse array of float
+    Rows are (b, n), given (n, b), free (n, n - rank), both sparse.
     """
     size = rows.shape[1]
     scale = np.linalg.norm(rows, axis=1)

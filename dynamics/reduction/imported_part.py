@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from dynamics.reduction.craig_bampton import super_element
-from dynamics.structure.bodies import GROUND, finite, rigid_motion
+from dynamics.structure.bodies import GROUND, finite, refuse_ground, rigid_motion
 from dynamics.structure.linear_structure import LinearStructure, StructureError
 
 #: distance, m, at which a position is a point
@@ -52,8 +52,7 @@ class ImportedPart:
 
     def __post_init__(self) -> None:
         where = f'imported part "{self.name}"'
-        if self.name == GROUND:
-            raise StructureError(f'{where}: "{GROUND}" is what does not move; name it otherwise')
+        refuse_ground(where, self.name)
         positions = {
             name: finite(where, f'position of point "{name}"', position, (3,))
             for name, position in self.positions.items()

@@ -21,19 +21,11 @@ from dynamics.structure.spring_coupling import Coupling, Term
 
 @dataclass(frozen=True, eq=False)
 class Assembly:
-    """Structure that still knows its parts.
-
-    Parameters
-    ----------
-    structure : LinearStructure
-    parts : mapping of str to Part
-    columns : mapping of str to slice
-        Freedoms of each part.
-    """
+    """Structure that still knows its parts."""
 
     structure: LinearStructure
     parts: Mapping[str, Part]
-    columns: Mapping[str, slice]
+    columns: Mapping[str, slice]  # freedoms of each part
 
     def motion(self, who: str, part: str, at: ArrayLike) -> NDArray[np.float64]:
         """Motion (6, n) of a part at a position, m, per freedom; none of the ground.

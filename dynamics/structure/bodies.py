@@ -88,8 +88,7 @@ class Body:
 
     def __post_init__(self) -> None:
         where = f'body "{self.name}"'
-        if self.name == GROUND:
-            raise StructureError(f'{where}: "{GROUND}" is what does not move; name it otherwise')
+        refuse_ground(where, self.name)
         if not (np.isfinite(self.mass) and self.mass > 0.0):
             raise StructureError(f"{where}: mass is {self.mass}; it must be positive, in kg")
         inertia = np.array(self.inertia, dtype=np.float64)
@@ -237,3 +236,31 @@ def finite(where: str, what: str, values: ArrayLike, shape: tuple[int, ...]) -> 
         size = " x ".join(str(length) for length in shape)
         raise StructureError(f"{where}: {what} must be {size} finite numbers, not {values!r}")
     return array
+
+
+def unit_vector(where: str, what: str, values: ArrayLike) -> NDArray[np.float64]:
+    """Direction (3,) made a unit vector; StructureError where it has no length."""
+    direction = finite(where, what, values, (3,))
+    if not np.any(direction):
+        raise StructureError(f"{where}: {what} has no length")
+    return direction / np.linalg.norm(direction)
+
+
+def radial_direction(
+    where: str, along: NDArray[np.float64], first_radial: ArrayLike | None
+) -> NDArray[np.float64]:
+    """Unit vector (3,) perpendicular to another one, as near as can be to what is given."""
+    if first_radial is None:
+        guide = np.roll(np.eye(3)[np.argmax(np.abs(along))], 1)
+    else:
+        guide = finite(where, "first_radial", first_radial, (3,))
+    first = guide - (guide @ along) * along
+    if np.linalg.norm(first) <= 1e-6 * np.linalg.norm(guide):
+        raise StructureError(f"{where}: first_radial lies along the axis")
+    return first / np.linalg.norm(first)
+
+
+def refuse_ground(where: str, name: str) -> None:
+    """Refuse a part with the name of what does not move."""
+    if name == GROUND:
+        raise StructureError(f'{where}: "{GROUND}" is what does not move; name it otherwise')

@@ -25,17 +25,9 @@ def free_motions(
     Whatever strains no part is a rigid motion of every part, so the rank of the springs on those
     decides: a question of geometry, and not of stiffness.
 
-    Parameters
-    ----------
-    restrained : (springs, n) array of float
-        Stretch of each spring per rigid motion of each part: displacements (m), rotations (rad).
-    turning : (n,) array of bool
-        Which of them are rotations.
-
-    Returns
-    -------
-    (n, free) array of float
-        Rotations times the longest lever. Each motion has a 1 where the others have 0.
+    Stretch (springs, n) of each spring per rigid motion of each part, displacements (m) and
+    rotations (rad), and which of them turn (n,). Motions (n, free), rotations times the longest
+    lever; each has a 1 where the others have 0.
     """
     lever = np.max(np.abs(restrained[:, turning]), initial=0.0)
     rows = restrained / np.where(turning, lever if lever > 0.0 else 1.0, 1.0)
@@ -58,18 +50,8 @@ def refuse_free_motion(
 ) -> None:
     """Refuse more free motions than allowed.
 
-    Parameters
-    ----------
-    restrained, turning
-        As for `free_motions`.
-    labels : sequence of str
-        Names of the rigid motions, (n,).
-    allowed : int
-
-    Raises
-    ------
-    StructureError
-        Naming parts and directions.
+    Arguments as for `free_motions`, and names of the rigid motions (n,). The StructureError names
+    parts and directions.
     """
     free = free_motions(restrained, turning)
     if free.shape[1] <= allowed:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from dynamics.structure.bodies import GROUND, finite
+from dynamics.structure.bodies import refuse_ground, unit_vector
 from dynamics.structure.linear_structure import StructureError
 
 
@@ -38,16 +38,12 @@ class Rotor:
 
     def __post_init__(self) -> None:
         where = f'rotor "{self.name}"'
-        if self.name == GROUND:
-            raise StructureError(f'{where}: "{GROUND}" is what does not move; name it otherwise')
+        refuse_ground(where, self.name)
         if not (np.isfinite(self.inertia) and self.inertia > 0.0):
             raise StructureError(
                 f"{where}: moment of inertia is {self.inertia}; it must be positive, in kg m^2"
             )
-        axis = finite(where, "axis", self.axis, (3,))
-        if not np.any(axis):
-            raise StructureError(f"{where}: axis has no length")
-        object.__setattr__(self, "axis", axis / np.linalg.norm(axis))
+        object.__setattr__(self, "axis", unit_vector(where, "axis", self.axis))
 
     @property
     def mass_matrix(self) -> NDArray[np.float64]:

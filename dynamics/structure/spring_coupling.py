@@ -94,21 +94,9 @@ def screw_nut_matrix(
 ) -> NDArray[np.float64]:
     """Stiffness (6, 6) between screw and nut, screw axis along z.
 
-    Parameters
-    ----------
-    radial : (float, float)
-        k_X, k_Y, N/m.
-    axial : float
-        k_Z, N/m.
-    tilt : (float, float)
-        k_psi, k_theta, N m/rad.
-    lead : float
-        Travel per turn, m; h_p = lead/(2 pi).
-
-    Notes
-    -----
-    Eq. 2 of the test machine's model, after Oertli and Berkemer: the axial spring is stretched by
-    the travel less h_p times the rotation, so that it takes part in torsion too.
+    k_X, k_Y and k_Z, N/m, k_psi, k_theta, N m/rad, and the lead, travel per turn, m; h_p = lead/(2
+    pi). Eq. 2 of the test machine's model, after Oertli and Berkemer: the axial spring is stretched
+    by the travel less h_p times the rotation, so that it takes part in torsion too.
     """
     matrix = np.diag([*radial, axial, *tilt, 0.0]).astype(np.float64)
     h_p = lead / (2.0 * np.pi)

@@ -151,22 +151,8 @@ def interpolation(point: InterpolatedPoint, nodes: Nodes, size: int) -> NDArray[
     With the nodes' rigid motion R (3k, 6) about the point and weights W, it is
     (R' W R)^-1 R' W; its transpose spreads forces, and R' times that is the identity.
 
-    Parameters
-    ----------
-    point : InterpolatedPoint
-    nodes : Nodes
-    size : int
-        Rows of the matrices.
-
-    Returns
-    -------
-    (6, size) array of float
-        Held freedoms count as at rest.
-
-    Raises
-    ------
-    StructureError
-        If the nodes do not tell a rotation, being on one line, or a weight is not positive.
+    (6, size), size the rows of the matrices; held freedoms count as at rest. StructureError if the
+    nodes do not tell a rotation, being on one line, or a weight is not positive.
     """
     where = f'point "{point.name}"'
     indices = nodes.indices(point.nodes, where)
@@ -190,25 +176,10 @@ def rigid_transformation(
 ) -> tuple[scipy.sparse.csr_array, dict[str, int]]:
     """Freedoms of the model from those that rigid surfaces leave.
 
-    Parameters
-    ----------
-    surfaces : sequence of RigidSurface
-    nodes : Nodes
-    size : int
-        Rows of the matrices.
-
-    Returns
-    -------
-    transformation : (size, left) sparse array of float
-        Kept freedoms in their order, then six for each surface.
-    first : dict of str to int
-        First of the six columns of each surface's point.
-
-    Raises
-    ------
-    StructureError
-        If surfaces share a node, a node is held in a direction, or nodes lie on one line and have
-        no rotations.
+    The transformation (size, left), sparse, has the kept freedoms in their order, then six for each
+    surface; returned with the first of the six columns of each surface's point. StructureError if
+    surfaces share a node, a node is held in a direction, or nodes lie on one line and have no
+    rotations.
     """
     owner: dict[int, str] = {}
     rows, columns, values = [], [], []

@@ -6,9 +6,8 @@ module       responsibility
 motion       what every trajectory answers: duration, and motion at any time
 jerk_limited point to point under limits of velocity, acceleration and jerk
 periodic     sine, circle and constant speed
-path         plane paths of lines and arcs: polyline and square with fillets
+path         plane paths of lines and arcs, contour error and tracking error against them
 path_motion  a path at a feed, slowed down for its corners under limits of jerk
 set_points   set points at the interpolation cycle, and their leaf for the time loop
-contour      contour error and tracking error
 ============ =====================================================================
 """

@@ -20,12 +20,7 @@ from dynamics.trajectory.motion import Motion, along, axes_vector, require_posit
 def speed_change(change: float, acceleration: float, jerk: float) -> tuple[float, float]:
     """Return the duration of each jerk piece and that of constant acceleration, s.
 
-    Parameters
-    ----------
-    change : float
-        Of the speed, m/s, any sign.
-    acceleration, jerk : float
-        Limits, m/s^2, m/s^3.
+    Change of speed, m/s, of any sign; limits in m/s^2 and m/s^3.
     """
     change = abs(change)
     if change * jerk <= acceleration**2:

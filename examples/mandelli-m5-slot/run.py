@@ -14,7 +14,7 @@ import chatter
 from chatter.description.case import Case
 from chatter.plots import style
 from chatter.report.published_against_obtained import Finding, write_findings
-from chatter.simulation.machine_result import MachineResult
+from chatter.simulation.simulate import MachineResult
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import milling_model
 

@@ -5,9 +5,8 @@ import pytest
 from scipy.optimize import least_squares
 
 import chatter
-from chatter.compile.linearised_friction import linearised_frf, linearised_frictions
+from chatter.compile.linearised_friction import linearised_frf, linearised_frictions, rigid_motion
 from chatter.compile.machine_parts import assembled_machine
-from chatter.compile.rigid_motion import rigid_motion
 from chatter.description.errors import InputError
 from chatter.simulation.virtual_tests.frf import peaks
 from chatter.simulation.virtual_tests.loop_response import (

@@ -23,9 +23,8 @@ from dynamics.control.current_loop import (
     RegulatedMotor,
     SecondOrderCurrentLoop,
 )
-from dynamics.control.filters import SecondOrderFilter, low_pass, notch
+from dynamics.control.filters import ReferenceModel, SecondOrderFilter, low_pass, notch
 from dynamics.control.measurement import MeasuringSystem
-from dynamics.control.reference_model import ReferenceModel
 
 _Samples = whole_number(0, 10_000, "numbers of samples")
 #: keys of every loop

@@ -7,8 +7,7 @@ from typing import Any
 
 from pydantic import model_validator
 
-from chatter.description.law_section import LawSection, law_section
-from chatter.description.laws import FRICTION_LAWS
+from chatter.description.law_section import FRICTION_LAWS, LawSection, law_section
 from chatter.description.quantities import quantity
 from chatter.description.section import SectionError
 from dynamics.friction.law import FrictionLaw

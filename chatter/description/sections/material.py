@@ -8,8 +8,7 @@ from typing import Any
 from pydantic import Field, model_validator
 
 from chatter.description.formatting import formatted
-from chatter.description.law_section import LawSection, law_section
-from chatter.description.laws import FORCE_LAWS
+from chatter.description.law_section import FORCE_LAWS, LawSection, law_section
 from chatter.description.quantities import quantity
 from chatter.description.section import SectionError
 from cutting.force.law import ForceLaw

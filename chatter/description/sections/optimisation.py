@@ -4,72 +4,36 @@ from __future__ import annotations
 
 from typing import Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from chatter.description.quantities import PositiveLength, quantity, whole_number
-from chatter.description.section import Section, raise_if_any
+from chatter.description.section import Section
 from chatter.description.sections.cut import LARGEST_FEED
-from chatter.description.units import rpm
+from chatter.description.sections.process import Range, SpeedBand
 
 _MOST_VALUES = 200
 Values = whole_number(2, _MOST_VALUES, "counts")
 
 
-def _refuse_empty(first: float, last: float, unit: str, factor: float) -> None:
-    text = f"the range is empty: from ({first * factor:g} {unit}) is not less than to "
-    raise_if_any([("", f"{text}({last * factor:g} {unit})")] if first >= last else [])
-
-
-class SpeedBand(Section):
-    """Spindle speeds that may be chosen."""
-
-    from_: quantity("angular_speed", above=0.0) = Field(alias="from")
-    to: quantity("angular_speed", above=0.0)
-
-    @model_validator(mode="after")
-    def _check_order(self) -> SpeedBand:
-        _refuse_empty(self.from_, self.to, "rpm", rpm(1.0))
-        return self
-
-
-class AxialDepths(Section):
+class AxialDepths(Range):
     """Axial depths that may be chosen."""
 
     from_: PositiveLength | None = Field(None, alias="from")
-    to: PositiveLength
     count: Values = Field(60, description="depths of the coarse grid")
 
-    @model_validator(mode="after")
-    def _check_order(self) -> AxialDepths:
-        if self.from_ is not None:
-            _refuse_empty(self.from_, self.to, "mm", 1e3)
-        return self
 
-
-class RadialDepths(Section):
+class RadialDepths(Range):
     """Radial depths that may be chosen."""
 
-    from_: PositiveLength = Field(alias="from")
-    to: PositiveLength
     count: Values = Field(8, description="radial depths of the coarse grid")
 
-    @model_validator(mode="after")
-    def _check_order(self) -> RadialDepths:
-        _refuse_empty(self.from_, self.to, "mm", 1e3)
-        return self
 
-
-class Feeds(Section):
+class Feeds(Range):
     """Feeds per tooth that may be chosen."""
 
     from_: quantity("length", above=0.0, at_most=LARGEST_FEED) = Field(alias="from")
     to: quantity("length", above=0.0, at_most=LARGEST_FEED)
     count: Values = Field(4, description="feeds of the coarse grid")
-
-    @model_validator(mode="after")
-    def _check_order(self) -> Feeds:
-        _refuse_empty(self.from_, self.to, "mm", 1e3)
-        return self
 
 
 Margin = quantity("number", at_least=0.0, at_most=0.5)

@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 import itertools
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pydantic import (
-    BeforeValidator,
     Field,
-    WithJsonSchema,
     field_validator,
     model_validator,
 )
 
-from chatter.description.formatting import formatted
-from chatter.description.quantities import PositiveLength, QuantityField, quantity, whole_number
+from chatter.description.quantities import (
+    PositiveLength,
+    QuantityField,
+    list_reader,
+    list_type,
+    quantity,
+    whole_number,
+)
 from chatter.description.section import Section, raise_if_any
 from chatter.description.units import rpm
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 #: most points a side of a diagram, and in all
 MOST_POINTS_A_SIDE = 20_000
@@ -119,29 +126,14 @@ class Axis(Section):
     warm_up: WarmUp | None = None
 
 
-def _plane_point(given: Any) -> tuple[float, float]:
-    if not isinstance(given, (list, tuple)) or len(given) != 2:
-        raise ValueError(
-            f'{formatted(given)} is no point; two lengths are wanted: ["0 mm", "5 mm"]'
-        )
-    x, y = (_COORDINATE.read(part) for part in given)
-    return x, y
-
-
 _COORDINATE = QuantityField("length", above=-100.0, below=100.0)
-PlanePoint = Annotated[
+PlanePoint = list_type(
     tuple[float, float],
-    BeforeValidator(_plane_point),
-    WithJsonSchema(
-        {
-            "type": "array",
-            "items": {"anyOf": _COORDINATE.json_schema()["anyOf"]},
-            "minItems": 2,
-            "maxItems": 2,
-        }
-    ),
+    list_reader(_COORDINATE, 'is no point; two lengths are wanted: ["0 mm", "5 mm"]', 2, 2),
     _COORDINATE,
-]
+    fewest=2,
+    most=2,
+)
 
 
 class StockBox(Section):
@@ -204,19 +196,36 @@ class Simulation(Section):
 Count = whole_number(2, MOST_POINTS_A_SIDE, "counts")
 
 
-class SpeedRange(Section):
-    """Spindle speeds of the diagram."""
+class Range(Section):
+    """Values from one to another; lengths, unless a class says otherwise."""
 
-    from_: quantity("angular_speed", above=0.0) = Field(alias="from")
-    to: quantity("angular_speed", above=0.0)
-    count: Count = 400
+    #: unit of messages, and a value in it over SI
+    UNIT: ClassVar[tuple[str, float]] = ("mm", 1e3)
+    from_: PositiveLength = Field(alias="from")
+    to: PositiveLength
 
     @model_validator(mode="after")
-    def _check_order(self) -> SpeedRange:
-        first, last = (rpm(value) for value in (self.from_, self.to))
-        text = f"the range is empty: from ({first:g} rpm) is not less than to ({last:g} rpm)"
-        raise_if_any([("", text)] if self.from_ >= self.to else [])
+    def _check_order(self) -> Self:
+        unit, factor = self.UNIT
+        if self.from_ is not None and self.from_ >= self.to:
+            first, last = (f"{value * factor:g} {unit}" for value in (self.from_, self.to))
+            text = f"the range is empty: from ({first}) is not less than to ({last})"
+            raise_if_any([("", text)])
         return self
+
+
+class SpeedBand(Range):
+    """Spindle speeds that may be chosen."""
+
+    UNIT: ClassVar[tuple[str, float]] = ("rpm", rpm(1.0))
+    from_: quantity("angular_speed", above=0.0) = Field(alias="from")
+    to: quantity("angular_speed", above=0.0)
+
+
+class SpeedRange(SpeedBand):
+    """Spindle speeds of the diagram."""
+
+    count: Count = 400
 
 
 class DepthRange(Section):

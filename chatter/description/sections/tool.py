@@ -14,11 +14,12 @@ from pydantic import (
     model_validator,
 )
 
-from chatter.description.formatting import formatted
 from chatter.description.quantities import (
     Length,
     PositiveLength,
     QuantityField,
+    list_reader,
+    list_type,
     quantity,
     whole_number,
 )
@@ -26,6 +27,7 @@ from chatter.description.section import Section, raise_if_any
 
 _HELIX = QuantityField("angle", above=-0.5 * math.pi, below=0.5 * math.pi)
 _PITCH = QuantityField("angle", above=0.0)
+_ERROR = QuantityField("length", above=-0.1, below=0.1)
 #: the pitch angles must make a turn to within this, rad
 _TURN_TOLERANCE = math.radians(0.01)
 
@@ -34,14 +36,6 @@ def _angle_or_list(given: Any) -> float | tuple[float, ...]:
     if isinstance(given, (list, tuple)):
         return tuple(_HELIX.read(angle) for angle in given)
     return _HELIX.read(given)
-
-
-def _list_of_angles(given: Any) -> tuple[float, ...]:
-    if not isinstance(given, (list, tuple)):
-        raise ValueError(
-            f'{formatted(given)} is no list; a list of angles is wanted, such as ["90 deg", ...]'
-        )
-    return tuple(_PITCH.read(angle) for angle in given)
 
 
 HelixAngles = Annotated[
@@ -58,44 +52,18 @@ HelixAngles = Annotated[
     ),
     _HELIX,
 ]
-PitchAngles = Annotated[
+PitchAngles = list_type(
     tuple[float, ...],
-    BeforeValidator(_list_of_angles),
-    WithJsonSchema(
-        {
-            "type": "array",
-            "items": {"anyOf": _PITCH.json_schema()["anyOf"]},
-            "description": "angle from each tooth to the next; they make a revolution",
-        }
-    ),
+    list_reader(_PITCH, 'is no list; a list of angles is wanted, such as ["90 deg", ...]'),
     _PITCH,
-]
-
-
-_ERROR = QuantityField("length", above=-0.1, below=0.1)
-
-
-def _list_of_errors(given: Any) -> tuple[float, ...]:
-    if not isinstance(given, (list, tuple)):
-        raise ValueError(
-            f"{formatted(given)} is no list; one length for each tooth is wanted, "
-            'such as ["5 um", ...]'
-        )
-    return tuple(_ERROR.read(error) for error in given)
-
-
-ToothErrors = Annotated[
+    "angle from each tooth to the next; they make a revolution",
+)
+ToothErrors = list_type(
     tuple[float, ...],
-    BeforeValidator(_list_of_errors),
-    WithJsonSchema(
-        {
-            "type": "array",
-            "items": {"anyOf": _ERROR.json_schema()["anyOf"]},
-            "description": "deviation of each tooth, positive outwards",
-        }
-    ),
+    list_reader(_ERROR, 'is no list; one length for each tooth is wanted, such as ["5 um", ...]'),
     _ERROR,
-]
+    "deviation of each tooth, positive outwards",
+)
 
 
 class SerrationSection(Section):

@@ -14,6 +14,5 @@ displacement        displacements against the forces through the declared struct
 motion              axis moves: force, velocity and position against each other
 responses           FRFs against each other and the declared structure
 verdicts            points judged stable or chatter
-exclusion           exclusion of samples, channels, runs
 =================== ================================================================
 """

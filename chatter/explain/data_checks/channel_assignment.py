@@ -74,21 +74,12 @@ ASSIGNMENTS = tuple(
 
 @dataclass(frozen=True, eq=False)
 class Cut:
-    """What may have been cut and measured: patterns of every run, and of each coefficient.
-
-    Parameters
-    ----------
-    description : str
-    measured : list of (2, bins) array of float
-    basis : list of (4, 2, bins) array of float
-    power_share : list of float
-        Share of the forces' power that is in the measured pattern.
-    """
+    """What may have been cut and measured: patterns of every run, and of each coefficient."""
 
     description: str
-    measured: list[Patterns]
-    basis: list[NDArray[np.float64]]
-    power_share: list[float]
+    measured: list[Patterns]  # list of (2, bins) array of float
+    basis: list[NDArray[np.float64]]  # list of (4, 2, bins) array of float
+    power_share: list[float]  # share of the forces' power that is in the measured pattern
 
     def of_all(self, share: float, runs: Sequence[int] | None = None) -> float:
         """Residual share of the forces as a whole, from that of the pattern."""

@@ -17,27 +17,13 @@ FATAL, RUN, CHANNEL, SAMPLES, NOTE = "fatal", "run", "channel", "samples", "note
 
 @dataclass(frozen=True, eq=False)
 class SignalFinding:
-    """One finding.
+    """One finding."""
 
-    Parameters
-    ----------
-    severity : str
-        "fatal", "run", "channel", "samples" or "note".
-    run : str
-        Name of its file; empty where it concerns the whole set.
-    channel : str
-        Empty where it concerns all.
-    description : str
-        One sentence, with numbers.
-    samples : (n,) array of bool, optional
-        Samples that are excluded.
-    """
-
-    severity: str
-    run: str
-    channel: str
-    description: str
-    samples: NDArray[np.bool_] | None = None
+    severity: str  # "fatal", "run", "channel", "samples" or "note"
+    run: str  # name of its file; empty where it concerns the whole set
+    channel: str  # empty where it concerns all
+    description: str  # one sentence, with numbers
+    samples: NDArray[np.bool_] | None = None  # (n,), samples that are excluded
 
     def as_dict(self) -> dict[str, str]:
         """As it stands in explanation.json."""
@@ -66,14 +52,7 @@ def of_all_or_some(
 ) -> list[SignalFinding]:
     """Make findings of single runs fatal where they concern more than a share of the runs.
 
-    Parameters
-    ----------
-    found : list of SignalFinding
-        At most one a run.
-    measurement : Measurement
-    about : str
-        What it says about the set, as a sentence with {count} and {runs}.
-    share : float
+    Findings are one a run at the most; `about` is a sentence on the set with {count} and {runs}.
     """
     count = len({one.run for one in found})
     if count <= share * len(measurement.runs):

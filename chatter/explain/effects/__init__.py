@@ -5,11 +5,9 @@ module          effects
 =============== ====================================================================
 effect          `Effect`: name, label, help, patch, parameters, where it applies
 tool            runout, pitch, wear
-cutting_force   edge force, chip exponent, process damping
+cutting_force   edge force, chip exponent, process damping, dynamometer
 structure       missing mode, mode shift, contact, slide friction
-sensor          dynamometer
-axis_friction   Coulomb, Stribeck, presliding, asymmetry, quadratic drag, warm-up
-axis_drive      offset, cogging, backlash
+axis            friction of a feed axis in its forms; offset, cogging, backlash
 effect_list     the list: where a new effect joins
 =============== ====================================================================
 """

@@ -6,18 +6,24 @@ Installed packages add theirs by an entry point of the group ``chatter.effects``
 from __future__ import annotations
 
 from chatter.description.registry import Registry
-from chatter.explain.effects.axis_drive import Backlash, Cogging, Offset
-from chatter.explain.effects.axis_friction import (
+from chatter.explain.effects.axis import (
     Asymmetry,
+    Backlash,
+    Cogging,
     CoulombFriction,
+    Offset,
     Presliding,
     QuadraticDrag,
     Stribeck,
     WarmUp,
 )
-from chatter.explain.effects.cutting_force import ChipExponent, EdgeForce, ProcessDamping
+from chatter.explain.effects.cutting_force import (
+    ChipExponent,
+    Dynamometer,
+    EdgeForce,
+    ProcessDamping,
+)
 from chatter.explain.effects.effect import Effect
-from chatter.explain.effects.sensor import Dynamometer
 from chatter.explain.effects.structure import Contact, MissingMode, ModeShift, SlideFriction
 from chatter.explain.effects.tool import Pitch, Runout, Wear
 from chatter.explain.measurement import Measurement

@@ -14,7 +14,7 @@ import scipy.signal
 from numpy.typing import NDArray
 
 from chatter.explain.measurement import Run
-from chatter.explain.residuals.noise import white_level
+from chatter.explain.residuals.channel_residual import white_level
 from dynamics.friction.axis_force import AxisForce
 
 Array = NDArray[np.float64]
@@ -60,29 +60,15 @@ class Motor(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class AxisRecord:
-    """What is derived from the record of a move.
-
-    Parameters
-    ----------
-    motion : Motion
-    step : float
-        Between samples, s.
-    begun : float
-        Time between the first of all moves and the start of this one, s.
-    measured : (n,) array of float
-        Position as measured, m.
-    usable : (m,) array of bool
-        Samples kept that the checks did not exclude.
-    noise : mapping of str to float
-        Standard deviation by channel, SI, at the samples kept.
-    motor : Motor, optional
-    """
+    """What is derived from the record of a move."""
 
     motion: Motion
-    step: float
-    begun: float = 0.0
-    measured: Array = field(default_factory=lambda: np.empty(0))
+    step: float  # between samples, s
+    begun: float = 0.0  # time between the first of all moves and the start of this one, s
+    measured: Array = field(default_factory=lambda: np.empty(0))  # (n,), position as measured, m
+    #: (m,), samples kept that the checks did not exclude
     usable: NDArray[np.bool_] = field(default_factory=lambda: np.empty(0, dtype=bool))
+    #: standard deviation by channel, SI, at the samples kept
     noise: Mapping[str, float] = field(default_factory=dict)
     motor: Motor | None = None
 
@@ -90,14 +76,8 @@ class AxisRecord:
 def prepared(run: Run, begun: float, rubbing: AxisForce) -> Run:
     """Return a run with its record, at the samples kept of a low pass.
 
-    Parameters
-    ----------
-    run : Run
-        As recorded.
-    begun : float
-        Time between the first of all moves and the start of this one, s.
-    rubbing : AxisForce
-        Force of the declared axis with a dry friction.
+    The run begins some time after the first of all moves, s; `rubbing` is the force of the declared
+    axis with a dry friction.
     """
     signals = run.signals
     step = float(np.median(np.diff(signals["time"])))
@@ -121,14 +101,7 @@ def prepared(run: Run, begun: float, rubbing: AxisForce) -> Run:
 def with_motor(made: Run, recorded: Run, slide_force: Array) -> Run:
     """Return a prepared run with the motion of the motor, and its travel ahead of the slide.
 
-    Parameters
-    ----------
-    made : Run
-        Prepared.
-    recorded : Run
-        The same as recorded.
-    slide_force : (n,) array of float
-        Force that the slide asks of its drive by the declared axis, N.
+    The slide asks its drive for a force (n,), N, by the declared axis.
     """
     velocity = recorded.signals["velocity"]
     step = made.record.step

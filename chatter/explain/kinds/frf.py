@@ -12,7 +12,7 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.explain.data_checks.responses import disagreeing_responses, wrong_responses
 from chatter.explain.data_checks.samples import Columns, sample_checks
-from chatter.explain.fitting import Parameter
+from chatter.explain.fitting import Parameter, with_priors
 from chatter.explain.kinds.kind import (
     Array,
     Deviation,
@@ -21,7 +21,6 @@ from chatter.explain.kinds.kind import (
 )
 from chatter.explain.kinds.milling import structural_paths
 from chatter.explain.measurement import Measurement, Run
-from chatter.explain.prior import with_priors
 from chatter.explain.residuals.over_lines import by_condition, over_lines
 from dynamics.modal.modes import receptance_matrix
 

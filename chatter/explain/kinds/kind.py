@@ -24,9 +24,8 @@ from chatter.explain.criteria import (
 from chatter.explain.data_checks.finding import Check
 from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement, Run
-from chatter.explain.residuals.channel_residual import ChannelResidual
+from chatter.explain.residuals.channel_residual import ChannelResidual, white_level
 from chatter.explain.residuals.finding import Finding
-from chatter.explain.residuals.noise import white_level
 from chatter.explain.residuals.variables import Condition, Form, Measure, Variable
 
 Array = NDArray[np.float64]

@@ -15,13 +15,11 @@ from chatter.explain.data_checks.displacement import wrong_displacements
 from chatter.explain.data_checks.samples import Columns, dropouts, sample_checks
 from chatter.explain.data_checks.scale import wrong_scales
 from chatter.explain.data_checks.spindle import wrong_speeds, wrong_teeth
-from chatter.explain.fitting import Parameter
+from chatter.explain.fitting import Parameter, with_priors
 from chatter.explain.kinds.kind import Cuts, Kind, Noise, Signals, Trial
 from chatter.explain.measurement import Measurement, Run
-from chatter.explain.prior import with_priors
-from chatter.explain.residuals.by_channel import by_channel
+from chatter.explain.residuals.by_channel import by_channel, over_time
 from chatter.explain.residuals.over_runs import over_runs
-from chatter.explain.residuals.over_time import over_time
 from chatter.explain.residuals.over_variable import over_period, over_variable
 from chatter.explain.residuals.spectrum import spectrum
 from chatter.explain.residuals.variables import (

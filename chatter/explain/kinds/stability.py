@@ -12,11 +12,10 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.units import rpm
 from chatter.explain.data_checks.verdicts import wrong_verdicts
-from chatter.explain.fitting import Parameter
+from chatter.explain.fitting import Parameter, with_priors
 from chatter.explain.kinds.kind import Array, Cuts, Deviation, Kind, Noise, Signals, Trial
 from chatter.explain.kinds.milling import cutting_paths
 from chatter.explain.measurement import Measurement, Run
-from chatter.explain.prior import with_priors
 from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.misclassified_tests import misclassified, over_depth, over_speed
 from chatter.explain.stability_margin import stability_margins

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,29 +16,15 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class ChannelResidual:
-    """Residual of one channel of one run.
-
-    Parameters
-    ----------
-    run : Run
-    case : Case
-        With the overrides of the run.
-    channel : str
-    measured, predicted : (n,) array of float
-        SI.
-    deviation : (n,) array of float
-        Standard deviation of the noise, SI; larger where a sample counts less.
-    noise : float
-        Root mean square of the noise, SI.
-    """
+    """Residual of one channel of one run."""
 
     run: Run
-    case: Case
+    case: Case  # with the overrides of the run
     channel: str
-    measured: Array
-    predicted: Array
-    deviation: Array
-    noise: float
+    measured: Array  # (n,), SI
+    predicted: Array  # (n,), SI
+    deviation: Array  # (n,), standard deviation of the noise, SI; larger where a sample counts less
+    noise: float  # root mean square of the noise, SI
 
     @property
     def values(self) -> Array:
@@ -58,3 +45,19 @@ class ChannelResidual:
     def step(self) -> float:
         """Time between samples, s."""
         return float(np.median(np.diff(self.run.signals["time"])))
+
+
+#: white noise has a periodogram of an exponential distribution, whose median is this share of it
+_MEDIAN = math.log(2.0)
+
+
+def white_level(residual: NDArray[np.float64]) -> float:
+    """Standard deviation of the white noise in a residual, whatever stands out of it in lines.
+
+    The median over the lines of the periodogram forgets lines and resonances that fill less than
+    half of the band.
+    """
+    lines = np.abs(np.fft.rfft(residual - residual.mean())[1:-1]) ** 2
+    if lines.size < 4:
+        return float(np.std(residual))
+    return math.sqrt(float(np.median(lines)) / _MEDIAN / residual.size)

@@ -29,21 +29,11 @@ _FEW_RUNS, _FOLDS = 3, 4
 
 
 class Sample(NamedTuple):
-    """One run of a channel for a dependence.
+    """One run of a channel for a dependence."""
 
-    Parameters
-    ----------
-    normalised : (n,) array
-        Residual over the noise.
-    weight : (n,) array
-        Weight over the noise.
-    bins : (n,) array of int
-        Bin of every sample; -1 for none.
-    """
-
-    normalised: Array
-    weight: Array
-    bins: Indices
+    normalised: Array  # (n,), residual over the noise
+    weight: Array  # (n,), weight over the noise
+    bins: Indices  # (n,), bin of every sample; -1 for none
 
 
 class Dependence(NamedTuple):
@@ -94,13 +84,7 @@ def bins_of(values: Array, edges: Array) -> Indices:
 def dependence(samples: Sequence[Sample], bins: int, seed: int = 0) -> Dependence:
     """Share of a residual that a step function of a variable explains in holdout runs.
 
-    Parameters
-    ----------
-    samples : sequence of Sample
-        One a run.
-    bins : int
-    seed : int
-        Of the shifts.
+    Samples are one a run; the seed is of the shifts.
     """
     folds = [fold for sample in samples for fold in _folds(sample, len(samples))]
     weights = [_sums(fold.bins, fold.weight**2, bins) for fold in folds]

@@ -14,22 +14,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Bars:
-    """Bars in groups: one group a category, one bar a series.
-
-    Parameters
-    ----------
-    categories : tuple of str
-    series : mapping of str to (n,) array of float
-    label : str
-        Of the values.
-    floor : float, optional
-        Level that is drawn as a line.
-    """
+    """Bars in groups: one group a category, one bar a series."""
 
     categories: tuple[str, ...]
-    series: Mapping[str, Array]
-    label: str
-    floor: float | None = None
+    series: Mapping[str, Array]  # each (n,)
+    label: str  # of the values
+    floor: float | None = None  # level that is drawn as a line
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,29 +34,16 @@ class Curve:
 
 @dataclass(frozen=True, eq=False)
 class Curves:
-    """Curves over one variable.
-
-    Parameters
-    ----------
-    curves : tuple of Curve
-    x_label, y_label : str
-    marks : mapping of str to tuple of float
-        Upright lines, by what they stand for.
-    floor : float, optional
-        Level that is drawn as a line.
-    logarithmic : str
-        Of "x", "y", "xy" or "": axes with a logarithmic scale.
-    joined : bool
-        Whether the values are joined by lines.
-    """
+    """Curves over one variable."""
 
     curves: tuple[Curve, ...]
     x_label: str
     y_label: str
+    #: upright lines, by what they stand for
     marks: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
-    floor: float | None = None
-    logarithmic: str = ""
-    joined: bool = True
+    floor: float | None = None  # level that is drawn as a line
+    logarithmic: str = ""  # of "x", "y", "xy" or "": axes with a logarithmic scale
+    joined: bool = True  # whether the values are joined by lines
 
 
 @dataclass(frozen=True, eq=False)

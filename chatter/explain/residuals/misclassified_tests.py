@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from chatter.description.units import rpm
 from chatter.explain.residuals.finding import Curve, Curves, Finding, Points
-from chatter.explain.residuals.ranks import rank_correlation
+from chatter.explain.residuals.over_runs import rank_correlation
 from chatter.explain.residuals.residual import Residual
 from chatter.explain.stability_margin import stability_margins
 

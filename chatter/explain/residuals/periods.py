@@ -59,20 +59,9 @@ def period_in(
 ) -> Period | None:
     """Period of a variable on which runs agree.
 
-    Parameters
-    ----------
-    normalised, weight : sequence of (n,) array
-        Residual and weight over the noise, one a run.
-    variable : sequence of (n,) array
-    shortest : float
-        Period below which none is looked for.
-    own : sequence of float, optional
-        Period that every run has by itself (feed per revolution); it and its parts are left out.
-
-    Returns
-    -------
-    Period or None
-        None where the variable spans too few of the shortest periods.
+    Residual over the noise, its weight and the variable, (n,) each, one a run. None is looked for
+    below `shortest`; `own` is the period that every run has by itself (feed per revolution), which
+    is left out with its parts. None where the variable spans too few of the shortest periods.
     """
     longest = max(float(np.ptp(v)) for v in variable)
     if longest < 2.0 * _FEWEST_PERIODS * shortest or len(normalised) < 2:

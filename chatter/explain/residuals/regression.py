@@ -64,19 +64,11 @@ class Target(NamedTuple):
 
 
 class Regression(NamedTuple):
-    """How a channel depends on a variable in one form.
-
-    Parameters
-    ----------
-    target : Target
-    found : Dependence
-    middles : (bins,) array
-        Mean of the variable in every bin, SI.
-    """
+    """How a channel depends on a variable in one form."""
 
     target: Target
     found: Dependence
-    middles: Array
+    middles: Array  # (bins,), mean of the variable in every bin, SI
 
     def coefficient(self, index: int) -> str:
         """Coefficient of a bin, in words."""

@@ -70,19 +70,8 @@ def residual_of(
 ) -> Residual:
     """Residual of a measurement by a case.
 
-    Parameters
-    ----------
-    measurement : Measurement
-        As prepared for its kind.
-    predictions : Predictions
-    case : Case
-    noise : mapping, optional
-        Run -> channel -> standard deviation, SI; estimated from the residual where it is not given.
-
-    Raises
-    ------
-    InputError, RunError
-        If the case cannot predict a run.
+    The noise, run -> channel -> standard deviation, SI, is estimated from the residual where it is
+    not given. InputError or RunError if the case cannot predict a run.
     """
     kind, parts = predictions.kind, []
     for run in measurement.runs:

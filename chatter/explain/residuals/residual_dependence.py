@@ -40,20 +40,11 @@ _NONE = "The residual depends on none of the variables examined."
 
 @dataclass(frozen=True, eq=False)
 class ResidualDependence:
-    """What a residual depends on most, as a table.
+    """What a residual depends on most, as a table."""
 
-    Parameters
-    ----------
-    finding : Finding
-        Sentence and picture.
-    columns : sequence of str
-    rows : sequence of sequence of float
-        In the units of the columns.
-    """
-
-    finding: Finding
+    finding: Finding  # sentence and picture
     columns: Sequence[str] = ()
-    rows: Sequence[Sequence[float]] = ()
+    rows: Sequence[Sequence[float]] = ()  # in the units of the columns
 
     def summary(self) -> dict[str, Any]:
         """Entry of explanation.json."""

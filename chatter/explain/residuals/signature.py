@@ -20,17 +20,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Signature:
-    """What the diagnostics find in a residual.
-
-    Parameters
-    ----------
-    residual : Residual
-    findings : tuple of Finding
-        One a diagnostic.
-    """
+    """What the diagnostics find in a residual."""
 
     residual: Residual
-    findings: tuple[Finding, ...]
+    findings: tuple[Finding, ...]  # one a diagnostic
 
     @property
     def significant(self) -> tuple[Finding, ...]:

@@ -29,32 +29,15 @@ _DEGREE = 180.0 / math.pi
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable over which a residual is examined.
-
-    Parameters
-    ----------
-    name : str
-    label : str
-        In sentences: "the distance along the feed".
-    unit : str
-        In which it is reported.
-    scale : float
-        Reported over SI.
-    of : callable
-        ChannelResidual -> (n,) values in SI, nan where they are not known.
-    logarithmic : bool
-        Whether `of` gives the decimal logarithm.
-    own_period : callable, optional
-        ChannelResidual -> period that a run has in it by itself.
-    """
+    """A variable over which a residual is examined."""
 
     name: str
-    label: str
-    unit: str
-    scale: float
-    of: OfSamples
-    logarithmic: bool = False
-    own_period: OfRun | None = None
+    label: str  # in sentences: "the distance along the feed"
+    unit: str  # in which it is reported
+    scale: float  # reported over SI
+    of: OfSamples  # ChannelResidual -> (n,) values in SI, nan where they are not known
+    logarithmic: bool = False  # whether `of` gives the decimal logarithm
+    own_period: OfRun | None = None  # ChannelResidual -> period that a run has in it by itself
 
     @property
     def heading(self) -> str:
@@ -68,23 +51,12 @@ class Variable:
 
 @dataclass(frozen=True)
 class Form:
-    """How a residual may depend on a variable v: g(v) times a weight.
-
-    Parameters
-    ----------
-    name : str
-    description : str
-        Put after the name of the residual: "as a share of the predicted force".
-    weight : callable
-        ChannelResidual -> (n,) array; SI where it has a unit.
-    relative : bool
-        Whether g is a share rather than a signal.
-    """
+    """How a residual may depend on a variable v: g(v) times a weight."""
 
     name: str
-    description: str
-    weight: OfSamples
-    relative: bool = False
+    description: str  # put after the name of the residual: "as a share of the predicted force"
+    weight: OfSamples  # ChannelResidual -> (n,) array; SI where it has a unit
+    relative: bool = False  # whether g is a share rather than a signal
 
 
 class Condition(NamedTuple):

@@ -48,39 +48,20 @@ def split_runs(runs: Sequence[Run]) -> Split:
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """An effect tried on top of others.
-
-    Parameters
-    ----------
-    effect : Effect
-    fit : Fit
-        To the runs for fitting.
-    holdout : float
-        Sum of squares on the holdout runs.
-    """
+    """An effect tried on top of others."""
 
     effect: Effect
-    fit: Fit
-    holdout: float
+    fit: Fit  # to the runs for fitting
+    holdout: float  # sum of squares on the holdout runs
 
 
 @dataclass(frozen=True, eq=False)
 class Stage:
-    """An effect that was looked for beside others.
+    """An effect that was looked for beside others."""
 
-    Parameters
-    ----------
-    before : Fit
-        Of the others, to the runs for fitting.
-    holdout : float
-        Sum of squares on the holdout runs, by it.
-    tried : tuple of Candidate
-        Best first.
-    """
-
-    before: Fit
-    holdout: float
-    tried: tuple[Candidate, ...]
+    before: Fit  # of the others, to the runs for fitting
+    holdout: float  # sum of squares on the holdout runs, by it
+    tried: tuple[Candidate, ...]  # best first
 
     @property
     def best(self) -> Candidate:

@@ -21,20 +21,11 @@ from chatter.explain.prediction import Predictions
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """Runs, nuisance parameters, and effects that have been added.
-
-    Parameters
-    ----------
-    measurement : Measurement
-    predictions : Predictions
-    noise : mapping
-        Run -> channel -> standard deviation, SI.
-    effects : tuple of Effect
-    """
+    """Runs, nuisance parameters, and effects that have been added."""
 
     measurement: Measurement
     predictions: Predictions
-    noise: Noise
+    noise: Noise  # run -> channel -> standard deviation, SI
     effects: tuple[Effect, ...] = ()
 
     @property

@@ -179,14 +179,8 @@ def motion_of(
 ) -> tuple[NDArray[np.float64], int]:
     """Displacement (steps + 1, 3) of the tool, m, and the steps that were done.
 
-    Parameters
-    ----------
-    setup : Setup
-        With a delayed chip, for one run.
-    steps, ramp : int
-        Steps of the run, and of them those in which the cut takes hold.
-    perturbation : float
-        Displacement of every mode at the start, m.
+    Of a set-up with a delayed chip, for one run. The cut takes hold within `ramp` steps; every mode
+    is displaced by the perturbation, m, at the start.
     """
     displace_modes(setup, perturbation)
     run = CutRun(setup, 1, steps)

@@ -47,15 +47,8 @@ def follow(
 ) -> LyapunovRecord:
     """Follow a cut through its force ramp and on, a perturbed run and one from rest beside it.
 
-    Parameters
-    ----------
-    case : Case
-    modes : tuple of Mode
-        Of its structure.
-    hold, watch : int
-        Turns in which the cut takes hold, and that are watched after that.
-    period : float
-        Of the variation, turns.
+    The cut takes hold within `hold` turns and is watched for `watch` after that; the period is that
+    of the variation, turns.
     """
     leader, perturbed, rest = (FollowedRun(case, modes, turns) for turns in (hold, hold, 0))
     rubs = leader.setup.structure.rubs

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.compile.rigid_motion import rigid_motion
+from chatter.compile.linearised_friction import rigid_motion
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
 from chatter.engine.loop_stability import refuse_unstable_control
@@ -18,9 +18,8 @@ from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, write_results
 from chatter.simulation.virtual_tests.run import MachineRun, RunInputs, run_machine
 from dynamics.machine.description import Drive, Machine
-from dynamics.trajectory.contour import contour_error
 from dynamics.trajectory.motion import Trajectory, TrajectoryError
-from dynamics.trajectory.path import Path
+from dynamics.trajectory.path import Path, contour_error
 from dynamics.trajectory.set_points import SetPoints, set_points
 
 if TYPE_CHECKING:

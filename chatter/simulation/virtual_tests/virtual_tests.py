@@ -19,11 +19,10 @@ from chatter.simulation.virtual_tests.run import MachineRun, RunInputs, run_mach
 from dynamics.frf.container import Frf, MeasurementError
 from dynamics.frf.excitation.angle_triggered import angle_at_constant_speed, angle_triggered_pulses
 from dynamics.frf.excitation.chirp import linear_chirp
-from dynamics.frf.excitation.closed_loop import joint_input_output_frf
 from dynamics.frf.excitation.hammer import half_sine_blow, several_blows
 from dynamics.frf.excitation.holds import FIRST_ORDER_HOLD, ZERO_ORDER_HOLD, Hold
 from dynamics.frf.excitation.multisine import full_lines, multisine, random_phases
-from dynamics.frf.excitation.periodic import PeriodicRecord, frf_of_periods
+from dynamics.frf.excitation.periodic import PeriodicRecord, frf_of_periods, joint_input_output_frf
 from dynamics.frf.excitation.signal import ExcitationError, PeriodicSignal, PulseTrain
 from dynamics.frf.excitation.transient import cut_at_pulses, frf_of_transients
 from dynamics.machine.description import Machine
@@ -150,25 +149,8 @@ def frf_by_test(
 ) -> Frf:
     """Receptance of a machine by a test in time.
 
-    Parameters
-    ----------
-    machine : Machine
-    step : float
-        s.
-    test : FrfTest
-    progress : callable, optional
-
-    Returns
-    -------
-    Frf
-        With coherence where the test has several averages.
-
-    Raises
-    ------
-    InputError
-        If the test makes no sense on this machine.
-    RunError
-        If the machine runs away.
+    Its coherence is there where the test has several averages. InputError if the test makes no
+    sense on this machine, RunError if the machine runs away; step in s.
     """
     try:
         return KINDS[test.kind](machine, step, test, progress).as_quantity("receptance")

@@ -16,7 +16,7 @@ from chatter.stability.model import MillingModel
 from chatter.studies.optimisation.limits import Limits
 from chatter.studies.optimisation.stable_depths import StableDepths, is_inside, stable_depths
 from chatter.studies.optimisation.steady_cut import SteadyCuts, SteadyModel
-from cutting.engagement.removed_section import removed_section
+from cutting.engagement.immersion import removed_section
 
 Array = NDArray[np.float64]
 

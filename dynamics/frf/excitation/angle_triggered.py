@@ -33,23 +33,9 @@ def angle_at_constant_speed(
 def passages(angle: ArrayLike, at: float) -> NDArray[np.int64]:
     """Return the samples at which a spindle has come to an angle: the first at or behind it.
 
-    Parameters
-    ----------
-    angle : (n,) array of float
-        Spindle angle at each sample, rad; running on, or starting again at every turn as an
-        encoder has it. The spindle must turn less than half a turn a sample.
-    at : float
-        Angle at which the tool tip points where the pulse is wanted, rad; of any turn.
-
-    Returns
-    -------
-    (p,) array of int
-        Rising. Turning back and forth over the angle counts once a turn.
-
-    Raises
-    ------
-    ExcitationError
-        If the angles are no finite column or never come past the angle.
+    Angles (n,), rad, run on, or start again at every turn as an encoder has it, by less than half a
+    turn a sample; `at`, rad, is of any turn. Turning back and forth over it counts once a turn.
+    ExcitationError if the angles are no finite column or never come past the angle.
     """
     angle = np.asarray(angle, dtype=np.float64)
     if angle.ndim != 1 or angle.size < 2 or not np.isfinite(angle).all():

@@ -1,11 +1,8 @@
-"""Sine chirps: a sine of constant amplitude that sweeps through a band, linearly or by octaves."""
+"""Sine chirps: a sine of constant amplitude that sweeps through a band."""
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal.windows import tukey
 
 from dynamics.frf.excitation.signal import (
@@ -48,63 +45,22 @@ def linear_chirp(
         Share of the period over which the amplitude rises from zero along half a cosine, and over
         which it falls again, 0 to 0.5. The ends of the band get less power by it.
 
-    Returns
-    -------
-    PeriodicSignal
-
     Raises
     ------
     ExcitationError
         If the band does not lie below half the sampling frequency, or a value makes no sense.
     """
-    samples = _samples(lowest, highest, period, amplitude, step, taper)
-    share = np.arange(samples) / samples
-    turns = period * (lowest * share + 0.5 * (highest - lowest) * share**2)
-    return _chirp(turns, amplitude, lowest, highest, step, taper)
-
-
-def logarithmic_chirp(
-    lowest: float,
-    highest: float,
-    period: float,
-    amplitude: float,
-    step: float,
-    taper: float = TAPER,
-) -> PeriodicSignal:
-    """Return a chirp that spends the same time in each octave; its power falls as 1 / frequency.
-
-    Parameters, returns and raises as `linear_chirp`.
-    """
-    samples = _samples(lowest, highest, period, amplitude, step, taper)
-    share = np.arange(samples) / samples
-    octaves = math.log(highest / lowest)
-    turns = lowest * period / octaves * np.expm1(octaves * share)
-    return _chirp(turns, amplitude, lowest, highest, step, taper)
-
-
-def _samples(
-    lowest: float, highest: float, period: float, amplitude: float, step: float, taper: float
-) -> int:
-    """Samples of a period, its values checked."""
     require_band("chirp", lowest, highest, step)
     require_positive("chirp", "amplitude", amplitude)
     if not 0.0 <= taper <= 0.5:
         raise ExcitationError(f"chirp: taper is {taper}; a share of the period from 0 to 0.5")
-    return whole_steps("chirp", "period", period, step)
-
-
-def _chirp(
-    turns: NDArray[np.float64],
-    amplitude: float,
-    lowest: float,
-    highest: float,
-    step: float,
-    taper: float,
-) -> PeriodicSignal:
+    samples = whole_steps("chirp", "period", period, step)
+    share = np.arange(samples) / samples
+    turns = period * (lowest * share + 0.5 * (highest - lowest) * share**2)
     # a window over one sample more is zero at the first sample of the next period
-    envelope = tukey(turns.size + 1, 2.0 * taper)[:-1]
+    envelope = tukey(samples + 1, 2.0 * taper)[:-1]
     return PeriodicSignal(
         amplitude * envelope * np.sin(2.0 * np.pi * turns),
         step,
-        lines_between("chirp", lowest, highest, turns.size, step),
+        lines_between("chirp", lowest, highest, samples, step),
     )

@@ -1,4 +1,4 @@
-"""Blows of a hammer: half sine or constant force, one or several."""
+"""Blows of a hammer: half sines, one or several."""
 
 from __future__ import annotations
 
@@ -53,31 +53,6 @@ def half_sine_blow(width: float, peak: float, step: float) -> NDArray[np.float64
     return peak * np.maximum(np.sin(phase), 0.0)
 
 
-def half_sine_blow_of_impulse(width: float, impulse: float, step: float) -> NDArray[np.float64]:
-    """Return a blow of half a sine that carries an impulse, N s.
-
-    The impulse is that of the sampled blow, the same whether its samples are held or joined by
-    lines; the peak is nearly pi / 2 impulse / width.
-    """
-    blow = half_sine_blow(width, impulse, step)
-    return blow * (impulse / (blow.sum() * step))
-
-
-def constant_blow(width: float, force: float, step: float) -> NDArray[np.float64]:
-    """Return a blow of constant force, N, of width / step samples.
-
-    Its impulse is force times width, whether its samples are held or joined by lines; in the
-    second case it rises and falls over a step each, outside the width by half of it. Source: the
-    hammer test in time of 1 ms, Twin-Control (2020), section 3.3.1.
-
-    Raises
-    ------
-    ExcitationError
-        If the width is no whole multiple of the step.
-    """
-    return np.full(whole_steps("constant blow", "width", width, step), float(force))
-
-
 def several_blows(
     width: float,
     peak: float,
@@ -105,10 +80,6 @@ def several_blows(
         Of the scatter.
     rest : float
         Before the first blow, s.
-
-    Returns
-    -------
-    PulseTrain
 
     Raises
     ------

@@ -23,20 +23,11 @@ from dynamics.frf.container import DERIVATIVE_ORDER, Frf
 
 @dataclass(frozen=True)
 class Hold:
-    """How a continuous input was made from samples.
-
-    Parameters
-    ----------
-    name : str
-    power : int
-        Of sinc(f T) in its transfer function, 1.
-    delay : float
-        Samples.
-    """
+    """How a continuous input was made from samples."""
 
     name: str
-    power: int
-    delay: float
+    power: int  # of sinc(f T) in its transfer function, 1
+    delay: float  # samples
 
     def transfer(self, s: ArrayLike, step: float) -> NDArray[np.complex128]:
         """Return the transfer function of the hold, 1, at s, rad/s, for a step, s."""
@@ -62,13 +53,7 @@ def laplace(frf: Frf) -> NDArray[np.complex128]:
 def without_hold(frf: Frf, hold: Hold, step: float) -> Frf:
     """Return an FRF of samples freed of the hold of its input.
 
-    Parameters
-    ----------
-    frf : Frf
-        Ratio of the transforms of response and input, both sampled at the step.
-    hold : Hold
-    step : float
-        s.
+    It is the ratio of the transforms of response and input, both sampled at the step, s.
     """
     return replace(frf, values=frf.values / hold.transfer(laplace(frf), step))
 

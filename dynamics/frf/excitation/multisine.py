@@ -69,10 +69,6 @@ def multisine(
     step : float
         s.
 
-    Returns
-    -------
-    PeriodicSignal
-
     Raises
     ------
     ExcitationError

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from dynamics.frf.container import Frf, MeasurementError, Point, Quantity
 from dynamics.frf.excitation.holds import Hold, laplace, without_hold
-from dynamics.frf.excitation.segments import averaged_frf, require_force, spectra_of_segments
-from dynamics.frf.hammer.spectra import Estimator, coherence, h1
+from dynamics.frf.excitation.segments import require_force, spectra_of_segments
+from dynamics.frf.hammer.spectra import coherence, h1
 
 #: of the period in samples of two records, from one another
 _SAME_STEP = 1e-9
@@ -148,33 +148,6 @@ class PeriodicFrf:
         return self.realisations * np.maximum(self.total_variance - self.noise_variance, 0.0)
 
 
-def without_drift(response: ArrayLike, period: int, leading: int = 0) -> NDArray[np.float64]:
-    """Return a response less the even drift of a machine that moves at constant speed.
-
-    A drift differs at the two ends of a period and leaks onto all lines.
-
-    Parameters
-    ----------
-    response : (n,) array of float
-        m or rad.
-    period, leading : int
-        Samples, and periods passed over in finding the drift; two more are needed.
-
-    Raises
-    ------
-    MeasurementError
-        If there are fewer than two periods behind the leading ones.
-    """
-    response = np.asarray(response, dtype=np.float64)
-    periods = response.size // period - leading
-    if periods < 2:
-        raise MeasurementError(f"drift: {periods} periods behind the leading ones; 2 are needed")
-    first, last = leading * period, (leading + periods - 1) * period
-    means = [response[start : start + period].mean() for start in (first, last)]
-    slope = (means[1] - means[0]) / (last - first)
-    return response - slope * np.arange(response.size)
-
-
 def frf_of_periods(records: Sequence[PeriodicRecord], hold: Hold) -> PeriodicFrf:
     """Estimate the FRF of periodic excitation, open or closed loop, by averages over periods.
 
@@ -188,10 +161,6 @@ def frf_of_periods(records: Sequence[PeriodicRecord], hold: Hold) -> PeriodicFrf
         Realisations, of other phases but the same step, period, lines and quantity.
     hold : Hold
         What lay between the samples of the force.
-
-    Returns
-    -------
-    PeriodicFrf
 
     Raises
     ------
@@ -234,36 +203,6 @@ def frf_of_periods(records: Sequence[PeriodicRecord], hold: Hold) -> PeriodicFrf
     return PeriodicFrf(without_hold(frf, hold, first.step), count, noise, total)
 
 
-def direct_frf(records: Sequence[PeriodicRecord], hold: Hold, estimator: Estimator = h1) -> Frf:
-    """Estimate the FRF from force and response by power spectra over periods and realisations.
-
-    In a closed loop it is biased, towards the negative inverse of the controller as noise grows;
-    see `dynamics.frf.excitation.joint_input_output_frf`.
-
-    Parameters
-    ----------
-    records : sequence of PeriodicRecord
-    hold : Hold
-    estimator : callable
-        `dynamics.frf.hammer.h1` or `h2`.
-
-    Returns
-    -------
-    Frf
-        With the coherence where there are several periods.
-    """
-    require_one_excitation(records)
-    first = records[0]
-    spectra = spectra_of_segments(
-        first.frequency,
-        np.concatenate([record.transforms(record.force) for record in records]),
-        np.concatenate([record.transforms(record.response) for record in records]),
-        first.quantity,
-        points=(first.response_point, first.reference_point),
-    )
-    return without_hold(averaged_frf(spectra, estimator, _names(records)), hold, first.step)
-
-
 def require_one_excitation(records: Sequence[PeriodicRecord]) -> None:
     """Raise MeasurementError unless records share step, period, lines and quantity."""
     if not records:
@@ -299,3 +238,58 @@ def _ratio_variance(
     mean = force.mean(axis=0)
     off = (response - response.mean(axis=0) / mean * force) / mean
     return np.sum(np.abs(off) ** 2, axis=0) / (periods * (periods - 1))
+
+
+def joint_input_output_frf(records: Sequence[PeriodicRecord], hold: Hold) -> Frf:
+    """Estimate the FRF as the ratio of the answers of response and force to the reference.
+
+    G = (S_yr / S_rr) / (S_ur / S_rr). Noise that goes round the loop knows nothing of the
+    reference and averages out of both, whereas it stays in the product of response and force.
+
+    Parameters
+    ----------
+    records : sequence of PeriodicRecord
+        Each with its reference; realisations of the same step, period, lines and quantity.
+    hold : Hold
+        What lay between the samples of the force.
+
+    Returns
+    -------
+    Frf
+        Its coherence, of response and reference, is there where there are several periods.
+
+    Raises
+    ------
+    MeasurementError
+        If a record has no reference, the records are not of one kind, or a line is not excited.
+
+    Notes
+    -----
+    Source: P. E. Wellstead, 1981, "Non-parametric methods of system identification", Automatica
+    17; R. Pintelon and J. Schoukens, 2012, System Identification, 2nd ed., chapter 2.
+    """
+    require_one_excitation(records)
+    first = records[0]
+    columns = {"force": [], "response": [], "reference": []}
+    for record in records:
+        if record.reference is None:
+            raise MeasurementError(
+                f"{record.name}: no reference; the signal injected into the loop is needed"
+            )
+        for key, transforms in columns.items():
+            transforms.append(record.transforms(getattr(record, key)))
+    force, response, reference = (np.concatenate(parts) for parts in columns.values())
+    require_force(first.frequency, np.mean(np.abs(reference) ** 2, axis=0), first.name)
+    of_response = spectra_of_segments(first.frequency, reference, response, first.quantity)
+    of_force = spectra_of_segments(first.frequency, reference, force, first.quantity)
+    require_force(first.frequency, np.abs(of_force.cross), first.name)
+    frf = Frf(
+        first.frequency,
+        h1(of_response) / h1(of_force),
+        first.quantity,
+        first.response_point,
+        first.reference_point,
+        coherence(of_response) if of_response.count > 1 else None,
+        ", ".join(dict.fromkeys(record.name for record in records)),
+    )
+    return without_hold(frf, hold, first.step)

@@ -19,18 +19,8 @@ def spectra_of_segments(
 ) -> Spectra:
     """Average power and cross spectra over segments, for `h1`, `h2`, `coherence` of hammer tests.
 
-    Parameters
-    ----------
-    frequency : (l,) array of float
-        Hz.
-    force, response : (segments, l) array of complex
-        Transforms of each segment.
-    quantity : str
-        Quantity of the FRF.
-    added_decay : float
-        1/s.
-    points : pair of Point
-        Of the response and of the force.
+    Frequencies (l,), Hz, transforms (segments, l) of force and response, added decay, 1/s, and the
+    points of the response and of the force.
     """
     return Spectra(
         frequency=frequency,

@@ -19,20 +19,11 @@ class ExcitationError(ValueError):
 
 @dataclass(frozen=True)
 class PeriodicSignal:
-    """One period of a force (N) or torque (N m), sampled at the steps of a simulation.
+    """One period of a force (N) or torque (N m), sampled at the steps of a simulation."""
 
-    Parameters
-    ----------
-    values : (n,) array of float
-        N or N m.
-    step : float
-        s.
-    lines : (l,) array of int
-        Excited harmonics of the period; line k lies at k / (n step), Hz.
-    """
-
-    values: NDArray[np.float64]
-    step: float
+    values: NDArray[np.float64]  # (n,), N or N m
+    step: float  # s
+    #: (l,), excited harmonics of the period; line k lies at k / (n step), Hz
     lines: NDArray[np.int64]
 
     @property
@@ -55,11 +46,6 @@ class PeriodicSignal:
         """Largest magnitude of the samples."""
         return float(np.abs(self.values).max())
 
-    @property
-    def crest_factor(self) -> float:
-        """Peak over rms; the square root of 2 for a sine."""
-        return self.peak / self.rms
-
     def with_rms(self, rms: float) -> PeriodicSignal:
         """Return the signal scaled to an rms value, N or N m."""
         require_positive("periodic signal", "rms", rms)
@@ -72,10 +58,6 @@ class PeriodicSignal:
 
     def repeated(self, periods: int, leading: int = 0) -> NDArray[np.float64]:
         """Return the signal over leading periods, for transients to die away, and periods to use.
-
-        Parameters
-        ----------
-        periods, leading : int
 
         Returns
         -------
@@ -91,21 +73,11 @@ class PeriodicSignal:
 
 @dataclass(frozen=True)
 class PulseTrain:
-    """Pulses of force (N) or torque (N m) with rest between them.
+    """Pulses of force (N) or torque (N m) with rest between them."""
 
-    Parameters
-    ----------
-    values : (n,) array of float
-        N or N m.
-    step : float
-        s.
-    starts : (p,) array of int
-        Sample at which each pulse begins, rising.
-    """
-
-    values: NDArray[np.float64]
-    step: float
-    starts: NDArray[np.int64]
+    values: NDArray[np.float64]  # (n,), N or N m
+    step: float  # s
+    starts: NDArray[np.int64]  # (p,), sample at which each pulse begins, rising
 
 
 def pulses_at(
@@ -113,25 +85,8 @@ def pulses_at(
 ) -> PulseTrain:
     """Return pulses put at given samples.
 
-    Parameters
-    ----------
-    starts : (p,) array of int
-        Sample at which each pulse begins, rising.
-    pulses : sequence of p arrays of float
-        N or N m.
-    samples : int
-        Of the train.
-    step : float
-        s.
-
-    Returns
-    -------
-    PulseTrain
-
-    Raises
-    ------
-    ExcitationError
-        If a pulse runs into the next or over the end.
+    Pulses in N or N m, step in s; the p starts are samples and rise. ExcitationError if a pulse
+    runs into the next or over the end.
     """
     require_positive("pulses", "step", step)
     starts = np.asarray(starts, dtype=np.int64).reshape(-1)

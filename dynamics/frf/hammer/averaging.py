@@ -74,10 +74,6 @@ def hammer_test(
     unreadable : sequence of (str, str)
         Name and reason of files of the set that could not be read.
 
-    Returns
-    -------
-    HammerTest
-
     Raises
     ------
     MeasurementError

@@ -31,16 +31,7 @@ _LONGEST_DROPOUT = 40
 def channel_findings(record: HammerRecord, hit: Hit) -> list[Finding]:
     """Examine force and response each by itself.
 
-    Parameters
-    ----------
-    record : HammerRecord
-    hit : Hit
-        The main blow of the record.
-
-    Returns
-    -------
-    list of Finding
-        At most one a channel: a clipped or stuck segment has edges that look like dropouts.
+    At most one finding a channel: a clipped or stuck segment has edges that look like dropouts.
     """
     findings = []
     for name in ("force", "response"):

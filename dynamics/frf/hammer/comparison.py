@@ -65,22 +65,12 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Excess:
-    """Where a residual exceeds most what noise and tolerance allow.
+    """Where a residual exceeds most what noise and tolerance allow."""
 
-    Parameters
-    ----------
-    ratio : float
-        Root mean square over its limit; above 1 it is no chance.
-    start, stop : int
-        Segment of the aligned record, samples.
-    size : float
-        Largest absolute residual in the segment.
-    """
-
-    ratio: float
-    start: int
-    stop: int
-    size: float
+    ratio: float  # root mean square over its limit; above 1 it is no chance
+    start: int  # segment of the aligned record, samples
+    stop: int  # segment of the aligned record, samples
+    size: float  # largest absolute residual in the segment
 
 
 @dataclass(frozen=True)
@@ -124,17 +114,7 @@ class RecordAssessment:
 def compare(aligned: AlignedSet, row: int, members: NDArray[np.bool_]) -> Comparison:
     """Compare one record with the prediction of the members, itself left out.
 
-    Parameters
-    ----------
-    aligned : AlignedSet
-    row : int
-        Record to judge.
-    members : (n,) array of bool
-        Records to judge it by.
-
-    Returns
-    -------
-    Comparison
+    Members, (n,), are the records to judge it by.
     """
     others = members.copy()
     others[row] = False
@@ -215,15 +195,7 @@ def largest_excess(comparison: Comparison, tolerance: float) -> Excess:
     Allowed are the noise, up to what chance makes of it, and a share of the predicted response
     nearby: no two blows of a hand are quite alike.
 
-    Parameters
-    ----------
-    comparison : Comparison
-    tolerance : float
-        Share of the predicted response nearby, 1.
-
-    Returns
-    -------
-    Excess
+    The tolerance is the share of the predicted response nearby.
     """
     worst = Excess(0.0, 0, 0, 0.0)
     allowed = tolerance * comparison.envelope + comparison.unpredictable

@@ -81,10 +81,6 @@ def align(records: Sequence[HammerRecord], hits: Sequence[Hit]) -> AlignedSet:
     ----------
     records, hits : sequences of the same length
         Of one sampling rate.
-
-    Returns
-    -------
-    AlignedSet
     """
     lead = min(_LEAD, *(hit.onset for hit in hits))
     length = min(
@@ -138,10 +134,7 @@ def disagreement(aligned: AlignedSet) -> NDArray[np.float64]:
     A_i F_j is compared with A_j F_i, which agree where A / F does, over the lines where both blows
     have force; what the noise of the responses contributes on average is subtracted.
 
-    Returns
-    -------
-    (n, n) array of float
-        0 for equal functions, about 1 and more for unrelated ones.
+    (n, n): 0 for equal functions, about 1 and more for unrelated ones.
     """
     count = len(aligned.names)
     power = np.abs(aligned.force_spectra) ** 2
@@ -163,17 +156,9 @@ def disagreement(aligned: AlignedSet) -> NDArray[np.float64]:
 def agreeing_group(difference: NDArray[np.float64]) -> tuple[NDArray[np.bool_], float]:
     """Largest group of records that agree with one of them.
 
-    Parameters
-    ----------
-    difference : (n, n) array of float
-        From `disagreement`.
-
-    Returns
-    -------
-    group : (n,) array of bool
-        All False where no two records agree or two groups are equally large.
-    tolerance : float
-        Difference at which they agree; wider where less than half agree at the narrowest.
+    By the `disagreement` (n, n): the group (n,), all False where no two records agree or two groups
+    are equally large, and the difference at which they agree; wider where less than half agree at
+    the narrowest.
     """
     count = difference.shape[0]
     for tolerance in _AGREEMENT:
@@ -196,20 +181,12 @@ def _has_rival(agree: NDArray[np.bool_], group: NDArray[np.bool_]) -> bool:
 
 @dataclass(frozen=True)
 class CommonFunction:
-    """Response per force that some records share.
+    """Response per force that some records share."""
 
-    Parameters
-    ----------
-    values : (k,) array of complex
-        On the lines of the spectra of the set.
-    noise : (k,) array of float
-        Standard deviation of `values` from the noise of the responses.
-    weight : (k,) array of float
-        1 where the function is known, 0 where the blows have no force to know it by.
-    """
-
-    values: NDArray[np.complex128]
+    values: NDArray[np.complex128]  # (k,), on the lines of the spectra of the set
+    #: (k,), standard deviation of `values` from the noise of the responses
     noise: NDArray[np.float64]
+    #: (k,), 1 where the function is known, 0 where the blows have no force to know it by
     weight: NDArray[np.float64]
 
 
@@ -219,14 +196,7 @@ def common_function(aligned: AlignedSet, members: NDArray[np.bool_]) -> CommonFu
     Where the blows have too little force for the noise, the values fall to zero by Wiener's
     weight, signal over signal and noise, averaged over neighbouring lines.
 
-    Parameters
-    ----------
-    aligned : AlignedSet
-    members : (n,) array of bool
-
-    Returns
-    -------
-    CommonFunction
+    Members are (n,).
     """
     force = aligned.force_spectra[members]
     power = np.sum(np.abs(force) ** 2, axis=0)
@@ -265,10 +235,7 @@ def unpredictable(
     band the function is taken to be no larger than at its end, and more is left open the fewer
     they are.
 
-    Returns
-    -------
-    (m,) array of float
-        In the unit of the response, one a sample.
+    (m,), one a sample, in the unit of the response.
     """
     known = np.flatnonzero(function.weight > 0.5)
     if known.size == 0:

@@ -30,17 +30,7 @@ _BLOCK = 128
 
 
 def force_findings(record: HammerRecord, hit: Hit) -> list[Finding]:
-    """Examine the force for a blow cut short, a second blow, dropouts and drift.
-
-    Parameters
-    ----------
-    record : HammerRecord
-    hit : Hit
-
-    Returns
-    -------
-    list of Finding
-    """
+    """Examine the force for a blow cut short, a second blow, dropouts and drift."""
     force = hit.polarity * (record.force - hit.force.level)
     outside = outside_hit(force.size, hit)
     baseline = block_medians(np.where(outside, force, 0.0), _BLOCK)

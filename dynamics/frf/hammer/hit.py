@@ -18,21 +18,11 @@ _BLOCK = 256
 
 @dataclass(frozen=True)
 class Baseline:
-    """Rest level and noise of one channel.
+    """Rest level and noise of one channel."""
 
-    Parameters
-    ----------
-    level : float
-        Median before the hit (over the whole record where the hit comes at once).
-    noise : float
-        Standard deviation of what changes from sample to sample.
-    resolution : float
-        Smallest step between different values; a noise below it cannot be seen.
-    """
-
-    level: float
-    noise: float
-    resolution: float
+    level: float  # median before the hit (over the whole record where the hit comes at once)
+    noise: float  # standard deviation of what changes from sample to sample
+    resolution: float  # smallest step between different values; a noise below it cannot be seen
 
 
 @dataclass(frozen=True)
@@ -123,14 +113,7 @@ def noise_of(signal: NDArray[np.float64]) -> float:
     The fourth difference removes what is smooth; its median absolute value, over the quietest
     quarter of blocks, is that of the noise however much of the record rings.
 
-    Parameters
-    ----------
-    signal : (n,) array of float
-
-    Returns
-    -------
-    float
-        In the unit of the signal; not below a third of its resolution.
+    Of a signal (n,), in its unit; not below a third of its resolution.
     """
     fourth = np.diff(signal, n=4) / np.sqrt(70.0)  # norm of 1, -4, 6, -4, 1
     count = fourth.size // _BLOCK

@@ -33,19 +33,8 @@ def named(
 ) -> Finding:
     """Name the fault of a record that deviates from the others, with the evidence.
 
-    Parameters
-    ----------
-    record : HammerRecord
-    aligned : AlignedSet
-    assessment : RecordAssessment
-        With a severity above 1.
-    others : int
-        Number of other records it was judged by.
-
-    Returns
-    -------
-    Finding
-        Decisive where at least two other records agree against it.
+    The severity is above 1; the finding is decisive where at least two of the others agree against
+    the record.
     """
     fault, reason = _fault_and_reason(record, aligned, assessment)
     if others < 2:

@@ -42,15 +42,8 @@ def findings_against_each_other(sound: list[tuple[HammerRecord, Hit]]) -> list[F
     The records that agree predict each other's response from the force; the worst offender among
     them leaves first and the rest are judged anew, so that one fault does not blame the others.
 
-    Parameters
-    ----------
-    sound : list of (HammerRecord, Hit)
-        Records without a fault of their own.
-
-    Returns
-    -------
-    list of Finding
-        Remarks only where there are too few records, or no agreement, to tell which is at fault.
+    Of records without a fault of their own; remarks only where there are too few, or no agreement,
+    to tell which is at fault.
     """
     if len(sound) < 2:
         return [_alone(record) for record, _ in sound]

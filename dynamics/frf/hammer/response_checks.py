@@ -20,17 +20,7 @@ _ENERGY_BLOCK = 64
 
 
 def response_findings(record: HammerRecord, hit: Hit) -> list[Finding]:
-    """Examine the response for drift, and for its answer to the blow: none, or too early.
-
-    Parameters
-    ----------
-    record : HammerRecord
-    hit : Hit
-
-    Returns
-    -------
-    list of Finding
-    """
+    """Examine the response for drift, and for its answer to the blow: none, or too early."""
     found = _early(record, hit) or _no_answer(record, hit) or _drift(record, hit)
     return [] if found is None else [found]
 

@@ -113,26 +113,10 @@ def averaged_spectra(
 ) -> Spectra:
     """Window and transform the records and average their spectra.
 
-    Parameters
-    ----------
-    records : sequence of HammerRecord
-        Of one sampling rate and quantity; cut to the shortest.
-    windows : Windows, optional
-        By default chosen for these records.
-    hits : sequence of Hit, optional
-        By default located in the records.
-    transform_length : int, optional
-        Samples, by default those the windows keep; longer (padded with zeros) gives closer lines
-        that say no more.
-
-    Returns
-    -------
-    Spectra
-
-    Raises
-    ------
-    MeasurementError
-        If the records are not of one kind or one holds no hit.
+    Records of one sampling rate and quantity are cut to the shortest; windows and hits are found
+    where they are not given. A transform longer than what the windows keep (padded with zeros)
+    gives closer lines that say no more. MeasurementError if the records are not of one kind or one
+    holds no hit.
     """
     require_one_kind(records)
     hits = [locate_hit(record) for record in records] if hits is None else hits
@@ -231,10 +215,7 @@ def usable_band(spectra: Spectra) -> tuple[float, float]:
     all such lines; dips narrower than a quarter of their frequency, antiresonances, are passed
     over.
 
-    Returns
-    -------
-    lowest, highest : float
-        Hz.
+    Lowest and highest frequency, Hz.
     """
     frequency = spectra.frequency
     least_force = max(

@@ -52,14 +52,6 @@ def choose_windows(records: Sequence[HammerRecord], hits: Sequence[Hit]) -> Wind
     Where every ringing dies away within the record the response is kept until well after that and
     no exponential weight is used. Else one is, just strong enough to bring the ringing down to a
     thousandth of its peak by the end.
-
-    Parameters
-    ----------
-    records, hits : sequences of the same length
-
-    Returns
-    -------
-    Windows
     """
     pairs = list(zip(records, hits, strict=True))
     lead = min([_LEAD, *(hit.onset for hit in hits)])
@@ -100,16 +92,7 @@ def window_width(hit: Hit) -> float:
 def force_window(hit: Hit, first: int, windows: Windows) -> NDArray[np.float64]:
     """One over the blow, zero elsewhere, with cosine flanks that lie outside the blow.
 
-    Parameters
-    ----------
-    hit : Hit
-    first : int
-        Sample of the record at which the kept part begins.
-    windows : Windows
-
-    Returns
-    -------
-    (windows.length,) array of float
+    (windows.length,), from the sample of the record at which the kept part begins.
     """
     sample = np.arange(windows.length) + first
     margin = _margin(hit)
@@ -134,9 +117,7 @@ def exponential_window(windows: Windows, sampling_rate: float) -> NDArray[np.flo
     Weighting force and response alike by exp(-sigma t) turns H(i omega) into H(i omega + sigma)
     exactly, so that the added decay can be taken off a fitted pole exactly.
 
-    Returns
-    -------
-    (windows.length,) array of float
+    (windows.length,).
     """
     time = (np.arange(windows.length) - windows.lead) / sampling_rate
     return np.exp(-windows.added_decay * time)

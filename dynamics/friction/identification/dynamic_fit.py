@@ -158,10 +158,6 @@ def fit_axis(
     starts, seed : int
         Starts of the search and the seed of those after the first.
 
-    Returns
-    -------
-    AxisFit
-
     Raises
     ------
     MeasurementError

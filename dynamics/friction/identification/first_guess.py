@@ -7,13 +7,11 @@ import math
 import numpy as np
 
 from dynamics.frf.container import MeasurementError
-from dynamics.friction.coulomb_stribeck import CoulombStribeck
 from dynamics.friction.identification.dynamic_fit import friction_over_position
 from dynamics.friction.identification.filtering import LowPass
 from dynamics.friction.identification.linear_fit import LinearFriction
 from dynamics.friction.identification.record import DriveRecord
 from dynamics.friction.lugre import LuGre
-from dynamics.friction.tanh_hysteresis import TanhHysteresis
 
 #: first guess of static over Coulomb friction
 _STATIC = 1.2
@@ -59,25 +57,6 @@ def guess_lugre(linear: LinearFriction, distance: float, speed: float) -> LuGre:
     coulomb = _coulomb(linear)
     stiffness = coulomb * math.log(2.0) / distance
     return LuGre(stiffness, 0.0, _viscous(linear), coulomb, _STATIC * coulomb, speed)
-
-
-def guess_tanh(linear: LinearFriction, distance: float, speed: float) -> TanhHysteresis:
-    """Tanh hysteresis with the sliding force of a linear fit; parameters as `guess_lugre`.
-
-    Notes
-    -----
-    2 tanh(ah x') - 1 = 0 at ah x' = artanh(1/2). The slow part begins with a tenth of the
-    Coulomb force at its peak, Cv / (e av).
-    """
-    coulomb, viscous = _coulomb(linear), _viscous(linear)
-    slow = 0.1 * math.e * coulomb / speed
-    return TanhHysteresis(coulomb, viscous, slow, 1.0 / speed, math.atanh(0.5) / distance)
-
-
-def guess_coulomb_stribeck(linear: LinearFriction, speed: float) -> CoulombStribeck:
-    """Dry friction with the sliding force of a linear fit; parameters as `guess_lugre`."""
-    coulomb = _coulomb(linear)
-    return CoulombStribeck(coulomb, _STATIC * coulomb, speed, _viscous(linear))
 
 
 def _coulomb(linear: LinearFriction) -> float:

@@ -22,22 +22,12 @@ _BOUNDLESS = 14.0
 
 @dataclass(frozen=True)
 class Estimate:
-    """One fitted parameter.
+    """One fitted parameter."""
 
-    Parameters
-    ----------
-    value : float
-        SI unit of the parameter.
-    standard_error : float
-        Same unit.
-    lower, upper : float
-        Ends of the 95 % confidence interval.
-    """
-
-    value: float
-    standard_error: float
-    lower: float
-    upper: float
+    value: float  # SI unit of the parameter
+    standard_error: float  # same unit
+    lower: float  # ends of the 95 % confidence interval
+    upper: float  # ends of the 95 % confidence interval
 
     @property
     def relative_error(self) -> float:
@@ -62,18 +52,9 @@ def covariance(
 ) -> tuple[NDArray[np.float64], float]:
     """Covariance of least-squares parameters with correlated residuals.
 
-    Parameters
-    ----------
-    jacobian : (n, p) array
-        Of the residuals by the parameters; full rank.
-    residual : (n,) array
-        At the optimum.
-
-    Returns
-    -------
-    covariance : (p, p) array
-    freedom : float
-        Degrees of freedom: independent stretches of residual less parameters, at least 1.
+    By the jacobian (n, p) of the residuals, of full rank, and the residuals (n,) at the optimum:
+    (p, p), and the degrees of freedom, independent stretches of residual less parameters, at least
+    1.
     """
     n, p = jacobian.shape
     length = correlation_length(residual)

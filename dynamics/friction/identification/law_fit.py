@@ -67,29 +67,10 @@ def search(
 ) -> Search:
     """Find the parameters with the least sum of squares.
 
-    Parameters
-    ----------
-    residual : callable
-        Parameters -> (n,) array.
-    guess : mapping of str to float
-        Free parameters and their first values.
-    signed : mapping of str to float
-        Those of them that may have either sign, with their order of magnitude.
-    starts : int
-        Number of starts: the guess and random ones about it.
-    seed : int
-        Of the random starts.
-    fewest : int
-        Samples needed for each parameter.
-
-    Returns
-    -------
-    Search
-
-    Raises
-    ------
-    ValueError
-        If nothing is free, or a positive parameter starts at 0 or below.
+    From the guess, the free parameters and their first values, and random starts about it. `signed`
+    are those that may have either sign, with their order of magnitude; `fewest` are the samples
+    needed for each parameter. ValueError if nothing is free, or a positive parameter starts at 0 or
+    below.
     """
     names = tuple(guess)
     if not names:

@@ -114,10 +114,6 @@ def fit_linear(
     fixed : mapping of str to float, optional
         Terms that are known, e.g. a weighed mass.
 
-    Returns
-    -------
-    LinearFriction
-
     Raises
     ------
     MeasurementError

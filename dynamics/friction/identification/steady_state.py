@@ -25,25 +25,13 @@ from dynamics.friction.identification.record import DriveRecord
 
 @dataclass(frozen=True)
 class SteadyPoint:
-    """Mean of one segment at constant speed.
+    """Mean of one segment at constant speed."""
 
-    Parameters
-    ----------
-    velocity : float
-        m/s or rad/s, with its sign.
-    effort : float
-        N or N m.
-    standard_error : float
-        Of the mean effort, allowing for ripple.
-    start, end : float
-        Of the segment, s.
-    """
-
-    velocity: float
-    effort: float
-    standard_error: float
-    start: float
-    end: float
+    velocity: float  # m/s or rad/s, with its sign
+    effort: float  # N or N m
+    standard_error: float  # of the mean effort, allowing for ripple
+    start: float  # of the segment, s
+    end: float  # of the segment, s
 
 
 def constant_speed_points(
@@ -125,27 +113,13 @@ def _mean(record: DriveRecord, segment: slice) -> SteadyPoint:
 
 @dataclass(frozen=True)
 class SteadyFit:
-    """Result of `fit_steady_state`.
+    """Result of `fit_steady_state`."""
 
-    Parameters
-    ----------
-    law : LuGre, TanhHysteresis or CoulombStribeck
-        With the fitted values.
-    offset : float
-        Effort that does not turn with the motion (weight, preload), N or N m.
-    estimates : dict of str to Estimate
-        Fitted parameters with 95 % intervals.
-    residual : float
-        Root mean square over the points, N or N m.
-    unsupported : tuple of str
-        Parameters that the points do not decide.
-    """
-
-    law: FrictionLaw
-    offset: float
-    estimates: dict[str, Estimate]
-    residual: float
-    unsupported: tuple[str, ...]
+    law: FrictionLaw  # with the fitted values
+    offset: float  # effort that does not turn with the motion (weight, preload), N or N m
+    estimates: dict[str, Estimate]  # fitted parameters with 95 % intervals
+    residual: float  # root mean square over the points, N or N m
+    unsupported: tuple[str, ...]  # parameters that the points do not decide
 
 
 def fit_steady_state(
@@ -168,10 +142,6 @@ def fit_steady_state(
         Parameters of the law, and ``"offset"``, which needs moves in both directions.
     starts, seed : int
         Starts of the search and the seed of those after the first.
-
-    Returns
-    -------
-    SteadyFit
 
     Raises
     ------

@@ -8,7 +8,7 @@ import pytest
 
 from chatter.description.case import Case, load, loads
 from chatter.description.errors import InputError
-from chatter.description.laws import FRICTION_LAWS
+from chatter.description.law_section import FRICTION_LAWS
 from chatter.description.sections.friction import Friction
 from chatter.stability.case_schema import schema
 from chatter.stability.registry import AUTO, METHODS

@@ -8,7 +8,7 @@ import pytest
 import chatter
 from chatter.compile.structure import structure_of
 from chatter.description.case import loads
-from chatter.simulation.dynamometer import through_resonance
+from chatter.simulation.simulate import through_resonance
 
 CASE = """
 [tool]

@@ -11,15 +11,14 @@ from numba import njit
 from cutting.chip.discrete_chip import carve, chip_thickness
 from cutting.dexel.carving import dexel_flush
 from cutting.dexel.stock import (
+    dexel_advanced,
     dexel_remaining_area,
     dexel_remove_path,
     dexel_stock,
     dexel_wall_profile,
     line_coordinates,
 )
-from cutting.dexel.window import dexel_advanced
-from cutting.voxel.stock import voxel_remaining_area, voxel_remove_path, voxel_stock
-from cutting.voxel.window import voxel_advanced
+from cutting.voxel.stock import voxel_advanced, voxel_remaining_area, voxel_remove_path, voxel_stock
 
 R, FEED, TEETH, WINDOW = 3e-3, 0.2e-3, 2, 0.4e-3
 SIZE = 25e-6

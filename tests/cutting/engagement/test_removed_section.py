@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from cutting.engagement.removed_section import removed_section
+from cutting.engagement.immersion import removed_section
 from cutting.tool.cutter import Cutter
 
 

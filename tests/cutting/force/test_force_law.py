@@ -7,7 +7,7 @@ import pytest
 
 from cutting.force.exponential import ExponentialLaw
 from cutting.force.linear import LinearLaw
-from cutting.material.oblique import oblique_cutting_coefficients
+from cutting.force.oblique import oblique_cutting_coefficients
 
 MPA = 1e6
 

@@ -15,15 +15,13 @@ from dynamics.control.cascade import (
     VelocityController,
 )
 from dynamics.control.current_loop import (
-    FirstOrderCurrentLoop,
     RegulatedMotor,
     SecondOrderCurrentLoop,
 )
 from dynamics.control.drive_step import control_step
-from dynamics.control.drive_table import control_table, rest_at
-from dynamics.control.filters import low_pass, notch
+from dynamics.control.drive_table import control_table
+from dynamics.control.filters import ReferenceModel, low_pass, notch
 from dynamics.control.measurement import MeasuringSystem
-from dynamics.control.reference_model import ReferenceModel
 from dynamics.control.sampling import ControlError
 
 H = 125e-6
@@ -174,35 +172,6 @@ def test_difference_of_counts_is_a_velocity_in_counts_per_sample():
     torque = fixed_motor(control_table([drive], H), signals)[1:]
     assert set(np.round(-torque / 2.0 * H / 1e-4, 9)) == {0.0, 1.0}
     assert -torque.mean() / 2.0 == pytest.approx(0.33e-4 / H, rel=0.01)
-
-
-@pytest.mark.parametrize(
-    "current",
-    [
-        SecondOrderCurrentLoop(800.0),
-        FirstOrderCurrentLoop(5e-4),
-        RegulatedMotor(1, 5e-3, 1.3, 9, 3e-3),
-    ],
-)
-def test_drive_at_rest_stays_at_rest_under_its_load(current):
-    slow = LoopTiming(16 * H, computing=2)
-    drive = dataclasses.replace(
-        SPEED,
-        position=PositionController(30.0, slow, set_point_delay=2),
-        velocity=VelocityController(
-            4.0, LoopTiming(2 * H, 1, 1), 0.02, reference_model=ReferenceModel(100.0, 1.0)
-        ),
-        current=current,
-        current_timing=LoopTiming(H, 1, 1),
-        filters=(notch(400.0, 0.1, 0.5),),
-        measuring=MeasuringSystem(0.003, "scale", "difference", scale_resolution=1e-9),
-    )
-    table = control_table([drive], H)
-    rest_at(table, 0, x_set=0.3, x_motor=100.0, x_scale=0.3, torque=6.0)
-    sets = np.zeros((500, 3))
-    sets[:, 0] = 0.3
-    path = on_inertia(table, 0.02, -6.0, H, 0.003, sets, (100.0, 0.0), 0)[0]
-    np.testing.assert_allclose(path[:, 0], 100.0, atol=1e-11)
 
 
 def closed_loop_matrix(drive, inertia, samples):

@@ -8,14 +8,13 @@ from scipy import signal
 
 from dynamics.control.current_loop import FirstOrderCurrentLoop, SecondOrderCurrentLoop
 from dynamics.control.filters import (
+    ReferenceModel,
     SecondOrderFilter,
     low_pass,
     notch,
-    resting_states,
     sampled_response,
     second_order_sample,
 )
-from dynamics.control.reference_model import ReferenceModel
 from dynamics.control.sampling import (
     ControlError,
     sample_and_hold_response,
@@ -76,15 +75,6 @@ def test_leaf_is_the_difference_equation():
         output[n], first, second = second_order_sample(*coefficients, first, second, value)
     b, a = coefficients[:3], [1.0, *coefficients[3:]]
     np.testing.assert_allclose(output, signal.lfilter(b, a, wave), atol=1e-12)
-
-
-@pytest.mark.parametrize("spec", FILTERS)
-def test_rested_filter_stays_at_its_value(spec):
-    coefficients = spec.sampled(T)
-    first, second = resting_states(coefficients, 7.0)
-    for _ in range(20):
-        output, first, second = second_order_sample(*coefficients, first, second, 7.0)
-        assert output == pytest.approx(7.0, abs=1e-11)
 
 
 def test_step_of_the_reference_model_is_that_of_a_second_order_lag():

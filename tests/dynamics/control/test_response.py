@@ -22,9 +22,8 @@ from dynamics.control.current_loop import (
 )
 from dynamics.control.drive_step import control_step
 from dynamics.control.drive_table import control_table
-from dynamics.control.filters import low_pass, notch
+from dynamics.control.filters import ReferenceModel, low_pass, notch
 from dynamics.control.measurement import MeasuringSystem
-from dynamics.control.reference_model import ReferenceModel
 from dynamics.control.response import controller_response
 
 STEP = 31.25e-6

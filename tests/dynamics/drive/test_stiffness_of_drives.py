@@ -153,10 +153,9 @@ def test_motor_screw_and_table_with_a_belt_are_a_chain_of_three():
         assert np.min(np.abs(frequencies / expected - 1.0)) < 1e-6
 
 
-def test_belt_of_teeth_has_the_ratio_of_teeth():
-    belt = Belt.from_teeth(24, 48, 0.008, 4e6, damping=50.0)
+def test_belt_drives_by_the_ratio_of_its_radii():
+    belt = Belt(0.03, 0.06, 4e6, damping=50.0)
     assert belt.ratio == pytest.approx(0.5)
-    assert belt.driven_radius == pytest.approx(48 * 0.008 / (2.0 * np.pi))
     assert BallScrew(LEAD, 3e-3, 2e-3, NUT, belt=belt).transmission == pytest.approx(0.5 * H_P)
 
 

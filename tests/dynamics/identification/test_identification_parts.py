@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from dynamics.identification.band import usable_bands
-from dynamics.identification.noise import noise_level
 from dynamics.identification.polynomial import polynomial_basis, polyreference_poles
+from dynamics.identification.prepare import noise_level
 from dynamics.identification.refinement import fit_residues, refine
 from dynamics.identification.residues import ALL_TERMS, Records, mode_shapes_in_frequency
 from dynamics.identification.stabilisation import stabilisation_diagram, stable_poles

@@ -8,10 +8,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numba import njit
 
-from dynamics.trajectory.contour import contour_error, tracking_error
 from dynamics.trajectory.jerk_limited import JerkLimitedMove
 from dynamics.trajectory.motion import TrajectoryError
-from dynamics.trajectory.path import Arc, Line, Path, circle, polyline, square
+from dynamics.trajectory.path import (
+    Arc,
+    Line,
+    Path,
+    circle,
+    contour_error,
+    polyline,
+    square,
+    tracking_error,
+)
 from dynamics.trajectory.path_motion import PathMotion
 from dynamics.trajectory.periodic import CircleMotion, ConstantSpeedMove, SineMotion
 from dynamics.trajectory.set_points import set_point_at, set_points

@@ -9,8 +9,8 @@ import tomlkit
 
 from chatter import InputError
 from chatter.compile.machine_parts import machine_parts
+from chatter.description.json_schema import machine_schema
 from chatter.description.machine.machine_file import MachineFile, load_machine, loads_machine
-from chatter.description.machine.machine_schema import machine_schema
 from chatter.description.path import keys_of
 
 

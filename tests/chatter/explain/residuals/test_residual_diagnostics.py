@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from chatter.explain.residuals.dependence import Sample, dependence
-from chatter.explain.residuals.ranks import rank_correlation
+from chatter.explain.residuals.over_runs import rank_correlation
 from chatter.explain.residuals.residual_dependence import residual_dependence
 from chatter.explain.residuals.signature import diagnosed, no_significant_dependence
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from chatter import Case
-from chatter.compile.rigid_motion import rigid_motion
+from chatter.compile.linearised_friction import rigid_motion
 from chatter.description.machine.machine_file import MachineFile
 from chatter.simulation.cut_run import CutRun
 from chatter.simulation.setup import set_up

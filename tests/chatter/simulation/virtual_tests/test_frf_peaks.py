@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from chatter.simulation.virtual_tests.frf_peaks import peaks, peaks_of_test
+from chatter.simulation.virtual_tests.frf import peaks, peaks_of_test
 from dynamics.frf.container import Frf
 
 LINES = np.linspace(5.0, 500.0, 1981)

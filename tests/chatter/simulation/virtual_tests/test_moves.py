@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from chatter.compile.rigid_motion import rigid_motion
+from chatter.compile.linearised_friction import rigid_motion
 from chatter.description.errors import InputError
 from chatter.simulation.virtual_tests.move import MovePlan, move_axes
 from chatter.simulation.virtual_tests.run import RunInputs, run_machine

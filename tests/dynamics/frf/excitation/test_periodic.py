@@ -5,14 +5,12 @@ import pytest
 
 from dynamics.frf.container import MeasurementError
 from dynamics.frf.excitation.chirp import linear_chirp
-from dynamics.frf.excitation.closed_loop import joint_input_output_frf
 from dynamics.frf.excitation.holds import BAND_LIMITED, FIRST_ORDER_HOLD, ZERO_ORDER_HOLD
 from dynamics.frf.excitation.multisine import full_lines, multisine, odd_lines, random_phases
 from dynamics.frf.excitation.periodic import (
     PeriodicRecord,
-    direct_frf,
     frf_of_periods,
-    without_drift,
+    joint_input_output_frf,
 )
 
 STEP = 5e-4
@@ -85,16 +83,6 @@ def test_best_linear_approximation_of_a_cube_grows_with_the_force():
         assert abs(gain.imag) < 0.01
 
 
-def test_drift_of_a_moving_machine_is_taken_off():
-    lines = full_lines(10.0, 100.0, 0.5, STEP)
-    (record,) = realisations(1, lines, 1.0, 3, lambda u: u)
-    moving = record.response + 5.0 + 3.0 * STEP * np.arange(record.force.size)
-    still = without_drift(moving, record.period, leading=1)
-    found = PeriodicRecord(record.force, still, STEP, record.period, lines)
-    values = frf_of_periods([found], BAND_LIMITED).frf.values
-    np.testing.assert_allclose(values, 1.0, rtol=1e-9)
-
-
 @pytest.fixture(scope="module")
 def loop(two_masses):
     """Position of the first mass under a held force r - K (x + noise), sampled at each step."""
@@ -118,32 +106,17 @@ def loop(two_masses):
                 force, measured, STEP, signal.period, lines, leading, reference=reference
             )
         )
-    return records, gain, noise_level
+    return records
 
 
-def test_in_a_noisy_loop_the_direct_estimate_is_biased_and_the_joint_one_is_not(two_masses, loop):
-    records, gain, noise_level = loop
+def test_in_a_noisy_loop_neither_estimate_is_biased(two_masses, loop):
+    records = loop
     frequency = records[0].frequency
     truth = two_masses.receptance(2j * np.pi * frequency)[:, 0]
     joint = joint_input_output_frf(records, ZERO_ORDER_HOLD)
     averaged = frf_of_periods(records, ZERO_ORDER_HOLD)
-    direct = direct_frf(records, ZERO_ORDER_HOLD)
-
-    # expectation of the direct estimate: (G S_rr - K S_nn) / (S_rr + K^2 S_nn)
-    size = records[0].period
-    reference_power = np.mean(np.abs(records[0].transforms(records[0].reference)) ** 2, axis=0)
-    noise_power = size * noise_level**2
-    hold = ZERO_ORDER_HOLD.transfer(2j * np.pi * frequency, STEP)
-    sampled = truth * hold
-    biased = (sampled * reference_power - gain * noise_power) / (
-        reference_power + gain**2 * noise_power
-    )
-    low = frequency <= 20.0  # below resonance the bias points one way
-    bias = np.abs(biased / sampled - 1.0)[low]
-    assert bias.min() > 0.25
-    assert np.abs(direct.values * hold / biased - 1.0)[low].max() < 0.4
-    assert np.abs(np.mean((direct.values / truth - 1.0)[low])) > 0.3
-    # the others are off by their scatter alone, to all sides
+    low = frequency <= 20.0  # below resonance a bias would point one way
+    # they are off by their scatter alone, to all sides
     scatter = np.sqrt(np.sum(averaged.noise_variance[low] / np.abs(truth[low]) ** 2)) / low.sum()
     assert scatter < 0.02
     for frf in (joint, averaged.frf):
@@ -180,6 +153,4 @@ def test_unusable_periodic_records_are_told():
     with pytest.raises(MeasurementError, match="realisations must share"):
         frf_of_periods([record, made(lines=lines[:-1])], BAND_LIMITED)
     with pytest.raises(MeasurementError, match="no periodic record"):
-        direct_frf([], BAND_LIMITED)
-    with pytest.raises(MeasurementError, match="2 are needed"):
-        without_drift(force, 1000, leading=2)
+        frf_of_periods([], BAND_LIMITED)

@@ -3,13 +3,8 @@
 import numpy as np
 import pytest
 
-from dynamics.frf.excitation.chirp import linear_chirp, logarithmic_chirp
-from dynamics.frf.excitation.hammer import (
-    constant_blow,
-    half_sine_blow,
-    half_sine_blow_of_impulse,
-    several_blows,
-)
+from dynamics.frf.excitation.chirp import linear_chirp
+from dynamics.frf.excitation.hammer import half_sine_blow, several_blows
 from dynamics.frf.excitation.multisine import (
     full_lines,
     multisine,
@@ -39,18 +34,6 @@ def test_half_sine_has_its_peak_impulse_and_spectral_zero():
     assert abs(at[1]) < 2e-3 * abs(at[0])
 
 
-def test_half_sine_of_impulse_carries_it_exactly_whatever_the_step():
-    for step in (5e-5, 7e-5, 4e-4):
-        blow = half_sine_blow_of_impulse(1e-3, -2.5, step)
-        assert blow.sum() * step == pytest.approx(-2.5, rel=1e-12)
-
-
-def test_constant_blow_carries_force_times_width():
-    blow = constant_blow(1e-3, 100.0, STEP)
-    assert blow.size == 20
-    assert blow.sum() * STEP == pytest.approx(0.1, rel=1e-12)
-
-
 def test_blows_scatter_about_their_values_and_repeat_with_their_seed():
     first, again, other = (
         several_blows(2e-3, 500.0, STEP, 60, 0.02, 0.1, seed, rest=0.01) for seed in (3, 3, 4)
@@ -65,17 +48,10 @@ def test_blows_scatter_about_their_values_and_repeat_with_their_seed():
     assert np.std(peaks) == pytest.approx(50.0, rel=0.35)
 
 
-@pytest.mark.parametrize(
-    ("chirp", "turns"),
-    [
-        # integrals of the frequency over the first half of the period
-        (linear_chirp, 4.0 * (1.0 / 2.0 + 199.0 / 8.0)),
-        (logarithmic_chirp, 4.0 / np.log(200.0) * (200.0**0.5 - 1.0)),
-    ],
-)
-def test_chirp_sweeps_its_band(chirp, turns):
+def test_chirp_sweeps_its_band():
     # the long-stroke shaker: 250 N, 1 to 200 Hz
-    signal = chirp(1.0, 200.0, 4.0, 250.0, STEP)
+    signal = linear_chirp(1.0, 200.0, 4.0, 250.0, STEP)
+    turns = 4.0 * (1.0 / 2.0 + 199.0 / 8.0)  # integral of the frequency over half the period
     assert signal.peak == pytest.approx(250.0, rel=1e-3)
     assert signal.values[0] == 0.0
     assert abs(signal.values[-1]) < 0.01
@@ -111,8 +87,8 @@ def test_schroeder_phases_keep_the_crest_low():
     low = multisine(lines, schroeder_phases(lines), 1.0, 1.0, STEP)
     high = multisine(lines, np.zeros(lines.size), 1.0, 1.0, STEP)
     # a sweep, sqrt(2), overshooting where it starts anew; sqrt(2 l) with all in phase
-    assert np.sqrt(2.0) < low.crest_factor < 2.0
-    assert high.crest_factor == pytest.approx(np.sqrt(2.0 * lines.size), rel=1e-3)
+    assert np.sqrt(2.0) < low.peak / low.rms < 2.0
+    assert high.peak / high.rms == pytest.approx(np.sqrt(2.0 * lines.size), rel=1e-3)
 
 
 def test_odd_lines_make_half_the_period_the_negative_of_the_other():
@@ -135,12 +111,11 @@ def test_periods_repeat_behind_leading_ones():
     [
         (lambda: half_sine_blow(5e-5, 1.0, STEP), "shorter than two steps"),
         (lambda: half_sine_blow(1e-3, np.nan, STEP), "peak is nan"),
-        (lambda: constant_blow(1.03e-3, 1.0, STEP), "whole multiple"),
         (lambda: several_blows(2e-3, 1.0, STEP, 2, 1e-3), "does not end before"),
         (lambda: several_blows(2e-3, 1.0, STEP, 2, 0.1, scatter=0.5), "scatter"),
         (lambda: linear_chirp(1.0, 2e4, 1.0, 1.0, STEP), "half the sampling"),
         (lambda: linear_chirp(1.0, 200.0, 1.0, 1.0, STEP, taper=0.7), "taper"),
-        (lambda: logarithmic_chirp(0.0, 200.0, 1.0, 1.0, STEP), "lowest frequency"),
+        (lambda: linear_chirp(0.0, 200.0, 1.0, 1.0, STEP), "lowest frequency"),
         (lambda: full_lines(10.0, 11.0, 0.1, STEP), "fewer than two lines"),
         (lambda: full_lines(10.0, 100.0, 0.10003, STEP), "whole multiple"),
         (lambda: multisine(np.array([0, 1]), np.zeros(2), 0.1, 1.0, STEP), "lines 0 to 1"),

@@ -6,7 +6,7 @@ import pytest
 from dynamics.frf.container import MeasurementError
 from dynamics.frf.excitation.angle_triggered import angle_at_constant_speed, angle_triggered_pulses
 from dynamics.frf.excitation.chirp import linear_chirp
-from dynamics.frf.excitation.hammer import constant_blow, half_sine_blow, several_blows
+from dynamics.frf.excitation.hammer import half_sine_blow, several_blows
 from dynamics.frf.excitation.holds import (
     BAND_LIMITED,
     FIRST_ORDER_HOLD,
@@ -39,7 +39,7 @@ def test_one_blow_joined_by_lines_gives_the_analytic_receptances(two_masses):
 
 def test_blow_of_constant_force_held(two_masses):
     step = two_masses.step
-    train = pulses_at([0], [constant_blow(1e-3, 500.0, step)], 8000, step)
+    train = pulses_at([0], [np.full(round(1e-3 / step), 500.0)], 8000, step)
     states = two_masses.response(train.values, joined_by_lines=False)
     records = cut_at_pulses(train, train.values, states[:, 0], "receptance")
     frf = frf_of_transients(records, ZERO_ORDER_HOLD, BAND, left_at_end=1e-5)
