@@ -29,13 +29,7 @@ _WORTH_TELLING = 0.02
 
 @dataclass(frozen=True)
 class LinearisedMachine:
-    """Structure described by the receptance of a linearised machine at its tool point.
-
-    Parameters
-    ----------
-    case : Case
-    cut : MachineCut
-    """
+    """Structure described by the receptance of a linearised machine at its tool point."""
 
     case: Case
     cut: MachineCut

@@ -28,32 +28,20 @@ _LEAST_DAMPING = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class MachineCut:
-    """Machine of a case, seen from the cut.
-
-    Parameters
-    ----------
-    file : MachineFile
-    machine : Machine
-    tool : (3, n) array of float
-        Rows of the tool against the workpiece along x, y, z of the cut, both taken at the tip, so
-        that the force on both has no moment left over.
-    spindle : (n,) array of float, optional
-        Row of the turning tool against the workpiece, positive as the tool turns; None where no
-        axis turns it and its speed is prescribed.
-    spindle_axis : str, optional
-    sense : float
-        1 or -1: of the spindle's axis against the turning of the tool.
-    feeds : mapping of str to float
-        Velocity of each axis of the machine for a feed of 1 m/s; empty where none of those under
-        control can feed the tool, whose path is then prescribed.
-    """
+    """Machine of a case, seen from the cut."""
 
     file: MachineFile
     machine: Machine
+    #: (3, n), rows of the tool against the workpiece along x, y, z of the cut, both taken at the
+    #: tip, so that the force on both has no moment left over
     tool: NDArray[np.float64]
+    #: (n,), row of the turning tool against the workpiece, positive as the tool turns; None where
+    #: no axis turns it and its speed is prescribed
     spindle: NDArray[np.float64] | None
     spindle_axis: str | None
-    sense: float
+    sense: float  # 1 or -1: of the spindle's axis against the turning of the tool
+    #: velocity of each axis of the machine for a feed of 1 m/s; empty where none of those under
+    #: control can feed the tool, whose path is then prescribed
     feeds: Mapping[str, float]
 
     def velocities(self, feed: float, speed: float) -> dict[str, float]:

@@ -68,19 +68,12 @@ def overall(errors: Sequence[ChannelError]) -> float:
 
 @dataclass(frozen=True, eq=False)
 class BeforeAfter:
-    """Errors over the signal, channel -> number.
+    """Errors over the signal, channel -> number."""
 
-    Parameters
-    ----------
-    noise : dict
-        Of all runs.
-    fitted, holdout : dict of str to dict
-        Model -> errors of cases fitted to the runs for fitting alone, on these and on the others.
-    """
-
-    noise: dict[str, float]
+    noise: dict[str, float]  # of all runs
+    #: model -> errors, on the runs for fitting, of cases fitted to these
     fitted: dict[str, dict[str, float]]
-    holdout: dict[str, dict[str, float]]
+    holdout: dict[str, dict[str, float]]  # the same on the others
 
     @property
     def channels(self) -> tuple[str, ...]:

@@ -18,43 +18,22 @@ _ENOUGH_RUNS, _PARTS = 3, 6
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """One recorded run.
+    """One recorded run."""
 
-    Parameters
-    ----------
-    name : str
-        Of its file.
-    overrides : mapping of str to str
-        Paths of the case -> values that hold in this run.
-    signals : mapping of str to (n,) array of float
-        SI, by the name in the heading: "time", "Fx", "x", "velocity", ...
-    cut_time : float
-        Time that the tool had cut before the run, s.
-    condition, direction : str
-        Of FRFs.
-    usable : (n,) array of float, optional
-        1 for samples that count, 0 for those that the checks excluded; all count by default.
-    weights : mapping of str to (n,) array of float
-        Channel -> weights of its samples, 1 at the most; 1 where a channel is not named.
-    record : object, optional
-        What the kind of measurement derives from the signals, in a type of its own.
-    whole : Run, optional
-        Run of which this one is a part.
-    part : slice, optional
-        Samples of the whole run that the part holds.
-    """
-
-    name: str
-    overrides: Mapping[str, Any]
+    name: str  # of its file
+    overrides: Mapping[str, Any]  # paths of the case -> values that hold in this run
+    #: (n,) each, SI, by the name in the heading: "time", "Fx", "x", "velocity", ...
     signals: Mapping[str, NDArray[np.float64]]
-    cut_time: float = 0.0
-    condition: str = ""
-    direction: str = ""
+    cut_time: float = 0.0  # that the tool had cut before the run, s
+    condition: str = ""  # of FRFs
+    direction: str = ""  # of FRFs
+    #: (n,), 1 for samples that count, 0 for those that the checks excluded
     usable: NDArray[np.float64] | None = None
+    #: of samples by channel, 1 at the most
     weights: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
-    record: Any = None
-    whole: Run | None = None
-    part: slice | None = None
+    record: Any = None  # what the kind derives from the signals, in a type of its own
+    whole: Run | None = None  # run of which this one is a part
+    part: slice | None = None  # samples of the whole run that the part holds
 
     def weight(self, channel: str) -> NDArray[np.float64]:
         """Weights (n,) of the samples of a channel, 0 where they are excluded."""
@@ -87,25 +66,14 @@ class Run:
 
 @dataclass(frozen=True, eq=False)
 class Measurement:
-    """What was measured, and the case that was declared about it.
+    """What was measured, and the case that was declared about it."""
 
-    Parameters
-    ----------
-    kind : str
-        Name of its kind: "milling", "axis", "stability", "frf".
-    title : str
-    folder : Path
-    case : Case
-    runs : tuple of Run
-    tolerances : mapping of str to float
-        Relative standard deviation of declared values by path, where given.
-    """
-
-    kind: str
+    kind: str  # "milling", "axis", "stability", "frf"
     title: str
     folder: Path
     case: Case
     runs: tuple[Run, ...]
+    #: relative, of declared values by path
     tolerances: Mapping[str, float] = field(default_factory=dict)
 
     def in_parts(self) -> Measurement:

@@ -14,16 +14,10 @@ MillingMode = Literal["up", "down", "slot"]
 
 
 class Engagement(NamedTuple):
-    """Angles between which a tooth is in the cut, measured clockwise from +y.
+    """Angles between which a tooth is in the cut, measured clockwise from +y."""
 
-    Parameters
-    ----------
-    entry, exit : float
-        rad, ``0 <= entry < exit <= pi``.
-    """
-
-    entry: float
-    exit: float
+    entry: float  # rad, 0 <= entry < exit
+    exit: float  # rad, up to pi
 
 
 def engagement(mode: MillingMode, radial_depth: float, diameter: float) -> Engagement:

@@ -47,24 +47,12 @@ def exponential_force(law, tooth, chip):
 
 @dataclass(frozen=True)
 class ExponentialLaw(ForceLaw):
-    """Coefficients of the exponential law.
+    """Coefficients of the exponential law."""
 
-    Parameters
-    ----------
-    cutting : (3,) tuple of float
-        K_tc, K_rc, K_ac at the reference chip thickness, N/m^2.
-    reference_chip_thickness : float
-        h0, m.
-    exponent : float
-        p, 0 < p <= 1.
-    edge : (3,) tuple of float
-        K_te, K_re, K_ae, N/m.
-    """
-
-    cutting: Coefficients
-    reference_chip_thickness: float
-    exponent: float
-    edge: Coefficients = (0.0, 0.0, 0.0)
+    cutting: Coefficients  # K_tc, K_rc, K_ac at the reference chip thickness, N/m^2
+    reference_chip_thickness: float  # h0, m
+    exponent: float  # p, 0 < p <= 1
+    edge: Coefficients = (0.0, 0.0, 0.0)  # K_te, K_re, K_ae, N/m
 
     leaf = exponential_force
 

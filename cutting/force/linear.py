@@ -39,18 +39,10 @@ def linear_force(law, tooth, chip):
 
 @dataclass(frozen=True)
 class LinearLaw(ForceLaw):
-    """Coefficients of the linear law.
+    """Coefficients of the linear law."""
 
-    Parameters
-    ----------
-    cutting : (3,) tuple of float
-        K_tc, K_rc, K_ac, N/m^2.
-    edge : (3,) tuple of float
-        K_te, K_re, K_ae, N/m.
-    """
-
-    cutting: Coefficients
-    edge: Coefficients = (0.0, 0.0, 0.0)
+    cutting: Coefficients  # K_tc, K_rc, K_ac, N/m^2
+    edge: Coefficients = (0.0, 0.0, 0.0)  # K_te, K_re, K_ae, N/m
 
     leaf = linear_force
 

@@ -20,18 +20,10 @@ from cutting.process_damping.leaves import FlankLeaves
 
 @dataclass(frozen=True)
 class ViscousProcessDamping:
-    """Radial dashpot of the engaged flank.
+    """Radial dashpot of the engaged flank."""
 
-    Parameters
-    ----------
-    coefficient : float
-        C, N/m.
-    friction : float
-        mu, tangential over radial ploughing force.
-    """
-
-    coefficient: float
-    friction: float = 0.0
+    coefficient: float  # C, N/m
+    friction: float = 0.0  # mu, tangential over radial ploughing force
 
     @property
     def small_vibration(self) -> ViscousProcessDamping:

@@ -93,26 +93,14 @@ class Material:
 
 @dataclass(frozen=True)
 class Segment:
-    """Stretch of a line with one round section.
+    """Stretch of a line with one round section."""
 
-    Parameters
-    ----------
-    length, outer_diameter : float
-        m.
-    material : Material
-    inner_diameter : float
-        Bore, m; 0 for a solid section.
-    elements : int
-        Number of elements, at least; positions where something is joined add some.
-    shear_coefficient : float or callable
-        kappa, or its formula of Poisson's ratio and inner over outer diameter.
-    """
-
-    length: float
-    outer_diameter: float
+    length: float  # m
+    outer_diameter: float  # m
     material: Material
-    inner_diameter: float = 0.0
-    elements: int = 4
+    inner_diameter: float = 0.0  # bore, m; 0 for a solid section
+    elements: int = 4  # number of elements, at least; positions where something is joined add some
+    #: kappa, or its formula of Poisson's ratio and inner over outer diameter
     shear_coefficient: float | ShearFormula = cowper
 
     def __post_init__(self) -> None:

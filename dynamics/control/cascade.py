@@ -100,26 +100,16 @@ class VelocityController:
     The sum includes the present sample, and grows no further than to where M meets its limit
     (conditional integration; Åström and Hägglund 2006, Advanced PID Control, section 3.5).
 
-    Parameters
-    ----------
-    proportional_gain : float
-        K_pn, N m s/rad.
-    timing : LoopTiming
-    integral_time : float
-        T_nn, s; infinite: no integral part.
-    torque_limit : float
-        N m, of the controller's output and of the set point behind the filters.
-    reference_model : ReferenceModel, optional
-
     Raises
     ------
     ControlError
         If a value is out of its range.
     """
 
-    proportional_gain: float
+    proportional_gain: float  # K_pn, N m s/rad
     timing: LoopTiming
-    integral_time: float = math.inf
+    integral_time: float = math.inf  # T_nn, s; infinite: no integral part
+    #: N m, of the controller's output and of the set point behind the filters
     torque_limit: float = math.inf
     reference_model: ReferenceModel | None = None
 
@@ -136,27 +126,16 @@ class Feedforward:
 
     Set points are read with the position loop; the torque enters before the set-point filters.
 
-    Parameters
-    ----------
-    velocity : float
-        Share of the velocity set point; 1: in full, 0: none.
-    velocity_delay : int
-        Samples of the position loop.
-    inertia : float
-        Moment of inertia at the motor that is fed forward, kg m^2; 0: none.
-    torque_delay : int
-        Samples of the velocity loop.
-
     Raises
     ------
     ControlError
         If a value is out of its range.
     """
 
-    velocity: float = 0.0
-    velocity_delay: int = 0
-    inertia: float = 0.0
-    torque_delay: int = 0
+    velocity: float = 0.0  # share of the velocity set point; 1: in full, 0: none
+    velocity_delay: int = 0  # samples of the position loop
+    inertia: float = 0.0  # moment of inertia at the motor that is fed forward, kg m^2; 0: none
+    torque_delay: int = 0  # samples of the velocity loop
 
     def __post_init__(self):
         require_not_negative("feedforward", "velocity", self.velocity)
@@ -169,18 +148,6 @@ class Feedforward:
 class DriveController:
     """Cascade of one drive.
 
-    Parameters
-    ----------
-    position : PositionController
-    velocity : VelocityController
-    measuring : MeasuringSystem
-    current_timing : LoopTiming
-        Of the current loop and of the set-point filters.
-    current : IdealCurrentLoop, FirstOrderCurrentLoop, SecondOrderCurrentLoop or RegulatedMotor
-    filters : tuple of SecondOrderFilter
-        Of the current (torque) set point, in series.
-    feedforward : Feedforward
-
     Raises
     ------
     ControlError
@@ -191,9 +158,9 @@ class DriveController:
     position: PositionController
     velocity: VelocityController
     measuring: MeasuringSystem
-    current_timing: LoopTiming
+    current_timing: LoopTiming  # of the current loop and of the set-point filters
     current: CurrentLoop = IdealCurrentLoop()  # noqa: RUF009
-    filters: tuple[SecondOrderFilter, ...] = ()
+    filters: tuple[SecondOrderFilter, ...] = ()  # of the current (torque) set point, in series
     feedforward: Feedforward = Feedforward()
 
     def __post_init__(self):

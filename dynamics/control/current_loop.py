@@ -73,18 +73,13 @@ class IdealCurrentLoop(_Unregulated):
 class FirstOrderCurrentLoop(_Unregulated):
     """T m' + m = set point.
 
-    Parameters
-    ----------
-    time_constant : float
-        T, s.
-
     Raises
     ------
     ControlError
         If it is not above 0.
     """
 
-    time_constant: float
+    time_constant: float  # T, s
 
     def __post_init__(self):
         require_positive("current loop", "time constant", self.time_constant)
@@ -99,21 +94,14 @@ class FirstOrderCurrentLoop(_Unregulated):
 class SecondOrderCurrentLoop(_Unregulated):
     """m''/w^2 + 2 D m'/w + m = set point.
 
-    Parameters
-    ----------
-    natural_frequency : float
-        w/(2 pi), Hz.
-    damping : float
-        D.
-
     Raises
     ------
     ControlError
         If one of them is not above 0.
     """
 
-    natural_frequency: float
-    damping: float = math.sqrt(0.5)
+    natural_frequency: float  # w/(2 pi), Hz
+    damping: float = math.sqrt(0.5)  # D
 
     def __post_init__(self):
         require_positive("current loop", "natural frequency", self.natural_frequency)
@@ -135,34 +123,19 @@ class RegulatedMotor:
     Regelung von Antriebssystemen). The sum grows no further than to
     where the voltage meets its limit.
 
-    Parameters
-    ----------
-    resistance, inductance : float
-        R, ohm; L, H.
-    torque_constant : float
-        k_t, N m/A.
-    proportional_gain : float
-        K_p, V/A.
-    integral_time : float
-        T_n, s; infinite: no integral part.
-    back_emf : float
-        k_e, V s/rad; 0 where the controller decouples it.
-    voltage_limit : float
-        V; infinite: none.
-
     Raises
     ------
     ControlError
         If a value is out of its range.
     """
 
-    resistance: float
-    inductance: float
-    torque_constant: float
-    proportional_gain: float
-    integral_time: float = math.inf
-    back_emf: float = 0.0
-    voltage_limit: float = math.inf
+    resistance: float  # R, ohm
+    inductance: float  # L, H
+    torque_constant: float  # k_t, N m/A
+    proportional_gain: float  # K_p, V/A
+    integral_time: float = math.inf  # T_n, s; infinite: no integral part
+    back_emf: float = 0.0  # k_e, V s/rad; 0 where the controller decouples it
+    voltage_limit: float = math.inf  # V; infinite: none
 
     def __post_init__(self):
         part = "current loop"

@@ -35,27 +35,16 @@ UNFILTERED = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
 class SecondOrderFilter:
     """Second-order filter by its natural frequencies and dampings.
 
-    Parameters
-    ----------
-    numerator_frequency : float
-        f_n, Hz; infinite: low pass.
-    numerator_damping : float
-        D_z; 0 makes a full notch at f_n.
-    denominator_frequency : float
-        f_d, Hz.
-    denominator_damping : float
-        D_n.
-
     Raises
     ------
     ControlError
         If a frequency is not above 0, D_z is negative or D_n is not above 0.
     """
 
-    numerator_frequency: float
-    numerator_damping: float
-    denominator_frequency: float
-    denominator_damping: float
+    numerator_frequency: float  # f_n, Hz; infinite: low pass
+    numerator_damping: float  # D_z; 0 makes a full notch at f_n
+    denominator_frequency: float  # f_d, Hz
+    denominator_damping: float  # D_n
 
     def __post_init__(self):
         part = "second-order filter"
@@ -139,21 +128,14 @@ class ReferenceModel:
     disturbances only and a step of the set point does not overshoot; the proportional part sees
     the set point itself (Groß, Hamann and Wiegärtner 2001, Electrical Feed Drives in Automation).
 
-    Parameters
-    ----------
-    natural_frequency : float
-        f_r, Hz.
-    damping : float
-        D_r.
-
     Raises
     ------
     ControlError
         If one of them is not above 0.
     """
 
-    natural_frequency: float
-    damping: float
+    natural_frequency: float  # f_r, Hz
+    damping: float  # D_r
 
     def __post_init__(self):
         require_positive("reference model", "natural frequency", self.natural_frequency)

@@ -38,48 +38,29 @@ class BallScrew:
     is a shaft, else at the nut's place. What each bearing carries goes by its stiffness; the
     shaft does not stiffen the carrying part between two of them.
 
-    Parameters
-    ----------
-    lead : float
-        Travel per turn, m; positive for a right-hand thread, negative for a left-hand one. It
-        decides which way the screw turns, so which way the reaction of its torque acts; the
-        motor's angle counts positive forward with either.
-    motor_inertia, screw_inertia : float
-        Moments of inertia, kg m^2; a coupling's is divided between the two.
-    nut_stiffness : float
-        Axial, with the nut's housing, N/m.
-    bearing_stiffness : float
-        Axial, of the fixed bearing at the drive's end with its housing, N/m; infinite if rigid.
-    far_bearing_stiffness : float
-        Axial, of the bearing at the other end of a shaft that is fixed there too, N/m.
-    shaft : ScrewShaft, optional
-        Without one the stiffness does not depend on position.
-    coupling_stiffness : float
-        Torsional, between motor (or driven pulley) and screw, N m/rad; infinite if rigid.
-    belt : Belt, optional
-        Between motor and screw.
-    axial_damping : float
-        Of bearings, shaft and nut together, N s/m.
-    torsional_damping : float
-        Of coupling and shaft together, N m s/rad.
-
     Raises
     ------
     StructureError
         If a number is out of its range.
     """
 
+    #: travel per turn, m; positive for a right-hand thread, negative for a left-hand one. It
+    #: decides which way the screw turns, so which way the reaction of its torque acts; the motor's
+    #: angle counts positive forward with either
     lead: float
-    motor_inertia: float
-    screw_inertia: float
-    nut_stiffness: float
+    motor_inertia: float  # kg m^2
+    screw_inertia: float  # kg m^2; a coupling's is divided between the two
+    nut_stiffness: float  # axial, with the nut's housing, N/m
+    #: axial, of the fixed bearing at the drive's end with its housing, N/m; infinite if rigid
     bearing_stiffness: float = np.inf
+    #: the same at the other end of a shaft that is fixed there too
     far_bearing_stiffness: float = np.inf
-    shaft: ScrewShaft | None = None
+    shaft: ScrewShaft | None = None  # without one the stiffness does not depend on position
+    #: torsional, between motor (or driven pulley) and screw, N m/rad; infinite if rigid
     coupling_stiffness: float = np.inf
-    belt: Belt | None = None
-    axial_damping: float = 0.0
-    torsional_damping: float = 0.0
+    belt: Belt | None = None  # between motor and screw
+    axial_damping: float = 0.0  # of bearings, shaft and nut together, N s/m
+    torsional_damping: float = 0.0  # of coupling and shaft together, N m s/rad
 
     def __post_init__(self) -> None:
         where = "ball screw"

@@ -13,30 +13,20 @@ from dynamics.drive.gear_train import Spring, Stage
 class Belt:
     """Belt and its two pulleys, on parallel axes in one housing.
 
-    Parameters
-    ----------
-    driver_radius, driven_radius : float
-        Pitch radii of the pulleys at the motor and behind it, m.
-    stiffness : float
-        Of both strands together, N/m along the belt: 2 E A/L of tensioned strands of length L.
-    damping : float
-        N s/m along the belt.
-    driver_inertia, driven_inertia : float
-        Moments of inertia of the pulleys, kg m^2; 0 where a pulley sits rigidly on a beam or body
-        that has it.
-
     Raises
     ------
     StructureError
         If a radius or the stiffness is not above 0, or a value negative.
     """
 
-    driver_radius: float
-    driven_radius: float
+    driver_radius: float  # pitch radius of the pulley at the motor, m
+    driven_radius: float  # of the pulley behind it, m
+    #: of both strands together, N/m along the belt: 2 E A/L of tensioned strands of length L
     stiffness: float
-    damping: float = 0.0
+    damping: float = 0.0  # N s/m along the belt
+    #: kg m^2; 0 where a pulley sits rigidly on a beam or body that has it
     driver_inertia: float = 0.0
-    driven_inertia: float = 0.0
+    driven_inertia: float = 0.0  # likewise
 
     def __post_init__(self) -> None:
         positive("belt", "driver_radius", self.driver_radius)

@@ -69,47 +69,24 @@ class RackAndPinion:
     Springs in a row: coupling between motor and gearbox (K1), gearbox about its output shaft
     (K2), mesh of pinion and rack. The motors' housings take the reaction of their torques.
 
-    Parameters
-    ----------
-    pinion_radius : float
-        Pitch radius, m.
-    gear_ratio : float
-        Turns of the motor per turn of the pinion, the same way round.
-    motors : sequence of RackMotor
-    mesh_stiffness : float
-        N/m along the rack; infinite if rigid.
-    gearbox_stiffness : float
-        N m/rad about the output shaft; infinite if rigid.
-    coupling_stiffness : float
-        N m/rad between motor and gearbox; infinite if rigid.
-    pinion_inertia : float
-        With the gearbox's output shaft, kg m^2; 0 if negligible.
-    gearbox_inertia : float
-        At the gearbox's input, kg m^2.
-    mesh_damping : float
-        N s/m.
-    gearbox_damping, coupling_damping : float
-        N m s/rad.
-    motors_on : {"moving", "carrying"}
-        Part that the motors ride on; the rack is on the other one.
-
     Raises
     ------
     StructureError
         If a number is out of its range, there is no motor, or the preloads do not cancel.
     """
 
-    pinion_radius: float
-    gear_ratio: float
+    pinion_radius: float  # pitch radius, m
+    gear_ratio: float  # turns of the motor per turn of the pinion, the same way round
     motors: Sequence[RackMotor]
-    mesh_stiffness: float = np.inf
-    gearbox_stiffness: float = np.inf
-    coupling_stiffness: float = np.inf
-    pinion_inertia: float = 0.0
-    gearbox_inertia: float = 0.0
-    mesh_damping: float = 0.0
-    gearbox_damping: float = 0.0
-    coupling_damping: float = 0.0
+    mesh_stiffness: float = np.inf  # N/m along the rack; infinite if rigid
+    gearbox_stiffness: float = np.inf  # N m/rad about the output shaft; infinite if rigid
+    coupling_stiffness: float = np.inf  # N m/rad between motor and gearbox; infinite if rigid
+    pinion_inertia: float = 0.0  # with the gearbox's output shaft, kg m^2; 0 if negligible
+    gearbox_inertia: float = 0.0  # at the gearbox's input, kg m^2
+    mesh_damping: float = 0.0  # N s/m
+    gearbox_damping: float = 0.0  # N m s/rad
+    coupling_damping: float = 0.0  # N m s/rad
+    #: {"moving", "carrying"}, part that the motors ride on; the rack is on the other one
     motors_on: Literal["moving", "carrying"] = "moving"
 
     def __post_init__(self) -> None:

@@ -96,18 +96,13 @@ class SpindleRotor:
     For a spindle whose bending is modelled apart, or not at all. The axis names the housing as
     the carrying part; its moving part is not asked.
 
-    Parameters
-    ----------
-    inertia : float
-        Of spindle, motor and tool about the axis, kg m^2.
-
     Raises
     ------
     StructureError
         If it is not above 0.
     """
 
-    inertia: float
+    inertia: float  # of spindle, motor and tool about the axis, kg m^2
 
     def __post_init__(self) -> None:
         positive("spindle rotor", "inertia", self.inertia)

@@ -26,29 +26,19 @@ class AxialSupport(NamedTuple):
 class ScrewShaft:
     """Shaft between the bearings of a ball screw.
 
-    Parameters
-    ----------
-    diameter : float
-        That carries load: core or equivalent diameter, m.
-    length : float
-        From the fixed bearing at the drive's end to the other bearing or the free end, m.
-    nut_at : float
-        Place of the nut at position 0 of the axis, from the fixed bearing along the direction
-        of the axis, m; negative if that bearing lies ahead of the nut.
-    support : {"fixed-free", "fixed-supported", "fixed-fixed"}
-        The first bearing carries axial load; the second one if "fixed", not if "supported".
-    material : Material
-        Steel by default.
-
     Raises
     ------
     StructureError
         If a size is not above 0, or the support unknown.
     """
 
-    diameter: float
+    diameter: float  # that carries load: core or equivalent diameter, m
+    #: from the fixed bearing at the drive's end to the other bearing or the free end, m
     length: float
+    #: place of the nut at position 0 of the axis, from the fixed bearing along the direction of the
+    #: axis, m; negative if that bearing lies ahead of the nut
     nut_at: float
+    #: the first bearing carries axial load; the second one if "fixed", not if "supported"
     support: Support = "fixed-free"
     material: Material = STEEL
 

@@ -23,55 +23,25 @@ _BRISTLE_DAMPING = 0.3
 
 @dataclass(frozen=True)
 class AxisForce:
-    """Parameters of the force of an axis.
+    """Parameters of the force of an axis."""
 
-    Parameters
-    ----------
-    mass : float
-        kg.
-    viscous : float
-        N s/m.
-    coulomb : float
-        N.
-    static : float, optional
-        Friction at the onset of motion, N; with `stribeck_velocity`.
-    stribeck_velocity : float
-        m/s.
-    presliding_stiffness, presliding_damping : float, optional
-        Of the contact before it slides, N/m, N s/m.
-    asymmetry : float
-        Coulomb friction forwards above the mean of both directions, N.
-    offset : float
-        Constant force held, N.
-    quadratic_drag : float
-        N s^2/m^2.
-    cogging_amplitude, cogging_period, cogging_phase : float
-        N, m, rad.
-    backlash : float
-        Way of the motor in which it does not drive the slide, m.
-    motor_mass : float
-        Part of the mass on the motor's side of the backlash, kg.
-    warm_up_share, warm_up_time : float
-        Of the viscous friction at the start, 1, that decays with a time constant, s.
-    """
-
-    mass: float
-    viscous: float = 0.0
-    coulomb: float = 0.0
-    static: float | None = None
-    stribeck_velocity: float = 0.01
-    presliding_stiffness: float | None = None
-    presliding_damping: float | None = None
-    asymmetry: float = 0.0
-    offset: float = 0.0
-    quadratic_drag: float = 0.0
-    cogging_amplitude: float = 0.0
-    cogging_period: float = 0.01
-    cogging_phase: float = 0.0
-    backlash: float = 0.0
-    motor_mass: float = 0.0
-    warm_up_share: float = 0.0
-    warm_up_time: float = 1.0
+    mass: float  # kg
+    viscous: float = 0.0  # N s/m
+    coulomb: float = 0.0  # N
+    static: float | None = None  # friction at the onset of motion, N; with `stribeck_velocity`
+    stribeck_velocity: float = 0.01  # m/s
+    presliding_stiffness: float | None = None  # of the contact before it slides, N/m
+    presliding_damping: float | None = None  # of the same, N s/m
+    asymmetry: float = 0.0  # Coulomb friction forwards above the mean of both directions, N
+    offset: float = 0.0  # constant force held, N
+    quadratic_drag: float = 0.0  # N s^2/m^2
+    cogging_amplitude: float = 0.0  # N
+    cogging_period: float = 0.01  # m
+    cogging_phase: float = 0.0  # rad
+    backlash: float = 0.0  # way of the motor in which it does not drive the slide, m
+    motor_mass: float = 0.0  # part of the mass on the motor's side of the backlash, kg
+    warm_up_share: float = 0.0  # of the viscous friction at the start that decays
+    warm_up_time: float = 1.0  # constant of the decay, s
 
     def along(
         self,

@@ -39,24 +39,15 @@ KEYS = (
 class SmoothCoulomb:
     """Parameters of one smooth friction; about an axis read N m, rad for N, m.
 
-    Parameters
-    ----------
-    coulomb : float
-        FC, N; not below 0.
-    smoothing_velocity : float
-        vc, m/s; above 0.
-    viscous : float
-        c, N s/m; not below 0.
-
     Raises
     ------
     ValueError
         If a parameter is out of its range; the message names it.
     """
 
-    coulomb: float
-    smoothing_velocity: float
-    viscous: float = 0.0
+    coulomb: float  # FC, N; not below 0
+    smoothing_velocity: float  # vc, m/s; above 0
+    viscous: float = 0.0  # c, N s/m; not below 0
 
     def __post_init__(self) -> None:
         check_ranges(self, KEYS, "smooth friction")

@@ -57,30 +57,17 @@ KEYS = (
 class TanhHysteresis:
     """Parameters of one friction; along a rotation read N m, rad for N, m.
 
-    Parameters
-    ----------
-    coulomb : float
-        fc, N; above 0.
-    viscous : float
-        C, N s/m; not below 0.
-    low_speed_viscous : float
-        Cv, N s/m; not below 0.
-    low_speed_decay : float
-        av, s/m; not below 0.
-    hysteresis_slope : float
-        ah, 1/m; above 0.
-
     Raises
     ------
     ValueError
         If a parameter is out of its range; the message names it.
     """
 
-    coulomb: float
-    viscous: float
-    low_speed_viscous: float
-    low_speed_decay: float
-    hysteresis_slope: float
+    coulomb: float  # fc, N; above 0
+    viscous: float  # C, N s/m; not below 0
+    low_speed_viscous: float  # Cv, N s/m; not below 0
+    low_speed_decay: float  # av, s/m; not below 0
+    hysteresis_slope: float  # ah, 1/m; above 0
 
     def __post_init__(self) -> None:
         check_ranges(self, KEYS, "tanh hysteresis")

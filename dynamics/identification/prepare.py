@@ -33,25 +33,13 @@ class FrfSet:
 
 @dataclass(frozen=True)
 class Measurement:
-    """All FRFs on common lines, in one quantity, with sensor senses applied.
+    """All FRFs on common lines, in one quantity, with sensor senses applied."""
 
-    Parameters
-    ----------
-    frfs : tuple of Frf
-        As given, in one quantity, without lines at 0 Hz.
-    records : Records
-        All lines of all FRFs, each multiplied by the senses of its two points.
-    senses : (k,) array of float
-        Those senses, +1 or -1.
-    searched, clean : Band
-        Lines in which modes are looked for, and the part of them with little noise.
-    """
-
-    frfs: tuple[Frf, ...]
-    records: Records
-    senses: NDArray[np.float64]
-    searched: Band
-    clean: Band
+    frfs: tuple[Frf, ...]  # as given, in one quantity, without lines at 0 Hz
+    records: Records  # all lines of all FRFs, each multiplied by the senses of its two points
+    senses: NDArray[np.float64]  # (k,), those senses, +1 or -1
+    searched: Band  # lines in which modes are looked for
+    clean: Band  # the part of them with little noise
 
     def of(self, members: Sequence[int], band: Band) -> Records:
         """Lines of a band of some FRFs."""

@@ -26,54 +26,32 @@ from dynamics.least_squares import least_squares
 
 @dataclass(frozen=True)
 class ToolPointRecords:
-    """FRFs with what is known of their degrees of freedom at the tool point.
-
-    Parameters
-    ----------
-    records : Records
-    axes : tuple of str
-        Directions measured at the tool point, each one component of the mode vectors.
-    pairs : tuple of (int, int) or None
-        Per FRF: response and reference axis (index into `axes`), or None for an FRF that does
-        not both start and end at the tool point: its residues are free real numbers.
-    """
+    """FRFs with what is known of their degrees of freedom at the tool point."""
 
     records: Records
+    #: directions measured at the tool point, each one component of the mode vectors
     axes: tuple[str, ...]
+    #: per FRF: response and reference axis (index into `axes`), or None for an FRF that does not
+    #: both start and end at the tool point: its residues are free real numbers
     pairs: tuple[tuple[int, int] | None, ...]
 
 
 @dataclass(frozen=True)
 class RealModel:
-    """Real modes with positive mass: the residue matrix at the tool point is u u^T.
+    """Real modes with positive mass: the residue matrix at the tool point is u u^T."""
 
-    Parameters
-    ----------
-    natural_frequency, damping : (m,) array of float
-        rad/s and 1.
-    vectors : (m, axes) array of float
-        Mode vectors at the tool point for unit modal mass, 1/sqrt(kg).
-    delay : float or None
-        Lag of the response channels behind the force channel, s; None where there is none.
-    terms : tuple of int
-        Powers of s of the residual terms, in receptance.
-    free : list of (unknowns,) array of float
-        Per FRF the linear unknowns: real residues where the FRF is not of the tool point, then
-        the residual terms.
-    chi_square : float
-    gradient : (p,) array of float
-    normal : (p, p) array of float
-        Gauss-Newton matrix of [ln w, ln zeta, vectors, delay in `DELAY_UNIT` if there is one].
-    """
-
-    natural_frequency: NDArray[np.float64]
-    damping: NDArray[np.float64]
-    vectors: NDArray[np.float64]
-    delay: float | None
-    terms: tuple[int, ...]
+    natural_frequency: NDArray[np.float64]  # (m,), rad/s
+    damping: NDArray[np.float64]  # (m,), 1
+    vectors: NDArray[np.float64]  # (m, axes), at the tool point for unit modal mass, 1/sqrt(kg)
+    delay: float | None  # lag of the response channels behind the force channel, s
+    terms: tuple[int, ...]  # powers of s of the residual terms, in receptance
+    #: per FRF the linear unknowns (unknowns,): real residues where the FRF is not of the tool
+    #: point, then the residual terms
     free: tuple[NDArray[np.float64], ...]
     chi_square: float
-    gradient: NDArray[np.float64]
+    gradient: NDArray[np.float64]  # (p,)
+    #: (p, p), Gauss-Newton matrix of [ln w, ln zeta, vectors, delay in `DELAY_UNIT` if there is
+    #: one]
     normal: NDArray[np.float64]
 
     @property

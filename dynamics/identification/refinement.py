@@ -22,30 +22,18 @@ DAMPING_BOUNDS = (1e-6, 0.9)
 
 @dataclass(frozen=True)
 class ModalModel:
-    """Poles common to all FRFs with the residues of each FRF.
+    """Poles common to all FRFs with the residues of each FRF."""
 
-    Parameters
-    ----------
-    natural_frequency, damping : (m,) array of float
-        rad/s and 1.
-    coefficients : (2m + terms, k) array of float
-        Per FRF: m real parts, m parts in quadrature (multiplying s / w), residual terms.
-    terms : tuple[int, ...]
-    chi_square : float
-        Sum of squared residuals over the noise variance (per complex line: |e|^2 / sigma^2).
-    gradient : (2m,) array of float
-        Half the gradient of the chi-square by [ln w, ln zeta], residues eliminated.
-    normal : (2m, 2m) array of float
-        Gauss-Newton matrix of the same.
-    """
-
-    natural_frequency: NDArray[np.float64]
-    damping: NDArray[np.float64]
+    natural_frequency: NDArray[np.float64]  # (m,), rad/s
+    damping: NDArray[np.float64]  # (m,), 1
+    #: (2m + terms, k), per FRF: m real parts, m parts in quadrature (multiplying s / w), residual
+    #: terms
     coefficients: NDArray[np.float64]
     terms: tuple[int, ...]
-    chi_square: float
+    chi_square: float  # sum of |e|^2 / sigma^2 over complex lines
+    #: (2m,), half the gradient by [ln w, ln zeta], residues eliminated
     gradient: NDArray[np.float64]
-    normal: NDArray[np.float64]
+    normal: NDArray[np.float64]  # (2m, 2m), Gauss-Newton matrix of the same
 
     @property
     def count(self) -> int:

@@ -10,27 +10,14 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class Records:
-    """FRFs of one quantity on common lines, with the noise of each.
+    """FRFs of one quantity on common lines, with the noise of each."""
 
-    Parameters
-    ----------
-    frequency : (n,) array of float
-        Hz, all above zero.
-    values : (n, k) array of complex
-        One column an FRF.
-    noise : (n, k) array of float
-        Standard deviation of the noise of `values`.
-    derivative : int
-        0 for receptance, 1 for mobility, 2 for accelerance.
-    added_decay : float
-        Decay of an exponential window on the time records, rad/s: the measured function is that
-        of the structure at s = added_decay + i omega.
-    """
-
-    frequency: NDArray[np.float64]
-    values: NDArray[np.complex128]
-    noise: NDArray[np.float64]
-    derivative: int
+    frequency: NDArray[np.float64]  # (n,), Hz, all above zero
+    values: NDArray[np.complex128]  # (n, k), one column an FRF
+    noise: NDArray[np.float64]  # (n, k), standard deviation of the noise of `values`
+    derivative: int  # 0 for receptance, 1 for mobility, 2 for accelerance
+    #: of an exponential window on the time records, rad/s: the measured function is that of the
+    #: structure at s = added_decay + i omega
     added_decay: float = 0.0
 
     @property
@@ -67,19 +54,11 @@ CURVATURE_TERMS: tuple[int, ...] = (-4, 2)
 
 @dataclass(frozen=True)
 class Shapes:
-    """Response of every mode to a unit residue, and its derivatives.
+    """Response of every mode to a unit residue, and its derivatives."""
 
-    Parameters
-    ----------
-    unit : (n, m) array of complex
-        s^d / (s^2 + 2 zeta w s + w^2).
-    by_frequency, by_damping : (n, m) array of complex
-        Derivatives with respect to ln(w) and ln(zeta).
-    """
-
-    unit: NDArray[np.complex128]
-    by_frequency: NDArray[np.complex128]
-    by_damping: NDArray[np.complex128]
+    unit: NDArray[np.complex128]  # (n, m), s^d / (s^2 + 2 zeta w s + w^2)
+    by_frequency: NDArray[np.complex128]  # (n, m), derivative with respect to ln(w)
+    by_damping: NDArray[np.complex128]  # (n, m), derivative with respect to ln(zeta)
 
 
 def mode_shapes_in_frequency(

@@ -19,25 +19,13 @@ MOSTLY_NOISE = 0.1
 
 @dataclass(frozen=True)
 class SynthesisError:
-    """Deviation of a synthesised FRF from the measured one over the band.
+    """Deviation of a synthesised FRF from the measured one over the band."""
 
-    Parameters
-    ----------
-    rms, maximum : float
-        Root mean square and largest magnitude of the deviation, relative to the largest
-        magnitude of the measured function in the band, in the measured quantity.
-    rms_receptance, maximum_receptance : float
-        The same after conversion of both to receptance.
-    noise : float
-        Root mean square of the noise of the measurement over the band, relative to the same
-        peak: no model comes closer than this.
-    """
-
-    rms: float
-    maximum: float
-    rms_receptance: float
-    maximum_receptance: float
-    noise: float
+    rms: float  # of the deviation, over the largest magnitude of the measured function in the band
+    maximum: float  # largest magnitude of the deviation, over the same
+    rms_receptance: float  # after conversion of both to receptance
+    maximum_receptance: float  # likewise
+    noise: float  # rms of the noise of the measurement, over the same peak: no model comes closer
 
 
 @dataclass(frozen=True)
@@ -84,33 +72,18 @@ class IdentifiedMode:
 
 @dataclass(frozen=True)
 class FrfModel:
-    """Modal model of one FRF: modes, delay and residual terms.
+    """Modal model of one FRF: modes, delay and residual terms."""
 
-    Parameters
-    ----------
-    derivative : int
-        0, 1 or 2: the quantity that the FRF is.
-    added_decay : float
-        Decay of an exponential window in the measurement, rad/s.
-    natural_frequency, damping : (m,) array of float
-        rad/s and 1.
-    residues, quadrature : (m,) array of float
-        Real residue, 1/kg, and the part in quadrature, which multiplies s / w.
-    delay : float
-        Lag of the response channel, s.
-    residual : tuple of (int, float)
-        Power of s and coefficient, in receptance, of each residual term: 1/s^2 the mass line of
-        modes below the band (1/kg), 1/s the quadrature that a lag leaves, constant the
-        compliance of modes above the band (m/N); 1/s^4 and s^2 their next terms.
-    """
-
-    derivative: int
-    added_decay: float
-    natural_frequency: NDArray[np.float64]
-    damping: NDArray[np.float64]
-    residues: NDArray[np.float64]
-    quadrature: NDArray[np.float64]
-    delay: float
+    derivative: int  # 0, 1 or 2: the quantity that the FRF is
+    added_decay: float  # of an exponential window in the measurement, rad/s
+    natural_frequency: NDArray[np.float64]  # (m,), rad/s
+    damping: NDArray[np.float64]  # (m,), 1
+    residues: NDArray[np.float64]  # (m,), real residue, 1/kg
+    quadrature: NDArray[np.float64]  # (m,), the part in quadrature, which multiplies s / w
+    delay: float  # lag of the response channel, s
+    #: power of s and coefficient, in receptance, of each residual term: 1/s^2 the mass line of
+    #: modes below the band (1/kg), 1/s the quadrature that a lag leaves, constant the compliance of
+    #: modes above the band (m/N); 1/s^4 and s^2 their next terms
     residual: tuple[tuple[int, float], ...]
 
     @property

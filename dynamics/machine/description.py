@@ -36,26 +36,17 @@ class FeedDrive(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class MachineAxis:
-    """Axis with its drive and control.
-
-    Parameters
-    ----------
-    geometry : DrivenAxis
-    drive : FeedDrive
-    controllers : sequence of DriveController
-        None (no control), one for all motors (they share its torque, and it measures the mean of
-        their encoders), or one a motor.
-    scale_at : (3,) array of float, optional
-        Place of the direct measuring system, m; where the drive pushes by default.
-    brake : (float, float)
-        Stiffness, N m/rad, and damping, N m s/rad, of the brake of each motor (N/m and N s/m of
-        a linear one).
-    """
+    """Axis with its drive and control."""
 
     geometry: DrivenAxis
     drive: FeedDrive
+    #: none (no control), one for all motors (they share its torque, and it measures the mean of
+    #: their encoders), or one a motor
     controllers: Sequence[DriveController] = ()
+    #: (3,), of the direct measuring system, m; where the drive pushes by default
     scale_at: ArrayLike | None = None
+    #: stiffness, N m/rad, and damping, N m s/rad, of the brake of each motor (N/m and N s/m of a
+    #: linear one)
     brake: tuple[float, float] = (1e5, 0.0)
 
     @property

@@ -27,27 +27,18 @@ LEAST_LEAD = 0.1
 class ModalModel:
     """Real modes with their motion at named points.
 
-    Parameters
-    ----------
-    frequency : (m,) array of float
-        Undamped natural frequencies, Hz, 0 or more.
-    damping : (m,) array of float
-        Damping ratios, 1.
-    shapes : mapping of str to (6, m) array of float
-        Mass-normalised: three displacements (1/sqrt(kg)) and three rotations (rad/(m sqrt(kg)))
-        of each point.
-    residual : mapping, optional
-        As of `LinearStructure`.
-
     Raises
     ------
     StructureError
         If sizes disagree or a number is negative or not finite.
     """
 
-    frequency: NDArray[np.float64]
-    damping: NDArray[np.float64]
+    frequency: NDArray[np.float64]  # (m,), undamped natural frequencies, Hz, 0 or more
+    damping: NDArray[np.float64]  # (m,), ratios, 1
+    #: each (6, m), mass-normalised: three displacements (1/sqrt(kg)) and three rotations (rad/(m
+    #: sqrt(kg))) of each point
     shapes: Mapping[str, NDArray[np.float64]]
+    #: as of `LinearStructure`
     residual: Mapping[tuple[str, str], NDArray[np.float64]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

@@ -29,16 +29,6 @@ NO_FORCE = 1e-6
 class ImportedPart:
     """Part of which only points, and rails between them, can be joined.
 
-    Parameters
-    ----------
-    name : str
-    structure : LinearStructure
-        Super-element of `reduced_part`: points' six directions in order, modal coordinates.
-    positions : mapping of str to (3,) array of float
-        Of all its points, in order, m.
-    rail : sequence of str
-        Points of a line along which other parts may be joined anywhere.
-
     Raises
     ------
     StructureError
@@ -46,9 +36,10 @@ class ImportedPart:
     """
 
     name: str
+    #: super-element of `reduced_part`: points' six directions in order, modal coordinates
     structure: LinearStructure
-    positions: Mapping[str, ArrayLike]
-    rail: Sequence[str] = ()
+    positions: Mapping[str, ArrayLike]  # each (3,), of all its points, in order, m
+    rail: Sequence[str] = ()  # points of a line along which other parts may be joined anywhere
 
     def __post_init__(self) -> None:
         where = f'imported part "{self.name}"'

@@ -18,14 +18,6 @@ from dynamics.structure.linear_structure import StructureError
 class Rotor:
     """Part with one freedom: its angle about an axis, rad, counted against ground.
 
-    Parameters
-    ----------
-    name : str
-    inertia : float
-        Moment of inertia about the axis, kg m^2.
-    axis : (3,) array of float
-        Direction; made a unit vector.
-
     Raises
     ------
     StructureError
@@ -33,8 +25,8 @@ class Rotor:
     """
 
     name: str
-    inertia: float
-    axis: ArrayLike
+    inertia: float  # moment of inertia about the axis, kg m^2
+    axis: ArrayLike  # (3,), direction; made a unit vector
 
     def __post_init__(self) -> None:
         where = f'rotor "{self.name}"'

@@ -18,21 +18,12 @@ from dynamics.structure.linear_structure import StructureError
 
 @dataclass(frozen=True, eq=False)
 class Term:
-    """Motion of a part at a place, weighted.
+    """Motion of a part at a place, weighted."""
 
-    Parameters
-    ----------
-    part : str
-        Name of a body, beam or rotor, or "ground", which does not move.
-    direction : (6,) or (3,) array of float
-        Weights of displacements along and rotations about x, y, z.
-    at : (3,) array of float
-        Place, m; of no matter for a rotor.
-    """
-
-    part: str
+    part: str  # name of a body, beam or rotor, or "ground", which does not move
+    #: (6,) or (3,) array of float, weights of displacements along and rotations about x, y, z
     direction: ArrayLike
-    at: ArrayLike = (0.0, 0.0, 0.0)
+    at: ArrayLike = (0.0, 0.0, 0.0)  # (3,), place, m; of no matter for a rotor
 
     def __post_init__(self) -> None:
         where = f'term on "{self.part}"'
@@ -58,15 +49,6 @@ def reversed_terms(terms: Sequence[Term]) -> tuple[Term, ...]:
 class Coupling:
     """Spring and damper along the sum of its terms.
 
-    Parameters
-    ----------
-    name : str
-    terms : sequence of Term
-    stiffness : float
-        N/m (N m/rad where the sum is an angle).
-    damping : float
-        N s/m and kin.
-
     Raises
     ------
     StructureError
@@ -75,8 +57,8 @@ class Coupling:
 
     name: str
     terms: Sequence[Term]
-    stiffness: float
-    damping: float = 0.0
+    stiffness: float  # N/m (N m/rad where the sum is an angle)
+    damping: float = 0.0  # N s/m and kin
 
     def __post_init__(self) -> None:
         where = f'coupling "{self.name}"'

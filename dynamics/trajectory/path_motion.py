@@ -41,15 +41,6 @@ class Pieces(NamedTuple):
 class PathMotion:
     """Motion from rest to rest along a plane path.
 
-    Parameters
-    ----------
-    path : Path
-        Its first and last element are lines.
-    feed : float
-        m/s.
-    acceleration, jerk : float
-        Limits of the speed along the path and in the corners, m/s^2, m/s^3.
-
     Raises
     ------
     TrajectoryError
@@ -57,10 +48,10 @@ class PathMotion:
         at an arc.
     """
 
-    path: Path
-    feed: float
-    acceleration: float
-    jerk: float
+    path: Path  # its first and last element are lines
+    feed: float  # m/s
+    acceleration: float  # limit of the speed along the path and in the corners, m/s^2
+    jerk: float  # limit of the same, m/s^3
     pieces: Pieces = field(init=False, repr=False)
     duration: float = field(init=False)  # s
 

@@ -25,22 +25,15 @@ def _standing_outside(motion: Motion, t: NDArray[np.float64], duration: float) -
 class ConstantSpeedMove:
     """Straight move at constant speed; velocity jumps at both ends.
 
-    Parameters
-    ----------
-    start, end : (axes,) array_like of float
-        m (rad); they differ.
-    speed : float
-        m/s.
-
     Raises
     ------
     TrajectoryError
         If the speed is not above 0 or start and end do not make a line.
     """
 
-    start: ArrayLike
-    end: ArrayLike
-    speed: float
+    start: ArrayLike  # (axes,), m (rad); they differ
+    end: ArrayLike  # (axes,), m (rad); they differ
+    speed: float  # m/s
 
     def __post_init__(self):
         require_positive("constant-speed move", "speed", self.speed)
@@ -68,28 +61,17 @@ class ConstantSpeedMove:
 class SineMotion:
     """x = centre + amplitude sin(2 pi f t + phase) in each axis.
 
-    Parameters
-    ----------
-    centre, amplitude : (axes,) array_like of float
-        m (rad).
-    frequency : float
-        Hz.
-    periods : float
-        How many.
-    phase : float
-        rad; pi/2 starts at the amplitude, without velocity.
-
     Raises
     ------
     TrajectoryError
         If frequency or periods are not above 0, or the axes differ in number.
     """
 
-    centre: ArrayLike
-    amplitude: ArrayLike
-    frequency: float
-    periods: float
-    phase: float = 0.0
+    centre: ArrayLike  # (axes,), m (rad)
+    amplitude: ArrayLike  # (axes,), m (rad)
+    frequency: float  # Hz
+    periods: float  # how many
+    phase: float = 0.0  # rad; pi/2 starts at the amplitude, without velocity
 
     def __post_init__(self):
         require_positive("sine", "frequency", self.frequency)
@@ -121,30 +103,17 @@ class SineMotion:
 class CircleMotion:
     """Circle at constant feed, as in a circular test (ISO 230-4).
 
-    Parameters
-    ----------
-    centre : (2,) array_like of float
-        m.
-    radius : float
-        m.
-    feed : float
-        Along the circle, m/s.
-    revolutions : float
-        How many; negative: clockwise.
-    start_angle : float
-        rad from the first axis.
-
     Raises
     ------
     TrajectoryError
         If radius or feed are not above 0, or revolutions is 0.
     """
 
-    centre: ArrayLike
-    radius: float
-    feed: float
-    revolutions: float = 1.0
-    start_angle: float = 0.0
+    centre: ArrayLike  # (2,), m
+    radius: float  # m
+    feed: float  # along the circle, m/s
+    revolutions: float = 1.0  # how many; negative: clockwise
+    start_angle: float = 0.0  # rad from the first axis
 
     def __post_init__(self):
         axes_vector("circle", "centre", self.centre, 2)

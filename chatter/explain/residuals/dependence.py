@@ -37,22 +37,12 @@ class Sample(NamedTuple):
 
 
 class Dependence(NamedTuple):
-    """Share of a residual that depends on a variable.
+    """Share of a residual that depends on a variable."""
 
-    Parameters
-    ----------
-    share : float
-        Of the sum of squares over the noise, by holdout runs; below 0 for noise.
-    threshold : float
-        Share that shifted residuals do not exceed.
-    coefficients, errors : (bins,) array
-        g of every bin from all runs, nan where there are no samples, and its standard error.
-    """
-
-    share: float
-    threshold: float
-    coefficients: Array
-    errors: Array
+    share: float  # of the sum of squares over the noise, by holdout runs; below 0 for noise
+    threshold: float  # share that shifted residuals do not exceed
+    coefficients: Array  # (bins,), g of every bin from all runs, nan where there are no samples
+    errors: Array  # (bins,), its standard error
 
     @property
     def significant(self) -> bool:

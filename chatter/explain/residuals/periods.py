@@ -28,25 +28,14 @@ _LEAST_SHARE = 0.01
 
 
 class Period(NamedTuple):
-    """A period in a variable, with phase and size free in every run.
+    """A period in a variable, with phase and size free in every run."""
 
-    Parameters
-    ----------
-    length : float
-        SI unit of the variable.
-    share : float
-        Of the sum of squares over the noise; the period of a run is read from the others.
-    significant : bool
-        Whether runs agree on it beyond chance.
-    lengths, shares : (m,) array
-        Share over the period.
-    """
-
-    length: float
+    length: float  # SI unit of the variable
+    #: of the sum of squares over the noise; the period of a run is read from the others
     share: float
-    significant: bool
-    lengths: Array
-    shares: Array
+    significant: bool  # runs agree on it beyond chance
+    lengths: Array  # (m,)
+    shares: Array  # (m,), over the period
 
 
 def period_in(

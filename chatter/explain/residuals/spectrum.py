@@ -291,29 +291,14 @@ _BESIDE = 12
 
 
 class Split(NamedTuple):
-    """One channel of one run, in the frequency domain; squares are over those of the noise.
+    """One channel of one run, in the frequency domain; squares are over those of the noise."""
 
-    Parameters
-    ----------
-    orders : (k,) array of int
-        Of the spindle.
-    at_orders : (k,) array
-        Sum of squares at each; 2 for noise.
-    frequency : (m,) array
-        Hz.
-    density, whole : (m,) array
-        Of what lies between the harmonics, and of everything; 1 for noise.
-    beside : (m,) array
-        Level beside lines.
-    samples : int
-    """
-
-    orders: NDArray[np.intp]
-    at_orders: Array
-    frequency: Array
-    density: Array
-    whole: Array
-    beside: Array
+    orders: NDArray[np.intp]  # (k,), of the spindle
+    at_orders: Array  # (k,), sum of squares at each; 2 for noise
+    frequency: Array  # (m,), Hz
+    density: Array  # (m,), of what lies between the harmonics; 1 for noise
+    whole: Array  # (m,), of everything
+    beside: Array  # (m,), level beside lines
     samples: int
 
 

@@ -34,33 +34,16 @@ from chatter.explain.selection.problem import Problem
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """What was tried and what came out.
+    """What was tried and what came out."""
 
-    Parameters
-    ----------
-    split : Split
-        Runs fitted, and holdout runs.
-    first : Stage
-        Every candidate alone.
-    accepted : tuple of Stage
-        One an effect that was added, each tried beside all the others that were.
-    problem : Problem
-        With the effects accepted, and the noise beside them.
-    of_fitted : Fit
-        Of it, to the runs for fitting.
-    final : Fit
-        Of it, to all runs.
-    base : Fit
-        Of the nuisance parameters alone, to all runs.
-    """
-
-    split: Split
-    first: Stage
+    split: Split  # runs fitted, and holdout runs
+    first: Stage  # every candidate alone
+    #: one an effect that was added, each tried beside all the others that were
     accepted: tuple[Stage, ...]
-    problem: Problem
-    of_fitted: Fit
-    final: Fit
-    base: Fit
+    problem: Problem  # with the effects accepted, and the noise beside them
+    of_fitted: Fit  # of it, to the runs for fitting
+    final: Fit  # of it, to all runs
+    base: Fit  # of the nuisance parameters alone, to all runs
 
     @property
     def measurement(self) -> Measurement:

@@ -32,51 +32,26 @@ _MOST_TURNS = 100
 
 @dataclass(frozen=True, eq=False)
 class LyapunovRecord:
-    """What two runs beside a leading one tell, turn by turn.
+    """What two runs beside a leading one tell, turn by turn."""
 
-    Parameters
-    ----------
-    hold : int
-        Turns in which the cut took hold.
-    period : float
-        Of the variation, turns.
-    cycle : float
-        Of the lowest mode, turns.
-    size, distance : (n,) array of float
-        Logarithm of the speed of the difference, and of itself, as if it had never been brought
-        back; the speed over the perturbation a second, the distance over the perturbation.
-    from_rest : (n,) array of float
-        Speed of the difference of the run from rest, over that of the motion itself.
-    still : (n,) array of bool
-        Where the difference does not move: friction holds it.
-    scale : (n,) array of float
-        Logarithm of what the difference has been brought back by before every turn.
-    motion, rest : list of (m, 3) array of float
-        The difference in every turn as it was followed, m, and that of the run from rest.
-    step : float
-        From sample to sample of them, s.
-    swing : (n,) array of float
-        Half the range of the motion in every turn, of the axis that moves most, m.
-    left : bool
-        True where a run has left the range of the model.
-    rubs : bool
-        True where there is friction on modes.
-    """
-
-    hold: int
-    period: float
-    cycle: float
+    hold: int  # turns in which the cut took hold
+    period: float  # of the variation, turns
+    cycle: float  # of the lowest mode, turns
+    #: (n,), logarithm of the speed of the difference, over the perturbation a second, as if it had
+    #: never been brought back
     size: Array
-    distance: Array
+    distance: Array  # (n,), the same of the difference itself, over the perturbation
+    #: (n,), speed of the difference of the run from rest, over that of the motion itself
     from_rest: Array
-    still: NDArray[np.bool_]
+    still: NDArray[np.bool_]  # (n,), where the difference does not move: friction holds it
+    #: (n,), logarithm of what the difference has been brought back by before every turn
     scale: Array
-    motion: list[Array]
-    rest: list[Array]
-    step: float
-    swing: Array
-    left: bool
-    rubs: bool = False
+    motion: list[Array]  # the difference in every turn as it was followed, (m, 3), m
+    rest: list[Array]  # that of the run from rest, (m, 3), m
+    step: float  # from sample to sample of them, s
+    swing: Array  # (n,), half the range of the motion in every turn, of the axis that moves most, m
+    left: bool  # a run has left the range of the model
+    rubs: bool = False  # there is friction on modes
 
     def rise(self, first: int, least: float) -> tuple[int, int] | None:
         """Earliest growth by a logarithm, at the least, over whole periods from a turn on.

@@ -55,26 +55,14 @@ _SAME = 0.05
 
 @dataclass(frozen=True)
 class LyapunovVerdict:
-    """How a small perturbation on the forced motion develops.
+    """How a small perturbation on the forced motion develops."""
 
-    Parameters
-    ----------
-    verdict : str
-        ``"stable"``, ``"chatter"``, or empty where it cannot be told.
-    reason : str
-    rate : float
-        Growth of the perturbation, logarithm per revolution; -inf where it is gone at once, nan if
-        not known.
-    frequency : float
-        Strongest line of what grows, Hz; nan where nothing does.
-    from_rest_alone : bool
-        True where small perturbations die out, and only the cut from rest chatters.
-    """
-
-    verdict: str
+    verdict: str  # "stable", "chatter", or empty where it cannot be told
     reason: str
+    #: growth, logarithm per revolution; -inf where it is gone at once, nan if not known
     rate: float = math.nan
-    frequency: float = math.nan
+    frequency: float = math.nan  # strongest line of what grows, Hz; nan where nothing does
+    #: small perturbations die out, and only the cut from rest chatters
     from_rest_alone: bool = False
 
     @property

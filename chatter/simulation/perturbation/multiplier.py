@@ -59,25 +59,15 @@ _LAST_BEFORE_LEFT = 12
 
 @dataclass(frozen=True)
 class SimulatedMultiplier:
-    """Dominant multiplier of a simulated cut.
+    """Dominant multiplier of a simulated cut."""
 
-    Parameters
-    ----------
-    multiplier : complex
-        Over a period; of magnitude inf where the tool leaves the chip at once, and where chatter
-        is full: how small vibration grew before that is not known.
-    period : float
-        s.
-    frequency : float
-        Of the vibration that grows or dies out slowest, Hz; nan where it is not known.
-    bifurcation : str
-        ``"flip"`` where vibration doubles the period, else ``"hopf"``.
-    """
-
+    #: over a period; of magnitude inf where the tool leaves the chip at once, and where chatter is
+    #: full: how small vibration grew before that is not known
     multiplier: complex
-    period: float
+    period: float  # s
+    #: of the vibration that grows or dies out slowest, Hz; nan where it is not known
     frequency: float
-    bifurcation: str
+    bifurcation: str  # "flip" where vibration doubles the period, else "hopf"
 
     @property
     def radius(self) -> float:

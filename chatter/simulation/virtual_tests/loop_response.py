@@ -33,22 +33,13 @@ Response = NDArray[np.complex128]
 
 @dataclass(frozen=True, eq=False)
 class LoopResponse:
-    """Frequency responses of the closed loops of an axis.
+    """Frequency responses of the closed loops of an axis."""
 
-    Parameters
-    ----------
-    frequency : (m,) array of float
-        Hz.
-    position : (m,) array of complex
-        What the position controller measures (scale or encoder) per position set point, with the
-        feedforward of the machine; m/m.
-    velocity : (m,) array of complex
-        Velocity at the motor per velocity set point, position loop open; (m/s)/(m/s).
-    """
-
-    frequency: NDArray[np.float64]
+    frequency: NDArray[np.float64]  # (m,), Hz
+    #: (m,), what the position controller measures (scale or encoder) per position set point, with
+    #: the feedforward of the machine; m/m
     position: Response
-    velocity: Response
+    velocity: Response  # (m,), at the motor per velocity set point, position loop open; (m/s)/(m/s)
 
 
 def loop_response(

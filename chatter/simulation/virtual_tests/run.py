@@ -50,32 +50,18 @@ class MachineRun:
 
 @dataclass(frozen=True, eq=False)
 class RunInputs:
-    """What drives a machine through a run.
+    """What drives a machine through a run."""
 
-    Parameters
-    ----------
-    duration : float
-        s.
-    points : SetPoints, optional
-        Of all axes.
-    loads : mapping of str to (row (n,), force (steps+1,)), optional
-        Forces, N, at the ends of steps, linear in between, along rows of the structure.
-    injected : mapping of str to (steps,) array of float, optional
-        Torque added to the set point of a drive by its name, N m.
-    outputs : mapping of str to (n,) array of float, optional
-        Rows read.
-    stride : int
-        Steps from one recorded row to the next.
-    """
-
-    duration: float
-    points: SetPoints | None = None
+    duration: float  # s
+    points: SetPoints | None = None  # of all axes
+    #: row (n,) of the structure, and force (steps + 1,), N, at the ends of steps, linear in between
     loads: Mapping[str, tuple[NDArray[np.float64], NDArray[np.float64]]] = field(
         default_factory=dict
     )
+    #: (steps,), torque added to the set point of a drive by its name, N m
     injected: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
-    outputs: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
-    stride: int = 1
+    outputs: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)  # (n,), rows read
+    stride: int = 1  # steps from one recorded row to the next
 
 
 def run_machine(

@@ -37,49 +37,23 @@ _LEFT_AT_END = 0.02
 
 @dataclass(frozen=True, eq=False)
 class FrfTest:
-    """A test: what is excited, what is read, in which state, and how.
-
-    Parameters
-    ----------
-    name : str
-    kind : str
-        Key of `KINDS`.
-    excited : (n,) array of float, or str
-        Row of the structure along which the force acts, or axis whose motor torque does.
-    read : (n,) array of float
-        Row of the structure.
-    level : float
-        Peak of the force, N (N m).
-    band : (float, float)
-        Hz.
-    period : float
-        Of a periodic excitation, or from blow to blow, s.
-    averages : int
-        Blows, or periods (of a multisine: realisations of other phases).
-    settling : float
-        Before the excitation, s.
-    velocity : mapping of str to float
-        Of axes that move during the test, m/s.
-    seed : int
-        Of phases and of the scatter of blows.
-    spindle_speed : float
-        Of the tool in a test by torque impulses, rad/s.
-    at_angle : float, optional
-        Angle of the spindle at which the impulses are released, rad; evenly in time by default.
-    """
+    """A test: what is excited, what is read, in which state, and how."""
 
     name: str
-    kind: str
+    kind: str  # key of `KINDS`
+    #: (n,), row along which the force acts, or axis whose torque does
     excited: NDArray[np.float64] | str
-    read: NDArray[np.float64]
-    level: float
-    band: tuple[float, float]
-    period: float
-    averages: int = 3
-    settling: float = 0.5
+    read: NDArray[np.float64]  # (n,), row of the structure
+    level: float  # peak of the force, N (N m)
+    band: tuple[float, float]  # Hz
+    period: float  # of a periodic excitation, or from blow to blow, s
+    averages: int = 3  # blows, or periods (of a multisine: realisations of other phases)
+    settling: float = 0.5  # before the excitation, s
+    #: of axes that move during the test, m/s
     velocity: Mapping[str, float] = field(default_factory=dict)
-    seed: int = 1
-    spindle_speed: float = 0.0
+    seed: int = 1  # of phases and of the scatter of blows
+    spindle_speed: float = 0.0  # of the tool in a test by torque impulses, rad/s
+    #: of the spindle, at which impulses are released, rad; evenly in time by default
     at_angle: float | None = None
 
 

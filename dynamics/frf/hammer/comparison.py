@@ -28,39 +28,22 @@ _NOISE_MARGIN = 1.08
 
 @dataclass(frozen=True)
 class Comparison:
-    """How one record differs from the prediction of others.
+    """How one record differs from the prediction of others."""
 
-    Parameters
-    ----------
-    gain : float
-        Response over predicted response; negative where the sign is turned.
-    delay : float
-        Samples by which the response comes late.
-    misfit : float
-        Root of the share of the energy of the ringing that gain and delay do not explain, what
-        noise and the unpredictable part may contribute taken off.
-    response, residual : (m,) array of float
-        Response, and response minus prediction with that gain and delay, in the unit of the
-        response.
-    envelope : (m,) array of float
-        Largest predicted response nearby.
-    unpredictable : (m,) array of float
-        Response that the blow may cause beyond what the others can tell.
-    noise : (m,) array of float
-        Standard deviation of the residual where nothing but noise is left over.
-    wander : float
-        Standard deviation of slow movements of the rest level.
-    """
-
-    gain: float
-    delay: float
+    gain: float  # response over predicted response; negative where the sign is turned
+    delay: float  # samples by which the response comes late
+    #: root of the share of the energy of the ringing that gain and delay do not explain, what noise
+    #: and the unpredictable part may contribute taken off
     misfit: float
-    response: NDArray[np.float64]
+    response: NDArray[np.float64]  # (m,)
+    #: (m,), response less prediction with that gain and delay, in its unit
     residual: NDArray[np.float64]
-    envelope: NDArray[np.float64]
+    envelope: NDArray[np.float64]  # (m,), largest predicted response nearby
+    #: (m,), that the blow may cause beyond what the others can tell
     unpredictable: NDArray[np.float64]
+    #: (m,), deviation of the residual where nothing but noise is left over
     noise: NDArray[np.float64]
-    wander: float
+    wander: float  # standard deviation of slow movements of the rest level
 
 
 @dataclass(frozen=True)
@@ -75,21 +58,12 @@ class Excess:
 
 @dataclass(frozen=True)
 class Limits:
-    """What counts as a deviation, given how far the agreeing records scatter.
+    """What counts as a deviation, given how far the agreeing records scatter."""
 
-    Parameters
-    ----------
-    gain, delay, misfit : float
-        Largest allowed deviation of `Comparison.gain` from 1, of `Comparison.delay` from 0 in
-        samples, and of `Comparison.misfit`.
-    tolerance : float
-        Share of the predicted response by which a residual may exceed its noise.
-    """
-
-    gain: float
-    delay: float
-    misfit: float
-    tolerance: float
+    gain: float  # of `Comparison.gain` from 1
+    delay: float  # of `Comparison.delay` from 0, samples
+    misfit: float  # of `Comparison.misfit`
+    tolerance: float  # share of the predicted response by which a residual may exceed its noise
 
 
 @dataclass(frozen=True)

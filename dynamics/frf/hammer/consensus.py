@@ -32,40 +32,21 @@ _AGREEMENT = (0.05, 0.1, 0.2)
 
 @dataclass(frozen=True)
 class AlignedSet:
-    """Records cut to begin alike before the blow, with their spectra.
-
-    Parameters
-    ----------
-    names : tuple of str
-    sampling_rate : float
-        Hz.
-    force, response : (n, m) array of float
-        Blows alone (zero elsewhere) and responses, rest levels removed, one row a record.
-    force_spectra, response_spectra : (n, k) array of complex
-        Transforms of `force` and of `response` up to the end of the ringing.
-    lead : int
-        Samples ahead of the blow.
-    ringing : int
-        Samples until the ringing of most records is over.
-    noise : (n,) array of float
-        Standard deviation of the noise of each response.
-    wander : (n,) array of float
-        Slow movement of each rest level after the ringing (mains hum, thermal drift), as a
-        standard deviation.
-    force_noise_energy : (n,) array of float
-        Expected energy of the noise under the blow, per line.
-    """
+    """Records cut to begin alike before the blow, with their spectra."""
 
     names: tuple[str, ...]
-    sampling_rate: float
-    force: NDArray[np.float64]
-    response: NDArray[np.float64]
-    force_spectra: NDArray[np.complex128]
-    response_spectra: NDArray[np.complex128]
-    lead: int
-    ringing: int
-    noise: NDArray[np.float64]
+    sampling_rate: float  # Hz
+    force: NDArray[np.float64]  # (n, m), blows alone (zero elsewhere), one row a record
+    response: NDArray[np.float64]  # (n, m), rest levels removed
+    force_spectra: NDArray[np.complex128]  # (n, k)
+    response_spectra: NDArray[np.complex128]  # (n, k), of the response up to the end of the ringing
+    lead: int  # samples ahead of the blow
+    ringing: int  # samples until the ringing of most records is over
+    noise: NDArray[np.float64]  # (n,), standard deviation of the noise of each response
+    #: (n,), slow movement of each rest level after the ringing (mains hum, thermal drift), as a
+    #: standard deviation
     wander: NDArray[np.float64]
+    #: (n,), expected energy of the noise under the blow, per line
     force_noise_energy: NDArray[np.float64]
 
     @property

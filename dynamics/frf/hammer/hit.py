@@ -27,27 +27,15 @@ class Baseline:
 
 @dataclass(frozen=True)
 class Hit:
-    """The main blow of a record, in samples.
+    """The main blow of a record, in samples."""
 
-    Parameters
-    ----------
-    onset, peak, end : int
-        First sample of the blow, the largest, and one past the last.
-    polarity : int
-        +1 where the force peak is positive, -1 otherwise.
-    amplitude : float
-        Height of the peak above the rest level, N, positive.
-    force, response : Baseline
-        Rest level and noise of the two channels.
-    """
-
-    onset: int
-    peak: int
-    end: int
-    polarity: int
-    amplitude: float
-    force: Baseline
-    response: Baseline
+    onset: int  # first sample of the blow
+    peak: int  # the largest
+    end: int  # one past the last
+    polarity: int  # +1 where the force peak is positive, -1 otherwise
+    amplitude: float  # height of the peak above the rest level, N, positive
+    force: Baseline  # rest level and noise of the channel
+    response: Baseline  # likewise
 
     @property
     def width(self) -> int:

@@ -37,41 +37,19 @@ _WIDEST_DIP = 0.25
 
 @dataclass(frozen=True)
 class Spectra:
-    """Spectra averaged over records, unscaled.
+    """Spectra averaged over records, unscaled."""
 
-    Parameters
-    ----------
-    frequency : (n,) array of float
-        Hz, from 0 to half the sampling rate.
-    force_power : (n,) array of float
-        Mean of |F|^2.
-    response_power : (n,) array of float
-        Mean of |X|^2.
-    cross : (n,) array of complex
-        Mean of X F*.
-    count : int
-        Records averaged.
-    noise_power, force_noise_power : float
-        Power that the noise of the response, and of the force, puts on each line.
-    quantity : str
-        Quantity of the FRF.
-    added_decay : float
-        Decay rate of the exponential window, 1/s.
-    response, reference : Point
-        Where the response was measured and where the blows fell.
-    """
-
-    frequency: NDArray[np.float64]
-    force_power: NDArray[np.float64]
-    response_power: NDArray[np.float64]
-    cross: NDArray[np.complex128]
-    count: int
-    noise_power: float
-    force_noise_power: float
-    quantity: Quantity
-    added_decay: float
-    response: Point
-    reference: Point
+    frequency: NDArray[np.float64]  # (n,), Hz, from 0 to half the sampling rate
+    force_power: NDArray[np.float64]  # (n,), mean of |F|^2
+    response_power: NDArray[np.float64]  # (n,), mean of |X|^2
+    cross: NDArray[np.complex128]  # (n,), mean of X F*
+    count: int  # records averaged
+    noise_power: float  # that the noise of the response puts on each line
+    force_noise_power: float  # that the noise of the force does
+    quantity: Quantity  # of the FRF
+    added_decay: float  # of the exponential window, 1/s
+    response: Point  # where the response was measured
+    reference: Point  # where the blows fell
 
 
 Estimator = Callable[[Spectra], NDArray[np.complex128]]

@@ -24,26 +24,15 @@ _LEAST_END = 1e-3
 
 @dataclass(frozen=True)
 class Windows:
-    """How the records of one set are cut and weighted, the same for all.
+    """How the records of one set are cut and weighted, the same for all."""
 
-    Parameters
-    ----------
-    lead : int
-        Samples kept ahead of the blow.
-    length : int
-        Samples kept of each record. Transforms of this length have lines whose noise is
-        independent.
-    ringing : int
-        Samples, from the first kept, after which the response is let down to zero because nothing
-        but noise is left; equal to `length` where the ringing outlasts the record.
-    added_decay : float
-        Decay rate of the exponential weight on both channels, 1/s; 0 for none.
-    """
-
-    lead: int
+    lead: int  # samples kept ahead of the blow
+    #: samples kept of each record; transforms of this length have lines of independent noise
     length: int
+    #: samples, from the first kept, after which the response is let down to zero because nothing
+    #: but noise is left; equal to `length` where the ringing outlasts the record
     ringing: int
-    added_decay: float
+    added_decay: float  # of the exponential weight on both channels, 1/s; 0 for none
 
 
 def choose_windows(records: Sequence[HammerRecord], hits: Sequence[Hit]) -> Windows:

@@ -103,28 +103,14 @@ class AxisModel:
 
 @dataclass(frozen=True)
 class AxisFit:
-    """Result of `fit_axis`.
+    """Result of `fit_axis`."""
 
-    Parameters
-    ----------
-    model : AxisModel
-        With the fitted values.
-    estimates : dict of str to Estimate
-        Fitted parameters with 95 % intervals.
-    relative_residual : float
-        Root mean square of what is left of the judged low-passed effort over its standard
-        deviation.
-    unsupported : tuple of str
-        Parameters that the records do not decide.
-    agreeing_starts : int
-        Starts of the search that ended at this optimum.
-    """
-
-    model: AxisModel
-    estimates: dict[str, Estimate]
+    model: AxisModel  # with the fitted values
+    estimates: dict[str, Estimate]  # fitted parameters with 95 % intervals
+    #: rms of what is left of the judged low-passed effort, over its deviation
     relative_residual: float
-    unsupported: tuple[str, ...]
-    agreeing_starts: int
+    unsupported: tuple[str, ...]  # parameters that the records do not decide
+    agreeing_starts: int  # starts of the search that ended at this optimum
 
 
 def fit_axis(

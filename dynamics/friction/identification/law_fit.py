@@ -32,28 +32,15 @@ _VAGUE = 10.0
 
 @dataclass(frozen=True)
 class Search:
-    """Result of `search`.
+    """Result of `search`."""
 
-    Parameters
-    ----------
-    values : dict of str to float
-        Of the free parameters.
-    estimates : dict of str to Estimate
-        The same with 95 % intervals.
-    residual : (n,) array of float
-        At the optimum.
-    unsupported : tuple of str
-        Positive parameters that ended at their bound or whose interval spans more than a decade:
-        the records do not decide them.
-    agreeing_starts : int
-        Starts that reached the optimum (within 1 % of its sum of squares).
-    """
-
-    values: dict[str, float]
-    estimates: dict[str, Estimate]
-    residual: NDArray[np.float64]
+    values: dict[str, float]  # of the free parameters
+    estimates: dict[str, Estimate]  # the same with 95 % intervals
+    residual: NDArray[np.float64]  # (n,), at the optimum
+    #: positive parameters that ended at their bound or whose interval spans more than a decade: the
+    #: records do not decide them
     unsupported: tuple[str, ...]
-    agreeing_starts: int
+    agreeing_starts: int  # starts that reached the optimum (within 1 % of its sum of squares)
 
 
 def search(

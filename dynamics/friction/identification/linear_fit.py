@@ -43,34 +43,19 @@ TERMS = tuple(_COLUMNS)
 
 @dataclass(frozen=True)
 class LinearFriction:
-    """Terms found by `fit_linear`.
+    """Terms found by `fit_linear`."""
 
-    Parameters
-    ----------
-    estimates : dict of str to Estimate
-        Fitted terms: inertia (kg or kg m^2), viscous (N s/m or N m s), coulomb, offset (N, N m).
-    fixed : dict of str to float
-        Terms that were given.
-    residual : float
-        Root mean square of what is left of the low-passed effort, N or N m.
-    relative_residual : float
-        Over the standard deviation of the low-passed effort.
-    attenuation : float
-        Share of noise in the variance of the derived acceleration: about the fraction by which
-        the inertia comes out too small. 0 where acceleration was measured.
-    conditioning : float
-        Condition number of the columns scaled to length 1; large where terms resemble each other.
-    samples : int
-        That took part.
-    """
-
+    #: fitted terms: inertia (kg or kg m^2), viscous (N s/m or N m s), coulomb, offset (N, N m)
     estimates: dict[str, Estimate]
-    fixed: dict[str, float]
-    residual: float
-    relative_residual: float
+    fixed: dict[str, float]  # terms that were given
+    residual: float  # rms of what is left of the low-passed effort, N or N m
+    relative_residual: float  # over the standard deviation of the low-passed effort
+    #: share of noise in the variance of the derived acceleration: about the fraction by which the
+    #: inertia comes out too small; 0 where acceleration was measured
     attenuation: float
+    #: condition number of the columns scaled to length 1; large where terms resemble each other
     conditioning: float
-    samples: int
+    samples: int  # that took part
 
     def value(self, term: str) -> float:
         """Value of a term, fitted or given; 0 where the model has none."""
