@@ -5,7 +5,7 @@ module              responsibility
 =================== =================================================================
 cutter              tool, force laws and flank of a case
 structure           modes of a case, as given, measured or of a linearised machine
-measured_frf        structure of measured FRFs; `drive_point_check`: signs and passivity
+measured_frf        structure of measured FRFs; signs and passivity of drive points
 real_modes          real modes fitted to a receptance
 machine_parts       machine file to an assembled machine
 machine_cut         machine of a case: who feeds, what turns, where the cut acts

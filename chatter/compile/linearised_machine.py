@@ -98,10 +98,7 @@ def machine_structure(case: Case) -> LinearisedMachine:
     The machine moves at the feed of the case, so that frictions on moving axes slide and others
     stick; the control loops are closed. Modes are fitted to its FRFs when they are asked for.
 
-    Raises
-    ------
-    InputError
-        If the machine cannot make the cut.
+    InputError if the machine cannot make the cut.
     """
     return LinearisedMachine(case, machine_cut(case))
 

@@ -128,10 +128,7 @@ def _refuse_unknown_axes(case: Case, file: MachineFile) -> None:
 def cut_directions(case: Case) -> NDArray[np.float64]:
     """Rows x, y, z of the cut in the machine's directions.
 
-    Raises
-    ------
-    InputError
-        If feed and tool axis are not perpendicular.
+    InputError if feed and tool axis are not perpendicular.
     """
     x = np.array(case.structure.feed or (1.0, 0.0, 0.0))
     z = np.array(case.structure.tool_axis or (0.0, 0.0, 1.0))

@@ -15,8 +15,7 @@ quantities          field types: dimension and range of each key, declared once
 path, assignments   dotted paths; ``--set PATH=VALUE`` of the command line
 toml_document       the TOML document behind a file; toml_editing keeps its comments
 case_checks         checks across sections; plausibility: numbers that must be wrong
-keys_of_kind        keys that belong to a kind or a law alone
-wording, formatting sentences for what is wrong; values in messages
+wording, formatting sentences for what is wrong, keys of another kind; values in messages
 errors, progress    InputError and RunError; how far a computation is
 json_schema         JSON schemas of the case file and the machine file
 =================== ================================================================

@@ -7,9 +7,9 @@ from typing import Any, ClassVar, Literal, Protocol
 
 from pydantic import Field, create_model, model_validator
 
-from chatter.description.keys_of_kind import key_problems
 from chatter.description.registry import Registry
 from chatter.description.section import Section, raise_if_any
+from chatter.description.wording import key_problems
 from cutting.force import laws as force_laws
 from cutting.force.law import ForceLawEntry
 from dynamics.friction import laws as friction_laws

@@ -53,10 +53,8 @@ def set_value(
     Tables on the way that are not there are made, and a table set one place past the end of a
     list is appended.
 
-    Raises
-    ------
-    InputError
-        If the path leads through something that is no table or list, or past the end of a list.
+    InputError if the path leads through something that is no table or list, or past the end of a
+    list.
     """
     reached = [document]
     for place in range(len(steps) - 1):

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
 from chatter.description.formatting import formatted, printable
 from chatter.description.path import Step, field_at, info_at, join_path, keys_of, model_at
-from chatter.description.section import SectionError
+from chatter.description.section import Section, SectionError
 
 #: more messages than this tell nobody anything
 _MOST_SENTENCES = 20
@@ -124,3 +124,33 @@ def _missing(model: type[BaseModel], steps: tuple[Step, ...]) -> str:
 def _not_allowed(item: Any) -> str:
     allowed = item["ctx"]["expected"].replace("'", '"')
     return f"{formatted(item['input'])} is not allowed; allowed are {allowed}"
+
+
+def key_problems(
+    section: Section, choosing: str, keys: Mapping[str, bool], always: tuple[str, ...] = ()
+) -> list[tuple[str, str]]:
+    """Tell keys that do not belong to the kind that a section is of, and needed ones missing.
+
+    Parameters
+    ----------
+    section : Section
+    choosing : str
+        Key that chooses the kind.
+    keys : mapping of str to bool
+        Keys of the kind, and whether each is needed.
+    always : tuple of str
+        Keys of every kind.
+    """
+    kind = f'{choosing} = "{getattr(section, choosing)}"'
+    problems = []
+    for name in type(section).model_fields:
+        if name in (choosing, *always):
+            continue
+        given = name in section.model_fields_set and getattr(section, name) not in (None, ())
+        if given and name not in keys:
+            problems.append((name, f"does not belong to {kind}; {nearest(name, list(keys))}"))
+        if not given and keys.get(name, False):
+            field = field_at(type(section), (name,))
+            wanted = "" if field is None else f"; {field.noun}, such as {field.example}"
+            problems.append((name, f"is missing; {kind} needs it{wanted}"))
+    return problems

@@ -160,10 +160,7 @@ def _window_text(cut: DiscreteCut) -> str:
 def set_up_on(case: Case, before: SimulationResult) -> Setup:
     """Compile a case that cuts what a run has left of its workpiece.
 
-    Raises
-    ------
-    InputError
-        If there is no such workpiece, or the case does not fit it.
+    InputError if there is no such workpiece, or the case does not fit it.
     """
     carved = before.setup.groups[0]
     _refuse_other_workpiece(case, before.case, carved)

@@ -136,10 +136,7 @@ def discrete_cut(
 ) -> DiscreteCut:
     """Cut through a workpiece as it is before the first step.
 
-    Raises
-    ------
-    InputError
-        If the workpiece would need too much memory.
+    InputError if the workpiece would need too much memory.
     """
     kind = DISCRETE_CHIPS[case.simulation.chip]
     size = case.simulation.resolution or kind.resolution(case, modes)

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from chatter.compile.drive_point_check import with_magnitudes
-from chatter.compile.measured_frf import with_direction
+from chatter.compile.measured_frf import with_direction, with_magnitudes
 from chatter.description.errors import InputError
 from chatter.io.formats.format_list import read_frfs
 from chatter.io.hammer_records import read_hammer_folder

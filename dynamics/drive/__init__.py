@@ -12,7 +12,6 @@ screw_on_beam   ball screw as a beam, with the stiffness between screw and nut
 rack_and_pinion rack and pinion with gearboxes, several motors, preload
 linear_motor    linear motors, single or sharing a force
 rotary          spindles and rotary tables
-checks          refusals of numbers out of range
 =============== ====================================================================
 
 Each drive is a specification whose `parts(axis)` are joined with the machine by

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from dynamics.beam.element import positive
 from dynamics.drive.belt import Belt, belt_stages
-from dynamics.drive.checks import require_not_negative, require_not_zero, require_stiffness
 from dynamics.drive.gear_train import (
     RIGID,
     Housing,
@@ -24,7 +23,14 @@ from dynamics.drive.gear_train import (
     series_stiffness,
     turning,
 )
-from dynamics.drive.parts import DrivenAxis, DriveParts, Motor
+from dynamics.drive.parts import (
+    DrivenAxis,
+    DriveParts,
+    Motor,
+    require_not_negative,
+    require_not_zero,
+    require_stiffness,
+)
 from dynamics.drive.screw_shaft import AxialSupport, ScrewShaft
 from dynamics.structure.linear_structure import StructureError
 from dynamics.structure.spring_coupling import Term

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from dynamics.beam.element import positive
-from dynamics.drive.checks import require_not_negative, require_stiffness
 from dynamics.drive.gear_train import Spring, Stage
+from dynamics.drive.parts import require_not_negative, require_stiffness
 
 
 @dataclass(frozen=True)

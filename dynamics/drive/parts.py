@@ -83,3 +83,35 @@ class DriveParts(NamedTuple):
     connectors: tuple[Connector, ...]
     couplings: tuple[Coupling, ...]
     motors: tuple[Motor, ...]
+
+
+def require_not_negative(where: str, **values: float) -> None:
+    """Refuse what is negative or not finite.
+
+    StructureError: the message begins with `where` and names the key.
+    """
+    for what, value in values.items():
+        if not (np.isfinite(value) and value >= 0.0):
+            raise StructureError(f"{where}: {what} is {value}; it must be 0 or more")
+
+
+def require_stiffness(where: str, **values: float) -> None:
+    """Refuse a stiffness that is not above 0; infinite means rigid.
+
+    StructureError: the message begins with `where` and names the key.
+    """
+    for what, value in values.items():
+        if not value > 0.0:
+            raise StructureError(
+                f"{where}: {what} is {value}; it must be above 0 (infinite if rigid)"
+            )
+
+
+def require_not_zero(where: str, **values: float) -> None:
+    """Refuse zero and what is not finite.
+
+    StructureError: the message begins with `where` and names the key.
+    """
+    for what, value in values.items():
+        if not np.isfinite(value) or value == 0.0:
+            raise StructureError(f"{where}: {what} is {value}; it must be finite and not 0")

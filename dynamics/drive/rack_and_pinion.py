@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dynamics.beam.element import positive
-from dynamics.drive.checks import require_not_negative, require_stiffness
 from dynamics.drive.gear_train import (
     GearTrain,
     Housing,
@@ -19,7 +18,13 @@ from dynamics.drive.gear_train import (
     gear_train,
     reflected_inertia,
 )
-from dynamics.drive.parts import DrivenAxis, DriveParts, Motor
+from dynamics.drive.parts import (
+    DrivenAxis,
+    DriveParts,
+    Motor,
+    require_not_negative,
+    require_stiffness,
+)
 from dynamics.structure.bodies import finite, unit_vector
 from dynamics.structure.linear_structure import StructureError
 from dynamics.structure.spring_coupling import Term

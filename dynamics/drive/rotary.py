@@ -8,9 +8,14 @@ import numpy as np
 
 from dynamics.beam.element import positive
 from dynamics.drive.belt import Belt, belt_stages
-from dynamics.drive.checks import require_not_negative, require_stiffness
 from dynamics.drive.gear_train import Housing, Spring, Stage, gear_train, reflected_inertia, turning
-from dynamics.drive.parts import DrivenAxis, DriveParts, Motor
+from dynamics.drive.parts import (
+    DrivenAxis,
+    DriveParts,
+    Motor,
+    require_not_negative,
+    require_stiffness,
+)
 from dynamics.structure.rotor import Rotor
 from dynamics.structure.spring_coupling import Term
 

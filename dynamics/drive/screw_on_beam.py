@@ -9,7 +9,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from dynamics.drive.ball_screw import turning_direction
 from dynamics.drive.belt import Belt, belt_stages
-from dynamics.drive.checks import require_not_negative, require_not_zero, require_stiffness
 from dynamics.drive.gear_train import (
     RIGID,
     Housing,
@@ -19,7 +18,14 @@ from dynamics.drive.gear_train import (
     reflected_inertia,
     turning,
 )
-from dynamics.drive.parts import DrivenAxis, DriveParts, Motor
+from dynamics.drive.parts import (
+    DrivenAxis,
+    DriveParts,
+    Motor,
+    require_not_negative,
+    require_not_zero,
+    require_stiffness,
+)
 from dynamics.structure.bodies import Connector, finite, radial_direction
 from dynamics.structure.linear_structure import StructureError
 from dynamics.structure.spring_coupling import Coupling, Term

@@ -14,10 +14,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from dynamics.friction.columns import parameter_columns, port_column
 from dynamics.friction.harmonic import memoryless_describing_function
 from dynamics.friction.implicit import implicit_force, no_energy, no_force
-from dynamics.friction.law import FrictionLawEntry
+from dynamics.friction.law import FrictionLawEntry, parameter_columns, port_column
 from dynamics.keys import Key, check_ranges
 from dynamics.leaves import leaf
 
@@ -155,10 +154,7 @@ def coulomb_stribeck_of_keys(
 ) -> CoulombStribeck:
     """Dry friction; without a static force it is plain Coulomb friction.
 
-    Raises
-    ------
-    ValueError
-        If the Stribeck velocity is missing, or a parameter is out of its range.
+    ValueError if the Stribeck velocity is missing, or a parameter is out of its range.
     """
     if static is None:
         static = coulomb

@@ -20,10 +20,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from dynamics.friction.columns import parameter_columns, port_column
 from dynamics.friction.harmonic import describing_function
 from dynamics.friction.implicit import implicit_force
-from dynamics.friction.law import FrictionLawEntry
+from dynamics.friction.law import FrictionLawEntry, parameter_columns, port_column
 from dynamics.keys import Key, check_ranges
 from dynamics.leaves import leaf
 

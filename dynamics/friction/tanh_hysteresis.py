@@ -29,10 +29,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from dynamics.friction.columns import parameter_columns, port_column
 from dynamics.friction.harmonic import describing_function
 from dynamics.friction.implicit import implicit_force
-from dynamics.friction.law import FrictionLawEntry
+from dynamics.friction.law import FrictionLawEntry, parameter_columns, port_column
 from dynamics.friction.reversals import (
     branch_lost,
     branch_mean,
@@ -188,10 +187,7 @@ def tanh_of_keys(
 ) -> TanhHysteresis:
     """Hysteresis whose slope is given, or the stiffness at a reversal: twice slope times force.
 
-    Raises
-    ------
-    ValueError
-        If neither is given, or both are, or a parameter is out of its range.
+    ValueError if neither is given, or both are, or a parameter is out of its range.
     """
     if (hysteresis_slope is None) == (presliding_stiffness is None):
         raise ValueError("tanh hysteresis: give hysteresis_slope or presliding_stiffness")

@@ -255,10 +255,7 @@ def reduced(full: Machine, highest: float, kept_points: Sequence[str] | None = N
 def with_modal_damping(structure: LinearStructure, ratio: float) -> LinearStructure:
     """Structure with a damping ratio of all elastic modes on top of its dampers.
 
-    Raises
-    ------
-    StructureError
-        If the ratio is negative or not finite.
+    StructureError if the ratio is negative or not finite.
     """
     if not (np.isfinite(ratio) and ratio >= 0.0):
         raise StructureError(f"damping ratio is {ratio}; it must be 0 or more")

@@ -6,10 +6,10 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from chatter.description.keys_of_kind import key_problems
 from chatter.description.machine.fields import arguments, fields_of
 from chatter.description.quantities import either_quantity, quantity, whole_number
 from chatter.description.section import Section, raise_if_any
+from chatter.description.wording import key_problems
 from dynamics.control.cascade import (
     DriveController,
     Feedforward,

@@ -6,7 +6,6 @@ from typing import Any, Literal
 
 from pydantic import Field, model_validator
 
-from chatter.description.keys_of_kind import key_problems
 from chatter.description.machine.beam import MaterialSection
 from chatter.description.machine.fields import (
     Direction,
@@ -18,6 +17,7 @@ from chatter.description.machine.fields import (
 )
 from chatter.description.quantities import quantity
 from chatter.description.section import Section, raise_if_any
+from chatter.description.wording import key_problems
 from dynamics.drive.ball_screw import BallScrew
 from dynamics.drive.belt import Belt
 from dynamics.drive.linear_motor import LinearMotor

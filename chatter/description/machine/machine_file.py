@@ -180,9 +180,6 @@ def load_machine(path: str | Path) -> MachineFile:
 def loads_machine(text: str, name: str = "machine", folder: str | Path = ".") -> MachineFile:
     """Read a machine from TOML text.
 
-    Raises
-    ------
-    InputError
-        If the text describes no machine; all problems found are in it.
+    InputError if the text describes no machine; all problems found are in it.
     """
     return MachineFile.from_text(text, name, folder)

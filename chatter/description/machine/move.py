@@ -8,10 +8,10 @@ from typing import Annotated, Any, Literal, NamedTuple
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
-from chatter.description.keys_of_kind import key_problems
 from chatter.description.machine.frequency_response import StateSection
 from chatter.description.quantities import QuantityField, quantity
 from chatter.description.section import raise_if_any
+from chatter.description.wording import key_problems
 from dynamics.trajectory.jerk_limited import JerkLimitedMove
 from dynamics.trajectory.motion import Trajectory
 from dynamics.trajectory.path import Path, circle, polyline, square

@@ -119,10 +119,7 @@ class Presliding(Effect):
     help = "friction is a spring before it slides"
     kinds = ("axis",)
     section = "axis"
-
-    def applies(self, measurement: Measurement) -> bool:
-        """Where no presliding is declared."""
-        return measurement.case.axis.presliding_stiffness is None
+    declared = "axis.presliding_stiffness"
 
     def parameters(self, measurement: Measurement) -> list[Parameter]:
         """Stiffness and damping."""
@@ -157,10 +154,7 @@ class WarmUp(Effect):
     help = "friction falls while the axis moves"
     kinds = ("axis",)
     section = "axis.warm_up"
-
-    def applies(self, measurement: Measurement) -> bool:
-        """Where no warm-up is declared."""
-        return measurement.case.axis.warm_up is None
+    declared = "axis.warm_up"
 
     def parameters(self, measurement: Measurement) -> list[Parameter]:
         """Share and time."""
@@ -186,10 +180,7 @@ class Cogging(Effect):
     label = "cogging"
     help = "a force repeats along the axis"
     kinds = ("axis",)
-
-    def applies(self, measurement: Measurement) -> bool:
-        """Where none is declared."""
-        return measurement.case.axis.cogging is None
+    declared = "axis.cogging"
 
     def parameters(self, measurement: Measurement) -> list[Parameter]:
         """Both components, and the period."""
@@ -227,10 +218,7 @@ class Backlash(Effect):
     help = "the motor crosses a gap at every reversal"
     kinds = ("axis",)
     section = "axis"
-
-    def applies(self, measurement: Measurement) -> bool:
-        """Where none is declared."""
-        return not measurement.case.axis.backlash
+    declared = "axis.backlash"
 
     def parameters(self, measurement: Measurement) -> list[Parameter]:
         """The gap, and the mass of the motor."""

@@ -66,10 +66,7 @@ class ProcessDamping(Effect):
     label = "process damping"
     help = "the flank resists vibration into the work, the more the slower the cut"
     kinds = ("milling", "stability")
-
-    def applies(self, measurement: Measurement) -> bool:
-        """Where none is declared."""
-        return measurement.case.process_damping is None
+    declared = "process_damping"
 
     def parameters(self, measurement: Measurement) -> list[Parameter]:
         """The coefficient."""

@@ -33,6 +33,8 @@ class Effect(ABC):
         Kinds of measurement in which it shows.
     section : str
         Section of the case that the parameters are keys of.
+    declared : str
+        Path into the case: the effect may be missing where nothing stands there, or 0.
     """
 
     name: ClassVar[str]
@@ -40,15 +42,16 @@ class Effect(ABC):
     help: ClassVar[str]
     kinds: ClassVar[tuple[str, ...]]
     section: ClassVar[str] = ""
+    declared: ClassVar[str] = ""
 
     @property
     def variants(self) -> tuple[Effect, ...]:
         """Forms of the effect that are tried, of which the best counts."""
         return (self,)
 
-    @abstractmethod
     def applies(self, measurement: Measurement) -> bool:
         """Whether it may be missing in a measurement of one of its kinds."""
+        return not measurement.case.get(self.declared)
 
     @abstractmethod
     def parameters(self, measurement: Measurement) -> Sequence[Parameter]:

@@ -41,10 +41,7 @@ _RESTING = 1e-12
 def in_state(file: MachineFile, state: StateSection) -> Machine:
     """Machine of a file in the state of a test.
 
-    Raises
-    ------
-    InputError
-        If it cannot be brought into that state.
+    InputError if it cannot be brought into that state.
     """
     machine = assembled_machine(file, state.condition, state.position, state.in_cut)
     return machine if state.friction else machine.without_friction()

@@ -102,10 +102,7 @@ def velocity_controlled(machine: Machine, axis: str) -> Machine:
 
     Its velocity set point is that of the trajectory, read at the sample time of the velocity loop.
 
-    Raises
-    ------
-    InputError
-        If the axis is not under control.
+    InputError if the axis is not under control.
     """
     names = {drive.name for drive in _drives_of(machine, axis)}
     drives = tuple(

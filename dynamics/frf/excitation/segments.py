@@ -40,10 +40,7 @@ def spectra_of_segments(
 def averaged_frf(spectra: Spectra, estimator: Estimator, source: str) -> Frf:
     """Return the FRF of spectra, with the coherence where there are several segments.
 
-    Raises
-    ------
-    MeasurementError
-        If a line holds no force.
+    MeasurementError if a line holds no force.
     """
     require_force(spectra.frequency, spectra.force_power, source)
     return frf_of(spectra, estimator, source)

@@ -5,7 +5,6 @@ module            responsibility                                                
 ================= ====================================================================== ===========
 record            the record of one blow
 hit               where the blow lies; rest level and noise of the channels
-findings          what the examination reports
 force_checks      force by itself: cut, second blow, dropouts, drift
 response_checks   response by itself: too early, no answer, drift
 channel_checks    either channel: stuck, clipped, dropouts

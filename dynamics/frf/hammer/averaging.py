@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 from dynamics.frf.container import Frf, MeasurementError
 from dynamics.frf.hammer.examine import examine_records
-from dynamics.frf.hammer.findings import Finding
 from dynamics.frf.hammer.hit import locate_hit, with_later_blows
-from dynamics.frf.hammer.record import HammerRecord
+from dynamics.frf.hammer.record import Finding, HammerRecord
 from dynamics.frf.hammer.spectra import Estimator, averaged_spectra, frf_of, h1, usable_band
 from dynamics.frf.hammer.windows import choose_windows
 

@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 
-from dynamics.frf.hammer.findings import Fault, Finding
 from dynamics.frf.hammer.hit import Baseline, Hit, noise_of
-from dynamics.frf.hammer.record import HammerRecord
+from dynamics.frf.hammer.record import Fault, Finding, HammerRecord
 
 #: expected number of chance events in a record below which a coincidence is taken as a fault
 _CHANCE = 1e-5

@@ -8,10 +8,9 @@ import numpy as np
 
 from dynamics.frf.container import MeasurementError
 from dynamics.frf.hammer.channel_checks import channel_findings
-from dynamics.frf.hammer.findings import Finding
 from dynamics.frf.hammer.force_checks import force_findings
 from dynamics.frf.hammer.hit import Hit, locate_hit
-from dynamics.frf.hammer.record import HammerRecord
+from dynamics.frf.hammer.record import Finding, HammerRecord
 from dynamics.frf.hammer.record_comparison import findings_against_each_other
 from dynamics.frf.hammer.response_checks import decay_end, response_findings
 

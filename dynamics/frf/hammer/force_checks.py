@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import find_peaks
 
-from dynamics.frf.hammer.findings import Finding
 from dynamics.frf.hammer.hit import Hit
-from dynamics.frf.hammer.record import HammerRecord
+from dynamics.frf.hammer.record import Finding, HammerRecord
 
 #: a second blow counts from this share of the first
 _SECOND_BLOW_SHARE = 0.01

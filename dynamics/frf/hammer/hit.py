@@ -46,10 +46,7 @@ class Hit:
 def locate_hit(record: HammerRecord) -> Hit:
     """Find the main blow of a record: the largest excursion of the force from its rest level.
 
-    Raises
-    ------
-    MeasurementError
-        If the force channel never leaves its noise.
+    MeasurementError if the force channel never leaves its noise.
     """
     force = record.force - np.median(record.force)
     peak = int(np.argmax(np.abs(force)))

@@ -7,8 +7,7 @@ from scipy.ndimage import uniform_filter1d
 
 from dynamics.frf.hammer.comparison import RecordAssessment
 from dynamics.frf.hammer.consensus import AlignedSet
-from dynamics.frf.hammer.findings import Fault, Finding
-from dynamics.frf.hammer.record import HammerRecord
+from dynamics.frf.hammer.record import Fault, Finding, HammerRecord
 
 #: factors by which a wrong unit or sensitivity scales a channel
 _UNIT_SLIPS = {

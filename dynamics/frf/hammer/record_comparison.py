@@ -14,10 +14,9 @@ from dynamics.frf.hammer.comparison import (
     largest_excess,
 )
 from dynamics.frf.hammer.consensus import AlignedSet, agreeing_group, align, disagreement
-from dynamics.frf.hammer.findings import Finding
 from dynamics.frf.hammer.hit import Hit
 from dynamics.frf.hammer.naming import named
-from dynamics.frf.hammer.record import HammerRecord
+from dynamics.frf.hammer.record import Finding, HammerRecord
 
 #: least deviation of a gain from the others' that may count, and least that always does
 _GAIN, _WIDEST_GAIN = 0.06, 0.25

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.frf.hammer.findings import Finding
 from dynamics.frf.hammer.force_checks import DRIFT_DEVIATIONS, DRIFT_SHARE, block_medians
 from dynamics.frf.hammer.hit import Hit
-from dynamics.frf.hammer.record import HammerRecord
+from dynamics.frf.hammer.record import Finding, HammerRecord
 
 #: peak of the response over its noise before the blow, below which it does not answer
 _LEAST_PEAK_OVER_NOISE = 8.0

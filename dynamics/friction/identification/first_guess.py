@@ -20,10 +20,7 @@ _STATIC = 1.2
 def reversal_distance(record: DriveRecord, linear: LinearFriction, low_pass: LowPass) -> float:
     """Median distance after a reversal at which friction changes its sign, m or rad.
 
-    Raises
-    ------
-    MeasurementError
-        If the record has no reversal after which friction turns.
+    MeasurementError if the record has no reversal after which friction turns.
     """
     position, friction = friction_over_position(record, linear.value("inertia"), low_pass)
     friction = friction - linear.value("offset")

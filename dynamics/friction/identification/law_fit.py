@@ -130,10 +130,7 @@ def _estimates(
 def law_parameters(law: object, free: Sequence[str]) -> dict[str, float]:
     """Values of the parameters of a law to be fitted.
 
-    Raises
-    ------
-    ValueError
-        If the law has no such parameter, or one is named twice.
+    ValueError if the law has no such parameter, or one is named twice.
     """
     known = [field.name for field in fields(law)]
     for name in free:

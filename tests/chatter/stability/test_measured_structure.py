@@ -7,7 +7,7 @@ import pytest
 
 import chatter
 import chatter.description.case
-from chatter.compile.drive_point_check import is_passive
+from chatter.compile.measured_frf import is_passive
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.stability.model import milling_model
