@@ -80,16 +80,8 @@ def _resting(name: str, amplitude: float | Mapping[str, float] | None) -> Linear
 def rigid_motion(machine: Machine, axes: Mapping[str, float]) -> NDArray[np.float64]:
     """Motion (n,) of the structure, free of strain, in which axes move by given lengths.
 
-    Parameters
-    ----------
-    machine : Machine
-    axes : mapping of str to float
-        Travel (or velocity) of controlled axes, m; the others stay.
-
-    Raises
-    ------
-    InputError
-        If an axis is not under control, or cannot move without strain.
+    Travel (or velocity) of controlled axes, m; the others stay. InputError if an axis is not under
+    control, or cannot move without strain.
     """
     known = {drive.axis for drive in machine.drives}
     for name in axes:

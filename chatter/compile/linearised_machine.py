@@ -29,7 +29,13 @@ _WORTH_TELLING = 0.02
 
 @dataclass(frozen=True)
 class LinearisedMachine:
-    """Structure described by the receptance of a linearised machine at its tool point."""
+    """Structure described by the receptance of a linearised machine at its tool point.
+
+    Parameters
+    ----------
+    case : Case
+    cut : MachineCut
+    """
 
     case: Case
     cut: MachineCut
@@ -98,7 +104,10 @@ def machine_structure(case: Case) -> LinearisedMachine:
     The machine moves at the feed of the case, so that frictions on moving axes slide and others
     stick; the control loops are closed. Modes are fitted to its FRFs when they are asked for.
 
-    InputError if the machine cannot make the cut.
+    Raises
+    ------
+    InputError
+        If the machine cannot make the cut.
     """
     return LinearisedMachine(case, machine_cut(case))
 
@@ -108,7 +117,12 @@ def tool_receptance(
 ) -> NDArray[np.complex128]:
     """Receptance (m, 3, 3) of the tool against the workpiece in the directions of the cut, m/N.
 
-    Frequencies (m,) in Hz, above 0.
+    Parameters
+    ----------
+    case : Case
+    cut : MachineCut
+    frequency : (m,) array of float
+        Hz, above 0.
     """
     moving = _moving(case, cut)
     frictions = linearised_frictions(cut.machine, moving, _amplitudes(case, cut))

@@ -77,17 +77,8 @@ class MachineCut:
 def machine_cut(case: Case, friction: bool | None = None) -> MachineCut:
     """Machine that a case names, in the state that it asks for.
 
-    Parameters
-    ----------
-    case : Case
-        With structure.machine.
-    friction : bool, optional
-        Overrides that of the case.
-
-    Raises
-    ------
-    InputError
-        If the machine cannot make the cut: no tool point, a spindle across the tool.
+    `friction` overrides that of the case. InputError if the machine cannot make the cut: no tool
+    point, a spindle across the tool.
     """
     section = case.structure
     file = case.machine_file()

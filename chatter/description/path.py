@@ -22,16 +22,7 @@ _STEP = re.compile(r"\.?([A-Za-z_][\w-]*)|\[(\d+|\*)\]|\.(\d+|\*)(?=[.\[]|$)")
 def parse_path(text: str, into: str = "a case, such as cut.axial_depth") -> tuple[Step, ...]:
     """Split a dotted path into its steps.
 
-    Parameters
-    ----------
-    text : str
-    into : str
-        What it leads into, for messages.
-
-    Raises
-    ------
-    InputError
-        If it is no path.
+    What it leads into is for the message of an InputError if it is no path.
     """
     if not isinstance(text, str):
         raise InputError(f"{formatted(text)} is no path into {into}")

@@ -172,17 +172,8 @@ def _wanted(dimension: str) -> str:
 def unit_factor(unit: str, dimension: str) -> float:
     """Return the SI value of one unit.
 
-    Parameters
-    ----------
-    unit : str
-        As in ``"N*s/m"``; empty for a bare number.
-    dimension : str
-        Key of `DIMENSIONS`.
-
-    Raises
-    ------
-    QuantityError
-        If the unit is unknown or of another dimension; the message does not name the value.
+    As in ``"N*s/m"``, empty for a bare number, for a key of `DIMENSIONS`. QuantityError if the unit
+    is unknown or of another dimension; the message does not name the value.
     """
     if not unit:
         return 1.0

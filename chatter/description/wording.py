@@ -131,15 +131,8 @@ def key_problems(
 ) -> list[tuple[str, str]]:
     """Tell keys that do not belong to the kind that a section is of, and needed ones missing.
 
-    Parameters
-    ----------
-    section : Section
-    choosing : str
-        Key that chooses the kind.
-    keys : mapping of str to bool
-        Keys of the kind, and whether each is needed.
-    always : tuple of str
-        Keys of every kind.
+    `keys` of the kind say whether each is needed; `choosing` is the key that chooses the kind, and
+    `always` are keys of every kind.
     """
     kind = f'{choosing} = "{getattr(section, choosing)}"'
     problems = []

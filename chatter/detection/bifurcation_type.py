@@ -35,21 +35,9 @@ def bifurcation_of(
 ) -> tuple[str, int]:
     """Name the bifurcation of a motion that does not repeat from period to period.
 
-    Parameters
-    ----------
-    values : (periods, points, k) array of float
-        The later part of the record.
-    line : ChatterLine
-        Of the same values.
-    growth_rate : float
-        Logarithm of the growth a period.
-    noise : float
-        Rms of the noise of one sample.
-
-    Returns
-    -------
-    str, int
-        "flip" and 2; "period-n" and n; "hopf" and 0.
+    By the later part of the record (periods, points, k), its chatter line, the logarithm of its
+    growth a period, and the rms of the noise of one sample: "flip" and 2, "period-n" and n, or
+    "hopf" and 0.
     """
     count = len(values)
     drift = abs(math.pi - line.rotation) * count

@@ -39,13 +39,8 @@ def strongest_line(
     the strongest is the chatter line. What repeats is fitted along with it, so that a line close
     to a harmonic is not pulled.
 
-    Parameters
-    ----------
-    values : (periods, points, k) array of float
-    growth_rate : float
-        Logarithm of the growth a period.
-    rotation : float, optional
-        rad a period, where it is known; fitted otherwise.
+    Values (periods, points, k), logarithm of the growth a period, and rotation, rad a period, where
+    it is known.
     """
     count, points, channels = values.shape
     matrix = values.reshape(count, -1)

@@ -222,17 +222,10 @@ def fit(
 def over_groups(fit: Fit, sizes: Sequence[int]) -> Fit:
     """Fit whose covariance allows for residuals that hang together within groups.
 
-    Parameters
-    ----------
-    fit : Fit
-    sizes : sequence of int
-        Residuals in each group, in their order; the groups are independent of each other.
-
-    Notes
-    -----
-    Where the groups pull a parameter about by more than white noise would let them, its standard
-    deviation is that of the cluster-robust covariance (Liang and Zeger 1986, equation 4), with
-    Student's t for the number of groups; elsewhere it stays as it is.
+    Sizes are the numbers of residuals in each group, in their order; the groups are independent of
+    each other. Where they pull a parameter about by more than white noise would let them, its
+    standard deviation is that of the cluster-robust covariance (Liang and Zeger 1986, equation 4),
+    with Student's t for the number of groups; elsewhere it stays as it is.
     """
     groups = len(sizes)
     if groups < _LEAST_GROUPS:

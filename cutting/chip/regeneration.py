@@ -37,6 +37,10 @@ def delayed_cut(
         Of a turn.
     path : (2, bins + 1) array of float
         Place of the tool axis over the last turn before the start, m, which comes last.
+
+    Returns
+    -------
+    DelayedCut
     """
     edges = edge_table(slices, bins)
     earlier, ahead = earlier_passes(slices.angle)

@@ -187,20 +187,9 @@ def _out_of_reach(box, cx, cy, ex0, ey0, ex1, ey1):
 def dexel_carve(stock, layer, tooth, cx0, cy0, ex0, ey0, cx1, cy1, ex1, ey1):
     """Remove what the rake line of a tooth sweeps in a step.
 
-    Parameters
-    ----------
-    stock : DexelStock
-        Changed.
-    layer, tooth : int
-    cx0, cy0, ex0, ey0 : float
-        Tool axis and edge at the start of the step, m.
-    cx1, cy1, ex1, ey1 : float
-        The same at its end; the step is short against the radius.
-
-    Returns
-    -------
-    float
-        Area removed, m^2, late by the time that the edge takes for `stock.delay`.
+    Tool axis and edge at the start of the step and at its end, m; the step is short against the
+    radius. The stock is changed; the area removed, m^2, is late by the time that the edge takes for
+    `stock.delay`.
     """
     waiting = stock.queue[layer, tooth, 0, 1] + stock.queue[layer, tooth, 1, 1]
     if waiting == 0 and _out_of_reach(stock.box, cx1, cy1, ex0, ey0, ex1, ey1):
@@ -277,21 +266,8 @@ def _thickness_on_family(stock, layer, family, ca, ct, ea, et):
 def dexel_chip_thickness(stock, layer, tooth, cx0, cy0, ex0, ey0, cx1, cy1, ex1, ey1):
     """Chip thickness at the end of a step, along the radius; to be read before `dexel_carve`.
 
-    Parameters
-    ----------
-    stock : DexelStock
-        Not changed.
-    layer, tooth : int
-    cx0, cy0, ex0, ey0 : float
-        Tool axis and edge at the start of the step, m; not used, as the reading is pointwise,
-        but one signature serves all workpieces.
-    cx1, cy1, ex1, ey1 : float
-        The same at its end.
-
-    Returns
-    -------
-    float
-        m, 0 where the edge meets no material.
+    Tool axis and edge at the start of the step, not used, as the reading is pointwise, but one
+    signature serves all workpieces, and at its end, m. In m, 0 where the edge meets no material.
     """
     far = stock.window
     if ex1 < stock.box[0] - far or ex1 > stock.box[1] + far:

@@ -295,17 +295,8 @@ def dexel_advanced(stock: DexelStock, distance: float) -> DexelStock:
     over the full height of the box. The arrays are changed in place: the stock given is no longer
     of use.
 
-    Parameters
-    ----------
-    stock : DexelStock
-        With material up to the far border of its box, and a whole number of lines along it.
-    distance : float
-        m.
-
-    Returns
-    -------
-    DexelStock
-        On the same arrays.
+    The stock has material up to the far border of its box, and a whole number of lines along it;
+    distance in m.
     """
     moved = math.floor(distance / stock.spacing + _ROUNDING)
     if moved <= 0:

@@ -95,21 +95,9 @@ def _position_on_corner(segments, segment, position, value, lag, rate):
 def engaged_span(segments, segment, top, spindle, revolution):
     """Part of a segment that is in the cut at a spindle angle.
 
-    Parameters
-    ----------
-    segments : EdgeSegments
-    segment : int
-    top : float
-        Part of the segment, from its low end, that lies below the depth of cut.
-    spindle : float
-        Spindle angle, rad.
-    revolution : int
-        Revolutions that are taken off the place of the edge.
-
-    Returns
-    -------
-    (float, float)
-        As parts of the segment; the first above the second where nothing is in the cut.
+    `top` is the part of the segment, from its low end, that lies below the depth of cut; so many
+    revolutions are taken off the place of the edge at the spindle angle, rad. As parts of the
+    segment; the first above the second where nothing is in the cut.
     """
     start = spindle + segments.angle[segment, 0] - _REVOLUTION * revolution
     turned = segments.angle[segment, 1] - segments.angle[segment, 0]
@@ -192,22 +180,10 @@ def coupling_at(
 ):
     """Add the coupling of a point of the edge to displacement and velocity.
 
-    Parameters
-    ----------
-    segments : EdgeSegments
-    segment : int
-    position : float
-        Of the point, as a part of the segment.
-    spindle : float
-        rad.
-    weight : float
-        Length of edge that the point stands for, m.
-    speed_factor : float
-        One over the cutting speed, s/m; 0 leaves the dashpot alone.
-    basis : (3, r) array of float
-        Directions of motion.
-    stiffness, dashpot : (r, r) array of float
-        N/m and N s/m: the force on the tool is -stiffness u - dashpot u'. Overwritten.
+    The point is at a part of the segment and stands for a length of edge, its weight, m, at a
+    spindle angle, rad; the speed factor is one over the cutting speed, s/m, 0 to leave the dashpot
+    alone. With the directions of motion (3, r), stiffness and dashpot (r, r), N/m and N s/m, which
+    are overwritten, make the force on the tool -stiffness u - dashpot u'.
     """
     turned = segments.angle[segment, 1] - segments.angle[segment, 0]
     height = share_of_height(segments, segment, position)

@@ -83,30 +83,11 @@ def change_along(segments, segment, elements):
 def engaged_interval_from(segments, tops, reach, segment, end, spindle, back, elements):
     """Engaged interval in the cut that begins in a segment, or none.
 
-    Parameters
-    ----------
-    segments : EdgeSegments
-    tops : (P,) array of float
-        Part of each segment below the depth of cut.
-    reach : (P, 4) array of float
-        See `reach_of_segment`.
-    segment, end : int
-        First segment, and that beyond the last of its group.
-    spindle : float
-        Spindle angle, rad.
-    back : int
-        Revolutions taken off.
-    elements : float
-        Elements of the motion that pass as the tool turns by a radian.
-
-    Returns
-    -------
-    last : int
-        Last segment of the interval, below the first where there is none.
-    low, high : float
-        Where it begins in the first and ends in the last segment.
-    change : float
-        By which the interval turns, bends and shifts.
+    From the first segment to `end`, that beyond the last of its group. `tops` (P,) are the parts of
+    segments below the depth of cut, `reach` (P, 4) that of `reach_of_segment`; at a spindle angle,
+    rad, so many revolutions taken off; `elements` of the motion pass as the tool turns by a radian.
+    Last segment of the interval, below the first where there is none, where it begins in the first
+    and ends in the last segment, and by which it turns, bends and shifts.
     """
     last = segment
     low, high = _span(segments, tops, reach, segment, spindle, back)

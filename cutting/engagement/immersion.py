@@ -62,18 +62,8 @@ def slice_engagement(
 
     The stock ends at the same place for all of them, R - a_e from the axis.
 
-    Parameters
-    ----------
-    mode : {"up", "down", "slot"}
-    radial_depth, tool_radius : float
-        m; the radial depth is not used for a slot.
-    slice_radius : (L,) array of float
-        m.
-
-    Returns
-    -------
-    pair of (L,) arrays of float
-        rad; entry above exit where a slice does not reach the stock.
+    Depth and radii in m, those of slices (L,); the radial depth is not used for a slot. A pair
+    (L,), rad; entry above exit where a slice does not reach the stock.
     """
     if mode == "slot":
         return np.zeros(slice_radius.size), np.full(slice_radius.size, math.pi)
@@ -106,24 +96,9 @@ def removed_section(
 ) -> NDArray[np.float64]:
     """Area that the tool sweeps through the stock, seen along the feed.
 
-    Parameters
-    ----------
-    cutter : Cutter
-    mode : {"up", "down", "slot"}
-    radial_depth : float
-        m; not used for a slot.
-    depths : (n,) array of float
-        Axial depths, m, > 0.
-
-    Returns
-    -------
-    (n,) array of float
-        m^2; times the feed speed it is the removal rate.
-
-    Notes
-    -----
-    The stock ends R - a_e from the axis; at a height where the edge has the radius r the tool takes
-    r - (R - a_e) of it, and no more than 2 r.
+    At axial depths (n,), m, > 0; the radial depth, m, is not used for a slot. (n,), m^2; times the
+    feed speed it is the removal rate. The stock ends R - a_e from the axis; at a height where the
+    edge has the radius r the tool takes r - (R - a_e) of it, and no more than 2 r.
     """
     deepest = float(np.max(depths))
     edge = np.linspace(0.0, deepest, _POINTS + 1)

@@ -53,16 +53,8 @@ def directional_matrix(
 ) -> NDArray[np.float64]:
     """H(phi) of one tooth, so that dF = -b H d.
 
-    Parameters
-    ----------
-    angle : (n,) array of float
-        rad, clockwise from +y.
-    tangential, radial, axial : (n,) array or float
-        Force per edge length and radial motion, N/m^2 (or per velocity).
-
-    Returns
-    -------
-    (n, 3, 3) array of float
+    (n, 3, 3) at angles (n,), rad, clockwise from +y, by the slopes of the force per edge length and
+    radial motion, N/m^2 (or per velocity), (n,) or one for all.
     """
     s, c = np.sin(angle), np.cos(angle)
     zero = np.zeros_like(s)
@@ -82,20 +74,9 @@ def directional_table(
 ) -> DirectionalTable:
     """Tabulate the directional matrix and its integrals over the engaged arc.
 
-    Parameters
-    ----------
-    arc : Engagement
-        Entry and exit angle, rad.
-    law : ForceLaw
-        Its slope is taken at the static chip thickness f_t sin(phi).
-    feed_per_tooth : float
-        m.
-    directions : (3, r) array of float
-        Orthonormal columns that span the motion of the tool point.
-    damping : ViscousProcessDamping, optional
-        Adds the coupling to velocity.
-    intervals : int
-        Intervals of the table.
+    The slope of the law is taken at the static chip thickness f_t sin(phi), feed in m; directions
+    (3, r) are orthonormal columns that span the motion of the tool point; damping adds the coupling
+    to velocity.
     """
 
     def cutting_coupling(angle: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -211,18 +192,10 @@ def _add_second_integral(table, angle, factor, out):
 def mean_directional(table, tooth_pitch, start, end, lag, out):
     """Mean of the directional matrix over a rotation of the tool, summed over its teeth.
 
-    Parameters
-    ----------
-    table : DirectionalTable
-    tooth_pitch : float
-        Angle between teeth (uniform), rad.
-    start, end : float
-        Tip angle of a tooth at the start and the end of the rotation, rad, 0 <= start < end.
-    lag : float
-        Angle by which the top of the edge trails its tip, rad, >= 0; the mean is also taken
-        over the edge, so that `out` is per length of engaged depth.
-    out : (c, r, r) array of float
-        Overwritten.
+    For a uniform tooth pitch, rad, and the tip angle of a tooth at the start and the end of the
+    rotation, rad, 0 <= start < end. The top of the edge trails its tip by `lag`, rad, >= 0; the
+    mean is also taken over the edge, so that `out` (c, r, r), overwritten, is per length of engaged
+    depth.
     """
     out[:] = 0.0
     span = end - start

@@ -111,24 +111,9 @@ def width_of_influence(motion: ToolMotion, passes: WallPasses) -> float:
 def wall_reach(motion: ToolMotion, passes: WallPasses, x: Array, width: float) -> Array:
     """Furthest reach of the edges towards a wall over the feed.
 
-    Parameters
-    ----------
-    motion : ToolMotion
-    passes : WallPasses
-    x : (n,) array of float
-        Evenly spaced, m.
-    width : float
-        As from `width_of_influence`, m.
-
-    Returns
-    -------
-    (n,) array of float
-        Distance of the wall from y = 0, m; -inf where no edge came by.
-
-    Notes
-    -----
-    Each point is cut at the moment the edge is at its x: the tool moves while the edge passes, so
-    the arcs are trochoids with the vibration on them.
+    At evenly spaced x (n,), m, with the width of `width_of_influence`, m: distance of the wall from
+    y = 0 (n,), m; -inf where no edge came by. Each point is cut at the moment the edge is at its x:
+    the tool moves while the edge passes, so the arcs are trochoids with the vibration on them.
     """
     spacing = x[1] - x[0]
     middle = motion.at(passes.angle)[:, 0]
@@ -154,28 +139,11 @@ def wall_reach(motion: ToolMotion, passes: WallPasses, x: Array, width: float) -
 def floor_height(x: Array, position: Array, height: Array, corner: float, flat: float) -> Array:
     """Floor left by corners that pass over a line along the feed.
 
-    Parameters
-    ----------
-    x : (n,) array of float
-        m.
-    position : (P,) array of float
-        x of the deepest point of the corner at each pass, m.
-    height : (P,) array of float
-        Its height, m.
-    corner : float
-        Radius of the arc that a pass cuts in the plane of the feed and the axis, m; 0 for a sharp
-        corner.
-    flat : float
-        Length behind a sharp corner over which the end of the tooth cuts, m.
-
-    Returns
-    -------
-    (n,) array of float
-        m; inf where nothing passed.
-
-    Notes
-    -----
-    Circles of radius r a feed f apart leave cusps of f^2/(8 r).
+    At x (n,), m, after passes (P,) with the deepest point of the corner at a position and height,
+    m. `corner` is the radius of the arc that a pass cuts in the plane of the feed and the axis, m,
+    0 for a sharp corner, `flat` the length behind a sharp corner over which the end of the tooth
+    cuts, m. (n,), m; inf where nothing passed. Circles of radius r a feed f apart leave cusps of
+    f^2/(8 r).
     """
     order = np.argsort(position)
     position, height = position[order], height[order]

@@ -76,16 +76,8 @@ class Texture:
 def texture(profiles: Array, weight: Array, spacing: float, cut_off: float) -> Texture:
     """Split profiles into roughness and waviness.
 
-    Parameters
-    ----------
-    profiles : (L, n) array of float
-        m.
-    weight : (L,) array of float
-        Of each profile in the means that are returned.
-    spacing : float
-        Between points, m.
-    cut_off : float
-        m.
+    Profiles (L, n), m, with their weights (L,) in the means that are returned; spacing of points
+    and cut-off, m.
     """
     length = profiles.shape[1] * spacing
     if length < 2.0 * cut_off:
@@ -109,18 +101,8 @@ def _weighted(found: list[HeightParameters], weight: Array) -> HeightParameters:
 def location_error(deviation: Array, weight: Array) -> tuple[Array, float]:
     """Surface location error at each height and over the wall.
 
-    Parameters
-    ----------
-    deviation : (L, n) array of float
-        Of the wall beyond its nominal place, m; positive where too much was removed.
-    weight : (L,) array of float
-
-    Returns
-    -------
-    by_height : (L,) array of float
-        Mean over the feed, m.
-    mean : float
-        m.
+    Deviation (L, n) of the wall beyond its nominal place, m, positive where too much was removed,
+    and weights (L,). Mean over the feed at each height (L,), and over the wall, m.
     """
     by_height = deviation.mean(axis=1)
     return by_height, float(weight @ by_height / weight.sum())

@@ -153,17 +153,7 @@ def slice_counts(
 ) -> tuple[int, int]:
     """Slices of the corner and of the straight edge that resolve lag, curvature and waves.
 
-    Parameters
-    ----------
-    cutter : Cutter
-    depth : float
-        Axial depth, m.
-    largest_lag : float
-        Lag within a slice, rad.
-
-    Returns
-    -------
-    (int, int)
+    Down to an axial depth, m, with a largest lag within a slice, rad.
     """
     arc_top = min(depth, corner_height(cutter))
     lag_per_height = max(abs(math.tan(helix)) for helix in cutter.helix) / cutter.radius
@@ -183,18 +173,9 @@ def slice_counts(
 def edge_slices(cutter: Cutter, depth: float, counts: tuple[int, int]) -> EdgeSlices:
     """Cut the edges of a tool into slices from the tip to an axial depth.
 
-    Parameters
-    ----------
-    cutter : Cutter
-    depth : float
-        m.
-    counts : (int, int)
-        Slices of the corner and of the straight edge, as from `slice_counts`.
-
-    Notes
-    -----
-    Geometry of the general cutter after Engin and Altintas 2001, Int. J. Mach. Tools Manuf. 41,
-    section 2, with constant lead: the lag is z tan(helix)/R at every height.
+    Depth in m; counts as from `slice_counts`. Geometry of the general cutter after Engin and
+    Altintas 2001, Int. J. Mach. Tools Manuf. 41, section 2, with constant lead: the lag is z
+    tan(helix)/R at every height.
     """
     corner, straight = counts
     arc_top = min(depth, corner_height(cutter))

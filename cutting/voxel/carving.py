@@ -161,20 +161,8 @@ def voxel_chip_thickness(stock, layer, tooth, cx0, cy0, ex0, ey0, cx1, cy1, ex1,
     h thick, whose outer side moves by s while it turns by a: ``h s - h^2 a/2``. The share is
     less noisy than the number of cells, as steps gain and lose whole rows of both together.
 
-    Parameters
-    ----------
-    stock : VoxelStock
-        Not changed.
-    layer, tooth : int
-    cx0, cy0, ex0, ey0 : float
-        Tool axis and edge at the start of the step, m.
-    cx1, cy1, ex1, ey1 : float
-        The same at its end; the step is short against the radius.
-
-    Returns
-    -------
-    float
-        m, 0 where the edge meets no material.
+    Tool axis and edge at the start of the step and at its end, m; the step is short against the
+    radius. In m, 0 where the edge meets no material.
     """
     if _out_of_reach(stock, cx1, cy1, ex1, ey1):
         return 0.0

@@ -164,20 +164,10 @@ def current_plant_step(table, k, v_motor):
 def control_step(table, k, step_number, x_set, v_set, a_set, x_motor, v_motor, x_scale):
     """Torque of a drive during one step of time, N m; to be called once a step, in order.
 
-    Parameters
-    ----------
-    table : ControlTable
-    k : int
-        Row of the drive.
-    step_number : int
-        Counts from 0; loops sample where it is a multiple of their steps per sample.
-    x_set, v_set, a_set : float
-        Set point of the axis: m, m/s, m/s^2 (rad and kin for a rotary axis); read with the
-        position loop.
-    x_motor, v_motor : float
-        Angle and velocity of the motor at the beginning of the step, rad, rad/s.
-    x_scale : float
-        Position at the scale, m.
+    Of drive k. `step_number` counts from 0; loops sample where it is a multiple of their steps per
+    sample. Set point of the axis, m, m/s, m/s^2 (rad and kin for a rotary axis), read with the
+    position loop; angle and velocity of the motor at the beginning of the step, rad and rad/s;
+    position at the scale, m.
     """
     if step_number % table.samples[k, 0] == 0:
         sample = step_number // table.samples[k, 0]

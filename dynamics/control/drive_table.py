@@ -54,16 +54,8 @@ class ControlTable(NamedTuple):
 def control_table(controllers: Sequence[DriveController], step: float) -> ControlTable:
     """Return the columns of drives at rest at position 0.
 
-    Parameters
-    ----------
-    controllers : sequence of DriveController
-    step : float
-        Step of the simulation, s.
-
-    Raises
-    ------
-    ControlError
-        If there is no drive, or a sample time is no whole multiple of the step.
+    At a step of the simulation, s. ControlError if there is no drive, or a sample time is no whole
+    multiple of the step.
     """
     if not controllers:
         raise ControlError("control table: no drive given")

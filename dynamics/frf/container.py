@@ -178,24 +178,10 @@ class Frf:
 def on_common_lines(frfs: Sequence[Frf]) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
     """Stack FRFs of one quantity on one frequency axis.
 
-    Parameters
-    ----------
-    frfs : sequence of Frf
-        All of the same quantity. Where the axes differ, the lines of the first FRF inside the
-        range common to all are kept and the others are interpolated linearly to them.
-
-    Returns
-    -------
-    frequency : (n,) array of float
-        Hz.
-    values : (n, len(frfs)) array of complex
-        One column an FRF.
-
-    Raises
-    ------
-    MeasurementError
-        If the quantities or the decays added by windows differ, or the frequency ranges do not
-        overlap.
+    Where the axes differ, the lines of the first FRF inside the range common to all are kept and
+    the others are interpolated linearly to them. Lines (n,), Hz, and values (n, k), one column an
+    FRF. MeasurementError if the quantities or the decays added by windows differ, or the frequency
+    ranges do not overlap.
     """
     if len({frf.added_decay for frf in frfs}) != 1:
         raise MeasurementError("FRFs with different exponential windows cannot be stacked")

@@ -57,17 +57,8 @@ class Measurement:
 def prepare(frfs: Sequence[Frf], band: tuple[float, float] | None) -> Measurement:
     """Stack the FRFs, estimate their noise and find the usable band.
 
-    Parameters
-    ----------
-    frfs : sequence of Frf
-    band : (float, float), optional
-        Lowest and highest frequency chosen by the user, Hz.
-
-    Raises
-    ------
-    MeasurementError
-        For no FRF at all, too few lines, an FRF of nothing but zeros, windows that differ or a
-        band outside the data.
+    The band is that chosen by the user, Hz. MeasurementError for no FRF at all, too few lines, an
+    FRF of nothing but zeros, windows that differ or a band outside the data.
     """
     if not frfs:
         raise MeasurementError("no FRF given; at least one is needed")

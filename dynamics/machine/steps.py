@@ -53,8 +53,15 @@ def structure_steps(
 ) -> StructureSteps:
     """Return a structure unstrained, with its exact transition over a step of time, s.
 
-    Ports (p, n) are rows as from `LinearStructure.port`; the freedoms start with a velocity (n,),
-    m/s (rad/s), at rest by default.
+    Parameters
+    ----------
+    structure : LinearStructure
+    ports : (p, n) array of float
+        Rows, as from `LinearStructure.port`.
+    step : float
+        s.
+    velocity : (n,) array of float, optional
+        Of the freedoms at the start, m/s (rad/s); at rest by default.
     """
     split = blocks(structure, np.asarray(ports, dtype=np.float64).reshape(-1, structure.size))
     transition, first, second = _over_step(split.rate, split.dense, step)

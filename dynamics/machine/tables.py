@@ -50,26 +50,11 @@ def machine_tables(
 ) -> StructureTables:
     """Compile a machine, unstrained.
 
-    Parameters
-    ----------
-    machine : Machine
-    step : float
-        s.
-    points : SetPoints, optional
-        One column an axis, in the order of `machine.axes`; rest by default.
-    loads : mapping of str to ((n,) array, (steps+1,) array) of float
-        Rows of the structure, and forces on them at the ends of steps, N, linear in between.
-    outputs : mapping of str to (n,) array of float
-        Rows that will be read.
-    velocity : (n,) array of float, optional
-        Of the structure's freedoms at the start; at rest by default.
-
-    Raises
-    ------
-    StructureError
-        If a name is used twice or the set points have another number of axes.
-    ControlError
-        If a sample time is not a multiple of the step.
+    At a step, s. Set points have one column an axis, in the order of `machine.axes`; loads are rows
+    (n,) of the structure and forces (steps + 1,) on them at the ends of steps, N, linear in
+    between; outputs are rows (n,) that will be read. The freedoms start with a velocity (n,). Rest
+    by default. StructureError if a name is used twice or the set points have another number of
+    axes, ControlError if a sample time is not a multiple of the step.
     """
     points = resting_set_points(len(machine.axes)) if points is None else points
     if points.position.shape[1] != max(len(machine.axes), 1):

@@ -147,21 +147,8 @@ def reduced_part(
 ) -> ImportedPart:
     """Reduce a structure to its points and fixed-interface modes up to a frequency.
 
-    Parameters
-    ----------
-    name : str
-    structure : LinearStructure
-        Free, with points that have all six directions.
-    positions : mapping of str to (3,) array of float
-        m.
-    rail : sequence of str
-    highest : float
-        Hz.
-
-    Raises
-    ------
-    StructureError
-        As for `super_element` and `ImportedPart`.
+    The structure is free, with points that have all six directions, at positions (3,), m; the
+    frequency is in Hz. StructureError as for `super_element` and `ImportedPart`.
     """
     for point in positions:
         lacking = ~np.any(structure.points[point] != 0.0, axis=1)

@@ -217,20 +217,9 @@ def with_static_shapes(
     the static answer to loads along the rows is that of the full structure, in time as in
     frequency, and the frequencies of the modes stay as they are.
 
-    Parameters
-    ----------
-    structure : LinearStructure
-    modes : Modes
-        From `undamped_modes`; all rigid-body modes must be among them.
-    rows : (p, n) array of float
-        Loads whose static answer is kept, as ports of the structure.
-
-    Returns
-    -------
-    LinearStructure
-        Dense, without residuals.
-    basis : (n, m + static) array of float
-        Motion of the structure per coordinate; rows of ports times it are the new ports.
+    Modes are from `undamped_modes`, with all rigid-body modes among them; rows (p, n) are the
+    loads, as ports of the structure. The dense structure, without residuals, and its basis (n, m +
+    static), motion per coordinate: rows of ports times it are the new ports.
     """
     rigid = modes.shapes[:, modes.frequency == 0.0]
     static = _elastic_answer(structure, rigid, np.asarray(rows, dtype=np.float64).T)

@@ -35,18 +35,7 @@ def tied_structure(
 
     Rigid surfaces take freedoms away: with x = T q the matrices become T' M T and so on.
 
-    Parameters
-    ----------
-    bare : LinearStructure
-        Its own points are kept.
-    nodes : Nodes
-    rigid : sequence of RigidSurface
-    interpolated : sequence of InterpolatedPoint
-
-    Raises
-    ------
-    StructureError
-        If a point cannot be tied, or two have one name.
+    Its own points are kept. StructureError if a point cannot be tied, or two have one name.
     """
     tied = [*(surface.name for surface in rigid), *(point.name for point in interpolated)]
     names = [*bare.points, *tied]
@@ -76,17 +65,8 @@ def tied_structure(
 def refuse_indefinite(mass: Matrix, where: str) -> None:
     """Refuse a mass matrix that is not positive definite.
 
-    Parameters
-    ----------
-    mass : (n, n) array or sparse array of float
-        Symmetric.
-    where : str
-        Begins the message: the file.
-
-    Raises
-    ------
-    StructureError
-        Naming the row, from 1.
+    The matrix (n, n) is symmetric. The message of the StructureError begins with the file and names
+    the row, from 1.
     """
     diagonal = mass.diagonal()
     if np.any(diagonal <= 0.0):

@@ -25,16 +25,7 @@ def sentence(error: ValueError, key: str = "") -> str:
 def machine_errors(name: str, key: str = "") -> Iterator[None]:
     """Turn errors of the machine into errors of input.
 
-    Parameters
-    ----------
-    name : str
-        File.
-    key : str
-        Path of the key; none if it is the machine as a whole.
-
-    Raises
-    ------
-    InputError
+    An InputError names the file and the path of the key; none if it is the machine as a whole.
     """
     try:
         yield

@@ -83,16 +83,7 @@ def periods_per_revolution(setup: Setup) -> int:
 def simulated_multiplier(case: Case, modes: tuple[Mode, ...]) -> SimulatedMultiplier:
     """Simulate a cut that takes hold slowly, and measure how vibration grows.
 
-    Parameters
-    ----------
-    case : Case
-    modes : tuple of Mode
-        Of its structure.
-
-    Raises
-    ------
-    InputError
-        If the case cannot be simulated.
+    Modes are those of its structure. InputError if the case cannot be simulated.
     """
     setup = set_up_on_modes(case, modes)
     period = setup.resolution.steps_per_revolution // periods_per_revolution(setup) * setup.step

@@ -32,21 +32,9 @@ def cut_at_pulses(
 ) -> list[HammerRecord]:
     """Cut a record of a train of pulses into one record a pulse, all of the shortest length.
 
-    Parameters
-    ----------
-    train : PulseTrain
-    force, response : (n,) array of float
-        Sampled at the steps of the train; the force may be another than that of the train, as of
-        a drive that adds to its torque command.
-    quantity : str
-        Quantity of the FRF.
-    points : pair of Point
-        Of the response and of the force.
-
-    Raises
-    ------
-    MeasurementError
-        If the columns are not as long as the train.
+    Force and response (n,) are sampled at the steps of the train; the force may be another than
+    that of the train, as of a drive that adds to its torque command. The points are those of the
+    response and of the force. MeasurementError if the columns are not as long as the train.
     """
     force, response = (np.asarray(column, dtype=np.float64) for column in (force, response))
     if force.shape != train.values.shape or response.shape != train.values.shape:
