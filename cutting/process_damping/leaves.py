@@ -8,25 +8,13 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class FlankLeaves:
-    """Leaves of the force on the flank, by the type of their table.
+    """Leaves of the force on the flank, by the type of their table."""
 
-    Parameters
-    ----------
-    table : type
-        NamedTuple.
-    force : callable
-        Table, tooth, segment, position, rate and cutting speed -> tangential and radial force per
-        length of edge, N/m.
-    store : callable
-        Takes in the surface that the edge has left in this step, m along its outward normal.
-    clear : callable
-        Clears what lies behind an edge that has left the cut.
-    has_memory : bool
-        The force depends on the surface behind the edge.
-    """
-
-    table: type
+    table: type  # NamedTuple
+    #: table, tooth, segment, position, rate and cutting speed -> tangential and radial force per
+    #: length of edge, N/m
     force: Callable
+    #: takes in the surface that the edge has left in this step, m along its outward normal
     store: Callable
-    clear: Callable
-    has_memory: bool = False
+    clear: Callable  # clears what lies behind an edge that has left the cut
+    has_memory: bool = False  # the force depends on the surface behind the edge

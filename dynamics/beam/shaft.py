@@ -41,22 +41,12 @@ NEAREST_NODES = 0.02
 
 @dataclass(frozen=True)
 class Disc:
-    """Rigid disc on a line: a chuck, pulley, rotor or nut, centred on the axis.
+    """Rigid disc on a line: a chuck, pulley, rotor or nut, centred on the axis."""
 
-    Parameters
-    ----------
-    station : float
-        Place of its centre along the line, m.
-    mass : float
-        kg.
-    polar_inertia, diametral_inertia : float
-        About the axis and about a diameter through the centre, kg m^2.
-    """
-
-    station: float
-    mass: float
-    polar_inertia: float
-    diametral_inertia: float
+    station: float  # along the line, m
+    mass: float  # kg
+    polar_inertia: float  # about the axis, kg m^2
+    diametral_inertia: float  # about a diameter, kg m^2
 
     def __post_init__(self) -> None:
         for what in ("mass", "polar_inertia", "diametral_inertia"):
@@ -74,38 +64,21 @@ class Disc:
 
 @dataclass(frozen=True)
 class Bearing:
-    """Springs and dampers between a line and ground or another part, in the line's own axes.
-
-    Parameters
-    ----------
-    name : str
-    station : float
-        Along the line, m.
-    radial : (float, float)
-        Stiffness in the line's two radial directions, N/m.
-    axial : float
-        N/m.
-    tilt : (float, float)
-        Stiffness against rotation about the two radial directions, N m/rad.
-    torsion : float
-        Stiffness against rotation about the axis, N m/rad; a drive holds it, a bearing does not.
-    radial_damping, axial_damping, tilt_damping, torsion_damping
-        N s/m and N m s/rad.
-    body : str
-        What carries the bearing; "ground" by default.
-    """
+    """Springs and dampers between a line and ground or another part, in the line's own axes."""
 
     name: str
-    station: float
-    radial: tuple[float, float]
-    axial: float = 0.0
+    station: float  # along the line, m
+    radial: tuple[float, float]  # stiffness in the line's two radial directions, N/m
+    axial: float = 0.0  # N/m
+    #: stiffness against rotation about the two radial directions, N m/rad
     tilt: tuple[float, float] = (0.0, 0.0)
+    #: against rotation about the axis, N m/rad; a drive holds it, a bearing does not
     torsion: float = 0.0
-    radial_damping: tuple[float, float] = (0.0, 0.0)
-    axial_damping: float = 0.0
-    tilt_damping: tuple[float, float] = (0.0, 0.0)
-    torsion_damping: float = 0.0
-    body: str = GROUND
+    radial_damping: tuple[float, float] = (0.0, 0.0)  # N s/m
+    axial_damping: float = 0.0  # N s/m
+    tilt_damping: tuple[float, float] = (0.0, 0.0)  # N m s/rad
+    torsion_damping: float = 0.0  # N m s/rad
+    body: str = GROUND  # what carries the bearing
 
 
 @dataclass(frozen=True, eq=False)

@@ -65,26 +65,18 @@ class LoopTiming:
 class PositionController:
     """v = K_v (x_set - x).
 
-    Parameters
-    ----------
-    gain : float
-        K_v, 1/s; 1 m/(min mm) is 16.67 1/s.
-    timing : LoopTiming
-    velocity_limit : float
-        Of the velocity set point with feedforward, m/s (rad/s for a rotary axis).
-    set_point_delay : int
-        Samples by which the set point is delayed against the measured position, so that it meets
-        the feedforward's motion.
-
     Raises
     ------
     ControlError
         If a value is out of its range.
     """
 
-    gain: float
+    gain: float  # K_v, 1/s; 1 m/(min mm) is 16.67 1/s
     timing: LoopTiming
+    #: of the velocity set point with feedforward, m/s (rad/s for a rotary axis)
     velocity_limit: float = math.inf
+    #: samples by which the set point is delayed against the measured position, so that it meets the
+    #: feedforward's motion
     set_point_delay: int = 0
 
     def __post_init__(self):

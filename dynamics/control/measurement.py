@@ -21,32 +21,22 @@ from dynamics.control.sampling import ControlError, require_not_negative, requir
 class MeasuringSystem:
     """What the position and velocity controllers measure.
 
-    Parameters
-    ----------
-    transmission : float
-        Axis displacement per motor angle, m/rad: lead/(2 pi) of a ball screw; 1 for a spindle
-        or a direct drive.
-    position : {"encoder", "scale"}
-        Encoder: motor angle times transmission (semi-closed loop). Scale: position of the
-        slide (direct measuring system).
-    velocity : {"motor", "difference"}
-        Motor: the motor's velocity as it is. Difference: of encoder positions over a sample.
-    encoder_resolution : float
-        rad per count; 0: none.
-    scale_resolution : float
-        m per count; 0: none.
-
     Raises
     ------
     ControlError
         If the transmission is zero, a resolution negative or a choice unknown.
     """
 
+    #: axis displacement per motor angle, m/rad: lead/(2 pi) of a ball screw; 1 for a spindle or a
+    #: direct drive
     transmission: float
+    #: encoder: motor angle times transmission (semi-closed loop); scale: position of the slide
+    #: (direct measuring system)
     position: Literal["encoder", "scale"] = "encoder"
+    #: that of the motor as it is, or the difference of encoder positions over a sample
     velocity: Literal["motor", "difference"] = "motor"
-    encoder_resolution: float = 0.0
-    scale_resolution: float = 0.0
+    encoder_resolution: float = 0.0  # rad per count; 0: none
+    scale_resolution: float = 0.0  # m per count; 0: none
 
     def __post_init__(self):
         part = "measuring system"

@@ -21,21 +21,15 @@ class LinearMotor:
     so that the work is the same. Motors with a controller each are a drive each. Attraction
     between primary and secondary, and the motors' mass, belong to the structure.
 
-    Parameters
-    ----------
-    offsets : sequence of (3,) array of float
-        Where each motor pushes, from the place where the axis is driven, m.
-    shares : sequence of float, optional
-        Of the force, in sum 1; even by default.
-
     Raises
     ------
     StructureError
         If there is no motor, or the shares are negative or not 1 in sum.
     """
 
+    #: (3,) each: where a motor pushes, from the place where the axis is driven, m
     offsets: Sequence[ArrayLike] = ((0.0, 0.0, 0.0),)
-    shares: Sequence[float] | None = None
+    shares: Sequence[float] | None = None  # of the force, in sum 1; even by default
 
     def __post_init__(self) -> None:
         where = "linear motor"

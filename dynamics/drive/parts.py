@@ -18,18 +18,6 @@ from dynamics.structure.spring_coupling import Coupling, Term
 class DrivenAxis:
     """Place and direction of a feed drive.
 
-    Parameters
-    ----------
-    name : str
-    direction : (3,) array of float
-        Of positive motion of `moving` against `carrying`; made a unit vector.
-    moving, carrying : str
-        Parts that are driven, and that carry the motor; carrying may be "ground".
-    at : (3,) array of float
-        Where the drive pushes the moving part, m.
-    position : float
-        Of the axis, m, from where the drive's own lengths count.
-
     Raises
     ------
     StructureError
@@ -37,11 +25,12 @@ class DrivenAxis:
     """
 
     name: str
+    #: (3,), of positive motion of `moving` against `carrying`; made a unit vector
     direction: ArrayLike
-    moving: str
-    carrying: str
-    at: ArrayLike
-    position: float = 0.0
+    moving: str  # part that is driven
+    carrying: str  # part that carries the motor; may be "ground"
+    at: ArrayLike  # (3,), where the drive pushes the moving part, m
+    position: float = 0.0  # of the axis, m, from where the drive's own lengths count
 
     def __post_init__(self) -> None:
         where = f'axis "{self.name}"'

@@ -34,28 +34,19 @@ from dynamics.structure.spring_coupling import Term
 class RackMotor:
     """One motor of a rack-and-pinion drive, with gearbox and pinion.
 
-    Parameters
-    ----------
-    inertia : float
-        Moment of inertia of the motor, kg m^2.
-    towards_pinion : (3,) array of float
-        Direction from the rack to the pinion's axis, perpendicular to the axis of motion; made
-        a unit vector.
-    offset : (3,) array of float
-        Where pinion and rack mesh, from the place where the axis is driven, m.
-    preload : float
-        Torque that the motor holds against the other motors, N m, positive if it pushes forward.
-
     Raises
     ------
     StructureError
         If a number is out of its range.
     """
 
-    inertia: float
+    inertia: float  # moment of inertia of the motor, kg m^2
+    #: (3,), direction from the rack to the pinion's axis, perpendicular to the axis of motion; made
+    #: a unit vector
     towards_pinion: ArrayLike
+    #: (3,), where they mesh, from the place where the axis is driven, m
     offset: ArrayLike = (0.0, 0.0, 0.0)
-    preload: float = 0.0
+    preload: float = 0.0  # torque held against the other motors, N m, positive if it pushes forward
 
     def __post_init__(self) -> None:
         where = "motor of rack and pinion"

@@ -27,28 +27,19 @@ class DirectRotary:
     The moving part - a body, or a beam line of a spindle - is free to turn in its bearings.
     Travel is an angle here, rad.
 
-    Parameters
-    ----------
-    motor_inertia : float
-        kg m^2; 0 where the moving part has it (a built-in motor's rotor as a disc of the
-        spindle) and the coupling is rigid.
-    coupling_stiffness : float
-        Torsional, between motor (or driven pulley) and moving part, N m/rad; infinite if rigid.
-    coupling_damping : float
-        N m s/rad.
-    belt : Belt, optional
-        Between motor and moving part.
-
     Raises
     ------
     StructureError
         If a number is out of its range.
     """
 
+    #: kg m^2; 0 where the moving part has it (a built-in motor's rotor as a disc of the spindle)
+    #: and the coupling is rigid
     motor_inertia: float = 0.0
+    #: torsional, between motor (or driven pulley) and moving part, N m/rad; infinite if rigid
     coupling_stiffness: float = np.inf
-    coupling_damping: float = 0.0
-    belt: Belt | None = None
+    coupling_damping: float = 0.0  # N m s/rad
+    belt: Belt | None = None  # between motor and moving part
 
     def __post_init__(self) -> None:
         where = "rotary drive"

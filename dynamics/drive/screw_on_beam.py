@@ -40,53 +40,32 @@ class ScrewOnBeam:
     directions and against tilt, and one along the screw that its turning stretches too.
     The beam brings the screw's bearings, inertia and compliance.
 
-    Parameters
-    ----------
-    beam : str
-        Name of the `dynamics.beam.shaft.BeamLine`; it lies along the axis.
-    lead : float
-        Travel per turn, m; positive for a right-hand thread, negative for a left-hand one.
-    radial : (float, float)
-        k_X, k_Y between nut and screw, N/m.
-    axial : float
-        k_Z, N/m.
-    tilt : (float, float)
-        k_psi, k_theta about the same two radial directions, N m/rad.
-    nut_at : float
-        Place of the nut at position 0 of the axis from the beam's driven end along the direction
-        of the axis, m; negative if that end lies ahead of the nut.
-    motor_inertia : float
-        kg m^2; 0 where the beam has it as a disc and the coupling is rigid.
-    coupling_stiffness : float
-        Torsional, between motor (or driven pulley) and the beam's end, N m/rad.
-    belt : Belt, optional
-    first_radial : (3,) array of float, optional
-        First radial direction, made perpendicular to the axis.
-    axial_damping, torsional_damping : float
-        Of the nut, N s/m, and of the coupling, N m s/rad.
-    radial_damping, tilt_damping : (float, float)
-        Of the nut, N s/m and N m s/rad.
-
     Raises
     ------
     StructureError
         If a number is out of its range.
     """
 
-    beam: str
+    beam: str  # name of the `dynamics.beam.shaft.BeamLine`; it lies along the axis
+    #: travel per turn, m; positive for a right-hand thread, negative for a left-hand one
     lead: float
-    radial: tuple[float, float]
-    axial: float
-    tilt: tuple[float, float]
+    radial: tuple[float, float]  # k_X, k_Y between nut and screw, N/m
+    axial: float  # k_Z, N/m
+    tilt: tuple[float, float]  # k_psi, k_theta about the same two radial directions, N m/rad
+    #: place of the nut at position 0 of the axis from the beam's driven end along the direction of
+    #: the axis, m; negative if that end lies ahead of the nut
     nut_at: float
+    #: kg m^2; 0 where the beam has it as a disc and the coupling is rigid
     motor_inertia: float = 0.0
+    #: torsional, between motor (or driven pulley) and the beam's end, N m/rad
     coupling_stiffness: float = np.inf
     belt: Belt | None = None
+    #: (3,), first radial direction, made perpendicular to the axis
     first_radial: ArrayLike | None = None
-    axial_damping: float = 0.0
-    torsional_damping: float = 0.0
-    radial_damping: tuple[float, float] = (0.0, 0.0)
-    tilt_damping: tuple[float, float] = (0.0, 0.0)
+    axial_damping: float = 0.0  # of the nut, N s/m
+    torsional_damping: float = 0.0  # of the coupling, N m s/rad
+    radial_damping: tuple[float, float] = (0.0, 0.0)  # of the nut, N s/m
+    tilt_damping: tuple[float, float] = (0.0, 0.0)  # of the nut, N m s/rad
 
     def __post_init__(self) -> None:
         where = f'screw on beam "{self.beam}"'

@@ -37,28 +37,17 @@ _ANY_VELOCITY = 1.0
 class CoulombStribeck:
     """Parameters of one dry friction; along a rotation read N m, rad for N, m.
 
-    Parameters
-    ----------
-    coulomb, static : float
-        FC and FS, N; not below 0.
-    stribeck_velocity : float
-        vS, m/s; above 0.
-    viscous : float
-        c, N s/m; not below 0.
-    stribeck_shape : float
-        beta; above 0.
-
     Raises
     ------
     ValueError
         If a parameter is out of its range; the message names it.
     """
 
-    coulomb: float
-    static: float
-    stribeck_velocity: float
-    viscous: float = 0.0
-    stribeck_shape: float = 2.0
+    coulomb: float  # FC, N; not below 0
+    static: float  # FS, N; not below 0
+    stribeck_velocity: float  # vS, m/s; above 0
+    viscous: float = 0.0  # c, N s/m; not below 0
+    stribeck_shape: float = 2.0  # beta; above 0
 
     def __post_init__(self) -> None:
         check_ranges(self, KEYS, "dry friction")

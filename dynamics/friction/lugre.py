@@ -49,40 +49,21 @@ KEYS = (
 class LuGre:
     """Parameters of one LuGre friction; along a rotation read N m, rad for N, m.
 
-    Parameters
-    ----------
-    bristle_stiffness : float
-        s0, N/m.
-    bristle_damping : float
-        s1, N s/m.
-    viscous : float
-        s2, N s/m.
-    coulomb, static : float
-        FC and FS, N.
-    stribeck_velocity : float
-        vS, m/s.
-    stribeck_shape : float
-        beta.
-    logarithmic : float
-        Flog, N.
-    logarithmic_velocity : float
-        vlog, m/s.
-
     Raises
     ------
     ValueError
         If a parameter is out of its range; the message names it.
     """
 
-    bristle_stiffness: float
-    bristle_damping: float
-    viscous: float
-    coulomb: float
-    static: float
-    stribeck_velocity: float
-    stribeck_shape: float = 2.0
-    logarithmic: float = 0.0
-    logarithmic_velocity: float = 1.0
+    bristle_stiffness: float  # s0, N/m
+    bristle_damping: float  # s1, N s/m
+    viscous: float  # s2, N s/m
+    coulomb: float  # FC, N
+    static: float  # FS, N
+    stribeck_velocity: float  # vS, m/s
+    stribeck_shape: float = 2.0  # beta
+    logarithmic: float = 0.0  # Flog, N
+    logarithmic_velocity: float = 1.0  # vlog, m/s
 
     def __post_init__(self) -> None:
         check_ranges(self, KEYS, "LuGre friction")

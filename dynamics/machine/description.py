@@ -129,29 +129,15 @@ class ConstantForce(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Machine:
-    """Machine in one condition, ready to be run or linearised.
-
-    Parameters
-    ----------
-    structure : LinearStructure
-    drives : tuple of Drive
-        Those under control.
-    frictions : tuple of Friction
-    preloads : tuple of ConstantForce
-    axes : tuple of str
-        Names of all axes, in the order of set points.
-    assembly : Assembly
-        Parts, for further rows.
-    basis : (full, n) array of float, optional
-        Motion of the assembly's freedoms per coordinate, where it was reduced.
-    """
+    """Machine in one condition, ready to be run or linearised."""
 
     structure: LinearStructure
-    drives: tuple[Drive, ...]
+    drives: tuple[Drive, ...]  # those under control
     frictions: tuple[Friction, ...]
     preloads: tuple[ConstantForce, ...]
-    axes: tuple[str, ...]
-    assembly: Assembly
+    axes: tuple[str, ...]  # names of all axes, in the order of set points
+    assembly: Assembly  # parts, for further rows
+    #: (full, n), motion of the assembly's freedoms per coordinate
     basis: NDArray[np.float64] | None = None
 
     def row(self, who: str, terms: Sequence[Term]) -> NDArray[np.float64]:

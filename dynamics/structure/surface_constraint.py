@@ -25,24 +25,16 @@ NARROWEST = 1e-6
 class Nodes:
     """Nodes of a finite element model and the matrix rows of their freedoms.
 
-    Parameters
-    ----------
-    names : (m,) array of int
-        Numbers of the nodes.
-    coordinates : (m, 3) array of float
-        m.
-    rows : (m, 6) array of int
-        Row of the matrices, from 0, of each node's displacements and rotations; -1 where the node
-        has none or it is held.
-
     Raises
     ------
     StructureError
         If numbers repeat, sizes disagree or two freedoms share a row.
     """
 
-    names: NDArray[np.int64]
-    coordinates: NDArray[np.float64]
+    names: NDArray[np.int64]  # (m,), numbers of the nodes
+    coordinates: NDArray[np.float64]  # (m, 3), m
+    #: (m, 6), row of the matrices, from 0, of each node's displacements and rotations; -1 where the
+    #: node has none or it is held
     rows: NDArray[np.int64]
 
     def __post_init__(self) -> None:

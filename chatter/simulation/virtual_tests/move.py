@@ -28,69 +28,34 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class MovePlan:
-    """A trajectory for some axes.
+    """A trajectory for some axes."""
 
-    Parameters
-    ----------
-    trajectory : Trajectory
-        One column an axis.
-    axes : sequence of str
-        Names, in the order of the columns.
-    cycle : float
-        Interpolation cycle of the control, s.
-    standstill : float
-        Before the move, s.
-    afterwards : float
-        Time simulated behind its end, s.
-    path : Path, optional
-        Plane path of the first two axes, for the contour error.
-    """
-
-    trajectory: Trajectory
-    axes: Sequence[str]
-    cycle: float
-    standstill: float = 0.0
-    afterwards: float = 0.1
-    path: Path | None = None
+    trajectory: Trajectory  # one column an axis
+    axes: Sequence[str]  # names, in the order of the columns
+    cycle: float  # interpolation cycle of the control, s
+    standstill: float = 0.0  # before the move, s
+    afterwards: float = 0.1  # time simulated behind its end, s
+    path: Path | None = None  # plane path of the first two axes, for the contour error
 
 
 @dataclass(frozen=True, eq=False)
 class MoveResult:
-    """Signals of a move; columns are the axes of the plan.
-
-    Parameters
-    ----------
-    name : str
-    axes : tuple of str
-    time : (n,) array of float
-        s.
-    wanted : (n, axes) array of float
-        Set points, m, counted from the start.
-    velocity : (n, axes) array of float
-        At the motor, m/s.
-    motor, scale, tool : (n, axes) array of float
-        Position by the motor's encoder, at the direct measuring system, and at the tool against
-        the workpiece (None without tool point), m.
-    effort : (n, axes) array of float
-        Torque of the motors, N m, or force of linear ones, N; summed over the motors of an axis.
-    contour : (n,) array of float, optional
-        Signed distance of the tool (of the motors without tool point) from the path, m.
-    friction : mapping of str to (n,) array
-        Forces of the frictions, N.
-    interrupted : bool
-    """
+    """Signals of a move; columns are the axes of the plan."""
 
     name: str
     axes: tuple[str, ...]
-    time: NDArray[np.float64]
-    wanted: NDArray[np.float64]
-    velocity: NDArray[np.float64]
-    motor: NDArray[np.float64]
-    scale: NDArray[np.float64]
-    tool: NDArray[np.float64] | None
+    time: NDArray[np.float64]  # (n,), s
+    wanted: NDArray[np.float64]  # (n, axes), set points, m, counted from the start
+    velocity: NDArray[np.float64]  # (n, axes), at the motor, m/s
+    motor: NDArray[np.float64]  # (n, axes), position by the motor's encoder, m
+    scale: NDArray[np.float64]  # (n, axes), position at the direct measuring system, m
+    tool: NDArray[np.float64] | None  # (n, axes), at the tool against the workpiece, m
+    #: (n, axes), torque of the motors, N m, or force of linear ones, N; summed over those of an
+    #: axis
     effort: NDArray[np.float64]
+    #: (n,), signed distance of the tool (of the motors without tool point) from the path, m
     contour: NDArray[np.float64] | None
-    friction: dict[str, NDArray[np.float64]]
+    friction: dict[str, NDArray[np.float64]]  # (n,), forces of the frictions, N
     interrupted: bool
 
     @property

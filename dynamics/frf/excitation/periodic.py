@@ -19,36 +19,17 @@ _SAME_STEP = 1e-9
 
 @dataclass(frozen=True)
 class PeriodicRecord:
-    """Input and response under a periodic excitation, one realisation, SI units.
+    """Input and response under a periodic excitation, one realisation, SI units."""
 
-    Parameters
-    ----------
-    force, response : (n,) array of float
-        Input and response sampled together, a force that is held at the beginning of the step
-        over which it acts. N (N m) and m, m/s or m/s^2 (rad, ...).
-    step : float
-        s.
-    period : int
-        Samples.
-    lines : (l,) array of int
-        Excited harmonics of the period, rising.
-    leading : int
-        First periods, which hold transients and are passed over.
-    quantity : str
-        Quantity of the FRF the pair gives.
-    reference : (n,) array of float, optional
-        Signal injected into a closed loop, of which force and response are both answers.
-    name : str
-    response_point, reference_point : Point
-    """
-
+    #: (n,), held at the beginning of the step over which it acts, N (N m)
     force: NDArray[np.float64]
-    response: NDArray[np.float64]
-    step: float
-    period: int
-    lines: NDArray[np.int64]
-    leading: int = 1
-    quantity: Quantity = "receptance"
+    response: NDArray[np.float64]  # (n,), sampled together with it, m, m/s or m/s^2 (rad, ...)
+    step: float  # s
+    period: int  # samples
+    lines: NDArray[np.int64]  # (l,), excited harmonics of the period, rising
+    leading: int = 1  # first periods, which hold transients and are passed over
+    quantity: Quantity = "receptance"  # of the FRF the pair gives
+    #: (n,), injected into a closed loop, of which force and response are both answers
     reference: NDArray[np.float64] | None = None
     name: str = "periodic record"
     response_point: Point = field(default_factory=Point)
@@ -113,22 +94,14 @@ class PeriodicFrf:
     With friction or another nonlinearity the FRF is the best linear approximation for excitations
     of its spectrum and power. Variances are of the FRF averaged over all periods and
     realisations, sum of those of real and imaginary part, squared unit of the FRF.
-
-    Parameters
-    ----------
-    frf : Frf
-        On the excited lines; its coherence is that over all periods and realisations.
-    realisations : int
-    noise_variance : (l,) array of float, optional
-        Seen from period to period; None for one period.
-    total_variance : (l,) array of float, optional
-        Seen from realisation to realisation, of noise and nonlinear distortion together; None for
-        one realisation.
     """
 
-    frf: Frf
+    frf: Frf  # on the excited lines; its coherence is that over all periods and realisations
     realisations: int
+    #: (l,), seen from period to period; None for one period
     noise_variance: NDArray[np.float64] | None
+    #: (l,), seen from realisation to realisation, of noise and nonlinear distortion together; None
+    #: for one realisation
     total_variance: NDArray[np.float64] | None
 
     @property

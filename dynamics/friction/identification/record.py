@@ -25,21 +25,6 @@ _APART = 0.2
 class DriveRecord:
     """Evenly sampled motion and effort of one axis.
 
-    Parameters
-    ----------
-    time : (n,) array of float
-        s, ascending, evenly spaced within 5 %.
-    position : (n,) array of float
-        m or rad.
-    velocity : (n,) array of float
-        m/s or rad/s.
-    effort : (n,) array of float
-        Driving force, N, or torque, N m: positive drives towards positive positions.
-    acceleration : (n,) array of float, optional
-        m/s^2 or rad/s^2, where it was measured; otherwise it is derived from the velocity.
-    name : str
-        Of the record, for messages.
-
     Raises
     ------
     MeasurementError
@@ -47,12 +32,14 @@ class DriveRecord:
         position and velocity do not belong together (units, sign).
     """
 
-    time: NDArray[np.float64]
-    position: NDArray[np.float64]
-    velocity: NDArray[np.float64]
+    time: NDArray[np.float64]  # (n,), s, ascending, evenly spaced within 5 %
+    position: NDArray[np.float64]  # (n,), m or rad
+    velocity: NDArray[np.float64]  # (n,), m/s or rad/s
+    #: (n,), driving force, N, or torque, N m: positive drives towards positive positions
     effort: NDArray[np.float64]
+    #: (n,), m/s^2 or rad/s^2, where it was measured; otherwise it is derived from the velocity
     acceleration: NDArray[np.float64] | None = None
-    name: str = "drive record"
+    name: str = "drive record"  # of the record, for messages
 
     def __post_init__(self) -> None:
         for signal in ("time", "position", "velocity", "effort", "acceleration"):
