@@ -66,10 +66,7 @@ def edge_law(case: Case) -> NamedTuple:
 def process_damping_of(case: Case) -> ProcessDampingLaw | None:
     """Force on the flank that a case describes; None where there is none.
 
-    Raises
-    ------
-    InputError
-        If ploughing lacks the clearance angle, or anything that touches the work.
+    InputError if ploughing lacks the clearance angle, or anything that touches the work.
     """
     tool, section = case.tool, case.process_damping
     if section is None:

@@ -194,10 +194,7 @@ _MOST_WRONG = 0.1
 def is_passive(frf: Frf) -> bool:
     """Tell whether an FRF can be that of a drive point, sign of the sensor aside.
 
-    Returns
-    -------
-    bool
-        False where the imaginary part of the mobility-like loss changes sign between resonances.
+    Not where the imaginary part of the mobility-like loss changes sign between resonances.
     """
     positive = frf.band(np.finfo(float).tiny, np.inf)
     # the measured quantity keeps the weight of high and low modes alike
@@ -212,11 +209,8 @@ def is_passive(frf: Frf) -> bool:
 def with_magnitudes(fit: ModalFit) -> ModalFit:
     """Give the modes of a drive point that is none the mass that the magnitude of its FRF means.
 
-    Returns
-    -------
-    ModalFit
-        The same where it has real modes at the tool point, or where no FRF is labelled a drive
-        point; else with masses, directions and a warning in every mode.
+    The same where it has real modes at the tool point, or where no FRF is labelled a drive point;
+    else with masses, directions and a warning in every mode.
     """
     labelled = [k for k, frf in enumerate(fit.frfs) if frf.is_drive_point]
     if fit.modes or not labelled:

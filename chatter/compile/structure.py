@@ -167,11 +167,8 @@ Structure = GivenModes | MeasuredStructure
 def structure_of(case: Case) -> Structure:
     """Return the structure that a case describes, at its spindle speed.
 
-    Raises
-    ------
-    InputError
-        If the FRF files cannot be read or do not say what is needed, or the machine cannot make
-        the cut.
+    InputError if the FRF files cannot be read or do not say what is needed, or the machine cannot
+    make the cut.
     """
     return structure_at(case, case.cut.spindle_speed if case.cut is not None else 0.0)
 
@@ -181,10 +178,7 @@ def structure_at(case: Case, spindle_speed: float) -> Structure:
 
     A machine is taken at the speed of the case.
 
-    Raises
-    ------
-    InputError
-        As `structure_of`.
+    InputError as `structure_of`.
     """
     section = case.structure
     if section.mode:

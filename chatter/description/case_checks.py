@@ -48,10 +48,7 @@ def friction_problems(
 ) -> list[tuple[str, str]]:
     """Check that the frictions named by modes are there.
 
-    Returns
-    -------
-    list of (str, str)
-        Path and sentence of what is wrong.
+    Path and sentence of what is wrong are returned.
     """
     known = ", ".join(f"[friction.{name}]" for name in frictions) or "none"
     return [
@@ -69,10 +66,7 @@ def optimum_problems(
 ) -> list[tuple[str, str]]:
     """Check the radial depths of [optimum] against the cut and the tool.
 
-    Returns
-    -------
-    list of (str, str)
-        Path and sentence of what is wrong.
+    Path and sentence of what is wrong are returned.
     """
     if optimum is None or optimum.radial_depths is None or cut is None or tool is None:
         return []

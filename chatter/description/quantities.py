@@ -164,12 +164,7 @@ class EitherQuantityField(QuantityField):
 def either_quantity(*dimensions: str, **bounds: float) -> Any:
     """Return the field type of a quantity of one of several dimensions.
 
-    Parameters
-    ----------
-    *dimensions : str
-        Keys of `chatter.description.units.DIMENSIONS`.
-    **bounds : float
-        As for `quantity`.
+    Dimensions are keys of `chatter.description.units.DIMENSIONS`, bounds as for `quantity`.
     """
     field = EitherQuantityField(dimensions[0], **bounds, others=dimensions[1:])
     return Annotated[float, BeforeValidator(field.read), WithJsonSchema(field.json_schema()), field]

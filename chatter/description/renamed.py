@@ -53,10 +53,7 @@ MACHINE = (
 def rename(document: Any, renamed: Sequence[Renamed]) -> list[str]:
     """Give keys and values of a document their new names, in place.
 
-    Returns
-    -------
-    list of str
-        A note for each: where it stands, the old name and the new one.
+    A note for each is returned: where it stands, the old name and the new one.
     """
     notes = []
     for one in renamed:

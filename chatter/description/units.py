@@ -226,10 +226,7 @@ def _unit_of_library(unit: str, words: Mapping[str, str]) -> tuple[Any, Any, boo
 def measured_unit(unit: str) -> MeasuredUnit | None:
     """Read a unit of a measured file; None where it is unknown.
 
-    Parameters
-    ----------
-    unit : str
-        ``"um/N"``, ``"g"`` (the acceleration of gravity here), ``"lb"`` (a force), ``"m/s2"``.
+    Such as ``"um/N"``, ``"g"`` (the acceleration of gravity here), ``"lb"`` (a force), ``"m/s2"``.
     """
     known = _unit_of_library(unit.strip(), _MEASURED_WORDS) if len(unit) <= _LONGEST_TEXT else None
     if known is None or not known[2]:

@@ -22,8 +22,6 @@ def stability_margins(
 ) -> NDArray[np.float64]:
     """Share of its depth by which a cut is away from the limit; above 0: stable.
 
-    Notes
-    -----
     From the logarithm of the spectral radius at the depth and a little above, as if it were linear
     in the logarithm of the depth.
     """

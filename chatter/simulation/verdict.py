@@ -33,8 +33,6 @@ Result = TypeVar("Result", bound=SimulationResult)
 def with_verdict(result: Result) -> Result:
     """Result with the answer whether its cut chatters.
 
-    Notes
-    -----
     The record alone tells at a constant speed, unless it repeats and is so large that teeth leave
     the cut: chatter that is full may repeat too, above all from revolution to revolution. There,
     and under a varying speed, further runs follow how a small perturbation of the motion goes on.

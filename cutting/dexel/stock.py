@@ -197,14 +197,7 @@ def dexel_remove_path(
 ) -> None:
     """Remove what a disc clears as its centre moves straight from (x0, y0) to (x1, y1).
 
-    Parameters
-    ----------
-    stock : DexelStock
-    layer : int
-    x0, y0, x1, y1 : float
-        Ends of the path of the centre, m.
-    radius : float
-        Of the disc, m.
+    All in m.
     """
     for family, (a, b) in enumerate((((x0, y0), (x1, y1)), ((y0, x0), (y1, x1)))):
         coordinate = line_coordinates(stock, family)

@@ -118,11 +118,7 @@ def _chip_at_position(segments, segment, position, spindle):
 def points_along(segments, segment, last, low, high, change, spindle):
     """Order of a quadrature along an engaged interval; parameters of `engaged_interval_from`.
 
-    Returns
-    -------
-    points : int
-    ends : int
-        Ends towards which the points are graded, because the chip vanishes there.
+    Points, and the ends towards which they are graded, because the chip vanishes there.
     """
     if change < 1e-9 and segments.delay_index[segment] >= 0:
         return 1, NO_END

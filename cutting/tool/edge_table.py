@@ -95,12 +95,10 @@ def direction(edges, tooth, slice_index, point, rotation):
 def force_on_tool(edges, slice_index, sine, cosine, tangential, radial, axial):
     """Force (x, y, z) on the tool from the force on an edge.
 
-    Notes
-    -----
-    The tangential force acts against the motion of the edge, the radial one along its inward
-    normal (-sin k sin p, -sin k cos p, cos k), the axial one along (cos k sin p, cos k cos p,
-    sin k), with k the axial immersion and p the rotation angle (Altintas and Engin 2001, eq. 12,
-    with the axial force counted positive upwards along the axis).
+    The tangential force acts against the motion of the edge, the radial one along its inward normal
+    (-sin k sin p, -sin k cos p, cos k), the axial one along (cos k sin p, cos k cos p, sin k), with
+    k the axial immersion and p the rotation angle (Altintas and Engin 2001, eq. 12, with the axial
+    force counted positive upwards along the axis).
     """
     sk, ck = edges.sine_immersion[slice_index], edges.cosine_immersion[slice_index]
     in_plane = axial * ck - radial * sk

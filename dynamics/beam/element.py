@@ -25,11 +25,7 @@ ShearFormula = Callable[[float, float], float]
 def cowper(poisson: float, bore_ratio: float) -> float:
     """Shear coefficient of a round section, 6(1+nu)/(7+6nu) if solid (Cowper 1966).
 
-    Parameters
-    ----------
-    poisson : float
-    bore_ratio : float
-        Inner over outer diameter, 0 for a solid section.
+    The bore ratio is inner over outer diameter, 0 for a solid section.
     """
     square = (1.0 + bore_ratio**2) ** 2
     return (
@@ -45,11 +41,7 @@ def hutchinson(poisson: float, bore_ratio: float) -> float:
 
     Hutchinson, Journal of Applied Mechanics 68, 2001.
 
-    Parameters
-    ----------
-    poisson : float
-    bore_ratio : float
-        Inner over outer diameter, 0 for a solid section.
+    The bore ratio is inner over outer diameter, 0 for a solid section.
     """
     two, four = bore_ratio**2, bore_ratio**4
     denominator = (

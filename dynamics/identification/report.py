@@ -210,11 +210,7 @@ def _fit_error(
 def _phase_deviation(residues: NDArray[np.complex128], lag: float) -> float:
     """Mean angle of the residues off the real axis, degrees, weighted by their size.
 
-    Parameters
-    ----------
-    residues : (k,) array of complex
-    lag : float
-        Phase lag of the measuring chain at the mode, rad.
+    Residues are (k,); the measuring chain lags at the mode by a phase, rad.
     """
     turned = residues * np.exp(1j * lag)
     size = np.abs(turned)

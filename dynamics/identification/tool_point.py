@@ -39,11 +39,7 @@ class ToolPointFit:
 def fit_tool_point(tool: ToolPointRecords, model: ModalModel) -> ToolPointFit:
     """Fit real modes with positive mass to the FRFs of the tool point.
 
-    Parameters
-    ----------
-    tool : ToolPointRecords
-    model : ModalModel
-        Complex modes of the same FRFs.
+    The model has complex modes of the same FRFs.
     """
     tool, model, senses, notes = _with_senses(tool, model)
     vectors, eigenvalues = starting_vectors(tool, model)

@@ -95,14 +95,7 @@ def modal_tables(
 ) -> StructureTables:
     """Compile modes at rest, with frictions on some of them.
 
-    Parameters
-    ----------
-    modes : sequence of Mode
-    step : float
-        s.
-    laws : sequence of FrictionLaw
-    rubbing : sequence of int
-        Mode that each of them acts on.
+    At a step, s; `rubbing` is the mode that each law acts on.
     """
     bus = modal_structure(modes, step, rubbing)
     port = {f"tool {axis}": place for place, axis in enumerate("xyz")}

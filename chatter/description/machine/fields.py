@@ -102,10 +102,7 @@ def pair(dimension: str, **bounds: float) -> Any:
 def name_problems(tables: Mapping[str, Mapping[str, Any]]) -> list[tuple[str, str]]:
     """Tell names that paths could not lead to.
 
-    Parameters
-    ----------
-    tables : mapping
-        Kind of table -> name -> table.
+    Tables are by kind and name.
     """
     return [
         (

@@ -175,11 +175,3 @@ def load_machine(path: str | Path) -> MachineFile:
         If the file cannot be read or describes no machine; all problems found are in it.
     """
     return MachineFile.from_file(path)
-
-
-def loads_machine(text: str, name: str = "machine", folder: str | Path = ".") -> MachineFile:
-    """Read a machine from TOML text.
-
-    InputError if the text describes no machine; all problems found are in it.
-    """
-    return MachineFile.from_text(text, name, folder)

@@ -127,11 +127,7 @@ def _travel_problems(file: MachineFile) -> list[Problem]:
 def dimension_problems(file: MachineFile, data: Mapping[str, Any]) -> list[Problem]:
     """Tell quantities of a rotation along a travel, and the other way round.
 
-    Parameters
-    ----------
-    file : MachineFile
-    data : mapping
-        What the file says, before units were read.
+    By what the file says, before units were read.
     """
     problems = []
     for name, axis in file.axis.items():

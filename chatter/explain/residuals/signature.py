@@ -58,14 +58,7 @@ def signature_of(
 ) -> Signature:
     """Signature of the residual of a measurement by a case.
 
-    Parameters
-    ----------
-    measurement : Measurement
-        As prepared for its kind.
-    predictions : Predictions
-    case : Case
-    noise : mapping, optional
-        Run -> channel -> standard deviation, SI; estimated from the residual where it is not given.
+    Arguments as of `residual_of`.
     """
     residual = residual_of(measurement, predictions, case, noise)
     return Signature(residual, diagnosed(residual))

@@ -88,12 +88,7 @@ _FAR_MORE = LyapunovVerdict(
 def lyapunov_verdict(case: Case, modes: tuple[Mode, ...]) -> LyapunovVerdict:
     """Push a cut on its forced motion, and follow how the perturbation goes on.
 
-    Parameters
-    ----------
-    case : Case
-        Run with the delayed chip.
-    modes : tuple of Mode
-        Of its structure.
+    The case is run with the delayed chip, on the modes of its structure.
     """
     hold, watch, period = _lengths(case, modes)
     feed = case.cut.feed_per_tooth

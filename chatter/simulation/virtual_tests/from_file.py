@@ -50,10 +50,7 @@ def in_state(file: MachineFile, state: StateSection) -> Machine:
 def default_frfs(file: MachineFile) -> dict[str, FrfSection]:
     """Tests of a file that names none: blows on the tool point in x, y, z.
 
-    Raises
-    ------
-    InputError
-        If the file has no tool point.
+    InputError if the file has no tool point.
     """
     if file.tool_point is None:
         raise InputError(
@@ -213,12 +210,7 @@ def file_move(
 ) -> MoveResult:
     """Move of a machine as a section asks for it.
 
-    Raises
-    ------
-    InputError
-        If the section does not fit the machine.
-    RunError
-        If the machine runs away.
+    InputError if the section does not fit the machine, RunError if the machine runs away.
     """
     where = f"{file.name}: move.{name}"
     machine = in_state(file, section)

@@ -58,10 +58,7 @@ class AlignedSet:
 def align(records: Sequence[HammerRecord], hits: Sequence[Hit]) -> AlignedSet:
     """Cut records to begin alike before the blow and transform them.
 
-    Parameters
-    ----------
-    records, hits : sequences of the same length
-        Of one sampling rate.
+    They are of one sampling rate, with a hit each.
     """
     lead = min(_LEAD, *(hit.onset for hit in hits))
     length = min(

@@ -23,11 +23,7 @@ _POWERS = {
 def share_of(law: FrictionLaw, share: float) -> FrictionLaw:
     """Return the law with a share of its force at every motion.
 
-    Parameters
-    ----------
-    law : LuGre, TanhHysteresis or CoulombStribeck
-    share : float
-        From above 0 to 1.
+    Above 0, up to 1.
     """
     if not 0.0 < share <= 1.0:
         raise ValueError(f"friction: a share must be above 0 and at most 1, not {share}")

@@ -8,7 +8,7 @@ import pytest
 
 from chatter import InputError
 from chatter.compile.machine_parts import assembled_machine
-from chatter.description.machine.machine_file import MachineFile, loads_machine
+from chatter.description.machine.machine_file import MachineFile
 from dynamics.reduction.modal_truncation import undamped_modes
 
 TRAVEL = 0.01 / (2.0 * math.pi)
@@ -25,7 +25,7 @@ RACK = {
 
 
 def test_controller_says_what_the_file_says(line_text):
-    machine = assembled_machine(loads_machine(line_text))
+    machine = assembled_machine(MachineFile.from_text(line_text))
     controller = machine.drives[0].controller
     assert controller.position.gain == 50.0
     assert controller.position.velocity_limit == pytest.approx(0.5)
@@ -41,7 +41,7 @@ def test_controller_says_what_the_file_says(line_text):
 
 
 def test_reference_model_dead_times_and_regulated_motor(line_text):
-    file = loads_machine(line_text).patch({
+    file = MachineFile.from_text(line_text).patch({
         "axis.Y.control.velocity.reference_model": {"natural_frequency": "90 Hz", "damping": 0.8},
         "axis.Y.control.position.measuring": 1,
         "axis.Y.control.current": {
@@ -66,7 +66,7 @@ def test_reference_model_dead_times_and_regulated_motor(line_text):
 
 
 def test_friction_rows(line_text):
-    file = loads_machine(line_text).patch({
+    file = MachineFile.from_text(line_text).patch({
         "friction.guide_z": {
             "law": "coulomb-stribeck", "coulomb": "1 N", "static": "1 N",
             "stribeck_velocity": "1 mm/s", "on": {"connector": "guide", "direction": "z"},

@@ -7,7 +7,7 @@ import pytest
 import scipy.linalg
 
 from chatter.compile.machine_parts import assembled_machine, machine_parts
-from chatter.description.machine.machine_file import MachineFile, loads_machine
+from chatter.description.machine.machine_file import MachineFile
 from dynamics.beam.shaft import BeamLine, Bearing, Material, Segment
 from dynamics.structure.assembly import assemble
 from dynamics.structure.bodies import Body, Connector, Point
@@ -38,7 +38,7 @@ def along_y(machine):
 
 @pytest.mark.parametrize("condition", ["free", "control", "brake"])
 def test_two_bodies_and_a_screw(line_text, condition):
-    machine = assembled_machine(loads_machine(line_text), {"Y": condition})
+    machine = assembled_machine(MachineFile.from_text(line_text), {"Y": condition})
     expected = by_hand(1e5 if condition == "brake" else 0.0)
     found = along_y(machine)
     assert len(found) == 3
@@ -48,13 +48,13 @@ def test_two_bodies_and_a_screw(line_text, condition):
 
 
 def test_brake_is_the_default_of_nothing(line_text):
-    file = loads_machine(line_text)
+    file = MachineFile.from_text(line_text)
     assert [drive.name for drive in assembled_machine(file).drives] == ["Y"]
     assert assembled_machine(file.patch({"axis.Y.control": None})).drives == ()
 
 
 def test_contact_in_cut_stiffens_tool_against_table(line_text):
-    file = loads_machine(line_text)
+    file = MachineFile.from_text(line_text)
     away, in_cut = (
         assembled_machine(file, {"Y": "brake"}, in_cut=cut).structure for cut in (False, True)
     )
@@ -70,7 +70,8 @@ def test_contact_in_cut_stiffens_tool_against_table(line_text):
 
 
 def test_damping_ratio_of_every_elastic_mode(line_text):
-    file = loads_machine(line_text).patch({"damping_ratio": 0.03, "axis.Y.brake.damping": "0"})
+    patch = {"damping_ratio": 0.03, "axis.Y.brake.damping": "0"}
+    file = MachineFile.from_text(line_text).patch(patch)
     structure = assembled_machine(file, {"Y": "brake"}).structure
     squared, shapes = scipy.linalg.eigh(structure.stiffness, structure.mass)
     ratio = np.diag(shapes.T @ structure.damping @ shapes) / (2.0 * np.sqrt(squared))
@@ -145,7 +146,7 @@ def test_axes_on_axes_shift_together(head_on_beam):
 
 
 def test_drives_push_where_the_part_is(line_text):
-    parts = machine_parts(loads_machine(line_text), {"Y": "200 mm"})
+    parts = machine_parts(MachineFile.from_text(line_text), {"Y": "200 mm"})
     geometry = parts.axes[0].geometry
     assert geometry.at == pytest.approx([0.0, 0.3, 0.0])
     assert geometry.position == pytest.approx(0.2)

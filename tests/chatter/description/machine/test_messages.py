@@ -4,7 +4,7 @@ import pytest
 
 from chatter import InputError
 from chatter.compile.machine_parts import assembled_machine
-from chatter.description.machine.machine_file import MachineFile, load_machine, loads_machine
+from chatter.description.machine.machine_file import MachineFile, load_machine
 
 FRICTION = {
     "law": "coulomb-stribeck", "coulomb": "1 N", "static": "1 N", "stribeck_velocity": "1 mm/s",
@@ -125,7 +125,7 @@ def test_told_on_reading(line, changed, path, value, words):
     ],
 )
 def test_told_on_assembling(line_text, patch, arguments, words):
-    file = loads_machine(line_text, name="m.toml").patch(patch)
+    file = MachineFile.from_text(line_text, name="m.toml").patch(patch)
     with pytest.raises(InputError) as caught:
         assembled_machine(file, **arguments)
     text = str(caught.value)
@@ -160,13 +160,13 @@ def test_files_that_are_none(tmp_path):
     with pytest.raises(InputError, match="is empty; a machine file is TOML text"):
         load_machine(tmp_path / "m.toml")
     with pytest.raises(InputError, match="has no parts"):
-        loads_machine("title = 'nothing'")
+        MachineFile.from_text("title = 'nothing'")
     with pytest.raises(InputError, match=r"no valid TOML.*line 2"):
-        loads_machine("a = 1\nb = = 2")
+        MachineFile.from_text("a = 1\nb = = 2")
 
 
 def test_paths_that_lead_nowhere(line_text):
-    file = loads_machine(line_text)
+    file = MachineFile.from_text(line_text)
     with pytest.raises(InputError, match="into a machine, such as axis"):
         file.get("body..mass")
     with pytest.raises(InputError, match=r"there is no body\.tabel"):
