@@ -111,9 +111,20 @@ def _identified(
     mass: tuple[float, float, tuple[float, float, float]] | None = None,
 ) -> IdentifiedMode:
     """Report of a mode; mass, its standard deviation and direction where it is felt."""
-    pole = one.hertz, one.damping, one.std_frequency, one.std_damping
+    modal_mass, mass_std, direction = mass or (None, None, None)
     return IdentifiedMode(
-        *pole, residues, *(mass or (None,) * 3), one.fit_error, weight, phase, warning
+        frequency=one.hertz,
+        damping=one.damping,
+        frequency_std=one.std_frequency,
+        damping_std=one.std_damping,
+        residues=residues,
+        mass=modal_mass,
+        mass_std=mass_std,
+        direction=direction,
+        fit_error=one.fit_error,
+        weight=weight,
+        phase_deviation=phase,
+        warning=warning,
     )
 
 
