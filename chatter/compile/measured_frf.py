@@ -47,10 +47,7 @@ class MeasuredSide:
     def fit(self) -> ModalFit:
         """Modal fit of all FRFs of the side.
 
-        Raises
-        ------
-        InputError
-            If no mode at the tool point is found.
+        Raises InputError if no mode at the tool point is found.
         """
         try:
             fit = with_magnitudes(identify_modes(self.frfs, tool_point=self.node))

@@ -88,10 +88,7 @@ class Description(Section):
     def _further_problems(self, data: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
         """Tell, as path and sentence, what is wrong across sections that are right in themselves.
 
-        Parameters
-        ----------
-        data : mapping
-            What the file says, before units were read.
+        Data are what the file says, before units were read.
         """
         del data
         return ()

@@ -79,10 +79,8 @@ class Registry(Generic[Entry]):
     def entries(self) -> dict[str, Entry]:
         """Name -> entry.
 
-        Raises
-        ------
-        InputError
-            If an entry of an installed package cannot be imported, or has a name that is taken.
+        Raises InputError if an entry of an installed package cannot be imported, or has a name that
+        is taken.
         """
         if self._entries is None:
             entries = {entry.name: entry for entry in self._built_in}

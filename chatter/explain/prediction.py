@@ -39,10 +39,7 @@ class Predictions:
     def of(self, case: Case, run: Run) -> Signals:
         """Predicted signals at the samples of a run, by a case without its overrides.
 
-        Raises
-        ------
-        InputError, RunError
-            If the case cannot predict the run.
+        Raises InputError or RunError if the case cannot predict the run.
         """
         whole = run.whole or run
         own = whole.of(case)

@@ -119,14 +119,8 @@ class CutRun:
     ) -> int:
         """Go on to a step and return the number of the last one done.
 
-        Parameters
-        ----------
-        last : int
-        share : callable, optional
-            Force ramp: share of the cutting force that the structure feels at steps by their
-            numbers (n,); 1 by default.
-        progress : callable
-            Called with (done, total) steps.
+        The force ramp `share` is the share of the cutting force that the structure feels at steps
+        by their numbers (n,); 1 by default. Progress is called with (done, total) steps.
         """
         tables, before = self.setup.structure.tables, self.setup.structure.settling
         while self.done < last:

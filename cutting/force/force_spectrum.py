@@ -117,12 +117,7 @@ class RigidCut:
     ) -> CouplingSpectrum:
         """Fourier series of what small motions add.
 
-        Parameters
-        ----------
-        harmonic : (n,) array of int
-        basis : (3, r) array of float
-            Directions of the motion.
-        flank : ViscousProcessDamping or None
+        At harmonics (n,), for motion in the directions of a basis (3, r).
         """
         cuts = self.chip > 0.0
         chip = np.maximum(self.chip, _SMALLEST_CHIP * max(float(self.chip.max()), 1e-300))

@@ -71,12 +71,8 @@ class ForceLaw(ABC):
     def worn(self, cutting_wear: float, edge_wear: Sequence[float]) -> ForceLaw:
         """Law of a worn edge.
 
-        Parameters
-        ----------
-        cutting_wear : float
-            Share by which the cutting coefficients have grown.
-        edge_wear : (3,) sequence of float
-            What is added to the edge coefficients, N/m.
+        By the share by which the cutting coefficients have grown, and what is added to each of the
+        three edge coefficients, N/m.
         """
         cutting = np.asarray(self.cutting) * (1.0 + cutting_wear)  # type: ignore[attr-defined]
         edge = np.asarray(self.edge) + np.asarray(edge_wear)  # type: ignore[attr-defined]

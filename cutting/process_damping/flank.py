@@ -28,13 +28,7 @@ class ProcessDampingLaw(Protocol):
     def table(self, radius: NDArray[np.float64], teeth: int, step_angle: float) -> NamedTuple:
         """Table for the kernels.
 
-        Parameters
-        ----------
-        radius : (L,) array of float
-            Of the edge slices, m.
-        teeth : int
-        step_angle : float
-            Rotation in a time step, rad.
+        From the radius of the edge slices (L,), m, and the rotation in a time step, rad.
         """
 
 

@@ -66,15 +66,8 @@ class Ploughing:
     def profile(self, distance: NDArray[np.float64]) -> NDArray[np.float64]:
         """Depth of the flank below the line of the new surface, m, behind the parting point.
 
-        Parameters
-        ----------
-        distance : (n,) array of float
-            Along the cutting speed, m, >= 0.
-
-        Returns
-        -------
-        (n,) array of float
-            Positive where a still tool displaces material, negative where there is clearance.
+        At distances (n,) along the cutting speed, m, >= 0: positive where a still tool displaces
+        material, negative where there is clearance.
         """
         radius = self.edge_radius
         lowest = radius * math.sin(_SEPARATION_ANGLE)
@@ -100,13 +93,7 @@ class Ploughing:
     def table(self, radius: NDArray[np.float64], teeth: int, step_angle: float) -> PloughingFlank:
         """Table for the kernels, with the samples of the wave for every tooth and slice.
 
-        Parameters
-        ----------
-        radius : (L,) array of float
-            Of the edge slices, m.
-        teeth : int
-        step_angle : float
-            Rotation in a time step, rad.
+        From the radius of the edge slices (L,), m, and the rotation in a time step, rad.
         """
         contact = self.contact_length
         length = contact + _HIGHEST_WAVE / math.tan(self.clearance_angle)

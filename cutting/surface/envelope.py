@@ -42,21 +42,9 @@ class ToolMotion:
     def passes(self, edge_angle: Array, direction: float, margin: float) -> tuple[Array, NDArray]:
         """Spindle angles at which edges point in a direction.
 
-        Parameters
-        ----------
-        edge_angle : (N,) array of float
-            Of the edges on the tool, rad.
-        direction : float
-            Angle clockwise from +y, rad.
-        margin : float
-            Kept from both ends of the motion, rad.
-
-        Returns
-        -------
-        angle : (P,) array of float
-            Rising, rad.
-        edge : (P,) array of int
-            Which edge it was.
+        Edges are at angles (N,) on the tool, rad; the direction is clockwise from +y, rad; the
+        margin, rad, is kept from both ends of the motion. Returns the angles (P,), rising, rad, and
+        which edge (P,) it was at each.
         """
         first, last = self.first + margin, self.last - margin
         found = []

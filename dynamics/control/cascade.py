@@ -172,16 +172,8 @@ class DriveController:
     def steps_per_sample(self, step: float) -> tuple[int, int, int]:
         """Return the steps per sample of the position, velocity and current loop.
 
-        Parameters
-        ----------
-        step : float
-            Step of the simulation, s.
-
-        Raises
-        ------
-        ControlError
-            If the step is no number above 0, or a sample time no whole multiple of it; the
-            message names loop, sample time and step.
+        The step is that of the simulation, s. Raises ControlError if it is no number above 0, or a
+        sample time no whole multiple of it; the message names loop, sample time and step.
         """
         require_positive("simulation", "step", step)
         names = ("position", "velocity", "current")

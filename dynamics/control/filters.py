@@ -56,10 +56,7 @@ class SecondOrderFilter:
     def sampled(self, sample_time: float) -> NDArray[np.float64]:
         """Return b0, b1, b2, a1, a2 at a sample time, s (a0 = 1).
 
-        Raises
-        ------
-        ControlError
-            If a finite frequency lies at or above the Nyquist frequency.
+        Raises ControlError if a finite frequency lies at or above the Nyquist frequency.
         """
         top = _warped(self.numerator_frequency, self.numerator_damping, sample_time, "numerator")
         bottom = _warped(

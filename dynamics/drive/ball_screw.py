@@ -105,10 +105,7 @@ class BallScrew:
     def axial_stiffness(self, axis: DrivenAxis) -> float:
         """Stiffness of bearings, shaft and nut in a row where the nut is, N/m.
 
-        Raises
-        ------
-        StructureError
-            If the nut would lie off the shaft, or everything is rigid.
+        Raises StructureError if the nut would lie off the shaft, or everything is rigid.
         """
         where = _who(axis)
         held = sum(one.stiffness for one in self._supports(axis))
@@ -134,10 +131,8 @@ class BallScrew:
     def parts(self, axis: DrivenAxis) -> DriveParts:
         """Rotors, springs and motor on an axis.
 
-        Raises
-        ------
-        StructureError
-            If the nut would lie off the shaft, or no spring ties the motor to the axis.
+        Raises StructureError if the nut would lie off the shaft, or no spring ties the motor to the
+        axis.
         """
         stiffness, twist = self.axial_stiffness(axis), self.torsional_stiffness(axis)
         torsion = Spring(

@@ -47,11 +47,7 @@ class Belt:
     def spring(self, name: str, travel: float) -> Spring:
         """The belt's strands, seen from an axis of so much travel per angle of the driven pulley.
 
-        Parameters
-        ----------
-        name : str
-        travel : float
-            m/rad.
+        The travel is in m/rad.
         """
         stretch = self.driven_radius / travel
         return Spring(name, self.stiffness * stretch**2, self.damping * stretch**2)

@@ -130,10 +130,7 @@ class RackAndPinion:
     def parts(self, axis: DrivenAxis) -> DriveParts:
         """Rotors, springs and motors on an axis.
 
-        Raises
-        ------
-        StructureError
-            If a pinion does not lie beside the rack, or nothing gives way.
+        Raises StructureError if a pinion does not lie beside the rack, or nothing gives way.
         """
         names = [f" {number}" for number in range(1, len(self.motors) + 1)]
         if len(self.motors) == 1:

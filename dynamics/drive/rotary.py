@@ -56,20 +56,15 @@ class DirectRotary:
     def inertia_at_motor(self, moving_inertia: float) -> float:
         """Moment of inertia at the motor with everything rigid, kg m^2.
 
-        Parameters
-        ----------
-        moving_inertia : float
-            Of what the axis turns, kg m^2.
+        The moving inertia is of what the axis turns, kg m^2.
         """
         return reflected_inertia(self._stages("")) + moving_inertia * self.transmission**2
 
     def parts(self, axis: DrivenAxis) -> DriveParts:
         """Rotors, springs and motor on an axis.
 
-        Raises
-        ------
-        StructureError
-            If the motor has inertia and nothing that gives way ties it to the moving part.
+        Raises StructureError if the motor has inertia and nothing that gives way ties it to the
+        moving part.
         """
         housing = Housing(axis.carrying, axis.at, axis.direction)
         end = (turning(axis.moving, axis.at, axis.direction), housing.turning(-1.0))

@@ -98,12 +98,7 @@ class ScrewOnBeam:
     def inertia_at_motor(self, moving_mass: float, screw_inertia: float = 0.0) -> float:
         """Moment of inertia at the motor with everything rigid, kg m^2.
 
-        Parameters
-        ----------
-        moving_mass : float
-            kg.
-        screw_inertia : float
-            Of the beam and its discs about its axis, kg m^2.
+        The moving mass is in kg; the inertia of beam and discs about their axis in kg m^2.
         """
         stages = [*self._stages("", np.inf), Stage("", screw_inertia, self.travel, RIGID)]
         return reflected_inertia(stages) + moving_mass * self.transmission**2
@@ -111,10 +106,7 @@ class ScrewOnBeam:
     def parts(self, axis: DrivenAxis) -> DriveParts:
         """Rotors, springs of nut and coupling, and the motor on an axis.
 
-        Raises
-        ------
-        StructureError
-            If the motor has inertia and a rigid coupling, or the reverse.
+        Raises StructureError if the motor has inertia and a rigid coupling, or the reverse.
         """
         where = f'axis "{axis.name}": screw on beam "{self.beam}"'
         turns = turning_direction(axis, self.lead)

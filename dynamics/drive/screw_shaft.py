@@ -59,17 +59,8 @@ class ScrewShaft:
     def torsional_stiffness(self, where: str, position: float) -> float:
         """G I_p / L from the drive's end to the nut, N m/rad.
 
-        Parameters
-        ----------
-        where : str
-            Begins the message of an error.
-        position : float
-            Of the axis, m.
-
-        Raises
-        ------
-        StructureError
-            If the nut would lie off the shaft.
+        At a position of the axis, m. Raises StructureError, beginning with `where`, if the nut
+        would lie off the shaft.
         """
         polar = np.pi * self.diameter**4 / 32.0
         free = abs(self._nut(where, position))
@@ -80,18 +71,8 @@ class ScrewShaft:
     ) -> tuple[AxialSupport, ...]:
         """Bearings that carry axial load, each in a row with its length of shaft: E A / L.
 
-        Parameters
-        ----------
-        where : str
-        position : float
-            Of the axis, m.
-        bearings : (float, float)
-            Axial stiffness of the first and the second one, N/m.
-
-        Raises
-        ------
-        StructureError
-            If the nut would lie off the shaft.
+        At a position of the axis, m; the axial stiffness of the first and the second bearing is in
+        N/m. Raises StructureError, beginning with `where`, if the nut would lie off the shaft.
         """
         nut = self._nut(where, position)
         far = np.copysign(self.length, self.nut_at) - nut

@@ -77,10 +77,8 @@ class CoulombStribeck:
     def describing_function(self, amplitude: float, frequency: float) -> tuple[float, float]:
         """Equivalent stiffness, N/m, and damping, N s/m, of x = A sin(w t); m, Hz.
 
-        Notes
-        -----
-        The stiffness is 0. Without a Stribeck curve the damping is 4 FC / (pi A w) + c (Den
-        Hartog 1931); with it the mean over the cycle is taken.
+        The stiffness is 0. Without a Stribeck curve the damping is 4 FC / (pi A w) + c (Den Hartog
+        1931); with it the mean over the cycle is taken.
         """
         return memoryless_describing_function(self.steady_state_force, amplitude, frequency)
 

@@ -92,10 +92,7 @@ class FrictionLawEntry:
     def of(self, values: Mapping[str, float]) -> FrictionLaw:
         """Law of values by key, SI; those with a default may be left out.
 
-        Raises
-        ------
-        ValueError
-            If a value is out of its range; the message names it.
+        Raises ValueError if a value is out of its range; the message names it.
         """
         return (self.make or self.spec)(**with_defaults(self.keys, values))
 

@@ -88,10 +88,8 @@ class LuGre:
     def stiffness_in_motion(self, frequency: ArrayLike, velocity: float) -> NDArray[np.complex128]:
         """Dynamic stiffness of small motion about a steady velocity (m/s, not 0), N/m.
 
-        Notes
-        -----
-        From the law linearised about z = g sgn(v): dz' = (g' |v| / g) dv - |v| / g dz, with g'
-        the slope of g over speed. Tends to j w dF/dv at low frequency.
+        From the law linearised about z = g sgn(v): dz' = (g' |v| / g) dv - |v| / g dz, with g' the
+        slope of g over speed. Tends to j w dF/dv at low frequency.
         """
         speed = abs(velocity)
         if not speed > 0.0:

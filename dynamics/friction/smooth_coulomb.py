@@ -69,10 +69,8 @@ class SmoothCoulomb:
     def describing_function(self, amplitude: float, frequency: float) -> tuple[float, float]:
         """Equivalent stiffness, N/m, and damping, N s/m, of x = A sin(w t); m, Hz.
 
-        Notes
-        -----
-        The stiffness is 0; the damping is the mean over the cycle, and tends to 4 FC / (pi A w)
-        + c as the smoothing vanishes (Den Hartog 1931).
+        The stiffness is 0; the damping is the mean over the cycle, and tends to 4 FC / (pi A w) + c
+        as the smoothing vanishes (Den Hartog 1931).
         """
         return memoryless_describing_function(self.steady_state_force, amplitude, frequency)
 

@@ -80,8 +80,6 @@ class TanhHysteresis:
     def stiffness_at_rest(self, frequency: ArrayLike) -> NDArray[np.complex128]:
         """Dynamic stiffness 2 ah fc, N/m, of small motion about rest; Hz.
 
-        Notes
-        -----
         Its damping vanishes with the amplitude; see `describing_function`.
         """
         shape = np.shape(np.asarray(frequency))

@@ -58,12 +58,8 @@ class ModalModel:
     def of_reduced(cls, reduced: LinearStructure, points: Sequence[str]) -> ModalModel:
         """Modal model of a structure in modal coordinates, as `reduction.truncated` gives it.
 
-        Damping that couples modes is left out: the diagonal counts.
-
-        Raises
-        ------
-        StructureError
-            If its mass is not the unit matrix or its stiffness not diagonal.
+        Damping that couples modes is left out: the diagonal counts. Raises StructureError if its
+        mass is not the unit matrix or its stiffness not diagonal.
         """
         squared = np.diag(reduced.stiffness)
         off = np.max(np.abs(reduced.stiffness - np.diag(squared)), initial=0.0)
@@ -240,10 +236,7 @@ class ModalModelAlongAxis:
     def at(self, position: float) -> ModalModel:
         """Modal model at a position, in the order of the first.
 
-        Raises
-        ------
-        StructureError
-            If the position is beyond the first or last.
+        Raises StructureError if the position is beyond the first or last.
         """
         if not self.positions[0] <= position <= self.positions[-1]:
             raise StructureError(

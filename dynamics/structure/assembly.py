@@ -30,10 +30,7 @@ class Assembly:
     def motion(self, who: str, part: str, at: ArrayLike) -> NDArray[np.float64]:
         """Motion (6, n) of a part at a position, m, per freedom; none of the ground.
 
-        Raises
-        ------
-        StructureError
-            If there is no such part; the message begins with `who`.
+        Raises StructureError if there is no such part; the message begins with `who`.
         """
         size = max(column.stop for column in self.columns.values())
         motion = np.zeros((6, size))

@@ -80,10 +80,7 @@ class Nodes:
     def indices(self, names: Sequence[int], where: str) -> NDArray[np.int64]:
         """Where nodes stand in the table.
 
-        Raises
-        ------
-        StructureError
-            If one is unknown or named twice; the message begins with `where`.
+        Raises StructureError, beginning with `where`, if one is unknown or named twice.
         """
         known = {int(name): index for index, name in enumerate(self.names)}
         if not len(names):

@@ -89,13 +89,7 @@ class AxisSection(Section):
     def geometry(self, name: str, position: float, shift: NDArray[np.float64]) -> DrivenAxis:
         """Where the axis is driven.
 
-        Parameters
-        ----------
-        name : str
-        position : float
-            m.
-        shift : (3,) array of float
-            Of the moving part, by all axes that carry it, m.
+        At a position, m, with the moving part shifted (3,), m, by all axes that carry it.
         """
         at = np.zeros(3) if self.at is None else np.asarray(self.at)
         return DrivenAxis(
@@ -105,10 +99,7 @@ class AxisSection(Section):
     def axis(self, geometry: DrivenAxis, shift: NDArray[np.float64]) -> MachineAxis:
         """The axis with its drive and control.
 
-        Raises
-        ------
-        StructureError, ControlError
-            If numbers make no sense.
+        Raises StructureError or ControlError if numbers make no sense.
         """
         drive = self.drive.spec()
         return MachineAxis(

@@ -191,15 +191,8 @@ class ControlSection(Section):
     def spec(self, transmission: float) -> DriveController:
         """The controller.
 
-        Parameters
-        ----------
-        transmission : float
-            Travel of the axis per angle of the motor, m/rad.
-
-        Raises
-        ------
-        ControlError
-            If sample times are not nested, or a filter lies above its Nyquist frequency.
+        The transmission is the travel of the axis per angle of the motor, m/rad. Raises
+        ControlError if sample times are not nested, or a filter lies above its Nyquist frequency.
         """
         return DriveController(
             position=self.position.spec(),

@@ -148,10 +148,7 @@ class DriveSection(Section):
     def spec(self) -> Any:
         """The drive.
 
-        Raises
-        ------
-        StructureError
-            If its numbers make no sense.
+        Raises StructureError if its numbers make no sense.
         """
         make = KINDS[self.kind]
         values = arguments(self, make, but=("motors",))

@@ -141,15 +141,8 @@ class MachineFile(Description):
     def positions(self, given: Mapping[str, float | str]) -> dict[str, float]:
         """Positions of axes, m.
 
-        Parameters
-        ----------
-        given : mapping of str to float or str
-            m, or a quantity such as "120 mm".
-
-        Raises
-        ------
-        InputError
-            If there is no such axis, or a position is none.
+        Given in m or as a quantity such as "120 mm". Raises InputError if there is no such axis, or
+        a position is none.
         """
         read = {}
         for name, position in given.items():

@@ -89,10 +89,7 @@ class MoveSection(StateSection):
     def course(self) -> Course:
         """Trajectory and path.
 
-        Raises
-        ------
-        TrajectoryError
-            If they make no sense.
+        Raises TrajectoryError if they make no sense.
         """
         return COURSES[self.kind].make(self)
 

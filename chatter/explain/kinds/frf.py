@@ -59,10 +59,7 @@ class FrequencyResponse(Kind):
     def prepared(self, measurement: Measurement) -> Measurement:
         """Return the measurement with the scatter of its FRFs at every line.
 
-        Raises
-        ------
-        InputError
-            If a run lacks its direction.
+        Raises InputError if a run lacks its direction.
         """
         runs = []
         for run in measurement.runs:

@@ -131,10 +131,7 @@ class Kind(ABC):
     def prepared(self, measurement: Measurement) -> Measurement:
         """Return the measurement as it is searched; unchanged by default.
 
-        Raises
-        ------
-        InputError
-            If a run lacks what the kind needs.
+        Raises InputError if a run lacks what the kind needs.
         """
         return measurement
 

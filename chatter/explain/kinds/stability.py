@@ -53,10 +53,7 @@ class Stability(Kind):
     def prepared(self, measurement: Measurement) -> Measurement:
         """Return the measurement whose points are dealt out to several runs.
 
-        Raises
-        ------
-        InputError
-            If there are fewer than a dozen verdicts.
+        Raises InputError if there are fewer than a dozen verdicts.
         """
         (run,) = measurement.runs
         judged = np.isfinite(run.signals["stable"])

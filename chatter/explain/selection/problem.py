@@ -110,13 +110,8 @@ class Problem:
     ) -> Fit:
         """Fit everything to runs.
 
-        Parameters
-        ----------
-        runs : sequence of Run
-        start : mapping of str to float
-            Values to start from, by name; declared ones where they are not named.
-        jacobian : (n, p) array of float, optional
-            Near the start, where it is known.
+        From values by name, declared ones where they are not named, with a Jacobian (n, p) near the
+        start where it is known.
         """
         parameters = self.parameters()
         names = [one.name for one in parameters]

@@ -57,11 +57,7 @@ class LyapunovRecord:
         """Earliest growth by a logarithm, at the least, over whole periods from a turn on.
 
         What friction held and lets go only begins to move: with it the distance must grow as well.
-
-        Returns
-        -------
-        (int, int) or None
-            Its first turn and its last; None where nothing grows that much.
+        Returns its first turn and its last; None where nothing grows that much.
         """
         width = max(_ENVELOPE, math.ceil(self.cycle))
         sizes = (self.size, self.distance) if self.rubs else (self.size,)
@@ -161,15 +157,8 @@ class LyapunovRecord:
     def swing_of_small_motion(self, small: float) -> float:
         """Half the range that the motion would have in the full cut by that of small motion, m.
 
-        Parameters
-        ----------
-        small : float
-            Half the range, m, up to which forced vibration grows with the force alone.
-
-        Returns
-        -------
-        float
-            Largest of all turns while the cut takes hold; nan where none is small.
+        Up to half a range `small`, m, forced vibration grows with the force alone. Largest of all
+        turns while the cut takes hold; nan where none is small.
         """
         turns = min(self.hold, len(self.swing))
         share = force_share((np.arange(turns) + 1.0) / max(self.hold, 1))

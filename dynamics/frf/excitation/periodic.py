@@ -108,10 +108,7 @@ class PeriodicFrf:
     def distortion_variance(self) -> NDArray[np.float64]:
         """Variance of nonlinear distortion that one realisation has, (l,); 0 where noise hides it.
 
-        Raises
-        ------
-        MeasurementError
-            With one period or one realisation, from which it cannot be told.
+        Raises MeasurementError with one period or one realisation, from which it cannot be told.
         """
         if self.noise_variance is None or self.total_variance is None:
             raise MeasurementError(

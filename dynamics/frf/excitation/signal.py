@@ -59,10 +59,7 @@ class PeriodicSignal:
     def repeated(self, periods: int, leading: int = 0) -> NDArray[np.float64]:
         """Return the signal over leading periods, for transients to die away, and periods to use.
 
-        Returns
-        -------
-        (n (leading + periods),) array of float
-            N or N m.
+        (n (leading + periods),), N or N m.
         """
         if periods < 1 or leading < 0:
             raise ExcitationError(

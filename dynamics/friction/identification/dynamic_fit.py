@@ -89,12 +89,8 @@ class AxisModel:
     def effort(self, record: DriveRecord, low_pass: LowPass) -> NDArray[np.float64]:
         """Effort (n,) that the measured motion of a record needs, N or N m.
 
-        Parameters
-        ----------
-        record : DriveRecord
-            Its effort is not used.
-        low_pass : LowPass
-            For the acceleration alone, which is noise without it.
+        The effort of the record is not used; the low pass is for the acceleration alone, which is
+        noise without it.
         """
         friction = friction_along(self.law, record.position, record.sample_time)
         acceleration = low_pass.apply(_acceleration(record), record.sample_time)

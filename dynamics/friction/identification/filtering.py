@@ -51,10 +51,8 @@ class LowPass:
     def apply(self, values: NDArray[np.float64], sample_time: float) -> NDArray[np.float64]:
         """Filtered columns of values (n,) or (n, k) sampled every `sample_time` seconds.
 
-        Raises
-        ------
-        MeasurementError
-            If the cutoff is not below half the sampling rate, or the record is too short.
+        Raises MeasurementError if the cutoff is not below half the sampling rate, or the record is
+        too short.
         """
         nyquist = 0.5 / sample_time
         if not self.cutoff < nyquist:

@@ -100,10 +100,7 @@ class DriveRecord:
     def part(self, start: float, end: float) -> DriveRecord:
         """Samples from start to end, s, both included, as a record of its own.
 
-        Raises
-        ------
-        MeasurementError
-            If too few samples lie there.
+        Raises MeasurementError if too few samples lie there.
         """
         kept = (self.time >= start) & (self.time <= end)
         if np.count_nonzero(kept) < _FEWEST:
