@@ -67,9 +67,9 @@ def real_frf_model(tool: ToolPointRecords, model: RealModel, k: int, sense: floa
 
 
 class _Resonance(NamedTuple):
-    """A fitted mode within the lines: its place in the model, pole and how sure that is."""
+    """A fitted mode within the lines: its index in the model, pole and how sure that is."""
 
-    place: int
+    mode: int
     hertz: float
     damping: float
     std_frequency: float  # Hz
@@ -132,7 +132,7 @@ def identified_complex_modes(records: Records, model: ModalModel) -> list[Identi
     """Report of modes without mass."""
     found = []
     for one in _resonances(records, model, model.synthesis(records), _covariance(model.normal)):
-        r = one.place
+        r = one.mode
         residues = model.coefficients[r] + 1j * model.coefficients[model.count + r]
         weight, phase = peak_share(records, model, r), _phase_deviation(residues, 0.0)
         warning = _warning(one, None, weight, phase)
@@ -149,7 +149,7 @@ def identified_real_modes(
     axes = len(tool.axes)
     found = []
     for one in _resonances(tool.records, model, model.synthesis(tool), covariance):
-        r = one.place
+        r = one.mode
         vector = model.vectors[r]
         inverse_mass = float(vector @ vector)
         own = slice(2 * model.count + r * axes, 2 * model.count + (r + 1) * axes)
