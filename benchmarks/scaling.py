@@ -17,6 +17,7 @@ import numpy as np
 from chatter.description.case import Case
 from chatter.stability.methods.collocation import drivers
 from chatter.stability.methods.collocation import multipliers as collocation
+from chatter.stability.methods.collocation.coupling_assembly import coupling_assemblies
 from chatter.stability.methods.collocation.element_assembly import operator_arrays
 from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import milling_model
@@ -65,7 +66,7 @@ def cost(cut, rpm_from, rpm_to, depth, points=POINTS):
         start = time.process_time()
         for first in range(0, points, 64):
             part = slice(first, first + 64)
-            plans = drivers.coupling_assemblies(cut, speeds[part], depths[part])
+            plans = coupling_assemblies(cut, speeds[part], depths[part])
             drivers.element_multipliers(arrays, plans, speeds[part], silent[part])
         best = min(best, time.process_time() - start)
     nodes = drivers.points_of_periods(cut, speeds, depth).mean()

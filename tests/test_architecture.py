@@ -64,7 +64,7 @@ def test_kernels_know_nothing_of_units_files_and_pictures():
         for name in imported(path):
             assert name.split(".")[0] not in FOREIGN - {"chatter"}, (path, name)
             layers = ("chatter.stability", "chatter.engine")
-            known = ("chatter.description.errors", "chatter.description.progress")
+            known = [f"chatter.description.{one}" for one in ("arrays", "errors", "progress")]
             inside = name.startswith((*layers, *known))
             assert inside or not name.startswith("chatter"), (path, name)
 

@@ -8,9 +8,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from chatter.app.sliders import Slider, case_sliders, checked_values, diagram_sliders
+from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress
@@ -121,6 +121,7 @@ class LiveCase:
         operating = limits_of(model, at, to_operating, steps, progress)
         below = int((operating.crossings[0] < cut.axial_depth).sum())
         lowest = int(np.argmin(curve.critical_depth))
+        feed_per_turn = cut.feed_per_tooth * case.tool.teeth
         return {
             "stage": stage,
             "spindle_speed_rpm": _numbers(rpm(curve.spindle_speed)),
@@ -139,7 +140,7 @@ class LiveCase:
                 "critical_depth_mm": _number(float(operating.critical_depth[0]) * 1e3),
                 "stable": below % 2 == 0,
             },
-            "removal_rate_per_mm_rpm": _removal(case),
+            "removal_rate_per_mm_rpm": case.width_of_cut * feed_per_turn * 1e3,  # cm^3/min
             "notes": list(model.notes),
             "seconds": time.perf_counter() - started,
         }
@@ -149,12 +150,8 @@ class LiveCase:
     ) -> dict[str, Any]:
         """Cut simulated at a point of the diagram.
 
-        Raises
-        ------
-        InputError
-            If the point is outside of the diagram, or cannot be simulated.
-        RunError
-            If the tool moves so far that the model no longer holds.
+        InputError is raised if the point is outside of the diagram or cannot be simulated, RunError
+        if the tool moves so far that the model no longer holds.
         """
         started = time.perf_counter()
         case, view = self.patched(given)
@@ -191,13 +188,7 @@ class LiveCase:
         }
 
     def case_text(self, given: Any) -> str:
-        """Case file with the values of a page.
-
-        Raises
-        ------
-        InputError
-            If a value is unknown or out of range, or what comes of them is no cut.
-        """
+        """Case file with the values of a page; InputError as of `patched`."""
         _, view = self.patched(given)
         wanted = {path: self.by_path[path].text(float(value)) for path, value in given.items()}
         if any(path.startswith("lobes.speeds.") for path in wanted):
@@ -217,12 +208,7 @@ def _check_point(view: Mapping[str, float], speed: float, depth: float) -> None:
         raise InputError(f"{speed:g} rpm, {depth:g} mm is no point of the diagram")
 
 
-def _removal(case: Case) -> float:
-    """Removal rate, cm^3/min, at 1 mm and 1 rpm."""
-    return case.width_of_cut * case.cut.feed_per_tooth * case.tool.teeth * 1e3
-
-
-def _envelope(x: NDArray[np.float64], y: NDArray[np.float64]) -> dict[str, list[float | None]]:
+def _envelope(x: Array, y: Array) -> dict[str, list[float | None]]:
     """Lowest and highest value in each of a few intervals, so that no peak is lost."""
     intervals = np.array_split(np.arange(len(x)), min(_DRAWN_POINTS, len(x)))
     return {
@@ -232,7 +218,7 @@ def _envelope(x: NDArray[np.float64], y: NDArray[np.float64]) -> dict[str, list[
     }
 
 
-def _numbers(values: NDArray[np.float64]) -> list[float | None]:
+def _numbers(values: Array) -> list[float | None]:
     return [_number(float(value)) for value in values]
 
 
@@ -243,20 +229,11 @@ def _number(value: float) -> float | None:
 
 def _coarse_limits(
     model: MillingModel,
-    speeds: NDArray[np.float64],
-    depths: NDArray[np.float64],
+    speeds: Array,
+    depths: Array,
     steps: int | None,  # noqa: ARG001  (the signature of a method)
     progress: Progress,
 ) -> LimitCurve:
-    """Limits to 0.5 %, by continuation of the boundary: quick enough for a moving slider.
-
-    Parameters
-    ----------
-    model : MillingModel
-    speeds, depths : array of float
-        rad/s, m.
-    progress : callable
-        May raise to give up.
-    """
+    """Limits to 0.5 %, by continuation of the boundary: quick enough for a moving slider."""
     cut = element_cut(model, float(depths[-1]), _POINTS, _WAVELENGTHS).with_fit(LOOSE_FIT)
     return collocation.limit_curve(cut, speeds, depths, progress, _TOLERANCE, _STRIDE)

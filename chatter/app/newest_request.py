@@ -38,12 +38,8 @@ class NewestRequest:
     def run(self, page: str, compute: Callable[[Callable[..., None]], Any]) -> Any:
         """Return what a function computes, of a callable to be called now and then.
 
-        Raises
-        ------
-        SupersededError
-            If a newer request of the page has come.
-        RunError
-            If it takes too long.
+        SupersededError is raised if a newer request of the page has come, RunError if it takes
+        too long.
         """
         with self._guard:
             self._count += 1

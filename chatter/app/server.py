@@ -51,19 +51,7 @@ class _RefusedError(Exception):
 
 
 class LiveServer(ThreadingHTTPServer):
-    """Server of the page of one case.
-
-    Parameters
-    ----------
-    live : LiveCase
-    port : int
-        0 takes a free one.
-
-    Raises
-    ------
-    InputError
-        If the port cannot be had.
-    """
+    """Server of the page of one case; port 0 takes a free one, InputError if it cannot be had."""
 
     daemon_threads = True
     block_on_close = False

@@ -117,9 +117,8 @@ def _of_tool(case: Case) -> Iterator[Slider]:
         low, high = min(0.0, angle), max(60.0, angle)
         yield Slider("tool.helix", group, "helix", "deg", angle, low, high)
     if tool.runout is not None:
-        offset = _rounded(tool.runout.offset * 1e6)
-        most = max(4.0 * offset, 20.0)
-        yield Slider("tool.runout.offset", group, "runout", "um", offset, 0.0, most)
+        offset = tool.runout.offset * 1e6
+        yield _from_zero("tool.runout.offset", group, "runout", "um", offset, 20.0)
 
 
 def _of_material(case: Case) -> Iterator[Slider]:
@@ -169,18 +168,14 @@ def _direction(mode: Any) -> str:
 def _of_process(case: Case) -> Iterator[Slider]:
     given, contact, group = case.process_damping, case.contact, "Process damping and contact"
     if given is not None and given.coefficient is not None:
-        value = _rounded(given.coefficient * 1e-3)
-        most = max(4.0 * value, 100.0)
-        path = "process_damping.coefficient"
-        yield Slider(path, group, "process damping", "N/mm", value, 0.0, most)
+        value, path = given.coefficient * 1e-3, "process_damping.coefficient"
+        yield _from_zero(path, group, "process damping", "N/mm", value, 100.0)
     if given is not None and given.indentation_force is not None:
         path = "process_damping.indentation_force"
         yield _around(path, group, "indentation force", "N/mm^3", given.indentation_force)
     if contact is not None:
-        value = _rounded(contact.stiffness * 1e-6)
-        most = max(4.0 * value, 1.0)
-        path = "contact.stiffness"
-        yield Slider(path, group, "contact stiffness", "N/um", value, 0.0, most)
+        value, path = contact.stiffness * 1e-6, "contact.stiffness"
+        yield _from_zero(path, group, "contact stiffness", "N/um", value, 1.0)
 
 
 #: unit -> dimension, for the factor to SI
@@ -200,6 +195,12 @@ def _around(
     shown_value = _rounded(value / unit_factor(unit, _DIMENSION[unit]))
     low, high = shown_value / factor, shown_value * factor
     return Slider(path, group, label, unit, shown_value, low, high, logarithmic=True)
+
+
+def _from_zero(path: str, group: str, label: str, unit: str, value: float, least: float) -> Slider:
+    """Slider from zero to four times a value in its unit, and to no less than the least."""
+    value = _rounded(value)
+    return Slider(path, group, label, unit, value, 0.0, max(4.0 * value, least))
 
 
 def _rounded(value: float) -> float:

@@ -8,15 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 import typer
 
-from chatter.cli.options import (
-    Assignments,
-    CaseFile,
-    Json,
-    OutputFolder,
-    output_folder,
-    patched_case,
-)
-from chatter.cli.progress import announce_compilation, progress_bar
+from chatter.cli import options
+from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
 from chatter.description.case import Case
 from chatter.description.errors import InputError
@@ -27,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def bifurcation(
-    case: CaseFile,
+    case: options.CaseFile,
     vary: Annotated[
         str,
         typer.Option(
@@ -35,20 +28,19 @@ def bifurcation(
         ),
     ],
     count: Annotated[int, typer.Option("--count", help="Number of cuts.")] = 60,
-    assignments: Assignments = None,
-    out: OutputFolder = None,
-    json: Json = False,
+    assignments: options.Assignments = None,
+    out: options.OutputFolder = None,
+    json: options.Json = False,
 ) -> None:
     """Simulate a case over a range of one value: where chatter sets in, and of what kind."""
-    description = patched_case(case, assignments)
+    description = options.patched_case(case, assignments)
     path, values = _range(vary, count)
     from chatter.engine.loop import run
     from chatter.studies.bifurcation import bifurcation as run_bifurcation
 
-    announce_compilation(run)
-    with progress_bar("cuts") as progress:
+    with progress_bar("cuts", run) as progress:
         diagram = run_bifurcation(description, path, values, progress)
-    present(diagram, output_folder(out, case.stem), json=json, words=_print_onsets)
+    present(diagram, options.output_folder(out, case.stem), json=json, words=_print_onsets)
 
 
 def _range(vary: str, count: int) -> tuple[str, list[float]]:

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from chatter.cli.options import Assignments, CaseFile, Json, Method, OutputFolder, patched_case
+from chatter.cli import options
 from chatter.cli.progress import announce_compilation
 from chatter.report.console import print_json, print_notes, print_written
 
 
 def check(
-    case: CaseFile,
-    assignments: Assignments = None,
-    method: Method = None,
-    out: OutputFolder = None,
-    json: Json = True,  # noqa: ARG001  (the output is JSON either way; scripts pass the option)
+    case: options.CaseFile,
+    assignments: options.Assignments = None,
+    method: options.Method = None,
+    out: options.OutputFolder = None,
+    json: options.Json = True,  # noqa: ARG001  (the output is JSON either way; scripts pass the option)
 ) -> None:
     """Judge the operating point of a case: stable or chatter, and the critical depth."""
-    description = patched_case(case, assignments)
+    description = options.patched_case(case, assignments)
     from chatter.stability.check import check as run_check
 
     announce_compilation()

@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
+from chatter.cli import options
 from chatter.cli.explain import DeclaredCase, MeasurementPath, print_checks, print_diagnostics
-from chatter.cli.options import Json, OutputFolder, output_folder
 from chatter.cli.progress import announce_compilation
 from chatter.cli.results import present
 from chatter.report.console import print_table
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 def compare(
     measurement: MeasurementPath,
     case: DeclaredCase = None,
-    out: OutputFolder = None,
-    json: Json = False,
+    out: options.OutputFolder = None,
+    json: options.Json = False,
 ) -> None:
     """Error of a case's prediction, by run and channel."""
     from chatter.explain.comparison import compare as run_compare
@@ -28,7 +28,7 @@ def compare(
     declared = read_measurement(measurement, case)
     announce_compilation()
     result = run_compare(declared)
-    folder = output_folder(out, measurement.resolve().stem)
+    folder = options.output_folder(out, measurement.resolve().stem)
     present(result, folder, json=json, words=partial(_print_errors, declared.title))
 
 

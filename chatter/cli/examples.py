@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from chatter.cli.options import OutputFolder
+from chatter.cli import options
 from chatter.cli.progress import announce_compilation
 from chatter.report.console import print_table, print_written
 
@@ -18,7 +18,7 @@ def examples(
     open_picture: Annotated[
         bool, typer.Option("--open", help="Show the first picture on the desktop.")
     ] = False,
-    out: OutputFolder = None,
+    out: options.OutputFolder = None,
 ) -> None:
     """List the shipped examples, copy one here, or run it."""
     from chatter.io.shipped_examples import example

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from chatter.cli.options import Json, OutputFolder, output_folder
-from chatter.cli.progress import announce_compilation, progress_bar
+from chatter.cli import options
+from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
 from chatter.report.console import print_table
 
@@ -26,22 +26,21 @@ DeclaredCase = Annotated[
 def explain(
     measurement: MeasurementPath,
     case: DeclaredCase = None,
-    out: OutputFolder = None,
-    json: Json = False,
+    out: options.OutputFolder = None,
+    json: options.Json = False,
 ) -> None:
     """Trace what a measurement shows and its declared case lacks, and add it."""
     from chatter.explain.explanation import explain as run_explain
     from chatter.explain.measurement_file import read_measurement
 
     declared = read_measurement(measurement, case)
-    announce_compilation()
     with progress_bar("searching, %") as bar:
 
         def progress(_: str, share: float) -> None:
             bar(round(100 * share), 100)
 
         result = run_explain(declared, progress=progress)
-    folder = output_folder(out, measurement.resolve().stem)
+    folder = options.output_folder(out, measurement.resolve().stem)
     present(result, folder, json=json, words=_print_explanation)
 
 

@@ -16,7 +16,7 @@ from chatter.cli.options import (
     patched_machine,
 )
 from chatter.cli.options_as_one import takes_options
-from chatter.cli.progress import announce_compilation, progress_bar
+from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
 from chatter.report.console import print_line, print_table
 
@@ -98,8 +98,7 @@ def frf(options: FrfOptions) -> None:
     }
     given = {key: value for key, value in changes.items() if value is not None}
     sections = frf_sections(file, options.only, given)
-    announce_compilation(run)
-    with progress_bar("time steps") as progress:
+    with progress_bar("time steps", run) as progress:
         result = frfs(file, sections, progress)
     folder = output_folder(options.out, options.machine.stem)
     present(result, folder, json=options.json, words=_print_peaks)

@@ -89,7 +89,6 @@ def lobes(options: LobesOptions) -> None:
         )
     from chatter.studies.diagram_over_axes import lobes as run_lobes
 
-    announce_compilation()
     folder = output_folder(options.out, options.case.stem)
     with progress_bar("stability limits") as progress:
         diagram = run_lobes(description, options.method, grid, progress, options.cluster, folder)
@@ -100,7 +99,6 @@ def _over_paths(case: Case, options: LobesOptions) -> None:
     """Compute and write a diagram over other paths than the spindle speed."""
     from chatter.studies.diagram_over_axes import lobes_over
 
-    announce_compilation()
     folder = output_folder(options.out, options.case.stem)
     with progress_bar("stability") as progress:
         diagram = lobes_over(
@@ -133,11 +131,7 @@ def _serve(description: Case, options: LobesOptions) -> None:
 
 
 def _print_diagram(diagram: StabilityDiagram) -> None:
-    _print_pockets(diagram.summary())
-    _print_method(diagram.summary())
-
-
-def _print_pockets(summary: dict) -> None:
+    summary = diagram.summary()
     lowest, operating = summary["lowest_limit"], summary["operating_point"]
     depth, margin = summary["margin"]["depth"], summary["margin"]["spindle_speed"]
     rows = [
@@ -167,9 +161,6 @@ def _print_pockets(summary: dict) -> None:
         f"{'stable' if operating['stable'] else 'chatter'}; "
         f"limit there {_millimetres(limit, summary['max_axial_depth_mm'])} mm"
     )
-
-
-def _print_method(summary: dict) -> None:
     error = summary["resolution"]["estimated_error"]
     accuracy = "" if error is None else f"; limits accurate to {max(error, 1e-6):.1g}"
     typer.echo(f"method: {summary['method']}{accuracy}")

@@ -23,10 +23,7 @@ def frf_sections(
 ) -> dict[str, FrfSection]:
     """Tests of a file, changed by the options; one of the command line's own if it excites.
 
-    Raises
-    ------
-    InputError
-        If a name is unknown or an option is wrong.
+    Raises InputError if a name is unknown or an option is wrong.
     """
     changed = _as_keys(changes)
     if "excite" in changed:
@@ -39,13 +36,7 @@ def frf_sections(
 
 
 def move_sections(file: MachineFile, only: Sequence[str] | None) -> dict[str, MoveSection]:
-    """Moves of a file.
-
-    Raises
-    ------
-    InputError
-        If there are none, or a name is unknown.
-    """
+    """Moves of a file; InputError if there are none, or a name is unknown."""
     if not file.move:
         raise InputError(
             f"{file.name}: move: there is no [move.NAME]; such as [move.fast] kind = "

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from chatter.cli.options import Json, OutputFolder, output_folder
+from chatter.cli import options
 from chatter.cli.results import present
 from chatter.report.console import print_table
 
@@ -35,8 +35,8 @@ def modes(
     mode_count: Annotated[
         int | None, typer.Option("--mode-count", help="Fix the number of modes.")
     ] = None,
-    out: OutputFolder = None,
-    json: Json = False,
+    out: options.OutputFolder = None,
+    json: options.Json = False,
 ) -> None:
     """Identify modal parameters from measured FRFs or hammer records."""
     from chatter.studies.modal_test import modes as run_modes
@@ -46,7 +46,7 @@ def modes(
     )
     present(
         result,
-        output_folder(out, files[0].stem or "modes"),
+        options.output_folder(out, files[0].stem or "modes"),
         json=json,
         words=_print_modes,
         notes=[*result.notes, *result.fit.warnings],

@@ -6,41 +6,33 @@ from typing import Annotated
 
 import typer
 
+from chatter.cli import options
 from chatter.cli.errors import EXIT_RUN_FAILED
-from chatter.cli.options import (
-    Assignments,
-    Json,
-    MachinePath,
-    OutputFolder,
-    output_folder,
-    patched_machine,
-)
-from chatter.cli.progress import announce_compilation, progress_bar
+from chatter.cli.progress import progress_bar
 from chatter.report.console import print_json, print_table, print_written
 
 
 def move(
-    machine: MachinePath,
-    assignments: Assignments = None,
+    machine: options.MachinePath,
+    assignments: options.Assignments = None,
     only: Annotated[
         list[str] | None,
         typer.Option("--only", help="Name of a [move.NAME] to run; repeatable."),
     ] = None,
-    out: OutputFolder = None,
-    json: Json = False,
+    out: options.OutputFolder = None,
+    json: options.Json = False,
 ) -> None:
     """Move the axes of a machine: tracking error, contour error, torque."""
     from chatter.cli.machine_tests import move_sections
     from chatter.engine.loop import run
     from chatter.simulation.virtual_tests.from_file import file_move
 
-    file = patched_machine(machine, assignments)
+    file = options.patched_machine(machine, assignments)
     sections = move_sections(file, only)
-    announce_compilation(run)
-    folder = output_folder(out, machine.stem)
+    folder = options.output_folder(out, machine.stem)
     summaries, written, interrupted = {}, [], False
     for name, section in sections.items():
-        with progress_bar(f"move {name}") as progress:
+        with progress_bar(f"move {name}", run) as progress:
             result = file_move(file, name, section, progress)
         written += result.save(folder / name if len(sections) > 1 else folder)
         summaries[name] = result.summary()

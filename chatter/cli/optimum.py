@@ -6,35 +6,27 @@ from typing import Annotated
 
 import typer
 
-from chatter.cli.options import (
-    Assignments,
-    CaseFile,
-    Json,
-    OutputFolder,
-    output_folder,
-    patched_case,
-)
-from chatter.cli.progress import announce_compilation, progress_bar
+from chatter.cli import options
+from chatter.cli.progress import progress_bar
 from chatter.cli.results import present, print_sentences
 from chatter.description.errors import RunError
 
 
 def optimum(
-    case: CaseFile,
+    case: options.CaseFile,
     samples: Annotated[
         int, typer.Option("--samples", help="Of values such as 1650 +- 80 MPa.")
     ] = 200,
     seed: Annotated[int, typer.Option("--seed", help="Of the random numbers.")] = 1,
-    assignments: Assignments = None,
-    out: OutputFolder = None,
-    json: Json = False,
+    assignments: options.Assignments = None,
+    out: options.OutputFolder = None,
+    json: options.Json = False,
 ) -> None:
     """Find the cut with the highest removal rate within the limits of [optimum]."""
-    description = patched_case(case, assignments)
+    description = options.patched_case(case, assignments)
     from chatter.studies.optimisation.process_optimisation import optimum as run_optimum
 
-    announce_compilation()
-    folder = output_folder(out, case.stem)
+    folder = options.output_folder(out, case.stem)
     with progress_bar("search") as progress:
         found = run_optimum(description, samples, seed, progress, folder)
     present(found, folder, json=json, words=print_sentences, notes=found.notes)

@@ -12,8 +12,12 @@ from chatter.report.console import MESSAGES, print_message
 
 
 @contextmanager
-def progress_bar(description: str) -> Iterator[progress.Progress]:
-    """Show a progress bar on stderr; yields a function of (done, total)."""
+def progress_bar(description: str, driver: object | None = None) -> Iterator[progress.Progress]:
+    """Announce what the first use takes, and show a progress bar on stderr.
+
+    Yields a function of (done, total); `driver` is as for `announce_compilation`.
+    """
+    announce_compilation(driver)
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),

@@ -32,20 +32,7 @@ def present(
     words: Callable[[Result], None],
     notes: Sequence[str] = (),
 ) -> None:
-    """Write the files of a result and print it.
-
-    Parameters
-    ----------
-    result : Saved
-    folder : Path
-        Where the files go.
-    json : bool
-        Whether the summary is printed as JSON instead of words.
-    words : callable
-        Prints the result for people.
-    notes : sequence of str
-        Printed after the result, on stderr.
-    """
+    """Write the files of a result and print it, as JSON or in words; notes follow on stderr."""
     written = result.save(folder)
     if json:
         print_json(result.summary())

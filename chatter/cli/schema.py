@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from chatter.cli.options import OutputFolder
+from chatter.cli import options
 from chatter.report.console import print_json, print_written
 
 
@@ -14,7 +14,7 @@ def schema(
     machine: Annotated[
         bool, typer.Option("--machine", help="Of the machine file instead of the case file.")
     ] = False,
-    out: OutputFolder = None,
+    out: options.OutputFolder = None,
 ) -> None:
     """Print the JSON schema of the case or machine file, for editors that complete and check."""
     import json

@@ -6,16 +6,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from chatter.cli import options
 from chatter.cli.errors import EXIT_RUN_FAILED
-from chatter.cli.options import (
-    Assignments,
-    CaseFile,
-    Json,
-    OutputFolder,
-    output_folder,
-    patched_case,
-)
-from chatter.cli.progress import announce_compilation, progress_bar
+from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
 from chatter.report.console import print_table
 
@@ -24,27 +17,26 @@ if TYPE_CHECKING:
 
 
 def simulate(
-    case: CaseFile,
-    assignments: Assignments = None,
+    case: options.CaseFile,
+    assignments: options.Assignments = None,
     chip: Annotated[
         str | None, typer.Option("--chip", help="delay (default), dexel or voxel.")
     ] = None,
-    out: OutputFolder = None,
-    json: Json = False,
+    out: options.OutputFolder = None,
+    json: options.Json = False,
 ) -> None:
     """Simulate the cut of a case: forces, vibration, surface, chatter or not."""
-    description = patched_case(case, assignments)
+    description = options.patched_case(case, assignments)
     if chip is not None:
         description = description.patch({"simulation.chip": chip})
     from chatter.engine.loop import run
     from chatter.simulation.simulate import simulate as run_simulation
 
-    announce_compilation(run)
-    with progress_bar("time steps") as progress:
+    with progress_bar("time steps", run) as progress:
         result = run_simulation(description, progress=progress)
     present(
         result,
-        output_folder(out, case.stem),
+        options.output_folder(out, case.stem),
         json=json,
         words=_print_summary,
         notes=result.summary()["notes"],

@@ -19,7 +19,7 @@ from chatter.cli.options import (
     patched_case,
 )
 from chatter.cli.options_as_one import takes_options
-from chatter.cli.progress import announce_compilation, announce_resumed, progress_bar
+from chatter.cli.progress import announce_resumed, progress_bar
 from chatter.cli.results import present
 
 if TYPE_CHECKING:
@@ -47,7 +47,6 @@ def uncertainty(options: UncertaintyOptions) -> None:
     description = patched_case(options.case, options.assignments)
     from chatter.studies.uncertainty.monte_carlo import uncertainty as run_uncertainty
 
-    announce_compilation()
     folder = output_folder(options.out, options.case.stem)
     with progress_bar("samples") as progress:
         found = run_uncertainty(

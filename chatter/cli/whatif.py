@@ -11,7 +11,7 @@ import typer
 
 from chatter.cli.options import Assignments, Cluster, Json, Method, OutputFolder, output_folder
 from chatter.cli.options_as_one import takes_options
-from chatter.cli.progress import announce_compilation, announce_resumed, progress_bar
+from chatter.cli.progress import announce_resumed, progress_bar
 from chatter.cli.results import present, print_sentences
 from chatter.description.assignments import parse_assignments
 from chatter.description.errors import InputError
@@ -83,7 +83,6 @@ def whatif(options: WhatIfOptions) -> None:
         model = _fitted(chosen, lambda: patched(model, chosen.settings))
     from chatter.studies.whatif.whatif_study import whatif as run_whatif
 
-    announce_compilation()
     with progress_bar("points") as progress:
         found = _fitted(
             chosen,

@@ -109,6 +109,21 @@ def worker_count() -> int:
     return max(1, os.cpu_count() or 1)
 
 
+def each(
+    function: Callable[[int], Result],
+    count: int,
+    progress: Progress = no_progress,
+    points_a_chunk: int = 1,
+) -> list[Result]:
+    """Results of a function of every index 0 .. count-1, in order; see `sweep`."""
+
+    def some(points: NDArray[np.int64]) -> list[Result]:
+        return [function(int(point)) for point in points]
+
+    parts = sweep(some, count, progress, points_a_chunk)
+    return [found for part in parts for found in part]
+
+
 def sweep(
     function: Callable[[NDArray[np.int64]], Result],
     count: int,

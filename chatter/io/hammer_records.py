@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.io.formats.format_list import format_of, formats_of
 from chatter.io.formats.units import Channel, channel_unit
 from chatter.io.table import Column, Table
@@ -198,7 +198,7 @@ def _even_sampling(path: Path, table: Table, index: int, factor: float) -> tuple
     return float(time[0]) * factor, _rate(time, rounding) / factor
 
 
-def _rate(time: NDArray[np.float64], rounding: float) -> float:
+def _rate(time: Array, rounding: float) -> float:
     """Samples per unit of time by least squares; a round number where the rounding allows it."""
     count = time.size
     index = np.arange(count) - 0.5 * (count - 1)
@@ -212,7 +212,7 @@ def _rate(time: NDArray[np.float64], rounding: float) -> float:
     return rate
 
 
-def _rounding(time: NDArray[np.float64]) -> float:
+def _rounding(time: Array) -> float:
     """Unit of the last digit the times were printed with."""
     scale = float(np.max(np.abs(time)))
     for digits in range(-3, 13):

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import scipy.sparse
-from numpy.typing import NDArray
 
+from chatter.description.arrays import BooleanArray
 from chatter.io.formats.format_list import format_of
 from chatter.io.formats.matrix_market import require_square
 from dynamics.frf.container import MeasurementError
@@ -175,7 +175,7 @@ def _checked(matrix: Matrix, path: Path) -> Matrix:
     return symmetrised(sparse if scipy.sparse.issparse(matrix) else np.asarray(matrix, np.float64))
 
 
-def _where(entries: scipy.sparse.coo_array, wrong: NDArray[np.bool_]) -> list[tuple]:
+def _where(entries: scipy.sparse.coo_array, wrong: BooleanArray) -> list[tuple]:
     """Row, column and value of the wrong entry that is wrong by most, or nothing."""
     if not np.any(wrong):
         return []

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -22,6 +24,13 @@ def finite_or_none(value: float) -> float | None:
 def as_json(summary: Mapping) -> str:
     """Text of a summary; refuses nan and inf, which JSON does not know."""
     return json.dumps(summary, indent=2, allow_nan=False) + "\n"
+
+
+def csv_of_rows(rows: Iterable[Sequence[str]]) -> str:
+    """CSV of rows of texts, which are quoted where they hold a comma."""
+    text = StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue()
 
 
 def csv_text(columns: Mapping[str, tuple[Iterable[Any], str]]) -> str:
@@ -44,13 +53,7 @@ def _cell(value: Any, form: str) -> str:
 def write_results(
     folder: str | Path, texts: Mapping[str, str], pictures: Mapping[str, Figure]
 ) -> list[Path]:
-    """Write texts and pictures into a folder, which is made where it is missing.
-
-    Parameters
-    ----------
-    folder : path
-    texts, pictures : mapping
-        File name -> content.
+    """Write texts and pictures, file name -> content, into a folder, which is made where missing.
 
     Returns
     -------
@@ -67,15 +70,19 @@ def write_results(
 
 
 class SavedResult:
-    """A result that draws itself and writes its files: base of results, which give their texts."""
+    """A result that draws itself and writes its files: base of results, which give their tables."""
 
     #: module of pictures and function in it, such as "plots.whatif.plot_whatif"
     drawn_by: ClassVar[str]
     #: file name of the picture
     picture: ClassVar[str]
 
-    def texts(self) -> Mapping[str, str]:
-        """Content of each file of text, by its name."""
+    def summary(self) -> dict:
+        """Content of summary.json."""
+        raise NotImplementedError
+
+    def tables(self) -> Mapping[str, str]:
+        """Content of each further file of text, by its name."""
         raise NotImplementedError
 
     def plot(self) -> Figure:
@@ -84,11 +91,12 @@ class SavedResult:
         return getattr(presentation(module), function)(self)
 
     def save(self, folder: str | Path) -> list[Path]:
-        """Write all texts and the picture into a folder.
+        """Write tables, summary.json and the picture into a folder.
 
         Returns
         -------
         list of Path
             What was written.
         """
-        return write_results(folder, self.texts(), {self.picture: self.plot()})
+        texts = {**self.tables(), "summary.json": as_json(self.summary())}
+        return write_results(folder, texts, {self.picture: self.plot()})

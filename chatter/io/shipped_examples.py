@@ -32,13 +32,7 @@ class Example:
         return script.split('"""')[1].strip().splitlines()[0]
 
     def copy(self, folder: str | Path) -> Path:
-        """Copy the example into a new folder.
-
-        Raises
-        ------
-        InputError
-            If the folder is there already.
-        """
+        """Copy the example into a new folder; InputError if the folder is there already."""
         folder = Path(folder)
         if folder.exists():
             raise InputError(f"{folder}: is there already; name another folder with --out")
@@ -68,13 +62,7 @@ def examples() -> dict[str, Example]:
 
 
 def example(name: str) -> Example:
-    """Return one example.
-
-    Raises
-    ------
-    InputError
-        If there is none of that name.
-    """
+    """Return one example; InputError if there is none of that name."""
     known = examples()
     if name not in known:
         from chatter.description.wording import nearest

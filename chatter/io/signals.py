@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
 from chatter.io.formats.format_list import format_of
@@ -15,7 +15,7 @@ from chatter.io.headings import named
 from chatter.io.table import Column, Table
 from dynamics.frf.container import Frf, MeasurementError
 
-Signals = dict[str, NDArray[np.float64]]
+Signals = dict[str, Array]
 
 #: words of a verdict -> stable or not; marginal and unknown ones are no verdict
 _VERDICTS = {
@@ -83,7 +83,7 @@ def _name_and_factor(path: Path, column: Column, kind: str) -> tuple[str, float]
     return pattern.format(axis=column.point.direction), float(column.point.sign)
 
 
-def _numbers(table: Table, column: Column) -> NDArray[np.float64]:
+def _numbers(table: Table, column: Column) -> Array:
     """Numbers of a column; NaN where a cell is blank."""
     try:
         return np.array(column.cells, dtype=np.float64)

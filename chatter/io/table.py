@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from dynamics.frf.container import MeasurementError, Point
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ class Table:
         """Name a row, from 0, as in messages."""
         return f"row {row + 1}" if self.lines is None else f"line {self.lines[row]}"
 
-    def numbers(self, index: int) -> NDArray[np.float64]:
+    def numbers(self, index: int) -> Array:
         """Cells of a column as finite numbers.
 
         Raises
@@ -77,6 +78,14 @@ class Table:
                 f"{self.path}: {self.where(int(wrong[0]))}: {cell[:40]!r} is not a {finite}number"
             )
         return values
+
+
+def table_of(path: Path, columns: Sequence[Column], what: str) -> Table:
+    """Table of columns; MeasurementError where they, named as in messages, differ in length."""
+    lengths = {column.heading: len(column.cells) for column in columns}
+    if len(set(lengths.values())) != 1:
+        raise MeasurementError(f"{path}: the {what} differ in length or there are none: {lengths}")
+    return Table(path, tuple(columns))
 
 
 def is_number(cell: str) -> bool:

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.description.units import rpm
 from chatter.explain.residuals.variables import reported_unit
 from chatter.plots import style
@@ -79,21 +79,13 @@ def plot_signals(measurement: Measurement) -> Figure:
     for axes, channel in zip(panels.ravel(), channels, strict=True):
         x, label = _abscissa(run.signals, run.signals[channel].size)
         axes.plot(x, run.signals[channel], color=style.BLUE, lw=0.8)
-        axes.set_ylabel(f"{channel} [SI]")
-        axes.set_xlabel(label)
+        axes.set(ylabel=f"{channel} [SI]", xlabel=label)
         style.finish(axes)
     return figure
 
 
 def plot_residuals(residuals: dict[str, Residual], title: str) -> Figure:
-    """Draw measured signals of some runs, and their residuals.
-
-    Parameters
-    ----------
-    residuals : dict of str to Residual
-        Of the same measurement, by what the legend says.
-    title : str
-    """
+    """Draw measured signals of some runs, and their residuals by what the legend says."""
     first = next(iter(residuals.values()))
     runs = _shown(first)
     channels = first.channels
@@ -147,8 +139,7 @@ def _draw_residuals(axes: Axes, parts: dict[str, ChannelResidual]) -> None:
     axes.plot(x[order], scale * first.measured[order], color="#B5B5B5", lw=0.7, label="measured")
     for (name, part), colour in zip(parts.items(), (style.RED, style.BLUE), strict=False):
         axes.plot(x[order], scale * part.values[order], color=colour, lw=0.8, label=name)
-    axes.set_ylabel(f"{channel} [{unit}]" if unit else channel)
-    axes.set_xlabel(label)
+    axes.set(ylabel=f"{channel} [{unit}]" if unit else channel, xlabel=label)
 
 
 def _unit(channel: str) -> tuple[str, float]:
@@ -159,7 +150,7 @@ def _unit(channel: str) -> tuple[str, float]:
     return reported_unit(channel)
 
 
-def _abscissa(signals: Signals, count: int) -> tuple[NDArray[np.float64], str]:
+def _abscissa(signals: Signals, count: int) -> tuple[Array, str]:
     for name, (label, scale) in _ABSCISSAE.items():
         if name in signals and signals[name].size == count:
             return scale * signals[name], label
@@ -227,8 +218,7 @@ def plot_lobes_before_after(found: LobesBeforeAfter) -> Figure:
         axes.set_ylim(0.5 * depths.min(), top)
     else:
         axes.set_ylim(0.0, top)
-    axes.set_xlabel("spindle speed [rpm]")
-    axes.set_ylabel("axial depth [mm]")
+    axes.set(xlabel="spindle speed [rpm]", ylabel="axial depth [mm]")
     style.finish(axes)
     figure.legend(loc="outside upper left", ncols=3, fontsize=8.5, frameon=False)
     return figure

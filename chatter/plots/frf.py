@@ -55,14 +55,10 @@ def plot_frf(result: FrfResult) -> Figure:
     axes[0].set_yscale("log")
     what = result.curves[0].harmonic.quantity
     axes[0].set_ylabel(f"{what} [{units.pop()}]" if len(units) == 1 else what)
-    axes[1].set_ylabel("phase [deg]")
-    axes[1].set_yticks([-180, -90, 0, 90, 180])
-    axes[1].set_ylim(-190, 190)
+    axes[1].set(ylabel="phase [deg]", yticks=[-180, -90, 0, 90, 180], ylim=(-190, 190))
     if incoherent:
-        axes[2].set_ylabel("coherence")
-        axes[2].set_ylim(0.0, 1.05)
-    axes[-1].set_xlabel("frequency [Hz]")
-    axes[-1].set_xlim(_band(result))
+        axes[2].set(ylabel="coherence", ylim=(0.0, 1.05))
+    axes[-1].set(xlabel="frequency [Hz]", xlim=_band(result))
     axes[0].legend(fontsize=8.0, frameon=False)
     for each in axes:
         style.finish(each)

@@ -78,8 +78,7 @@ def draw_magnitude(axes: Axes, fit: ModalFit, frf: Frf, model: FrfModel) -> None
         axes.axvline(mode.frequency, color=colour, linewidth=0.7, linestyle=":")
     inside = np.abs(frf.band(fit.band.lowest, fit.band.highest).values) * factor
     floor = max(float(inside.min()), 1e-5 * float(inside.max()))
-    axes.set_ylim(0.5 * floor, 2.0 * float(inside.max()))
-    axes.set_ylabel(f"{frf.quantity} [{unit}]")
+    axes.set(ylim=(0.5 * floor, 2.0 * float(inside.max())), ylabel=f"{frf.quantity} [{unit}]")
     style.finish(axes)
     axes.legend(fontsize=8, loc="best")
 
@@ -136,10 +135,8 @@ def plot_stabilisation(fit: ModalFit, title: str) -> Figure:
             )
     for mode in fit.identified:
         axes.axvline(mode.frequency, color=style.GREEN, linewidth=0.8)
-    axes.set_xlim(fit.band.lowest, fit.band.highest)
-    axes.set_xlabel("frequency [Hz]")
-    axes.set_ylabel("model order")
-    axes.set_title(f"{title}: stabilisation diagram, modes chosen in green")
+    axes.set(xlim=(fit.band.lowest, fit.band.highest), xlabel="frequency [Hz]")
+    axes.set(ylabel="model order", title=f"{title}: stabilisation diagram, modes chosen in green")
     style.finish(axes)
     axes.legend(fontsize=8, loc="upper right")
     return figure

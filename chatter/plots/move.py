@@ -47,8 +47,7 @@ def plot_move(result: MoveResult) -> Figure:
 
 
 def _label(panel: Axes, text: str, legend: bool = True) -> None:
-    panel.set_xlabel("time [s]")
-    panel.set_ylabel(text)
+    panel.set(xlabel="time [s]", ylabel=text)
     if legend:
         panel.legend(fontsize=8.0, frameon=False)
 
@@ -69,9 +68,7 @@ def _draw_path(panel: Axes, result: MoveResult) -> None:
         lw=1.0,
         label=f"error x {factor:g}",
     )
-    panel.set_aspect("equal")
-    panel.set_xlabel(f"{result.axes[0]} [mm]")
-    panel.set_ylabel(f"{result.axes[1]} [mm]")
+    panel.set(aspect="equal", xlabel=f"{result.axes[0]} [mm]", ylabel=f"{result.axes[1]} [mm]")
     panel.legend(fontsize=8.0, frameon=False)
 
 

@@ -90,9 +90,7 @@ def draw_slice(axes: Axes, found: Optimum) -> None:
         frameon=False, borderaxespad=0.2,
     )  # fmt: skip
     axes.set_xlim(speed[0], speed[-1])
-    axes.set_ylim(0.0, top)
-    axes.set_xlabel("spindle speed [rpm]")
-    axes.set_ylabel("axial depth [mm]")
+    axes.set(ylim=(0.0, top), xlabel="spindle speed [rpm]", ylabel="axial depth [mm]")
     style.finish(axes)
 
 
@@ -198,8 +196,7 @@ def draw_radial_depths(axes: Axes, found: Optimum) -> None:
     axes.set_xlim(found.limits.radial_depths[0] * 1e3, found.limits.radial_depths[-1] * 1e3)
     axes.set_ylim(bottom=0.0)
     axes.margins(x=0.02)
-    axes.set_xlabel("radial depth [mm]")
-    axes.set_ylabel("removal rate\n[cm³/min]")
+    axes.set(xlabel="radial depth [mm]", ylabel="removal rate\n[cm³/min]")
     style.finish(axes)
     if axes.has_data():
         axes.legend(fontsize=8.0, frameon=False, loc="best")

@@ -46,9 +46,7 @@ def draw_limits(axes: Axes, found: PitchResult) -> None:
             ha="right", va="bottom", fontsize=8.0, color=colour,
         )  # fmt: skip
     axes.set_xlim(speed[0], speed[-1])
-    axes.set_ylim(bottom=0.0)
-    axes.set_xlabel("spindle speed [rpm]")
-    axes.set_ylabel("critical depth [mm]")
+    axes.set(ylim=(0.0, None), xlabel="spindle speed [rpm]", ylabel="critical depth [mm]")
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, fontsize=8.0, frameon=False)
     style.finish(axes)
 
@@ -66,8 +64,7 @@ def draw_families(axes: Axes, found: PitchResult) -> None:
         found.best.lowest_limit * 1e3, color=style.BLUE, linewidth=1.0, linestyle="--",
         label="best found, at the finer speeds",
     )  # fmt: skip
-    axes.set_ylim(bottom=0.0)
-    axes.set_xlabel("difference between neighbouring pitch angles [deg]")
+    axes.set(ylim=(0.0, None), xlabel="difference between neighbouring pitch angles [deg]")
     axes.set_ylabel("lowest critical depth [mm]")
     axes.legend(loc="best", fontsize=8.0, frameon=False, ncols=2)
     style.finish(axes)

@@ -97,8 +97,7 @@ def _(panel: Curves, axes: Axes) -> None:
     _scale(axes, panel.logarithmic)
     if panel.floor is not None:
         axes.axhline(panel.floor, color="black", lw=0.9, ls="--")
-    axes.set_xlabel(panel.x_label)
-    axes.set_ylabel(panel.y_label)
+    axes.set(xlabel=panel.x_label, ylabel=panel.y_label)
     if any(curve.label for curve in panel.curves) or panel.marks:
         axes.legend(**_LEGEND)
 
@@ -118,8 +117,7 @@ def _(panel: Map, axes: Axes) -> None:
     image = axes.pcolormesh(
         panel.x_edges, panel.y_edges, panel.values, cmap="PuOr", vmin=-most, vmax=most
     )
-    axes.set_xlabel(panel.x_label)
-    axes.set_ylabel(panel.y_label)
+    axes.set(xlabel=panel.x_label, ylabel=panel.y_label)
     _scale(axes, panel.logarithmic)
     bar = axes.figure.colorbar(image, ax=axes)
     bar.set_label(panel.label, fontsize=8.5)
@@ -139,8 +137,7 @@ _CLASSES = (
 def _(panel: Points, axes: Axes) -> None:
     draw_points(panel, axes)
     _scale(axes, panel.logarithmic)
-    axes.set_xlabel(panel.x_label)
-    axes.set_ylabel(panel.y_label)
+    axes.set(xlabel=panel.x_label, ylabel=panel.y_label)
     axes.margins(y=0.15)
     axes.legend(ncols=2, **_LEGEND)
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from chatter.description.arrays import Array
 from chatter.description.units import rpm
 from chatter.plots import style
 from chatter.plots.workpiece import draw_workpiece
@@ -20,8 +20,6 @@ from cutting.chip.discrete_chip import DiscreteCut
 if TYPE_CHECKING:
     from chatter.simulation.finish import WallFinish
     from chatter.simulation.result import SimulationResult
-
-Array = NDArray[np.float64]
 
 _TURN = 2.0 * math.pi
 _COLOURS = (style.BLUE, style.ORANGE, style.GREEN)
@@ -118,9 +116,7 @@ def draw_run(
             axes.fill_between(bounds, low, high, alpha=0.5, linewidth=0.8, **band)
         else:
             axes.plot(turns, values[:, axis], color=colour, linewidth=0.8, label=name)
-    axes.set_xlim(0.0, max(result.revolutions, 1e-9))
-    axes.set_xlabel("spindle revolutions")
-    axes.set_ylabel(label)
+    axes.set(xlim=(0.0, max(result.revolutions, 1e-9)), xlabel="spindle revolutions", ylabel=label)
     if not values.any():
         _say(axes, "nothing moves")
     band = "whole run, by revolution" if banded else "whole run"
@@ -142,8 +138,7 @@ def draw_last_revolutions(
         )  # fmt: skip
     if turns[-1] > turns[first]:
         axes.set_xlim(turns[first], turns[-1])
-    axes.set_xlabel("spindle revolutions")
-    axes.set_ylabel(label)
+    axes.set(xlabel="spindle revolutions", ylabel=label)
     if not values.any():
         _say(axes, "nothing moves")
     axes.set_title("last revolutions", loc="left")
@@ -159,20 +154,9 @@ def _legend(axes: Axes) -> None:
 
 
 def spectrum(time: Array, signal: Array) -> tuple[Array, Array]:
-    """Amplitude of sines in a signal, with a Hann window.
+    """Frequencies (m,), Hz, and amplitudes of sines in a signal (n,), with a Hann window.
 
-    Parameters
-    ----------
-    time : (n,) array of float
-        Evenly spaced, s.
-    signal : (n,) array of float
-
-    Returns
-    -------
-    frequency : (m,) array of float
-        Hz.
-    amplitude : (m,) array of float
-        In the unit of the signal.
+    The times (n,) are evenly spaced, s.
     """
     window = np.hanning(len(signal) + 1)[:-1]
     amplitude = np.abs(np.fft.rfft((signal - signal.mean()) * window)) * 2.0 / window.sum()
@@ -187,8 +171,7 @@ def draw_spectrum(axes: Axes, result: SimulationResult) -> None:
     axes.set_title(
         f"spectrum of the {'force' if rigid else 'displacement'}, last half of the run", loc="left"
     )
-    axes.set_xlabel("frequency [Hz]")
-    axes.set_ylabel("amplitude [N]" if rigid else "amplitude [µm]")
+    axes.set(xlabel="frequency [Hz]", ylabel="amplitude [N]" if rigid else "amplitude [µm]")
     rows = result.settled
     tooth = result.case.tool.teeth * result.case.cut.spindle_speed / _TURN
     modes = [mode.frequency for mode in result.setup.modes]
@@ -207,8 +190,7 @@ def draw_spectrum(axes: Axes, result: SimulationResult) -> None:
     _mark_chatter(axes, result)
     axes.set_xlim(0.0, top)
     if largest > 0.0:
-        axes.set_yscale("log")
-        axes.set_ylim(largest * 1e-4, largest * 2.0)
+        axes.set(yscale="log", ylim=(largest * 1e-4, largest * 2.0))
     style.finish(axes)
     axes.grid(visible=False, axis="x")
     axes.legend(loc="upper right", fontsize=8.0, framealpha=0.9, ncols=2)
@@ -239,8 +221,7 @@ def _mark_chatter(axes: Axes, result: SimulationResult) -> None:
 def draw_poincare_section(axes: Axes, result: SimulationResult) -> None:
     """Draw the displacement each time the first tooth is at +y."""
     axes.set_title("once a revolution", loc="left")
-    axes.set_xlabel("x [µm]")
-    axes.set_ylabel("y [µm]")
+    axes.set(xlabel="x [µm]", ylabel="y [µm]")
     style.finish(axes)
     points = _once_a_turn(result)
     if not result.setup.modes or len(points) == 0:
@@ -270,8 +251,7 @@ def _once_a_turn(result: SimulationResult) -> Array:
 def draw_wall(axes: Axes, result: SimulationResult) -> None:
     """Draw the deviation of the wall over feed and height."""
     axes.set_title("wall, deviation (positive: too much removed)", loc="left")
-    axes.set_xlabel("feed [mm]")
-    axes.set_ylabel("height [mm]")
+    axes.set(xlabel="feed [mm]", ylabel="height [mm]")
     walls = result.finish.walls
     if not walls:
         _say_why_not(axes, result)
@@ -301,15 +281,15 @@ def _edges(middle: Array) -> Array:
 def draw_profiles(axes: Axes, result: SimulationResult) -> None:
     """Draw the profile of every wall at half its height, and of the floor."""
     axes.set_title("profiles along the feed, about their mean", loc="left")
-    axes.set_xlabel("feed from the start of what is evaluated [mm]")
-    axes.set_ylabel("material left [µm]")
+    axes.set(xlabel="feed from the start of what is evaluated [mm]", ylabel="material left [µm]")
     finish = result.finish
     if not finish.walls and finish.floor is None:
         _say_why_not(axes, result)
         return
     shown = _PROFILE_TURNS * result.case.tool.teeth * result.case.cut.feed_per_tooth
     for wall, colour in zip(finish.walls, (style.BLUE, style.ORANGE), strict=False):
-        _draw_profile(axes, wall.profiles.x, -_middle_row(wall), shown, colour, _wall_label(wall))
+        middle = wall.profiles.deviation[len(wall.profiles.height) // 2]
+        _draw_profile(axes, wall.profiles.x, -middle, shown, colour, _wall_label(wall))
     if finish.floor is not None:
         floor = finish.floor
         label = f"floor: Ra {round(floor.texture.roughness.mean * 1e6, 6):.3g} µm"
@@ -330,10 +310,6 @@ def _draw_profile(
     axes.plot(
         (x - x[0]) * 1e3, (profile - profile.mean()) * 1e6, color=colour, linewidth=1.0, label=label
     )
-
-
-def _middle_row(wall: WallFinish) -> Array:
-    return wall.profiles.deviation[len(wall.profiles.height) // 2]
 
 
 def _wall_label(wall: WallFinish) -> str:

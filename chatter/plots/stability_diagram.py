@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, ListedColormap, TwoSlopeNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.description.units import rpm
 from chatter.plots import style
 from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
@@ -59,7 +59,7 @@ def _draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
     across = np.insert(x, jumps, x[jumps])
     marker = "." if x.size <= _FEW_VALUES else ""
 
-    def draw(depth: NDArray[np.float64], colour: str, width: float, label: str | None) -> None:
+    def draw(depth: Array, colour: str, width: float, label: str | None) -> None:
         broken = np.insert(np.where(np.isfinite(depth), depth * 1e3, math.nan), jumps, math.nan)
         axes.plot(
             across, broken, "-", marker=marker, markersize=3.5, color=colour, linewidth=width,
@@ -81,13 +81,14 @@ def _draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
         draw(np.where(flip, limits.critical_depth, math.nan), style.RED, 2.0, "limit by flip")
     if diagram.is_over_speed:
         _mark_pockets(axes, diagram)
-        _mark_operating_point(axes, diagram)
+        word, look = "chatter", {"marker": "X", "color": style.RED}
+        if diagram.operating_is_stable:
+            word, look = "stable", {"marker": "o", "color": style.GREEN}
+        style.mark_cut(axes, diagram.case.cut, f"operating point, {word}", **look)
     else:
         _mark_case(axes, diagram.axis.case_value, diagram.case.cut.axial_depth * 1e3, x)
     _name_sides(axes)
-    axes.set_xlim(x[0], x[-1])
-    axes.set_ylim(0.0, top * 1e3)
-    axes.set_ylabel("axial depth [mm]")
+    axes.set(xlim=(x[0], x[-1]), ylim=(0.0, top * 1e3), ylabel="axial depth [mm]")
     style.finish(axes)
 
 
@@ -122,7 +123,7 @@ def _fill(axes: Axes, diagram: StabilityDiagram, top: float) -> None:
     )
 
 
-def _mark_case(axes: Axes, x: float, y: float, inside: NDArray[np.float64]) -> None:
+def _mark_case(axes: Axes, x: float, y: float, inside: Array) -> None:
     if math.isfinite(x) and math.isfinite(y) and inside[0] <= x <= inside[-1]:
         axes.plot(
             x, y, marker="D", markersize=7, markeredgecolor="black", color="white",
@@ -150,22 +151,6 @@ def _pocket_list(diagram: StabilityDiagram) -> str:
     rows = ["     ".join(lines[k : k + 2]) for k in range(0, len(lines), 2)]
     margin = f"pockets ({DEPTH_MARGIN:.0%} below the limit, speed off by {SPEED_MARGIN:.1%}):"
     return "\n".join([margin, *rows]) if rows else "no pocket between these speeds"
-
-
-def _mark_operating_point(axes: Axes, diagram: StabilityDiagram) -> None:
-    cut = diagram.case.cut
-    stable = diagram.operating_is_stable
-    axes.plot(
-        rpm(cut.spindle_speed),
-        cut.axial_depth * 1e3,
-        marker="o" if stable else "X",
-        markersize=9,
-        markeredgecolor="black",
-        color=style.GREEN if stable else style.RED,
-        linestyle="none",
-        label=f"operating point, {'stable' if stable else 'chatter'}",
-        zorder=5,
-    )
 
 
 def _draw_frequency(axes: Axes, diagram: StabilityDiagram) -> None:
@@ -198,7 +183,7 @@ def _draw_frequency(axes: Axes, diagram: StabilityDiagram) -> None:
         )  # fmt: skip
 
 
-def _frequency_range(frequency: NDArray[np.float64]) -> tuple[float, float]:
+def _frequency_range(frequency: Array) -> tuple[float, float]:
     finite = frequency[np.isfinite(frequency)]
     if finite.size == 0:
         return 0.0, 1.0
@@ -250,9 +235,7 @@ def plot_map(diagram: StabilityMap) -> Figure:
     if y[0] <= diagram.y_axis.case_value <= y[-1]:
         _mark_case(axes, diagram.x_axis.case_value, diagram.y_axis.case_value, x)
     axes.set_xlim(x[0], x[-1])
-    axes.set_ylim(y[0], y[-1])
-    axes.set_xlabel(diagram.x_axis.heading)
-    axes.set_ylabel(diagram.y_axis.heading)
+    axes.set(ylim=(y[0], y[-1]), xlabel=diagram.x_axis.heading, ylabel=diagram.y_axis.heading)
     axes.set_title(diagram.case.title or "Spectral radius", pad=28.0, loc="left")
     _name_sides(axes)
     style.finish(axes)

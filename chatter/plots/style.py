@@ -7,6 +7,9 @@ from typing import Any
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from chatter.description.sections.cut import Cut
+from chatter.description.units import rpm
+
 #: Okabe and Ito's palette
 BLUE, ORANGE, GREEN, RED, GREY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#666666"
 STABLE_FILL, UNSTABLE_FILL = "#E8F3EE", "#F6E3D8"
@@ -20,6 +23,13 @@ def new_figure(width: float, height: float, **layout: Any) -> Figure:
     figure = Figure(figsize=(width, height), dpi=_DPI, layout="constrained", **layout)
     FigureCanvasAgg(figure)
     return figure
+
+
+def mark_cut(axes: Any, cut: Cut, label: str, **look: Any) -> None:
+    """Mark the speed and depth of a cut among spindle speeds (rpm) and axial depths (mm)."""
+    point = {"marker": "o", "markersize": 9, "markeredgecolor": "black", "linestyle": "none"}
+    x, y = rpm(cut.spindle_speed), cut.axial_depth * 1e3
+    axes.plot(x, y, **{**point, **look}, label=label, zorder=5)
 
 
 def finish(axes: Any) -> None:

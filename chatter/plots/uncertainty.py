@@ -45,20 +45,10 @@ def draw_band(axes: Axes, found: Uncertainty) -> None:
         axes.plot(speed, _finite(row), color=style.BLUE, linewidth=0.35, alpha=0.35)
     axes.plot(speed, _finite(middle), color=style.BLUE, linewidth=1.8, label="median limit")
     ends = found.interval
-    axes.plot(
-        rpm(cut.spindle_speed),
-        cut.axial_depth * 1e3,
-        "o",
-        color=style.RED if found.probability < 0.5 else style.GREEN,
-        markeredgecolor="black",
-        markersize=9,
-        label=f"cut: stable with {found.probability:.1%} ({ends[0]:.1%} to {ends[1]:.1%})",
-        zorder=5,
-    )
-    axes.set_xlim(speed[0], speed[-1])
-    axes.set_ylim(0.0, _highest_depth(found, high, top))
-    axes.set_xlabel("spindle speed [rpm]")
-    axes.set_ylabel("axial depth [mm]")
+    label = f"cut: stable with {found.probability:.1%} ({ends[0]:.1%} to {ends[1]:.1%})"
+    style.mark_cut(axes, cut, label, color=style.RED if found.probability < 0.5 else style.GREEN)
+    axes.set(xlim=(speed[0], speed[-1]), ylim=(0.0, _highest_depth(found, high, top)))
+    axes.set(xlabel="spindle speed [rpm]", ylabel="axial depth [mm]")
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, fontsize=8.5, frameon=False)
     style.finish(axes)
 
@@ -104,9 +94,6 @@ def draw_convergence(axes: Axes, found: Uncertainty) -> None:
         label="95 % confidence",
     )  # fmt: skip
     axes.plot(count, share, color=style.RED, linewidth=1.4, label="probability of stability")
-    axes.set_xlim(1, count[-1])
-    axes.set_ylim(-0.02, 1.02)
-    axes.set_xlabel("samples")
-    axes.set_ylabel("probability")
+    axes.set(xlim=(1, count[-1]), ylim=(-0.02, 1.02), xlabel="samples", ylabel="probability")
     axes.legend(fontsize=8.0, frameon=False, loc="best")
     style.finish(axes)

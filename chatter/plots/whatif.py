@@ -11,8 +11,6 @@ from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 
 from chatter.description.case import Case
-from chatter.description.sections.cut import Cut
-from chatter.description.units import rpm
 from chatter.plots import style
 from chatter.studies.whatif.summary import ranked, title_of, unit_of, value_text
 
@@ -83,23 +81,10 @@ def _draw_curves(axes: Axes, study: WhatIf, panel: str, name: str, colours: list
     else:
         axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
     if study.measure.name == "lobes" and isinstance(study.model, Case):
-        _mark_operating_point(axes, study.model.cut)
+        style.mark_cut(axes, study.model.cut, "operating point", color="black", markersize=6)
     axes.margins(x=0.0)
-    axes.set_xlabel(across)
-    axes.set_ylabel(panel if not name else f"{name}\n{panel}")
+    axes.set(xlabel=across, ylabel=panel if not name else f"{name}\n{panel}")
     style.finish(axes)
-
-
-def _mark_operating_point(axes: Axes, cut: Cut) -> None:
-    axes.plot(
-        rpm(cut.spindle_speed),
-        cut.axial_depth * 1e3,
-        "o",
-        color="black",
-        markersize=6,
-        label="operating point",
-        zorder=5,
-    )
 
 
 def _draw_numbers(axes: Axes, study: WhatIf, colours: list) -> None:
@@ -124,8 +109,7 @@ def _draw_numbers(axes: Axes, study: WhatIf, colours: list) -> None:
     if not missing.all():
         _mark_verdicts(axes, study, x, y)
         axes.margins(y=0.18)
-    axes.set_xlabel(one.axis_label)
-    axes.set_ylabel(_wrapped(_quantity_label(study)))
+    axes.set(xlabel=one.axis_label, ylabel=_wrapped(_quantity_label(study)))
     axes.ticklabel_format(axis="y", scilimits=(-3, 5), useOffset=False)
     style.finish(axes)
 
@@ -168,8 +152,7 @@ def _heat_map(study: WhatIf) -> Figure:
     _ticks(axes.xaxis, across)
     _ticks(axes.yaxis, down)
     axes.tick_params(axis="x", labelrotation=30)
-    axes.set_xlabel(across.path)
-    axes.set_ylabel(_wrapped(down.path.replace(".", ". ")).replace(". ", "."))
+    axes.set(xlabel=across.path, ylabel=_wrapped(down.path.replace(".", ". ")).replace(". ", "."))
     figure.colorbar(image, label=_quantity_label(study))
     if values.size <= _MOST_WRITTEN:
         _write_values(axes, study, values)

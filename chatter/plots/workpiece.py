@@ -25,15 +25,7 @@ _CELLS = 700
 
 
 def draw_workpiece(axes: Axes, result: SimulationResult, layer: int) -> None:
-    """Draw what is left of a layer, and the path of the tool.
-
-    Parameters
-    ----------
-    axes : Axes
-    result : SimulationResult
-        Of a dexel or voxel chip.
-    layer : int
-    """
+    """Draw what is left of a layer of a dexel or voxel workpiece, and the path of the tool."""
     stock = result.setup.groups[0].stock
     low, high, material = plan_view(stock, layer)
     axes.imshow(
@@ -53,8 +45,7 @@ def draw_workpiece(axes: Axes, result: SimulationResult, layer: int) -> None:
         x[-1] + radius * np.sin(turn), y[-1] + radius * np.cos(turn), color=GREY, linewidth=0.8
     )
     axes.legend(frameon=False, fontsize=8, loc="upper left")
-    axes.set_xlabel("x [mm]")
-    axes.set_ylabel("y [mm]")
+    axes.set(xlabel="x [mm]", ylabel="y [mm]")
     finish(axes)
     axes.grid(visible=False)
 

@@ -20,16 +20,7 @@ if TYPE_CHECKING:
 
 
 def page_of(explanation: Explanation, summary: dict[str, Any], picture: Figure) -> str:
-    """Return the page of an explanation.
-
-    Parameters
-    ----------
-    explanation : Explanation
-    summary : dict
-        Of explanation.json.
-    picture : Figure
-        Of signals and their residuals.
-    """
+    """Page of an explanation, its summary as in explanation.json, and a picture of residuals."""
     found = explanation.found
     return (
         _templates()

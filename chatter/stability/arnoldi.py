@@ -34,11 +34,7 @@ _OPERATORS: dict[type, _Operator] = {}
 def register_operator(kind: type, scratch: Callable, apply: Callable) -> None:
     """Make compiled code apply operators of a NamedTuple class.
 
-    Parameters
-    ----------
-    kind : type
-    scratch, apply : callable
-        Compiled: scratch(operator), and apply(operator, vector, out, scratch).
+    Both functions are compiled: scratch(operator), and apply(operator, vector, out, scratch).
     """
     _OPERATORS[kind] = _Operator(scratch, apply)
 

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.engine.presets import DRIVER
 from cutting.edge_segments.coupling import arc_at, coupling_at, delay_at, part_below
 
@@ -21,24 +21,15 @@ _POINTS = 16
 class AveragedCoefficients(NamedTuple):
     """Averaged directional coefficients: the force on the tool is -sum_g mean_g (u - u delayed)."""
 
-    delay: NDArray[np.float64]  # rad (g,)
-    mean: NDArray[np.float64]  # N/m, or N/m^2 per axial depth (g, r, r)
+    delay: Array  # rad (g,)
+    mean: Array  # N/m, or N/m^2 per axial depth (g, r, r)
 
 
 @njit(**DRIVER)
 def averaged_coefficients(cut, depth):
-    """Average the couplings of a cut over a revolution, apart for every delay.
+    """Average the couplings of a cut over a revolution, apart for every delay; means in N/m.
 
-    Parameters
-    ----------
-    cut : CutArrays
-    depth : float
-        Axial depth, m.
-
-    Returns
-    -------
-    AveragedCoefficients
-        In N/m.
+    `depth` is the axial depth, m.
     """
     segments = cut.segments
     rank = cut.shape.shape[1]

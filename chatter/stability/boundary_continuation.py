@@ -11,8 +11,8 @@ zero (see `crossings`).
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, BooleanArray, IntegerArray
 from chatter.description.progress import Progress, no_progress
 from chatter.stability.brackets import GrowthRate
 from chatter.stability.crossings import find_crossings
@@ -25,13 +25,13 @@ _NEARLY_ZERO = 0.2
 
 def continued_crossings(
     speed_count: int,
-    depths: NDArray[np.float64],
+    depths: Array,
     growth_rate: GrowthRate,
     tolerance: float = 5e-3,
     stride: int = 8,
     progress: Progress = no_progress,
     refined: GrowthRate | None = None,
-) -> list[NDArray[np.float64]]:
+) -> list[Array]:
     """Depths of all changes of stability at each speed.
 
     Parameters
@@ -78,11 +78,8 @@ def continued_crossings(
 
 
 def _screen(
-    values: NDArray[np.float64],
-    columns: NDArray[np.int64],
-    depths: NDArray[np.float64],
-    growth_rate: GrowthRate,
-) -> NDArray[np.bool_]:
+    values: Array, columns: IntegerArray, depths: Array, growth_rate: GrowthRate
+) -> BooleanArray:
     """Fill in columns: all depths, but for some of those that lie deep in what is unstable.
 
     Between two of every few depths that are unstable, with a growth rate well above what it changes
@@ -112,10 +109,10 @@ def _screen(
 
 
 def _evaluate(
-    values: NDArray[np.float64],
-    columns: NDArray[np.int64],
-    wanted: NDArray[np.bool_],
-    depths: NDArray[np.float64],
+    values: Array,
+    columns: IntegerArray,
+    wanted: BooleanArray,
+    depths: Array,
     growth_rate: GrowthRate,
 ) -> None:
     """Fill in the growth rate at the wanted positions of some columns."""
@@ -124,7 +121,7 @@ def _evaluate(
         values[columns[row], position] = growth_rate(columns[row], depths[position])
 
 
-def _beside_changes(values: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _beside_changes(values: Array) -> BooleanArray:
     """Depths on both sides of a change of sign; before the first depth all is stable."""
     unstable = values > 0.0
     before = np.concatenate([np.zeros((len(values), 1), dtype=bool), unstable[:, :-1]], axis=1)
@@ -133,7 +130,7 @@ def _beside_changes(values: NDArray[np.float64]) -> NDArray[np.bool_]:
     return changes | below
 
 
-def _near_boundary(values: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _near_boundary(values: Array) -> BooleanArray:
     """Depths beside a change of sign, or at peaks and valleys that nearly reach zero."""
     padded = np.pad(values, ((0, 0), (1, 1)), mode="edge")
     before, after = padded[:, :-2], padded[:, 2:]
@@ -146,12 +143,8 @@ def _near_boundary(values: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 
 def _widen(
-    values: NDArray[np.float64],
-    columns: NDArray[np.int64],
-    seen: NDArray[np.bool_],
-    depths: NDArray[np.float64],
-    growth_rate: GrowthRate,
-) -> NDArray[np.bool_]:
+    values: Array, columns: IntegerArray, seen: BooleanArray, depths: Array, growth_rate: GrowthRate
+) -> BooleanArray:
     """Look beside changes of sign of which one side was only taken over; returns what is seen."""
     seen = seen.copy()
     while True:

@@ -6,10 +6,11 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from chatter.description.arrays import Array, IntegerArray
 
 #: growth rate at points: (indices of speeds, depths) -> (n,)
-GrowthRate = Callable[[NDArray[np.int64], NDArray[np.float64]], NDArray[np.float64]]
+GrowthRate = Callable[[IntegerArray, Array], Array]
 
 #: growth rate that is none
 _GROWTH_TOLERANCE = 1e-9
@@ -28,21 +29,17 @@ _UNSEEN = 0.5
 class Brackets(NamedTuple):
     """Between two depths of a speed stability changes."""
 
-    speed: NDArray[np.int64]
-    low: NDArray[np.float64]
-    high: NDArray[np.float64]
-    at_low: NDArray[np.float64]  # growth_rate
-    at_high: NDArray[np.float64]
-    beside: NDArray[np.float64]  # depths next to the two, nan where there is none (2, n)
-    at_beside: NDArray[np.float64]  # (2, n)
+    speed: IntegerArray
+    low: Array
+    high: Array
+    at_low: Array  # growth_rate
+    at_high: Array
+    beside: Array  # depths next to the two, nan where there is none (2, n)
+    at_beside: Array  # (2, n)
 
 
 def bracket(
-    speed: NDArray[np.int64],
-    one: NDArray[np.float64],
-    at_one: NDArray[np.float64],
-    other: NDArray[np.float64],
-    at_other: NDArray[np.float64],
+    speed: IntegerArray, one: Array, at_one: Array, other: Array, at_other: Array
 ) -> Brackets:
     """Brackets between two depths in either order."""
     swap = other < one
@@ -71,7 +68,7 @@ class _Narrowing:
         # roots by inverse interpolation through up to four points
         self.interpolated = _inverse_interpolation(self.x, self.y, self.low)
 
-    def next_depth(self, k: NDArray[np.int64], iteration: int) -> NDArray[np.float64]:
+    def next_depth(self, k: IntegerArray, iteration: int) -> Array:
         """Next depth to evaluate in brackets k."""
         low, high, at_high = self.low[k], self.high[k], self.scaled_high[k]
         width = high - low
@@ -84,9 +81,7 @@ class _Narrowing:
         inside = (curved > low + margin) & (curved < high - margin)
         return np.clip(np.where(inside & curving, curved, straight), low + margin, high - margin)
 
-    def slope(
-        self, k: NDArray[np.int64], depth: NDArray[np.float64], value: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def slope(self, k: IntegerArray, depth: Array, value: Array) -> Array:
         """Slope of the growth rate in brackets k, on the flatter side: a jump has none."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.fmin(
@@ -94,9 +89,7 @@ class _Narrowing:
                 np.abs(self.at_high[k] - value) / (self.high[k] - depth),
             )
 
-    def take(
-        self, k: NDArray[np.int64], depth: NDArray[np.float64], value: NDArray[np.float64]
-    ) -> None:
+    def take(self, k: IntegerArray, depth: Array, value: Array) -> None:
         """Make a depth within brackets k an end of theirs."""
         self.x[:, k], self.y[:, k] = _with_point(
             self.x[:, k], self.y[:, k], self.low[k], self.high[k], depth, value
@@ -115,7 +108,7 @@ class _Narrowing:
         self.interpolated[k] = _inverse_interpolation(self.x[:, k], self.y[:, k], self.low[k])
 
 
-def roots_in(brackets: Brackets, growth_rate: GrowthRate, tolerance: float) -> NDArray[np.float64]:
+def roots_in(brackets: Brackets, growth_rate: GrowthRate, tolerance: float) -> Array:
     """Root in each bracket by inverse interpolation through up to four points, all at once.
 
     Where that leaves the bracket, the Illinois method. Interpolation through a point that has just
@@ -159,13 +152,8 @@ def roots_in(brackets: Brackets, growth_rate: GrowthRate, tolerance: float) -> N
 
 
 def _with_point(
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    low: NDArray[np.float64],
-    high: NDArray[np.float64],
-    point: NDArray[np.float64],
-    value: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    x: Array, y: Array, low: Array, high: Array, point: Array, value: Array
+) -> tuple[Array, Array]:
     """Four points a column with a new one in the point of the furthest that is no end."""
     distance = np.abs(x - point)
     distance = np.where(np.isfinite(distance), distance, np.inf)
@@ -174,9 +162,7 @@ def _with_point(
     return np.where(furthest, point, x), np.where(furthest, value, y)
 
 
-def _inverse_interpolation(
-    x: NDArray[np.float64], y: NDArray[np.float64], low: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _inverse_interpolation(x: Array, y: Array, low: Array) -> Array:
     """Place (n,) at which the polynomial x(y) through up to four points has y = 0.
 
     Parameters

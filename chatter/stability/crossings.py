@@ -12,8 +12,8 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, BooleanArray, IntegerArray
 from chatter.stability.brackets import Brackets, GrowthRate, bracket, roots_in
 
 #: of a limit, relative to its depth
@@ -26,8 +26,8 @@ _PEAK_STEPS = 4
 
 
 def growth_rate_on_grid(
-    speed_count: int, depths: NDArray[np.float64], plain: GrowthRate, refined: GrowthRate
-) -> NDArray[np.float64]:
+    speed_count: int, depths: Array, plain: GrowthRate, refined: GrowthRate
+) -> Array:
     """Growth rate (speeds, depths) on the grid, refined where its sign matters and is in doubt."""
     speed, depth = (
         part.ravel() for part in np.meshgrid(np.arange(speed_count), depths, indexing="ij")
@@ -44,7 +44,7 @@ def growth_rate_on_grid(
     return growth_rate
 
 
-def _in_doubt(growth_rate: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _in_doubt(growth_rate: Array) -> BooleanArray:
     """Points beside a change of sign, and peaks and valleys that nearly reach zero."""
     before = np.concatenate(
         [np.full((growth_rate.shape[0], 1), -1e-12), growth_rate[:, :-1]], axis=1
@@ -58,13 +58,13 @@ def _in_doubt(growth_rate: NDArray[np.float64]) -> NDArray[np.bool_]:
 
 
 def find_crossings(
-    grid: NDArray[np.float64],
-    depths: NDArray[np.float64],
+    grid: Array,
+    depths: Array,
     growth_rate: GrowthRate,
     tolerance: float = _DEPTH_TOLERANCE,
-    evaluated: NDArray[np.bool_] | None = None,
+    evaluated: BooleanArray | None = None,
     refined: GrowthRate | None = None,
-) -> list[NDArray[np.float64]]:
+) -> list[Array]:
     """Depths of all changes of stability at each speed.
 
     Parameters
@@ -103,28 +103,12 @@ def find_crossings(
 
 
 def moved_crossings(
-    speed: NDArray[np.int64],
-    depth: NDArray[np.float64],
-    reach: float,
-    growth_rate: GrowthRate,
-    tolerance: float,
-) -> NDArray[np.float64]:
-    """Changes of stability next to those of a like problem.
+    speed: IntegerArray, depth: Array, reach: float, growth_rate: GrowthRate, tolerance: float
+) -> Array:
+    """Changes of stability (n,), m, next to those of a like problem; nan where none is in reach.
 
-    Parameters
-    ----------
-    speed, depth : (n,) array
-        Those of the like problem; depths in m.
-    reach : float
-        How far they may have moved, relative to their depth.
-    growth_rate : callable
-    tolerance : float
-        Relative to the depth.
-
-    Returns
-    -------
-    (n,) array of float
-        m, nan where stability does not change within reach.
+    Speeds and depths (n,), m, are those of the like problem; `reach`, how far they may have moved,
+    and `tolerance` are relative to the depth.
     """
     low, high = (1.0 - reach) * depth, (1.0 + reach) * depth
     brackets = bracket(speed, low, growth_rate(speed, low), high, growth_rate(speed, high))
@@ -132,12 +116,7 @@ def moved_crossings(
     return np.where(changes, roots_in(brackets, growth_rate, tolerance), np.nan)
 
 
-def _on_the_grid(
-    values: NDArray[np.float64],
-    seen: NDArray[np.float64],
-    edges: NDArray[np.float64],
-    growth_rate: GrowthRate,
-) -> Brackets:
+def _on_the_grid(values: Array, seen: Array, edges: Array, growth_rate: GrowthRate) -> Brackets:
     """Changes of sign between neighbouring depths."""
     unstable = values > 0.0
     speed, column = np.nonzero(unstable[:, 1:] != unstable[:, :-1])
@@ -157,9 +136,7 @@ def _on_the_grid(
     )  # fmt: skip
 
 
-def _between(
-    values: NDArray[np.float64], edges: NDArray[np.float64], growth_rate: GrowthRate
-) -> list[Brackets]:
+def _between(values: Array, edges: Array, growth_rate: GrowthRate) -> list[Brackets]:
     """Changes of sign about peaks and valleys that only reach across zero between the depths."""
     middle, before, after = values[:, 1:-1], values[:, :-2], values[:, 2:]
     side = np.where(middle > 0.0, -1.0, 1.0)
@@ -190,7 +167,7 @@ def _between(
     return found
 
 
-def _vertex(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
+def _vertex(x: Array, y: Array) -> Array:
     """Place of the extremum of the parabolas through three points, kept off the points."""
     left, right = x[1] - x[0], x[2] - x[1]
     rise, fall = (y[1] - y[0]) / left, (y[1] - y[2]) / right
@@ -206,13 +183,8 @@ def _vertex(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float6
 
 
 def _narrowed(
-    speed: NDArray[np.int64],
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    depth: NDArray[np.float64],
-    value: NDArray[np.float64],
-    kept: NDArray[np.bool_],
-) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    speed: IntegerArray, x: Array, y: Array, depth: Array, value: Array, kept: BooleanArray
+) -> tuple[IntegerArray, Array, Array]:
     """Triples about the extremum that the new values leave."""
     speed, x, y, depth, value = speed[kept], x[:, kept], y[:, kept], depth[kept], value[kept]
     side = np.where(y[1] > 0.0, -1.0, 1.0)

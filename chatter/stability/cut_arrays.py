@@ -7,8 +7,8 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.stability.spindle_rotation import PeriodFit, SpeedVariation
 from cutting.edge_segments.engaged_intervals import MOST_POINTS
 from cutting.edge_segments.segments import EdgeSegments
@@ -22,26 +22,23 @@ CHATTER_ABOVE_NATURAL = 1.2
 class CutArrays(NamedTuple):
     """A milling cut with speed and depth left open; n modes, r directions of motion."""
 
-    natural_frequency: NDArray[np.float64]  # rad/s (n,)
-    damping: NDArray[np.float64]  # ratio (n,)
-    shape: NDArray[np.float64]  # displacement per modal coordinate (n, r)
-    force_gain: NDArray[np.float64]  # modal acceleration per force, 1/kg (n, r)
-    basis: NDArray[np.float64]  # directions of motion (3, r)
+    natural_frequency: Array  # rad/s (n,)
+    damping: Array  # ratio (n,)
+    shape: Array  # displacement per modal coordinate (n, r)
+    force_gain: Array  # modal acceleration per force, 1/kg (n, r)
+    basis: Array  # directions of motion (3, r)
     segments: EdgeSegments
     period_angle: float  # after which the tool repeats itself, rad
     variation: SpeedVariation
     fit: PeriodFit
     fastest: float  # vibration to be resolved, with no cut, rad/s
     stiffening: float  # by which its square grows with depth, rad^2/s^2/m
-    edge_position: NDArray[np.float64]  # Gauss points on [0, 1], row q for q of them (17, 16)
-    edge_weight: NDArray[np.float64]  # (17, 16)
+    edge_position: Array  # Gauss points on [0, 1], row q for q of them (17, 16)
+    edge_weight: Array  # (17, 16)
 
 
 def relevant_frequency(
-    natural_frequency: NDArray[np.float64],
-    damping: NDArray[np.float64],
-    shape: NDArray[np.float64],
-    force_gain: NDArray[np.float64],
+    natural_frequency: Array, damping: Array, shape: Array, force_gain: Array
 ) -> float:
     """Highest natural frequency (rad/s) among modes whose resonance peak matters."""
     reach = np.linalg.norm(shape, axis=1) * np.linalg.norm(force_gain, axis=1)
@@ -49,7 +46,7 @@ def relevant_frequency(
     return float(natural_frequency[peak >= _RELEVANT_PEAK * peak.max()].max())
 
 
-def _stiffening(modes: tuple[NDArray[np.float64], ...], segments: EdgeSegments) -> float:
+def _stiffening(modes: tuple[Array, ...], segments: EdgeSegments) -> float:
     """Square of the frequency that the stiffness of the cut adds for each depth, rad^2/s^2/m."""
     _, _, shape, force_gain = modes
     reach = float(np.max(np.linalg.norm(shape, axis=1) * np.linalg.norm(force_gain, axis=1)))
@@ -65,7 +62,7 @@ def _stiffening(modes: tuple[NDArray[np.float64], ...], segments: EdgeSegments) 
 
 
 @lru_cache(maxsize=1)
-def _edge_rules() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _edge_rules() -> tuple[Array, Array]:
     """Places and weights of the Gauss quadratures of all orders on [0, 1], a row an order."""
     position = np.zeros((MOST_POINTS + 1, MOST_POINTS))
     weight = np.zeros_like(position)
@@ -76,24 +73,13 @@ def _edge_rules() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 
 def cut_arrays(
-    modes: tuple[NDArray[np.float64], ...],
-    basis: NDArray[np.float64],
+    modes: tuple[Array, ...],
+    basis: Array,
     segments: EdgeSegments,
     period_angle: float,
     variation: SpeedVariation,
 ) -> CutArrays:
-    """Lay out a cut.
-
-    Parameters
-    ----------
-    modes : tuple of arrays
-        Natural frequency (n,) rad/s, damping ratio (n,), shape (n, r), force gain (n, r).
-    basis : (3, r) array of float
-    segments : EdgeSegments
-    period_angle : float
-        rad.
-    variation : SpeedVariation
-    """
+    """Lay out a cut; modes as of `MillingModel.modal_arrays`, the period of the tool in rad."""
     natural, damping, shape, force_gain = modes
     fastest = CHATTER_ABOVE_NATURAL * relevant_frequency(*modes)
     position, weight = _edge_rules()

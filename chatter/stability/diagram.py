@@ -6,27 +6,21 @@ path of a case.
 
 from __future__ import annotations
 
-import csv
-import io
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.units import rpm
-from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, finite_or_none, write_results
+from chatter.io.result_files import SavedResult, csv_of_rows, finite_or_none
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.methods.zeroth_order.uniform_pitch import ZeroOrderLimit
 from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN, Pocket
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 #: values excluded that are reported on the terminal
 _MOST_REPORTED = 3
@@ -51,7 +45,7 @@ class DiagramAxis:
 
     name: str
     unit: str
-    values: NDArray[np.float64]
+    values: Array
     labels: tuple[str, ...] = ()
     case_value: float = math.nan
 
@@ -71,7 +65,7 @@ class DiagramAxis:
 
 
 @dataclass(frozen=True)
-class StabilityMap:
+class StabilityMap(SavedResult):
     """Spectral radius over two axes.
 
     Parameters
@@ -88,16 +82,19 @@ class StabilityMap:
         Values that describe no cut, and why; their points of the map are nan.
     """
 
+    drawn_by: ClassVar[str] = "plots.stability_diagram.plot_map"
+    picture: ClassVar[str] = "lobes.png"
+
     case: Case
     method: str
     x_axis: DiagramAxis
     y_axis: DiagramAxis
-    spectral_radius: NDArray[np.float64]
+    spectral_radius: Array
     notes: tuple[str, ...] = ()
     excluded: Mapping[str, str] = field(default_factory=dict)
 
     @property
-    def boundary(self) -> tuple[NDArray[np.float64], ...]:
+    def boundary(self) -> tuple[Array, ...]:
         """Values of y where the spectral radius passes 1, at each x (n arrays).
 
         Between points of the map the logarithm of the spectral radius is taken as linear.
@@ -134,19 +131,15 @@ class StabilityMap:
         known = self.spectral_radius[np.isfinite(self.spectral_radius)]
         return float((known < 1.0).mean())
 
-    def plot(self) -> Figure:
-        """Return the map as a matplotlib figure."""
-        return presentation("plots.stability_diagram").plot_map(self)
-
-    def save(self, folder: str | Path) -> list[Path]:
-        """Write lobes.csv, lobes.png and summary.json; return what was written."""
+    def tables(self) -> dict[str, str]:
+        """Content of lobes.csv."""
         rows = [
             [f"{x:.9g}", f"{y:.9g}", f"{radius:.9g}" if math.isfinite(radius) else ""]
             for y, row in zip(self.y_axis.values, self.spectral_radius, strict=True)
             for x, radius in zip(self.x_axis.values, row, strict=True)
         ]
         heading = [self.x_axis.heading, self.y_axis.heading, "spectral_radius"]
-        return _save(self, folder, heading, rows)
+        return {"lobes.csv": csv_of_rows([heading, *rows])}
 
     def save_grid(self, path: Path) -> Path:
         """Write grid.npz of a map over spindle speed [rpm] and axial depth [mm]."""
@@ -160,7 +153,7 @@ class StabilityMap:
 
 
 @dataclass(frozen=True)
-class StabilityDiagram:
+class StabilityDiagram(SavedResult):
     """Critical depth over an axis.
 
     Parameters
@@ -193,17 +186,20 @@ class StabilityDiagram:
         Spectral radius over spindle speed and depth.
     """
 
+    drawn_by: ClassVar[str] = "plots.stability_diagram.plot_limits"
+    picture: ClassVar[str] = "lobes.png"
+
     case: Case
     method: str
     axis: DiagramAxis
     limits: LimitCurve
-    max_depth: NDArray[np.float64]
+    max_depth: Array
     notes: tuple[str, ...] = ()
     reasons: tuple[str, ...] = ()
     zero_order: ZeroOrderLimit | None = None
     pockets: tuple[Pocket, ...] = ()
     operating: LimitCurve | None = None
-    natural_frequencies: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 0)))
+    natural_frequencies: Array = field(default_factory=lambda: np.empty((0, 0)))
     depth_step: float = math.nan
     grid: StabilityMap | None = None
 
@@ -297,10 +293,6 @@ class StabilityDiagram:
             lines.append(f"{name.replace('_', ' ')} {limit} mm, at {self.axis.name} = {value}")
         return lines
 
-    def plot(self) -> Figure:
-        """Return the diagram as a matplotlib figure."""
-        return presentation("plots.stability_diagram").plot_limits(self)
-
     def save(self, folder: str | Path) -> list[Path]:
         """Write lobes.csv, lobes.png, summary.json and, with a grid, grid.npz.
 
@@ -309,16 +301,20 @@ class StabilityDiagram:
         list of Path
             What was written.
         """
+        written = super().save(folder)
+        if self.grid is not None:
+            written.append(self.grid.save_grid(Path(folder) / "grid.npz"))
+        return written
+
+    def tables(self) -> dict[str, str]:
+        """Content of lobes.csv."""
         heading = [
             self.axis.heading, "critical_depth [mm]", "chatter_frequency [Hz]", "bifurcation",
         ]  # fmt: skip
         if not self.is_over_speed:
             heading += ["all_crossings [mm]", "max_axial_depth [mm]", "excluded"]
         rows = [self._row(index) for index in range(self.axis.values.size)]
-        written = _save(self, folder, heading, rows)
-        if self.grid is not None:
-            written.append(self.grid.save_grid(Path(folder) / "grid.npz"))
-        return written
+        return {"lobes.csv": csv_of_rows([heading, *rows])}
 
     def _row(self, index: int) -> list[str]:
         value = self.axis.values[index]
@@ -348,7 +344,7 @@ def _pocket_summary(pocket: Pocket) -> dict:
     }
 
 
-def _comparison(limits: NDArray[np.float64], other: NDArray[np.float64]) -> dict:
+def _comparison(limits: Array, other: Array) -> dict:
     """How far the zeroth-order limits lie from those of the main method."""
     both = np.isfinite(limits) & np.isfinite(other) & (limits > 0.0)
     if not both.any():
@@ -361,7 +357,7 @@ def _comparison(limits: NDArray[np.float64], other: NDArray[np.float64]) -> dict
     }
 
 
-def _zeros(y: NDArray[np.float64], growth_rate: NDArray[np.float64]) -> NDArray[np.float64]:
+def _zeros(y: Array, growth_rate: Array) -> Array:
     low, high = growth_rate[:-1], growth_rate[1:]
     k = np.flatnonzero(np.isfinite(low) & np.isfinite(high) & ((low >= 0.0) != (high >= 0.0)))
     return y[k] - low[k] * (y[k + 1] - y[k]) / (high[k] - low[k])
@@ -372,15 +368,3 @@ def _report_of(excluded: Mapping[str, str]) -> list[str]:
     lines = [f"excluded, {label}: {why}" for label, why in list(excluded.items())[:_MOST_REPORTED]]
     more = len(excluded) - len(lines)
     return [*lines, f"and {more} more values excluded"] if more else lines
-
-
-def _save(
-    diagram: StabilityDiagram | StabilityMap,
-    folder: str | Path,
-    heading: Sequence[str],
-    rows: Sequence[Sequence[str]],
-) -> list[Path]:
-    table = io.StringIO()
-    csv.writer(table, lineterminator="\n").writerows([heading, *rows])
-    texts = {"lobes.csv": table.getvalue(), "summary.json": as_json(diagram.summary())}
-    return write_results(folder, texts, {"lobes.png": diagram.plot()})

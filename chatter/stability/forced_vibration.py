@@ -12,8 +12,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, ComplexArray
 from chatter.description.units import rpm
 from chatter.stability.model import MillingModel
 from chatter.stability.stability_method import StabilityMethod
@@ -42,23 +42,23 @@ _REPORTED_LOSS, _LARGE_CHANGE = 0.08, 0.6
 class EdgePoints(NamedTuple):
     """Points of all edges down to a depth, each for a length of edge."""
 
-    angle: NDArray[np.float64]  # on the tool, rad (P,)
-    entry: NDArray[np.float64]  # rad (P,)
-    exit: NDArray[np.float64]  # rad (P,)
-    delay: NDArray[np.float64]  # angle since the pass that left the surface, rad (P,)
-    immersion: NDArray[np.float64]  # axial immersion angle, rad (P,)
-    length: NDArray[np.float64]  # m (P,)
-    feed: NDArray[np.float64]  # chip = feed sin(phi) - offset, m (P,)
-    offset: NDArray[np.float64]  # m (P,)
-    slope: NDArray[np.float64]  # at the reference chip: tangential, radial, axial, N/m^2 (P, 3)
+    angle: Array  # on the tool, rad (P,)
+    entry: Array  # rad (P,)
+    exit: Array  # rad (P,)
+    delay: Array  # angle since the pass that left the surface, rad (P,)
+    immersion: Array  # axial immersion angle, rad (P,)
+    length: Array  # m (P,)
+    feed: Array  # chip = feed sin(phi) - offset, m (P,)
+    offset: Array  # m (P,)
+    slope: Array  # at the reference chip: tangential, radial, axial, N/m^2 (P, 3)
 
 
 class RigidCut(NamedTuple):
     """Cut of a rigid tool at N samples of a period."""
 
-    force: NDArray[np.float64]  # on the tool, N (N, r)
-    coupling: NDArray[np.float64]  # of every delay, N/m (g, N, r, r)
-    delay: NDArray[np.float64]  # rad (g,)
+    force: Array  # on the tool, N (N, r)
+    coupling: Array  # of every delay, N/m (g, N, r, r)
+    delay: Array  # rad (g,)
 
 
 class ForcedVibration(NamedTuple):
@@ -158,13 +158,11 @@ def _edge_points(segments: EdgeSegments, depth: float) -> EdgePoints:
     return EdgePoints(*(table or [*[np.zeros(0)] * 8, np.zeros((0, 3))]))
 
 
-def _between(ends: NDArray[np.float64], share: float) -> float:
+def _between(ends: Array, share: float) -> float:
     return float(ends[0] + share * (ends[1] - ends[0]))
 
 
-def _directions(
-    points: EdgePoints, p: int, phi: NDArray[np.float64], basis: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _directions(points: EdgePoints, p: int, phi: Array, basis: Array) -> tuple[Array, Array]:
     """Force (3 laws, N, r) per tangential, radial, axial one, and chip per displacement (N, r)."""
     s, c = np.sin(phi), np.cos(phi)
     sk, ck = math.sin(points.immersion[p]), math.cos(points.immersion[p])
@@ -180,19 +178,20 @@ def _directions(
     return push @ basis, chip @ basis
 
 
-def _in_cut(points: EdgePoints, p: int, spindle: NDArray[np.float64]) -> tuple:
-    """Places among the samples at which a point may cut, and its angles there."""
+def _in_cut(points: EdgePoints, p: int, spindle: Array) -> tuple:
+    """Places among the samples at which a point cuts, its angles there, and the rigid chip."""
     phi = points.entry[p] + np.mod(spindle + points.angle[p] - points.entry[p], _REVOLUTION)
-    inside = np.flatnonzero(phi < points.exit[p])
-    return inside, phi[inside]
+    chip = points.feed[p] * np.sin(phi) - points.offset[p]
+    inside = np.flatnonzero((phi < points.exit[p]) & (chip > 0.0))
+    return inside, phi[inside], chip[inside]
 
 
 def _rigid_cut(
     points: EdgePoints,
     segments: EdgeSegments,
-    spindle: NDArray[np.float64],
-    edge: NDArray[np.float64],
-    basis: NDArray[np.float64],
+    spindle: Array,
+    edge: Array,
+    basis: Array,
     resolution: float,
 ) -> RigidCut:
     """Force and couplings, delays taken together to a resolution (rad)."""
@@ -204,9 +203,7 @@ def _rigid_cut(
     force = np.zeros((samples, rank))
     coupling = np.zeros((delays.size, samples, rank, rank))
     for p in range(points.angle.size):
-        inside, phi = _in_cut(points, p, spindle)
-        chip = points.feed[p] * np.sin(phi) - points.offset[p]
-        inside, phi, chip = inside[chip > 0.0], phi[chip > 0.0], chip[chip > 0.0]
+        inside, phi, chip = _in_cut(points, p, spindle)
         if not inside.size:
             continue
         size = np.maximum(chip / segments.reference, 1e-9) ** segments.exponent
@@ -218,7 +215,7 @@ def _rigid_cut(
     return RigidCut(force, coupling, delays)
 
 
-def _receptance(model: MillingModel, omega: NDArray[np.float64]) -> NDArray[np.complex128]:
+def _receptance(model: MillingModel, omega: Array) -> ComplexArray:
     """Receptance (k, r, r) at angular frequencies, negative ones too."""
     lines, values = model.receptance
     at = np.abs(omega) / _REVOLUTION
@@ -231,11 +228,8 @@ def _receptance(model: MillingModel, omega: NDArray[np.float64]) -> NDArray[np.c
 
 
 def _with_regeneration(
-    driven: NDArray[np.complex128],
-    receptance: NDArray[np.complex128],
-    rigid: RigidCut,
-    turn: NDArray[np.float64],
-) -> NDArray[np.complex128]:
+    driven: ComplexArray, receptance: ComplexArray, rigid: RigidCut, turn: Array
+) -> ComplexArray:
     """Motion (k, r) where the cut answers to it: force = rigid force - K (u - u delayed)."""
     count, rank = driven.shape
     samples = rigid.coupling.shape[1]
@@ -254,19 +248,13 @@ def _with_regeneration(
 
 
 def _vibration_of(
-    points: EdgePoints,
-    driven: NDArray[np.complex128],
-    turn: NDArray[np.float64],
-    spindle: NDArray[np.float64],
-    basis: NDArray[np.float64],
+    points: EdgePoints, driven: ComplexArray, turn: Array, spindle: Array, basis: Array
 ) -> ForcedVibration:
     wave = np.exp(1j * np.outer(spindle, turn))
     motion = (wave @ driven).real
     cut, loss_of_contact, largest, change = 0.0, 0.0, 0.0, 0.0
     for p in range(points.angle.size):
-        inside, phi = _in_cut(points, p, spindle)
-        chip = points.feed[p] * np.sin(phi) - points.offset[p]
-        inside, phi, chip = inside[chip > 0.0], phi[chip > 0.0], chip[chip > 0.0]
+        inside, phi, chip = _in_cut(points, p, spindle)
         if not inside.size:
             continue
         earlier = (wave[inside] @ (np.exp(-1j * turn * points.delay[p])[:, None] * driven)).real

@@ -155,17 +155,9 @@ def hessenberg_eigenvalues(h):
 
 @njit(**KERNEL)
 def hessenberg_vector(h, value):
-    """Eigenvector of a Hessenberg matrix for a known eigenvalue, by one inverse iteration.
+    """Eigenvector (n,) of unit norm of a Hessenberg matrix (n, n), by one inverse iteration.
 
-    Parameters
-    ----------
-    h : (n, n) array of float
-    value : complex
-
-    Returns
-    -------
-    (n,) array of complex
-        Of unit norm.
+    `value` is its known eigenvalue.
     """
     n = h.shape[0]
     a = np.empty((n, n), dtype=np.complex128)

@@ -6,48 +6,37 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from chatter.description.arrays import Array, IntegerArray
 
 #: bifurcations and chatter frequencies (Hz) at limits: (indices of speeds, depths)
-AtLimits = Callable[
-    [NDArray[np.int64], NDArray[np.float64]], tuple[Sequence[str], NDArray[np.float64]]
-]
+AtLimits = Callable[[IntegerArray, Array], tuple[Sequence[str], Array]]
 
 
 class LimitCurve(NamedTuple):
     """Limits of stability along depth at every spindle speed."""
 
-    spindle_speed: NDArray[np.float64]  # rad/s (n,)
-    critical_depth: NDArray[np.float64]  # m (n,), the first limit; inf where none was found
-    chatter_frequency: NDArray[np.float64]  # Hz (n,), nan where none was found
+    spindle_speed: Array  # rad/s (n,)
+    critical_depth: Array  # m (n,), the first limit; inf where none was found
+    chatter_frequency: Array  # Hz (n,), nan where none was found
     bifurcation: tuple[str, ...]  # "hopf", "flip" or "none" (n,)
-    crossings: tuple[NDArray[np.float64], ...]  # m, all: lost at even indices, regained at odd
-    steps: NDArray[np.int64]  # steps per tooth period (n,), 0 where the method has none
+    crossings: tuple[Array, ...]  # m, all: lost at even indices, regained at odd
+    steps: IntegerArray  # steps per tooth period (n,), 0 where the method has none
     error: float = np.nan  # estimated, of the critical depths, relative; nan where it was not
 
 
-def first_crossings(crossings: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
+def first_crossings(crossings: Sequence[Array]) -> Array:
     """First change of stability (n,) of each list, m; inf where there is none."""
     return np.array([found[0] if found.size else np.inf for found in crossings])
 
 
 def limits_at(
-    at_limits: AtLimits,
-    speeds: NDArray[np.float64],
-    crossings: Sequence[NDArray[np.float64]],
-    steps: NDArray[np.int64],
+    at_limits: AtLimits, speeds: Array, crossings: Sequence[Array], steps: IntegerArray
 ) -> LimitCurve:
     """First limit at every speed, with its chatter frequency and bifurcation.
 
-    Parameters
-    ----------
-    at_limits : callable
-    speeds : (n,) array of float
-        rad/s.
-    crossings : sequence of n arrays
-        m, all changes of stability at every speed.
-    steps : (n,) array of int
-        Resolution, as it is reported.
+    Speeds (n,) in rad/s; all changes of stability at each, m; `steps` (n,) is the resolution, as it
+    is reported.
     """
     first = first_crossings(crossings)
     found = np.flatnonzero(np.isfinite(first))
@@ -57,9 +46,7 @@ def limits_at(
     return LimitCurve(speeds, first, frequency, tuple(kind.tolist()), tuple(crossings), steps)
 
 
-def joined_limits(
-    speeds: NDArray[np.float64], parts: Sequence[tuple[NDArray[np.int64], LimitCurve]]
-) -> LimitCurve:
+def joined_limits(speeds: Array, parts: Sequence[tuple[IntegerArray, LimitCurve]]) -> LimitCurve:
     """Join curves of some of the speeds each, given by their indices."""
     if len(parts) == 1:
         return parts[0][1]

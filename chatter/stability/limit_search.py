@@ -7,21 +7,16 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, ComplexArray, IntegerArray
 from chatter.description.progress import Progress, no_progress
 from chatter.detection.bifurcation_type import bifurcation_of_multiplier
+from chatter.engine.parallel import each
 from chatter.stability.crossings import find_crossings, growth_rate_on_grid
 from chatter.stability.limit_curve import LimitCurve, limits_at
 
-#: multipliers at points: (indices of speeds, depths, progress) -> (n,) complex
-AtPoints = Callable[..., NDArray[np.complex128]]
-#: chatter frequencies (Hz) at points: (indices of speeds, depths) -> (n,)
-Frequencies = Callable[[NDArray[np.int64], NDArray[np.float64]], NDArray[np.float64]]
 #: multipliers and chatter frequencies (Hz) at points
-MultipliersAndFrequencies = Callable[
-    [NDArray[np.int64], NDArray[np.float64]], tuple[NDArray[np.complex128], NDArray[np.float64]]
-]
+MultipliersAndFrequencies = Callable[[IntegerArray, Array], tuple[ComplexArray, Array]]
 
 #: harmonics searched for the chatter frequency reach this far beyond the highest mode
 _HIGHEST = 2.0
@@ -30,36 +25,29 @@ _HIGHEST = 2.0
 class PointMethod(NamedTuple):
     """What the search needs of a method."""
 
-    plain: AtPoints  # screening of the grid
-    refined: AtPoints  # where it matters; the same function where there is but one
-    frequencies: Frequencies
+    #: (indices of speeds, depths, refinements, progress) -> multipliers (n,)
+    multipliers: Callable[..., ComplexArray]
+    refinements: tuple[int, ...]  # of the steps; the first alone is enough to screen the grid
+    frequency: Callable[[int, float], float]  # of chatter, Hz: (index of speed, depth)
 
 
-def growth_rate(values: NDArray[np.complex128]) -> NDArray[np.float64]:
+def growth_rate(values: ComplexArray) -> Array:
     """Logarithm of the spectral radius: positive is unstable."""
     return np.log(np.maximum(np.abs(values), 1e-30))
 
 
-def kinds_of(values: NDArray[np.complex128]) -> list[str]:
+def kinds_of(values: ComplexArray) -> list[str]:
     """Bifurcations of multipliers at limits."""
     return [bifurcation_of_multiplier(complex(value)) for value in values]
 
 
 def extrapolated(
-    coarse: NDArray[np.complex128],
-    fine: NDArray[np.complex128],
-    order: int,
-    largest_correction: float,
-) -> NDArray[np.complex128]:
-    """Multipliers from steps and steps of half the length (Richardson).
+    coarse: ComplexArray, fine: ComplexArray, order: int, largest_correction: float
+) -> ComplexArray:
+    """Multipliers (n,) from steps and steps of half the length (Richardson).
 
-    Parameters
-    ----------
-    coarse, fine : (n,) array of complex
-    order : int
-        Of the error that is removed.
-    largest_correction : float
-        Share beyond which two multipliers have changed places: then the fine one is taken.
+    The error of this order is removed. Beyond the share `largest_correction` two multipliers have
+    changed places: then the fine one is taken.
     """
     correction = (fine - coarse) / (2.0**order - 1.0)
     correction[np.abs(correction) > largest_correction * np.abs(fine)] = 0.0
@@ -70,10 +58,10 @@ def extrapolated(
 def frequency_of_motion(
     multiplier: complex,
     period: float,
-    time: NDArray[np.float64],
-    motion: NDArray[np.complex128],
-    weight: NDArray[np.float64],
-    natural_frequency: NDArray[np.float64],
+    time: Array,
+    motion: ComplexArray,
+    weight: Array,
+    natural_frequency: Array,
 ) -> float:
     """Frequency (Hz) at which a motion that belongs to a multiplier is largest.
 
@@ -121,9 +109,7 @@ class EvaluatedPoints:
         self._depth, self._frequency = np.empty(0), np.empty(0)
         self._value = np.empty(0, dtype=np.complex128)
 
-    def growth_rate(
-        self, point: NDArray[np.int64], depth: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def growth_rate(self, point: IntegerArray, depth: Array) -> Array:
         """Growth rate at points, which are remembered."""
         value, frequency = self._evaluate(point, depth)
         self._point, self._depth = np.append(self._point, point), np.append(self._depth, depth)
@@ -131,9 +117,7 @@ class EvaluatedPoints:
         self._frequency = np.append(self._frequency, frequency)
         return growth_rate(value)
 
-    def at_limits(
-        self, point: NDArray[np.int64], depth: NDArray[np.float64]
-    ) -> tuple[list[str], NDArray[np.float64]]:
+    def at_limits(self, point: IntegerArray, depth: Array) -> tuple[list[str], Array]:
         """Bifurcations and chatter frequencies next to points, one to a speed."""
         best = np.full(len(point), -1, dtype=np.int64)
         distance = self._NEAR * depth
@@ -155,40 +139,31 @@ class EvaluatedPoints:
 
 def limit_curve_by(
     method: PointMethod,
-    speeds: NDArray[np.float64],
-    depths: NDArray[np.float64],
-    steps: NDArray[np.int64],
+    speeds: Array,
+    depths: Array,
+    steps: IntegerArray,
     progress: Progress = no_progress,
 ) -> LimitCurve:
-    """Limits of stability at every spindle speed.
+    """Limits of stability at every spindle speed (n,), rad/s.
 
-    Parameters
-    ----------
-    method : PointMethod
-    speeds : (n,) array of float
-        rad/s.
-    depths : (m,) array of float
-        m, ascending, > 0: grid on which changes of stability are searched; an unstable or stable
-        interval that fits between two of its depths is not seen.
-    steps : (n,) array of int
-        Resolution, as it is reported.
-    progress : callable, optional
-        Called with (done, total) points of the grid.
+    Changes of stability are searched on a grid of depths (m,), m, ascending, > 0: an unstable or
+    stable interval that fits between two of them is not seen. `steps` (n,) is the resolution, as it
+    is reported; `progress` is called with (done, total) points of the grid.
     """
 
-    def plain(index: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
-        return growth_rate(method.plain(index, depth, progress))
+    def plain(index: IntegerArray, depth: Array) -> Array:
+        return growth_rate(method.multipliers(index, depth, method.refinements[:1], progress))
 
-    def refined(index: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
-        return growth_rate(method.refined(index, depth, no_progress))
+    def refined(index: IntegerArray, depth: Array) -> Array:
+        return growth_rate(method.multipliers(index, depth, method.refinements, no_progress))
 
-    def at_limits(
-        index: NDArray[np.int64], depth: NDArray[np.float64]
-    ) -> tuple[list[str], NDArray[np.float64]]:
-        values = method.refined(index, depth, no_progress)
-        return kinds_of(values), method.frequencies(index, depth)
+    def at_limits(index: IntegerArray, depth: Array) -> tuple[list[str], Array]:
+        values = method.multipliers(index, depth, method.refinements, no_progress)
+        at = list(zip(index.tolist(), depth.tolist(), strict=True))
+        frequency = each(lambda i: method.frequency(*at[i]), len(at), points_a_chunk=8)
+        return kinds_of(values), np.array(frequency)
 
-    same = method.refined is method.plain
+    same = len(method.refinements) == 1
     grid = growth_rate_on_grid(len(speeds), depths, plain, plain if same else refined)
     crossings = find_crossings(grid, depths, refined)
     return limits_at(at_limits, speeds, crossings, steps)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.progress import Progress, no_progress
 from chatter.description.units import rpm
@@ -20,8 +20,6 @@ from chatter.stability.reference_speeds import natural_frequencies
 from chatter.stability.registry import chosen_method, fixed_steps, with_radius
 from chatter.stability.search_range import axial_depths, maximum_depth, spindle_speeds
 from chatter.stability.stability_method import StabilityMethod
-
-Array = NDArray[np.float64]
 
 
 def lobes(

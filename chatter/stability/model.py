@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from chatter.compile.cutter import cutter_of, force_law, helix_angles, process_damping_of
 from chatter.compile.structure import Structure, depends_on_speed, structure_at, structure_of
+from chatter.description.arrays import Array, ComplexArray
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.plausibility import check_plausible
@@ -51,7 +51,7 @@ class MillingModel:
 
     case: Case  # that it was compiled from
     structure: Structure
-    basis: NDArray[np.float64]  # orthonormal columns that span the motion of the tool point (3, r)
+    basis: Array  # orthonormal columns that span the motion of the tool point (3, r)
     cutter: Cutter
     laws: tuple[ForceLaw, ...]  # one for each tooth
     flank: ProcessDampingLaw | None
@@ -73,13 +73,7 @@ class MillingModel:
         return depends_on_speed(self.case)
 
     def at_speed(self, spindle_speed: float) -> MillingModel:
-        """Return the model with the structure of a spindle speed (rad/s).
-
-        Raises
-        ------
-        InputError
-            If the structure moves in other directions there.
-        """
+        """The model at a spindle speed (rad/s); InputError if it moves otherwise there."""
         structure = structure_at(self.case, spindle_speed)
         basis = _motion_basis(structure.directions)
         if basis.shape != self.basis.shape or not np.allclose(basis, self.basis, atol=1e-9):
@@ -122,7 +116,7 @@ class MillingModel:
         return found._replace(mean=found.mean / depth)
 
     @property
-    def averaged_directional(self) -> NDArray[np.float64]:
+    def averaged_directional(self) -> Array:
         """Mean directional matrix over a revolution (r, r), N/m^2, of all delays together."""
         return self.averaged_coefficients.mean.sum(axis=0)
 
@@ -150,7 +144,7 @@ class MillingModel:
         return self.case.lobes.tolerance if self.case.lobes else LIMIT_ERROR
 
     @cached_property
-    def modal_arrays(self) -> tuple[NDArray[np.float64], ...]:
+    def modal_arrays(self) -> tuple[Array, ...]:
         """Natural frequency (n,), rad/s, damping ratio (n,), shape (n, r), force gain (n, r)."""
         modes = self.structure.modes
         shape = np.ascontiguousarray(np.array([mode.direction for mode in modes]) @ self.basis)
@@ -188,7 +182,7 @@ class MillingModel:
         return cut_arrays(self.modal_arrays, self.basis, segments, period, variation)
 
     @cached_property
-    def receptance(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+    def receptance(self) -> tuple[Array, ComplexArray]:
         """Lines (m,) in Hz and relative receptance (m, r, r) in the directions of motion, m/N.
 
         As measured, with no fit, where the case names FRFs; else that of the modes.
@@ -276,7 +270,7 @@ def _refuse_crossing_flutes(case: Case, cutter: Cutter) -> None:
         )
 
 
-def _motion_basis(directions: NDArray[np.float64]) -> NDArray[np.float64]:
+def _motion_basis(directions: Array) -> Array:
     """Orthonormal basis (3, r) of the directions (n, 3) in which the tool point can move."""
     moving = np.abs(directions).max(axis=0) > _RANK_TOLERANCE
     _, size, rows = np.linalg.svd(directions)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from chatter.description.arrays import Array
 
 #: part of the critical depth that is kept in hand
 DEPTH_MARGIN = 0.15
@@ -26,39 +27,19 @@ class Pocket(NamedTuple):
 
 
 def find_pockets(
-    speeds: NDArray[np.float64],
-    limits: NDArray[np.float64],
+    speeds: Array,
+    limits: Array,
     max_depth: float,
     removal_rate_per_depth_and_speed: float,
     most: int = 5,
 ) -> tuple[Pocket, ...]:
-    """Find the pockets with the highest removal rate.
+    """Find the pockets with the highest removal rate, the highest first, `most` of them.
 
-    Parameters
-    ----------
-    speeds : (n,) array of float
-        rad/s, ascending.
-    limits : (n,) array of float
-        Critical depth, m; inf where none was found.
-    max_depth : float
-        Depth to which was searched, m; no pocket is deeper.
-    removal_rate_per_depth_and_speed : float
-        Removal rate over depth and speed, m^2 (radial depth, teeth and feed per tooth in it).
-    most : int
-        Pockets returned at most.
-
-    Returns
-    -------
-    tuple of Pocket
-        Highest removal rate first.
+    Critical depths (n,), m, inf where none was found, at speeds (n,), rad/s, ascending; no pocket
+    is deeper than `max_depth`, m, to which was searched. The removal rate over depth and speed,
+    m^2, has radial depth, teeth and feed per tooth in it.
     """
-    bounded = np.minimum(limits, max_depth)
-    robust = np.array(
-        [
-            bounded[np.abs(speeds / speed - 1.0) <= SPEED_MARGIN * (1.0 + 1e-9)].min()
-            for speed in speeds
-        ]
-    )
+    robust = lowest_within_margin(speeds, np.minimum(limits, max_depth))
     indices = _local_maxima(robust)
     pockets = [
         Pocket(
@@ -72,7 +53,13 @@ def find_pockets(
     return tuple(sorted(pockets, key=lambda pocket: -pocket.removal_rate)[:most])
 
 
-def _local_maxima(values: NDArray[np.float64]) -> list[int]:
+def lowest_within_margin(speeds: Array, limits: Array) -> Array:
+    """Lowest limit (n,), m, within the speed margin on either side of every speed (rad/s)."""
+    near = np.abs(speeds / speeds[:, None] - 1.0) <= SPEED_MARGIN * (1.0 + 1e-9)
+    return np.where(near, limits, np.inf).min(axis=1)
+
+
+def _local_maxima(values: Array) -> list[int]:
     """Middle of every plateau that is higher than what surrounds it.
 
     At an end of the range a lone point does not count: what lies beyond is not known.

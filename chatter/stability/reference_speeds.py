@@ -10,24 +10,24 @@ from collections.abc import Callable
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from chatter.compile.structure import reference_speeds
+from chatter.description.arrays import Array, IntegerArray
 from chatter.description.progress import Progress, no_progress
-from chatter.engine.parallel import one_thread, sweep, worker_count
+from chatter.engine.parallel import each, one_thread, worker_count
 from chatter.stability.model import MillingModel
 
 Result = TypeVar("Result")
 #: called with the model of a group, the indices of its speeds, and its progress
-OfGroup = Callable[[MillingModel, NDArray[np.int64], Progress], Result]
+OfGroup = Callable[[MillingModel, IntegerArray, Progress], Result]
 
 #: below this many groups per thread, the threads work inside each group instead
 _GROUPS_PER_THREAD = 4
 
 
 def over_reference_speeds(
-    model: MillingModel, speeds: NDArray[np.float64], of_group: OfGroup, progress: Progress
-) -> list[tuple[NDArray[np.int64], Result]]:
+    model: MillingModel, speeds: Array, of_group: OfGroup, progress: Progress
+) -> list[tuple[IntegerArray, Result]]:
     """Indices and result of every group of speeds (rad/s) with the same structure."""
     if not model.depends_on_speed:
         index = np.arange(len(speeds))
@@ -42,18 +42,14 @@ def over_reference_speeds(
             progress(done, len(speeds))
         return list(zip(groups, found, strict=True))
 
-    def some(chunk: NDArray[np.int64]) -> list:
+    def at(group: int) -> Result:
         with one_thread():
-            return [
-                of_group(model.at_speed(float(reference[group])), groups[group], no_progress)
-                for group in chunk
-            ]
+            return of_group(model.at_speed(float(reference[group])), groups[group], no_progress)
 
-    found = [result for part in sweep(some, reference.size, progress, 1) for result in part]
-    return list(zip(groups, found, strict=True))
+    return list(zip(groups, each(at, reference.size, progress), strict=True))
 
 
-def natural_frequencies(model: MillingModel, speeds: NDArray[np.float64]) -> NDArray[np.float64]:
+def natural_frequencies(model: MillingModel, speeds: Array) -> Array:
     """Natural frequencies (k, n), Hz, of k modes at n speeds (rad/s).
 
     Of FRFs measured at several speeds those at the speed of the cut.

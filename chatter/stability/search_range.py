@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.stability.methods.zeroth_order.uniform_pitch import ZeroOrderLimit
 
@@ -23,7 +23,7 @@ _MAX_DEPTH_IN_LOWEST_LIMITS = 6.0
 _MAX_DEPTH_IN_OPERATING_DEPTHS = 4.0
 
 
-def spindle_speeds(case: Case) -> NDArray[np.float64]:
+def spindle_speeds(case: Case) -> Array:
     """Speeds of the diagram, rad/s: from the case, else around the operating speed."""
     wanted = case.lobes.speeds if case.lobes else None
     if wanted is not None:
@@ -46,14 +46,14 @@ def maximum_depth(case: Case, zero_order: ZeroOrderLimit) -> float:
     return max(candidates)
 
 
-def axial_depths(case: Case, max_depth: float) -> NDArray[np.float64]:
+def axial_depths(case: Case, max_depth: float) -> Array:
     """Depths of the grid and the grid, m, ascending, > 0."""
     wanted = case.lobes.depths if case.lobes else None
     count = wanted.count if wanted is not None else _DEPTH_COUNT
     return np.linspace(0.0, max_depth, count + 1)[1:]
 
 
-def depths_at_one_speed(case: Case, zero_order: ZeroOrderLimit) -> NDArray[np.float64]:
+def depths_at_one_speed(case: Case, zero_order: ZeroOrderLimit) -> Array:
     """Depths of the grid for the limit at the operating speed, m, beyond the operating depth."""
     max_depth = max(maximum_depth(case, zero_order), 1.02 * case.cut.axial_depth)
     spacing = min(

@@ -96,20 +96,9 @@ def _beside_true_ratio(variation, fit, speed, pattern, per_cycle):
 
 @njit(**KERNEL)
 def spindle_rotation_at(variation, fit, speed, pattern):
-    """Fit a whole number of variations into a whole number of tool periods.
+    """Fit a whole number of variations into a whole number of tool periods at a speed (rad/s).
 
-    Parameters
-    ----------
-    variation : SpeedVariation
-    fit : PeriodFit
-    speed : float
-        rad/s.
-    pattern : float
-        Angle after which the tool repeats itself, rad.
-
-    Returns
-    -------
-    SpindleRotation
+    `pattern` is the angle after which the tool repeats itself, rad.
     """
     if variation.amplitude == 0.0:
         return SpindleRotation(speed, 0.0, 1.0, 0, 1, 1)

@@ -10,16 +10,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, IntegerArray
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress
 from chatter.stability.limit_curve import LimitCurve, joined_limits
 
 if TYPE_CHECKING:
     from chatter.stability.model import MillingModel
-
-Array = NDArray[np.float64]
 
 
 class Multiplier(NamedTuple):
@@ -117,7 +115,7 @@ class StabilityMethod:
 
         self.check(model)
 
-        def limits(own: MillingModel, index: NDArray[np.int64], report: Progress) -> LimitCurve:
+        def limits(own: MillingModel, index: IntegerArray, report: Progress) -> LimitCurve:
             return self.limits_of(Sweep(own, speeds[index], depths, steps, report))
 
         return joined_limits(speeds, over_reference_speeds(model, speeds, limits, progress))
@@ -135,7 +133,7 @@ class StabilityMethod:
 
         self.check(model)
 
-        def radius(own: MillingModel, index: NDArray[np.int64], report: Progress) -> Array:
+        def radius(own: MillingModel, index: IntegerArray, report: Progress) -> Array:
             return self.radius_of(Sweep(own, speeds[index], depths[index], steps, report))
 
         found = np.empty(len(speeds))

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
-from chatter.engine.parallel import sweep
-from chatter.io.result_files import SavedResult, as_json, finite_or_none
+from chatter.engine.parallel import each
+from chatter.io.result_files import SavedResult, finite_or_none
 from chatter.simulation.perturbation.multiplier import periods_per_revolution
 from chatter.simulation.setup import set_up
 from chatter.simulation.simulate import run_setup
@@ -34,7 +34,7 @@ class BifurcationPoint:
     value: float  # of the path that varies, SI
     #: displacement when a tooth is at +y, m, over the last revolutions: every tooth of a uniform
     #: tool, else the first one; empty where the tool left the range of the model (k, 3)
-    poincare_section: NDArray[np.float64]
+    poincare_section: Array
     verdict: str  # "stable" or "chatter"
     bifurcation: str
     chatter_frequency: float  # Hz; nan where there is none
@@ -76,16 +76,13 @@ class BifurcationDiagram(SavedResult):
             ],
         }
 
-    def texts(self) -> dict[str, str]:
-        """Content of bifurcation.csv and summary.json."""
-        return {"bifurcation.csv": self._table(), "summary.json": as_json(self.summary())}
-
-    def _table(self) -> str:
+    def tables(self) -> dict[str, str]:
+        """Content of bifurcation.csv."""
         lines = [f"{self.path} [SI],x [um],y [um],z [um],verdict"]
         for point in self.points:
             for x, y, z in point.poincare_section * 1e6:
                 lines.append(f"{point.value:.9g},{x:.6g},{y:.6g},{z:.6g},{point.verdict}")
-        return "\n".join(lines) + "\n"
+        return {"bifurcation.csv": "\n".join(lines) + "\n"}
 
 
 def bifurcation(
@@ -122,12 +119,8 @@ def bifurcation(
     modes = None if on_machine or path.startswith("structure") else modes_of(case)[0]
     if modes == ():
         raise InputError(f"{case.name}: [structure] is missing; a rigid tool does not vibrate")
-
-    def at(points: NDArray[np.int64]) -> list[BifurcationPoint]:
-        return [_point(cases[i], path, modes) for i in points]
-
-    chunks = sweep(at, len(cases), progress, 1)
-    return BifurcationDiagram(case, path, tuple(point for chunk in chunks for point in chunk))
+    points = each(lambda i: _point(cases[i], path, modes), len(cases), progress)
+    return BifurcationDiagram(case, path, tuple(points))
 
 
 def _point(case: Case, path: str, modes: tuple[Mode, ...] | None) -> BifurcationPoint:

@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
-from chatter.engine.parallel import Executor, one_thread, sweep
+from chatter.engine.parallel import Executor, each, one_thread
 from chatter.io.result_files import finite_or_none
 from chatter.stability.diagram import DiagramAxis, StabilityDiagram, StabilityMap
 from chatter.stability.limit_curve import LimitCurve, first_crossings
 from chatter.stability.lobes import lobes as lobes_of
 from chatter.stability.lobes import map_over_speed
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
-from chatter.stability.model import milling_model
+from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.registry import METHODS, chosen_method, fixed_steps, with_radius
 from chatter.stability.search_range import (
     axial_depths,
@@ -29,7 +30,6 @@ from chatter.stability.search_range import (
     maximum_depth,
     spindle_speeds,
 )
-from chatter.studies.grid_blocks import radius_in_blocks
 from chatter.studies.model import fingerprint, patched
 from chatter.studies.parameter_axis import (
     DEPTH_PATH,
@@ -44,6 +44,8 @@ from chatter.studies.whatif.variation import Value, Variation
 
 #: values of a range that gives no count: of a curve, and of each side of a map
 _CURVE_COUNT, _MAP_COUNT = 60, 40
+#: speeds of a block of the grid that a worker of a cluster computes
+_SPEEDS_PER_BLOCK = 4
 #: notes of single points that are reported
 _MOST_NOTES = 3
 
@@ -90,8 +92,16 @@ def lobes(
     chosen = METHODS[diagram.method]
     speeds = spindle_speeds(case)
     depths = axial_depths(case, maximum_depth(case, diagram.zero_order))
-    radius = radius_in_blocks(case, speeds, depths, chosen.name, cluster, folder, progress)
-    computed = map_over_speed(case, chosen, speeds, depths, radius)
+    lines = []
+    for first in range(0, len(speeds), _SPEEDS_PER_BLOCK):
+        points = np.meshgrid(speeds[first : first + _SPEEDS_PER_BLOCK], depths)
+        lines.append(_Point(case, chosen.name, *(tuple(part.ravel().tolist()) for part in points)))
+    found = _kept(cluster, folder, progress, _radius_along, lines, "blocks of the grid")
+    for block in found:
+        if block["refused"]:
+            raise InputError(block["refused"])
+    blocks = [np.reshape(block["radius"], (len(depths), -1)) for block in found]
+    computed = map_over_speed(case, chosen, speeds, depths, np.concatenate(blocks, axis=1))
     return replace(diagram, grid=computed)
 
 
@@ -187,7 +197,7 @@ def _limits_over(case: Case, axis: Variation, method: str, each: Each) -> Stabil
     )
 
 
-def _column(found: Sequence[dict[str, Any]], key: str) -> NDArray[np.float64]:
+def _column(found: Sequence[dict[str, Any]], key: str) -> Array:
     return np.array([np.nan if one[key] is None else one[key] for one in found])
 
 
@@ -217,31 +227,19 @@ def _limit_at(point: _Point) -> dict[str, Any]:
 
 def _map_over(case: Case, x: Variation, y: Variation, method: str, each: Each) -> StabilityMap:
     inner = _inner(case, x, y)
-    columns, rows = range(len(x.values)), range(len(y.values))
-    if inner == "x":
-        groups = [(j, [(j, i) for i in columns]) for j in rows]
-    elif inner == "y":
-        groups = [(i, [(j, i) for j in rows]) for i in columns]
-    else:
-        groups = [(None, [(j, i)]) for j in rows for i in columns]
-    along = {"x": x, "y": y}.get(inner)
     # what the inner path makes of the case does not depend on the other one
-    own = [patched(case, value.patch).cut for value in along.values] if along else []
-    others = {"x": y, "y": x}.get(inner)
+    own = [patched(case, value.patch).cut for value in inner.values] if inner else []
+    outer = [axis for axis in (y, x) if axis is not inner]
     lines, labels = [], []
-    for _, indices in groups:
-        row, column = indices[0]
-        chosen = [(x, x.values[column]), (y, y.values[row])]
-        if others is not None:
-            chosen = [(axis, value) for axis, value in chosen if axis is others]
+    for values in itertools.product(*(axis.values for axis in outer)):
+        chosen = list(zip(outer, values, strict=True))[::-1]
         labels.append(" and ".join(f"{axis.path} = {value.label}" for axis, value in chosen))
-        lines.append(_line_along(_patched(case, chosen, labels[-1]), method, along, own))
+        lines.append(_line_along(_patched(case, chosen, labels[-1]), method, inner, own))
     found = each(_radius_along, lines, "columns")
     reasons = _reasons(found, case.name, labels)
-    radius = np.full((len(rows), len(columns)), np.nan)
-    for (_, indices), line, why in zip(groups, found, reasons, strict=True):
-        for (j, i), value in zip(indices, line["radius"], strict=not why):
-            radius[j, i] = value
+    unknown = [np.nan] * max(1, len(own))
+    radius = np.array([line["radius"] or unknown for line in found])
+    radius = radius.T if inner is y else radius.reshape(len(y.values), len(x.values))
     excluded = {label: why for label, why in zip(labels, reasons, strict=True) if why}
     notes = _notes(_notes_of(found, reasons))
     if not METHODS[method].gives_radius:
@@ -262,27 +260,30 @@ def _line_along(case: Case, method: str, along: Variation | None, own: list) -> 
     return _Point(case, method, tuple(speeds.tolist()), tuple(depths.tolist()))
 
 
+@lru_cache(maxsize=2)
+def _model_of(case: Case) -> MillingModel:
+    """Model of a case, kept: the blocks of a grid share it."""
+    return milling_model(case)
+
+
 def _radius_along(line: _Point) -> dict[str, Any]:
     """Spectral radius of a case at some speeds and depths, as JSON knows it, or why none."""
     chosen = with_radius(METHODS[line.method])
     points = np.array(line.speeds), np.array(line.depths)
     try:
-        model = milling_model(line.case)
+        model = _model_of(line.case)
         radius = chosen.radius(model, *points, fixed_steps(line.case), no_progress)
     except InputError as error:
         return {"radius": [], "notes": [], "refused": list(error.messages)}
     return {"radius": radius.tolist(), "notes": list(model.notes), "refused": []}
 
 
-def _inner(case: Case, x: Variation, y: Variation) -> str:
-    """Axis along which one compiled case serves all points; "" where neither is so."""
+def _inner(case: Case, x: Variation, y: Variation) -> Variation | None:
+    """Axis along which one compiled case serves all points; None where neither is so."""
     on_machine = case.structure is not None and case.structure.machine is not None
     # a machine is linearised at the speed of the case
-    for path in (DEPTH_PATH, *(() if on_machine else (SPEED_PATH,))):
-        for name, axis in (("x", x), ("y", y)):
-            if axis.path == path:
-                return name
-    return ""
+    paths = (DEPTH_PATH,) if on_machine else (DEPTH_PATH, SPEED_PATH)
+    return next((axis for path in paths for axis in (x, y) if axis.path == path), None)
 
 
 def _patched(case: Case, chosen: Sequence[tuple[Variation, Value]], label: str) -> Case:
@@ -302,11 +303,11 @@ def _each(
 ) -> list[dict[str, Any]]:
     """Records of all points, in threads; each is computed in one."""
 
-    def at(indices: NDArray[np.int64]) -> list[dict[str, Any]]:
+    def at(index: int) -> dict[str, Any]:
         with one_thread():
-            return [function(points[index]) for index in indices]
+            return function(points[index])
 
-    return [record for chunk in sweep(at, len(points), progress, 1) for record in chunk]
+    return each(at, len(points), progress)
 
 
 def _kept(
@@ -318,9 +319,10 @@ def _kept(
     noun: str,
 ) -> list[dict[str, Any]]:
     """Records of all points on a cluster, kept as they come."""
+    of_case = {case: fingerprint(case) for case in {one.case for one in points}}
     with ResultCache(folder, function.__name__) as cache:
         keys = [
-            cache.key(fingerprint(one.case), repr((one.method, one.speeds, one.depths)))
+            cache.key(of_case[one.case], repr((one.method, one.speeds, one.depths)))
             for one in points
         ]
         return cache.evaluate(function, points, keys, noun, cluster=cluster, progress=progress)

@@ -64,7 +64,8 @@ class DaskExecutor:
         ended = as_completed()
         try:
             while waiting or places:
-                wanted = _TASKS_PER_WORKER * max(1, self._workers())
+                workers = sum(self._client.nthreads().values())
+                wanted = _TASKS_PER_WORKER * max(1, workers)
                 while waiting and len(places) < wanted:
                     size = task_size.items_per_task(len(waiting), wanted)
                     mine = [waiting.pop() for _ in range(size)]
@@ -77,15 +78,13 @@ class DaskExecutor:
                 task_size.add(len(mine), seconds)
                 yield from zip(mine, found, strict=True)
         except (CancelledError, OSError) as error:
-            raise _cluster_lost(error) from None
+            lost = f"the cluster is lost ({type(error).__name__}); what was finished is kept"
+            raise RunError(lost) from None
         finally:
             # a client that is closed has taken its tasks along
             if places and self._client.status == "running":
                 with suppress(OSError):
                     self._client.cancel(list(places))
-
-    def _workers(self) -> int:
-        return sum(self._client.nthreads().values())
 
     def _submit(self, function: Callable, items: list) -> Any:
         # each task is new: a result of the same name may be that of another version
@@ -147,10 +146,6 @@ def _result_of(future: Any) -> tuple[list, float]:
     if problems:
         raise InputError(problems)
     return found, seconds
-
-
-def _cluster_lost(error: BaseException) -> RunError:
-    return RunError(f"the cluster is lost ({type(error).__name__}); what was finished is kept")
 
 
 @contextmanager

@@ -15,6 +15,7 @@ from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, write_results
 from dynamics.frf.container import Frf, MeasurementError
 from dynamics.frf.hammer.averaging import HammerTest, hammer_test
+from dynamics.frf.hammer.record import Finding
 from dynamics.identification.fit import identify_modes
 from dynamics.identification.result import IdentifiedMode, ModalFit
 from dynamics.modal.modes import Side
@@ -110,15 +111,13 @@ def _records_summary(hammer: HammerTest | None) -> dict:
         return {"used": [], "excluded": [], "remarks": []}
     return {
         "used": list(hammer.used),
-        "excluded": [
-            {"record": finding.record, "fault": finding.fault, "reason": finding.reason}
-            for finding in hammer.excluded
-        ],
-        "remarks": [
-            {"record": finding.record, "fault": finding.fault, "reason": finding.reason}
-            for finding in hammer.remarks
-        ],
+        "excluded": [_finding(finding) for finding in hammer.excluded],
+        "remarks": [_finding(finding) for finding in hammer.remarks],
     }
+
+
+def _finding(finding: Finding) -> dict:
+    return {"record": finding.record, "fault": finding.fault, "reason": finding.reason}
 
 
 def _mode_table(mode: IdentifiedMode, side: Side) -> str:

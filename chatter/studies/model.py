@@ -29,13 +29,7 @@ _OF_MACHINES = ("body", "beam", "imported", "connector")
 
 
 def load_model(path: str | Path) -> Model:
-    """Read a case or a machine file, whichever it is.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read or describes neither.
-    """
+    """Read a case or a machine file, whichever it is; InputError if the file describes neither."""
     path = Path(path)
     document = parse_document(read_text(path), str(path))
     if any(key in document for key in _OF_MACHINES):
@@ -54,13 +48,7 @@ def machine_of(model: Model) -> MachineFile | None:
 
 
 def patched(model: AnyModel, values: Mapping[str, Any]) -> AnyModel:
-    """Return a model with some values changed.
-
-    Parameters
-    ----------
-    model : Case or MachineFile
-    values : mapping
-        Path -> value as for `Case.patch`.
+    """Return a model with some values changed: path -> value as for `Case.patch`.
 
     Raises
     ------
@@ -82,13 +70,7 @@ def patched(model: AnyModel, values: Mapping[str, Any]) -> AnyModel:
 
 
 def value_of(model: Model, path: str) -> Any:
-    """Value at a path, in SI; None where the model has none.
-
-    Raises
-    ------
-    InputError
-        If the path leads into a machine and there is none.
-    """
+    """Value at a path, in SI; None where the model has none, InputError if there is no machine."""
     where, inside = _into(model, path)
     try:
         return where.get(inside)

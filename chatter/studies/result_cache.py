@@ -136,14 +136,7 @@ class ResultCache:
     def record(self, name: str, inputs: object, compute: Callable[[], Any]) -> Any:
         """Record of a part of a search, computed where it is not known yet; for threads too.
 
-        Parameters
-        ----------
-        name : str
-            Kind of the part.
-        inputs : object
-            What it depends on besides; `repr` distinguishes it from others.
-        compute : callable
-            Returns the record.
+        `name` and the `repr` of `inputs` tell it from other parts.
         """
         key = self.key(name, repr(inputs))
         self._requested.add(key)

@@ -11,7 +11,7 @@ from chatter.io.files import read_lines
 from chatter.io.formats.format import Format
 from chatter.io.formats.frf_columns import frfs_of_table
 from chatter.io.table import Column, Table, is_number
-from dynamics.frf.container import Frf, MeasurementError
+from dynamics.frf.container import MeasurementError
 
 _COMMENT = ("#", "%", "//", "!")
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+(,\d+)?([eE][+-]?\d+)?")
@@ -64,10 +64,6 @@ def read_table(path: Path) -> Table:
         numbers.append(index + 1)
     columns = zip(headings, zip(*rows, strict=True), strict=True)
     return Table(path, tuple(Column(heading, cells) for heading, cells in columns), numbers)
-
-
-def _read_frfs(path: Path) -> list[Frf]:
-    return frfs_of_table(read_table(path))
 
 
 def _is_comment(line: str) -> bool:
@@ -161,6 +157,6 @@ CSV = Format(
     help="name and unit of every column in the heading; comma, semicolon, tab or spaces between "
     "columns; with any of the last three also decimal commas",
     extensions=(".csv", ".txt", ".tsv", ".dat", ".asc"),
-    read_frfs=_read_frfs,
+    read_frfs=lambda path: frfs_of_table(read_table(path)),
     read_signals=read_table,
 )

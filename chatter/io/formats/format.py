@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, get_args
 
-import numpy as np
 import scipy.sparse
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.io.table import Table
 from dynamics.frf.container import Frf
 
@@ -48,7 +47,7 @@ class Format:
     extensions: tuple[str, ...]
     read_frfs: Callable[[Path], list[Frf]] | None = None
     read_signals: Callable[[Path], Table] | None = None
-    read_matrix: Callable[[Path], NDArray[np.float64] | scipy.sparse.sparray] | None = None
+    read_matrix: Callable[[Path], Array | scipy.sparse.sparray] | None = None
     recognises: Callable[[bytes], bool] = lambda head: False  # noqa: ARG005
 
     @property

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, ComplexArray
 from chatter.io.formats.units import channel_unit, frf_unit
 from chatter.io.table import Column, Table
 from dynamics.frf.container import Frf, MeasurementError, Point, Quantity
@@ -79,7 +79,7 @@ def frfs_of_table(table: Table) -> list[Frf]:
     ]
 
 
-def _frequency_axis(path: Path, table: Table) -> NDArray[np.float64]:
+def _frequency_axis(path: Path, table: Table) -> Array:
     column = table.columns[0]
     if not column.unit:
         raise MeasurementError(f"{path}: column {column.name!r} has no unit; write {_EXAMPLE}")
@@ -146,7 +146,7 @@ def _grouped(path: Path, columns: Sequence[Column]) -> tuple[dict[str, _Parts], 
     return groups, coherences
 
 
-def _frf(path: Path, table: Table, frequency: NDArray[np.float64], group: _Parts) -> Frf:
+def _frf(path: Path, table: Table, frequency: Array, group: _Parts) -> Frf:
     if set(group.columns) == {"real", "imaginary"}:
         values, quantity = _cartesian(path, table, group)
     elif set(group.columns) == {"magnitude", "phase"}:
@@ -170,7 +170,7 @@ def _scaled(path: Path, name: str, unit: str) -> tuple[Quantity, float]:
     return _named(path, name, unit, frf_unit)
 
 
-def _cartesian(path: Path, table: Table, group: _Parts) -> tuple[NDArray[np.complex128], Quantity]:
+def _cartesian(path: Path, table: Table, group: _Parts) -> tuple[ComplexArray, Quantity]:
     (real_index, real), (imaginary_index, imaginary) = (
         group.columns["real"],
         group.columns["imaginary"],
@@ -190,7 +190,7 @@ def _cartesian(path: Path, table: Table, group: _Parts) -> tuple[NDArray[np.comp
     return values, quantity
 
 
-def _polar(path: Path, table: Table, group: _Parts) -> tuple[NDArray[np.complex128], Quantity]:
+def _polar(path: Path, table: Table, group: _Parts) -> tuple[ComplexArray, Quantity]:
     (magnitude_index, magnitude), (phase_index, phase) = (
         group.columns["magnitude"],
         group.columns["phase"],

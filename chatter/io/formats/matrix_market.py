@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
 import scipy.io
 import scipy.sparse
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.io.formats.format import Format
 from dynamics.frf.container import MeasurementError
 
@@ -23,7 +22,7 @@ def require_square(path: Path, shape: tuple[int, ...]) -> None:
         raise MeasurementError(f"{path}: is {size}; it must be square, 1 to {MOST_ROWS} rows")
 
 
-def read_matrix(path: Path) -> NDArray[np.float64] | scipy.sparse.sparray:
+def read_matrix(path: Path) -> Array | scipy.sparse.sparray:
     """Real or integer matrix, general or symmetric.
 
     Raises

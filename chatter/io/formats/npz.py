@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import scipy.sparse
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.io.formats.format import Format
 from chatter.io.formats.frf_columns import frfs_of_table
 from chatter.io.formats.matrix_market import require_square
-from chatter.io.table import Column, Table
-from dynamics.frf.container import Frf, MeasurementError
+from chatter.io.table import Column, Table, table_of
+from dynamics.frf.container import MeasurementError
 
 
 def read_columns(path: Path) -> Table:
@@ -42,17 +42,10 @@ def read_columns(path: Path) -> Table:
             columns += [Column(f"real {unit}", array.real), Column(f"imag {unit}", array.imag)]
         else:
             columns.append(Column(name, array))
-    lengths = {column.heading: len(column.cells) for column in columns}
-    if len(set(lengths.values())) != 1:
-        raise MeasurementError(f"{path}: the columns differ in length or there are none: {lengths}")
-    return Table(path, tuple(columns))
+    return table_of(path, columns, "columns")
 
 
-def _read_frfs(path: Path) -> list[Frf]:
-    return frfs_of_table(read_columns(path))
-
-
-def read_matrix(path: Path) -> NDArray[np.float64] | scipy.sparse.sparray:
+def read_matrix(path: Path) -> Array | scipy.sparse.sparray:
     """Matrix of `scipy.sparse.save_npz`, or the one plain array of an archive."""
     with path.open("rb") as file, zipfile.ZipFile(file) as archive:
         names = [Path(name).stem for name in archive.namelist()]
@@ -76,7 +69,7 @@ NPZ = Format(
     help='arrays by name and unit, such as "time [s]"; FRFs may be complex; matrices by '
     "`scipy.sparse.save_npz`, or one plain array",
     extensions=(".npz",),
-    read_frfs=_read_frfs,
+    read_frfs=lambda path: frfs_of_table(read_columns(path)),
     read_signals=read_columns,
     read_matrix=read_matrix,
 )

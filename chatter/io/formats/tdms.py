@@ -8,8 +8,8 @@ import numpy as np
 
 from chatter.io.formats.format import Format
 from chatter.io.formats.frf_columns import frfs_of_table
-from chatter.io.table import Column, Table
-from dynamics.frf.container import Frf, MeasurementError
+from chatter.io.table import Column, Table, table_of
+from dynamics.frf.container import MeasurementError
 
 
 def read_channels(path: Path) -> Table:
@@ -40,16 +40,7 @@ def read_channels(path: Path) -> Table:
     has_time = any(column.name.lower() in ("time", "t") for column in columns)
     if clock is not None and not has_time:
         columns.insert(0, Column("time [s]", clock))
-    lengths = {column.heading: len(column.cells) for column in columns}
-    if len(set(lengths.values())) != 1:
-        raise MeasurementError(
-            f"{path}: the channels differ in length or there are none: {lengths}"
-        )
-    return Table(path, tuple(columns))
-
-
-def _read_frfs(path: Path) -> list[Frf]:
-    return frfs_of_table(read_channels(path))
+    return table_of(path, columns, "channels")
 
 
 TDMS = Format(
@@ -57,6 +48,6 @@ TDMS = Format(
     label="TDMS of LabVIEW",
     help='channels with the property unit_string; needs "chatter[formats]"',
     extensions=(".tdms",),
-    read_frfs=_read_frfs,
+    read_frfs=lambda path: frfs_of_table(read_channels(path)),
     read_signals=read_channels,
 )

@@ -15,8 +15,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, ComplexArray
 from chatter.io.formats.format import Format
 from chatter.io.formats.units import Channel, channel_unit, frf_unit
 from chatter.io.formats.universal import (
@@ -96,7 +96,7 @@ class _Function:
     units: FileUnits
     where: str
 
-    def values(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+    def values(self) -> tuple[Array, ComplexArray]:
         """Abscissa and ordinate, as stored."""
         return _values(self.dataset, self.heading, self.first_byte, self.where)
 
@@ -146,7 +146,7 @@ def read_frfs(path: Path) -> list[Frf]:
     Layout: SDRC universal dataset 58, "Function at Nodal DOF", and its binary form 58b by UC-SDRL.
     """
     frfs: list[Frf] = []
-    coherences: list[tuple[Heading, NDArray[np.float64]]] = []
+    coherences: list[tuple[Heading, Array]] = []
     held: Counter[str] = Counter()
     for function in _functions(path, held):
         heading = function.heading
@@ -253,7 +253,7 @@ def _axis(line: str) -> Axis:
 
 def _values(
     dataset: Dataset, heading: Heading, first_byte: int, where: str
-) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+) -> tuple[Array, ComplexArray]:
     """Abscissa and ordinate of a function, as stored."""
     if heading.ordinate_type not in _ORDINATE:
         raise MeasurementError(
@@ -277,7 +277,7 @@ def _values(
     return abscissa, table[:, 0] + 1j * imaginary
 
 
-def _text_table(payload: bytes, heading: Heading, columns: int, where: str) -> NDArray[np.float64]:
+def _text_table(payload: bytes, heading: Heading, columns: int, where: str) -> Array:
     words = payload.decode("latin-1").replace("D", "E").split()
     if len(words) != heading.count * columns:
         raise MeasurementError(
@@ -291,7 +291,7 @@ def _text_table(payload: bytes, heading: Heading, columns: int, where: str) -> N
 
 def _binary_table(
     dataset: Dataset, payload: bytes, heading: Heading, columns: int, where: str
-) -> NDArray[np.float64]:
+) -> Array:
     """Numbers of a dataset 58b.
 
     The abscissa is single precision by the standard, but some writers store all in double: the
@@ -387,7 +387,7 @@ def _point(node_and_direction: tuple[int, int]) -> Point:
     )
 
 
-def _with_coherence(frf: Frf, coherences: list[tuple[Heading, NDArray[np.float64]]]) -> Frf:
+def _with_coherence(frf: Frf, coherences: list[tuple[Heading, Array]]) -> Frf:
     for heading, values in coherences:
         points = (_point(heading.response), _point(heading.reference))
         if points == (frf.response, frf.reference) and values.shape == frf.frequency.shape:

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
+from pydantic import TypeAdapter
 
 from chatter.stability.model import MillingModel
 from chatter.studies.optimisation.limits import Limits
@@ -81,15 +82,7 @@ class Candidate:
     @classmethod
     def from_record(cls, record: dict[str, Any]) -> Candidate:
         """Read what `record` returned."""
-        known, checked = record["probability"], record["verification"]
-        values = {
-            **record,
-            "point": OperatingPoint(*record["point"]),
-            "active": tuple(record["active"]),
-            "probability": known and Probability(**{**known, "interval": tuple(known["interval"])}),
-            "verification": checked and Verification(**checked),
-        }
-        return cls(**values)
+        return TypeAdapter(cls).validate_python(record)
 
 
 def max_usage(candidate: Candidate) -> float:

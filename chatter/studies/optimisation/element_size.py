@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from chatter.stability.methods.collocation import multipliers as collocation
+from chatter.description.arrays import Array
 from chatter.stability.methods.collocation.element_cut import RESOLUTION, element_cut
+from chatter.stability.methods.collocation.multipliers import growth_rate_at
 from chatter.stability.model import MillingModel
-
-Array = NDArray[np.float64]
 
 #: chatter wavelengths in an element that are tried, the most first
 _TRIED = (6.0, 4.0, 3.0, 2.0, 1.4)
@@ -20,7 +18,6 @@ _TRIED = (6.0, 4.0, 3.0, 2.0, 1.4)
 _ERROR = 2e-5
 #: speeds and depths at which it is compared
 _SPEEDS, _DEPTHS = 6, 5
-_SMALLEST = 1e-30
 
 
 def max_wavelengths(model: MillingModel, speeds: Array, depths: Array) -> float:
@@ -28,13 +25,7 @@ def max_wavelengths(model: MillingModel, speeds: Array, depths: Array) -> float:
 
     The elements for every day resolve the fastest mode. Where slower ones decide, as on a machine
     whose highest modes hardly take part, far longer elements give the same; that is evaluated, at
-    points spread over all speeds and depths.
-
-    Parameters
-    ----------
-    model : MillingModel
-    speeds, depths : (n,), (m,) arrays of float
-        rad/s, m, ascending.
+    points spread over all speeds (rad/s) and depths (m), ascending.
     """
     speed, depth = (
         part.ravel()
@@ -46,8 +37,7 @@ def max_wavelengths(model: MillingModel, speeds: Array, depths: Array) -> float:
 
     def growth_rate(wavelengths: float) -> Array:
         cut = element_cut(model, float(depths[-1]), wavelengths=wavelengths)
-        found = np.abs(collocation.multipliers(cut, speed, depth))
-        return np.log(np.maximum(found, _SMALLEST))
+        return growth_rate_at(cut, speed, depth)
 
     known = growth_rate(RESOLUTION[1])
     for wavelengths in _TRIED:

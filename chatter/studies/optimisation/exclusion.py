@@ -7,13 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from chatter.studies.optimisation.limits import LIMITED
 from chatter.studies.optimisation.speed_depth_slice import STABILITY, SpeedDepthSlice
 
+#: quantity that is limited -> factor from SI, and unit
 _UNIT = {
-    "max_power": ("power", 1e-3, "kW"),
-    "max_torque": ("torque", 1.0, "N m"),
-    "max_deflection": ("deflection", 1e6, "um"),
-    "max_surface_error": ("surface_error", 1e6, "um"),
+    "power": (1e-3, "kW"),
+    "torque": (1.0, "N m"),
+    "deflection": (1e6, "um"),
+    "surface_error": (1e6, "um"),
 }
 
 
@@ -57,8 +59,9 @@ def _all_but(held: dict[str, np.ndarray], name: str) -> np.ndarray:
 def _smallest(grid_slices: Sequence[SpeedDepthSlice], name: str) -> str:
     if name == STABILITY:
         return ""
-    field, factor, unit = _UNIT[name]
-    values = np.stack([np.abs(getattr(grid_slice.cuts, field)) for grid_slice in grid_slices])
+    factor, unit = _UNIT[LIMITED[name]]
+    found = [np.abs(getattr(grid_slice.cuts, LIMITED[name])) for grid_slice in grid_slices]
+    values = np.stack(found)
     known = values[np.isfinite(values)]
     return f"{known.min() * factor:.4g} {unit}" if known.size else ""
 

@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.description.progress import Progress, no_progress
 from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import MillingModel
@@ -20,10 +20,8 @@ from chatter.studies.optimisation.speed_depth_slice import (
     slice_with,
     with_margins,
 )
-from chatter.studies.optimisation.stable_depths import StableDepths, stable_depths
+from chatter.studies.optimisation.stable_depths import stable_depths
 from chatter.studies.optimisation.steady_cut import SteadyModel
-
-Array = NDArray[np.float64]
 
 #: points that are refined, further apart than this share in speed, or this part of the range of
 #: radial depths
@@ -42,23 +40,17 @@ _STABILITY_STEP = 0.03
 def slices_at_radial_depth(
     model: MillingModel, limits: Limits, radial_depth: float, progress: Progress = no_progress
 ) -> list[SpeedDepthSlice]:
-    """Slices of the coarse grid at one radial depth and every feed.
+    """Slices of the coarse grid at one radial depth (m) and every feed.
 
-    Parameters
-    ----------
-    model : MillingModel
-    limits : Limits
-    radial_depth : float
-        m.
-    progress : callable, optional
-        Called with (done, total) speeds of all feeds.
+    `progress` is called with (done, total) speeds of all feeds.
     """
     evaluation_speeds, feeds = limits.extended_speeds(), limits.feeds
     grid_slices: list[SpeedDepthSlice] = []
     for number, feed in enumerate(feeds):
         here = model_with(model, radial_depth, float(feed))
         if grid_slices and not _feed_matters(here):
-            grid_slices.append(_same_stability(here, limits, grid_slices[0].stable))
+            stable = grid_slices[0].stable
+            grid_slices.append(slice_with(here, limits, limits.speeds, limits.depths, stable))
         else:
             report = _part(progress, number, feeds.size)
             grid_slices.append(
@@ -67,10 +59,6 @@ def slices_at_radial_depth(
                 )
             )
     return grid_slices
-
-
-def _same_stability(model: MillingModel, limits: Limits, stable: StableDepths) -> SpeedDepthSlice:
-    return slice_with(model, limits, limits.speeds, limits.depths, stable)
 
 
 def _part(progress: Progress, number: int, parts: int) -> Progress:
@@ -158,9 +146,8 @@ def _better(
     if promising.size == 0:
         return best
     # limits are found between the depths of a grid: fine steps need not be evaluated one by one
-    coarser = np.linspace(
-        promising[0], promising[-1], min(promising.size, _steps_in(promising) + 1)
-    )
+    steps = math.ceil(float(np.ptp(promising)) / (_STABILITY_STEP * float(promising[-1])))
+    coarser = np.linspace(promising[0], promising[-1], min(promising.size, steps + 1))
     grid = with_margins(coarser, limits.depth_margin)
     stable = stable_depths(
         element_cut(here, float(grid[-1]), wavelengths=limits.wavelengths),
@@ -169,10 +156,6 @@ def _better(
     )
     found = best_of(slice_with(here, limits, speeds, promising, stable))
     return found if found is not None and found.removal_rate > best.removal_rate else best
-
-
-def _steps_in(depths: Array) -> int:
-    return math.ceil(float(np.ptp(depths)) / (_STABILITY_STEP * float(depths[-1])))
 
 
 def _promising_depths(

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.sections.optimisation import Feeds, Optimum, RadialDepths
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
@@ -20,14 +20,9 @@ from chatter.studies.optimisation.element_size import extreme_models, max_wavele
 from chatter.studies.optimisation.operating_point import model_with
 from chatter.studies.optimisation.steady_cut import SteadyCuts
 
-Array = NDArray[np.float64]
-
 #: key of [optimum] -> what of a steady cut it limits
 LIMITED: Mapping[str, str] = {
-    "max_power": "power",
-    "max_torque": "torque",
-    "max_deflection": "deflection",
-    "max_surface_error": "surface_error",
+    f"max_{quantity}": quantity for quantity in ("power", "torque", "deflection", "surface_error")
 }
 _DEPTHS = 60
 #: depths below the first of an even grid, each half of the one above
@@ -76,13 +71,8 @@ class Limits:
 def limits_of(case: Case, model: MillingModel, sampled: Sequence[MillingModel] = ()) -> Limits:
     """Ranges and limits that a case gives, completed where it is silent.
 
-    Parameters
-    ----------
-    case : Case
-    model : MillingModel
-        Of the case as it is.
-    sampled : sequence of MillingModel, optional
-        Of the samples of what is uncertain: elements are as short as these need them too.
+    `sampled` are models of the samples of what is uncertain: elements are as short as these need
+    them.
     """
     section = case.optimum or Optimum()
     uncertain = bool(standard_deviations(case))

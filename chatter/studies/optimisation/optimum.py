@@ -2,27 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
 from chatter.description.case import Case
 from chatter.description.units import rpm
-from chatter.io.result_files import SavedResult, as_json, csv_text, finite_or_none
+from chatter.io.result_files import SavedResult, csv_text, finite_or_none
 from chatter.studies.optimisation.candidate import Candidate
 from chatter.studies.optimisation.exclusion import Exclusion, why_nothing
-from chatter.studies.optimisation.limits import Limits
+from chatter.studies.optimisation.limits import LIMITED, Limits
 from chatter.studies.optimisation.operating_point import OperatingPoint, case_at
 from chatter.studies.optimisation.speed_depth_slice import SpeedDepthSlice
 
 #: m^3/s in cm^3/min
 _PER_MINUTE = 6e7
-#: limit -> name of what it limits in a summary, and factor from SI
-_QUANTILE = {
-    "max_power": ("power_W", 1.0),
-    "max_torque": ("torque_Nm", 1.0),
-    "max_deflection": ("deflection_um", 1e6),
-    "max_surface_error": ("surface_error_um", 1e6),
+#: quantity that is limited -> its name in a summary, and factor from SI
+_REPORTED = {
+    "power": ("power_W", 1.0),
+    "torque": ("torque_Nm", 1.0),
+    "deflection": ("deflection_um", 1e6),
+    "surface_error": ("surface_error_um", 1e6),
 }
 
 
@@ -142,10 +143,6 @@ class Optimum(SavedResult):
         lines.append(f"limited by {limited}")
         return lines
 
-    def texts(self) -> dict[str, str]:
-        """Content of optimum.csv and summary.json."""
-        return {"optimum.csv": self._table(), "summary.json": as_json(self.summary())}
-
     def save(self, folder: str | Path) -> list[Path]:
         """Write optimum.csv, summary.json, optimum.png and, of an optimum, case-optimum.toml."""
         written, path = super().save(folder), Path(folder) / "case-optimum.toml"
@@ -156,14 +153,15 @@ class Optimum(SavedResult):
         path.unlink(missing_ok=True)
         return written
 
-    def _table(self) -> str:
+    def tables(self) -> dict[str, str]:
+        """Content of optimum.csv."""
         found = self.candidates
         points = [one.point for one in found]
         known = [one.probability for one in found]
         checks = [one.verification for one in found]
         rates = [one.removal_rate * _PER_MINUTE for one in found]
         active = [" ".join(name.replace(" ", "-") for name in one.active) for one in found]
-        return csv_text(
+        table = csv_text(
             {
                 "rank": (range(1, len(found) + 1), "d"),
                 "spindle_speed [rpm]": ([rpm(one.spindle_speed) for one in points], ".8g"),
@@ -183,6 +181,7 @@ class Optimum(SavedResult):
                 "time_domain_verified": ([one and one.verified for one in checks], ""),
             }
         )
+        return {"optimum.csv": table}
 
 
 def _ends(values) -> list[float]:
@@ -203,7 +202,7 @@ def _summary_of(one: Candidate) -> dict:
     known, verification = one.probability, one.verification
     return {
         **_point_summary(one.point),
-        **_numbers(one),
+        **_numbers({quantity: getattr(one, quantity) for quantity in _REPORTED}),
         "critical_depth_mm": finite_or_none(one.critical_depth * 1e3),
         "usage": {key: finite_or_none(value) for key, value in one.usage.items()},
         "active": list(one.active),
@@ -212,25 +211,18 @@ def _summary_of(one: Candidate) -> dict:
         "confidence_interval_95": None if known is None else list(known.interval),
         "at_confidence": None
         if known is None
-        else {_QUANTILE[key][0]: _scaled(key, value) for key, value in known.quantiles.items()},
+        else _numbers({LIMITED[key]: value for key, value in known.quantiles.items()}),
         "time_domain": None
         if verification is None
         else {
             "verdict": verification.verdict,
             "verified": verification.verified,
-            **_numbers(verification),
+            **_numbers({quantity: getattr(verification, quantity) for quantity in _REPORTED}),
         },
     }
 
 
-def _scaled(key: str, value: float) -> float | None:
-    return finite_or_none(value * _QUANTILE[key][1])
-
-
-def _numbers(one) -> dict:
-    return {
-        "power_W": finite_or_none(one.power),
-        "torque_Nm": finite_or_none(one.torque),
-        "deflection_um": finite_or_none(one.deflection * 1e6),
-        "surface_error_um": finite_or_none(one.surface_error * 1e6),
-    }
+def _numbers(values: Mapping[str, float]) -> dict:
+    """Quantities that are limited, as a summary names them."""
+    reported = {_REPORTED[quantity]: value for quantity, value in values.items()}
+    return {name: finite_or_none(value * factor) for (name, factor), value in reported.items()}

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.stability.model import MillingModel
 from chatter.studies.optimisation.candidate import DEEPER, Candidate, Probability, candidate_at
 from chatter.studies.optimisation.limits import Limits
@@ -17,8 +17,7 @@ from chatter.studies.optimisation.sampled_cuts import SampledCuts, Samples
 from chatter.studies.optimisation.search_state import OptimumSearch
 from chatter.studies.optimisation.speed_depth_slice import SpeedDepthSlice, evaluated_slice
 from chatter.studies.optimisation.steady_cut import SteadyCuts
-
-Array = NDArray[np.float64]
+from chatter.studies.uncertainty.sample_limits import confidence_interval
 
 #: speeds and depths evaluated around a candidate, then around the best of them, then depths alone:
 #: share to either side, and points
@@ -113,13 +112,7 @@ def robust_candidate(
 ) -> Candidate | None:
     """Best cut around a point that holds with the wanted probability; None if none does.
 
-    Parameters
-    ----------
-    model : MillingModel
-    limits : Limits
-    point : OperatingPoint
-        Its radial depth and feed are kept.
-    drawn : Samples
+    The radial depth and the feed of the point are kept.
     """
     here = model_with(model, point.radial_depth, point.feed_per_tooth)
     max_depth = math.prod(high for _, high, _ in _DEPTHS) * point.axial_depth * (1.0 + DEEPER)
@@ -166,13 +159,10 @@ def _with_probability(
     sure, deeper = sampled.within(cuts, stable).mean(axis=0)
     if sure < limits.confidence:
         return None
-    from scipy.stats import binomtest
-
-    low, high = binomtest(round(sure * count), count).proportion_ci(method="wilson")
     found = Probability(
         float(stable[:, 0].mean()),
         float(sure),
-        (float(low), float(high)),
+        confidence_interval(round(sure * count), count),
         sampled.quantiles(SteadyCuts(*(values[:, 0] for values in cuts))),
     )
     risk = (1.0 - float(sure)) / (1.0 - limits.confidence)

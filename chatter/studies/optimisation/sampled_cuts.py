@@ -14,10 +14,10 @@ from functools import cached_property
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, BooleanArray, IntegerArray
 from chatter.description.errors import InputError
-from chatter.engine.parallel import one_thread, sweep
+from chatter.engine.parallel import each, one_thread
 from chatter.stability.methods.collocation import multipliers as collocation
 from chatter.stability.methods.collocation.element_cut import ElementCut, element_cut
 from chatter.stability.model import MillingModel, milling_model
@@ -32,7 +32,6 @@ from chatter.studies.uncertainty.uncertain_parameters import (
     parameters_of,
 )
 
-Array = NDArray[np.float64]
 Result = TypeVar("Result")
 
 #: beginnings of paths that the structure depends on
@@ -83,17 +82,11 @@ class Samples:
                 report = [f"sample {number + 1}: {text}" for text in error.messages]
                 raise InputError(report) from None
 
-        return each(compiled, np.arange(len(self)))
+        return _of_samples(compiled, np.arange(len(self)))
 
 
 def samples_of(model: MillingModel, count: int, seed: int) -> Samples | None:
-    """Draw samples of what the case of a model is uncertain of; None where nothing is.
-
-    Raises
-    ------
-    InputError
-        If correlations contradict one another.
-    """
+    """Draw samples of what the case of a model is uncertain of; None where nothing is."""
     case = model.case
     if not standard_deviations(case):
         return None
@@ -102,27 +95,21 @@ def samples_of(model: MillingModel, count: int, seed: int) -> Samples | None:
     return Samples(model, parameters, drawn)
 
 
-def each(function: Callable[[int], Result], numbers: NDArray[np.int64]) -> list[Result]:
-    """What a function makes of numbers, in threads."""
+def _of_samples(function: Callable[[int], Result], numbers: IntegerArray) -> list[Result]:
+    """What a function makes of the numbers of samples, in threads."""
 
-    def at(indices: NDArray[np.int64]) -> list[Result]:
+    def at(index: int) -> Result:
         with one_thread():
-            return [function(int(numbers[index])) for index in indices]
+            return function(int(numbers[index]))
 
-    return [found for chunk in sweep(at, len(numbers), points_a_chunk=4) for found in chunk]
+    return each(at, len(numbers), points_a_chunk=4)
 
 
 class SampledCuts:
     """Cuts at one radial depth and feed as the samples of a case have them.
 
-    Parameters
-    ----------
-    model : MillingModel
-        At this radial depth and feed.
-    limits : Limits
-    drawn : Samples
-    max_depth : float
-        Largest depth that will be asked for, m.
+    The model is at this radial depth and feed; `max_depth` is the largest depth that will be asked
+    for, m.
     """
 
     def __init__(
@@ -141,7 +128,7 @@ class SampledCuts:
             return element_cut(self.models[number], depth * 1.001, wavelengths=limits.wavelengths)
 
         self.models = [at_this_cut(number) for number in range(len(drawn))]
-        self.cuts = each(compiled, np.arange(len(drawn)))
+        self.cuts = _of_samples(compiled, np.arange(len(drawn)))
         #: how often each sample has refused a cut
         self.refused = np.zeros(len(drawn), dtype=np.int64)
 
@@ -150,21 +137,17 @@ class SampledCuts:
         faster = self.drawn.ratio(number, "cut.spindle_speed")
         return speeds * faster, depths * self.drawn.ratio(number, "cut.axial_depth")
 
-    def stable(self, numbers: NDArray[np.int64], speeds: Array, depths: Array) -> NDArray[np.bool_]:
+    def stable(self, numbers: IntegerArray, speeds: Array, depths: Array) -> BooleanArray:
         """Whether (s, n) samples find cuts stable at speeds (n,), rad/s, and depths (n,), m."""
 
-        def of_sample(number: int) -> NDArray[np.bool_]:
+        def of_sample(number: int) -> BooleanArray:
             own = self._own(number, speeds, depths)
             return np.abs(collocation.multipliers(self.cuts[number], *own)) < 1.0
 
-        return np.stack(each(of_sample, numbers))
+        return np.stack(_of_samples(of_sample, numbers))
 
     def steady(
-        self,
-        numbers: NDArray[np.int64],
-        speeds: Array,
-        depths: Array,
-        stable: NDArray[np.bool_],
+        self, numbers: IntegerArray, speeds: Array, depths: Array, stable: BooleanArray
     ) -> SteadyCuts:
         """Steady cuts (s, n) of samples; nan where not stable, and what no limit asks for."""
         row = {int(number): index for index, number in enumerate(numbers)}
@@ -185,10 +168,10 @@ class SampledCuts:
                     values[k] = computed
             return found
 
-        found = each(of_sample, numbers)
+        found = _of_samples(of_sample, numbers)
         return SteadyCuts(*(np.stack(values) for values in zip(*found, strict=True)))
 
-    def within(self, cuts: SteadyCuts, stable: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    def within(self, cuts: SteadyCuts, stable: BooleanArray) -> BooleanArray:
         """Whether cuts are stable and keep all limits."""
         held = [values <= 1.0 for values in self.limits.usage(cuts).values()]
         return np.logical_and.reduce([stable, *held])
@@ -196,10 +179,7 @@ class SampledCuts:
     def first_sure(self, speeds: Array, depths: Array) -> int | None:
         """First of n cuts that is stable and keeps its limits with the wanted probability.
 
-        Parameters
-        ----------
-        speeds, depths : (n,) array of float
-            rad/s, m, the cut that is wanted most first.
+        Speeds (n,), rad/s, and depths (n,), m: the cut that is wanted most first.
         """
         for first in range(0, speeds.size, _CUTS_AT_ONCE):
             group = np.arange(first, min(first + _CUTS_AT_ONCE, speeds.size))
@@ -218,12 +198,12 @@ class SampledCuts:
 
     def _not_lost(
         self,
-        numbers: NDArray[np.int64],
-        group: NDArray[np.int64],
+        numbers: IntegerArray,
+        group: IntegerArray,
         speeds: Array,
         depths: Array,
-        lost: NDArray[np.int64],
-    ) -> NDArray[np.int64]:
+        lost: IntegerArray,
+    ) -> IntegerArray:
         """Of a group of cuts those to which samples leave a chance; counts who refused what."""
         if group.size == 0 or numbers.size == 0:
             return group
@@ -236,12 +216,8 @@ class SampledCuts:
         return group[self._counted(stable & ~self.within(cuts, stable), numbers, group, lost)]
 
     def _counted(
-        self,
-        refusals: NDArray[np.bool_],
-        numbers: NDArray[np.int64],
-        group: NDArray[np.int64],
-        lost: NDArray[np.int64],
-    ) -> NDArray[np.bool_]:
+        self, refusals: BooleanArray, numbers: IntegerArray, group: IntegerArray, lost: IntegerArray
+    ) -> BooleanArray:
         """Add refusals (s, n) up; whether each of the group still has a chance."""
         self.refused[numbers] += refusals.sum(axis=1)
         lost[group] += refusals.sum(axis=0)

@@ -21,15 +21,7 @@ from chatter.studies.result_cache import ResultCache
 class OptimumSearch:
     """A case compiled for a search, its parts on disk, and how far the search is.
 
-    Parameters
-    ----------
-    case : Case
-    samples, seed : int
-        Of what is uncertain.
-    progress : callable
-        Called with (done, total) parts of the work.
-    folder : path or None
-        Keeps finished parts.
+    `folder` keeps finished parts; `progress` is called with (done, total) parts of the work.
     """
 
     def __init__(

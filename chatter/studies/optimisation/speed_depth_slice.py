@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, BooleanArray
 from chatter.description.case import Case
 from chatter.description.progress import Progress, no_progress
 from chatter.stability.methods.collocation.element_cut import element_cut
@@ -17,8 +17,6 @@ from chatter.studies.optimisation.limits import Limits
 from chatter.studies.optimisation.stable_depths import StableDepths, is_inside, stable_depths
 from chatter.studies.optimisation.steady_cut import SteadyCuts, SteadyModel
 from cutting.engagement.immersion import removed_section
-
-Array = NDArray[np.float64]
 
 _REVOLUTION = 2.0 * math.pi
 #: names of what excludes points besides the keys of [optimum]
@@ -37,7 +35,7 @@ class SpeedDepthSlice:
     speeds: Array  # rad/s (n,)
     depths: Array  # m (m,)
     stable: StableDepths
-    kept: NDArray[np.bool_]  # stable with its margins (m, n)
+    kept: BooleanArray  # stable with its margins (m, n)
     cuts: SteadyCuts  # nan where the cut is not stable (m, n)
     #: share of each limit of [optimum] that is used; nan where the cut is not stable (m, n)
     usage: dict[str, Array]
@@ -53,12 +51,12 @@ class SpeedDepthSlice:
         return removal_rates(self.model, self.speeds, self.depths)
 
     @property
-    def satisfied(self) -> dict[str, NDArray[np.bool_]]:
+    def satisfied(self) -> dict[str, BooleanArray]:
         """Where (m, n) each limit is held; stability first."""
         return {STABILITY: self.kept, **{key: self.usage[key] <= 1.0 for key in self.usage}}
 
     @property
-    def feasible(self) -> NDArray[np.bool_]:
+    def feasible(self) -> BooleanArray:
         """Where (m, n) all of them are."""
         return np.logical_and.reduce(list(self.satisfied.values()))
 
@@ -78,19 +76,10 @@ def evaluated_slice(
     evaluation_speeds: Array,
     progress: Progress = no_progress,
 ) -> SpeedDepthSlice:
-    """Compute a slice.
+    """Compute a slice at speeds (n,), rad/s, and depths (m,), m, ascending.
 
-    Parameters
-    ----------
-    model : MillingModel
-        At its radial depth and feed.
-    limits : Limits
-    speeds, depths : (n,), (m,) arrays of float
-        rad/s, m, ascending.
-    evaluation_speeds : (p,) array of float
-        Speeds at which stability is computed, with those that the margins need, ascending.
-    progress : callable, optional
-        Called with (done, total) speeds.
+    The model is at its radial depth and feed. Stability is computed at `evaluation_speeds` (p,),
+    with those that the margins need, ascending; `progress` is called with (done, total) speeds.
     """
     grid = with_margins(depths, limits.depth_margin)
     stable = stable_depths(
@@ -122,13 +111,13 @@ def slice_with(
 
 def settled_at(
     model: MillingModel, speeds: Array, depths: Array, stable: StableDepths
-) -> NDArray[np.bool_]:
+) -> BooleanArray:
     """Where (m, n) there is a cut, and it is stable."""
     settled = _inside_at(stable, speeds, depths, 0.0, 0.0)
     return settled & _reached(model, depths)[:, None]
 
 
-def _reached(model: MillingModel, depths: Array) -> NDArray[np.bool_]:
+def _reached(model: MillingModel, depths: Array) -> BooleanArray:
     case = model.case
     return removed_section(model.cutter, case.cut.mode, case.width_of_cut, depths) > 0.0
 
@@ -144,7 +133,7 @@ def with_margins(depths: Array, margin: float) -> Array:
 
 def _inside_at(
     stable: StableDepths, speeds: Array, depths: Array, depth_margin: float, speed_margin: float
-) -> NDArray[np.bool_]:
+) -> BooleanArray:
     """Whether each depth (m) is stable at each speed (n), with margins: (m, n)."""
     columns = [
         is_inside(stable.within(speed, depth_margin, speed_margin), depths) for speed in speeds
@@ -152,9 +141,7 @@ def _inside_at(
     return np.stack(columns, axis=1)
 
 
-def _steady(
-    model: SteadyModel, speeds: Array, depths: Array, settled: NDArray[np.bool_]
-) -> SteadyCuts:
+def _steady(model: SteadyModel, speeds: Array, depths: Array, settled: BooleanArray) -> SteadyCuts:
     """Steady cuts (m, n) where the cut is stable; nan elsewhere."""
     columns = {name: np.full(settled.shape, np.nan) for name in SteadyCuts._fields}
     for row, depth in enumerate(depths):

@@ -6,23 +6,21 @@ Nothing assumes that stability ends once: a speed has as many intervals as the g
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, BooleanArray
 from chatter.description.progress import Progress, no_progress
 from chatter.stability.boundary_continuation import continued_crossings
 from chatter.stability.crossings import find_crossings
-from chatter.stability.methods.collocation import multipliers as collocation
+from chatter.stability.limit_curve import first_crossings
 from chatter.stability.methods.collocation.element_cut import ElementCut
-
-Array = NDArray[np.float64]
+from chatter.stability.methods.collocation.multipliers import growth_rate_of
 
 #: of a limit, relative to its depth
 _TOLERANCE = 1e-3
-_SMALLEST = 1e-30
 #: depths of a grid that are evaluated together
 _ROWS_AT_ONCE = 6
 _ROUNDING = 1e-9
@@ -80,7 +78,7 @@ def _common(first: Array, second: Array) -> Array:
     return np.array(found).reshape(-1, 2)
 
 
-def is_inside(intervals: Array, depths: Array) -> NDArray[np.bool_]:
+def is_inside(intervals: Array, depths: Array) -> BooleanArray:
     """Whether each depth (m,) lies in one of the intervals (k, 2)."""
     low, high = intervals[:, 0], intervals[:, 1] * (1.0 + _ROUNDING)
     return ((depths[:, None] >= low) & (depths[:, None] <= high)).any(axis=1)
@@ -105,7 +103,7 @@ def stable_depths(
         Called with (done, total) speeds.
     """
     stride = widest_stride(cut, speeds)
-    growth_rate = _growth_rate_at(cut, speeds)
+    growth_rate = growth_rate_of(cut, speeds)
     crossings = continued_crossings(speeds.size, depths, growth_rate, _TOLERANCE, stride, progress)
     return StableDepths(speeds, crossings, float(depths[-1]))
 
@@ -131,14 +129,8 @@ def widest_stride(cut: ElementCut, speeds: Array) -> int:
 
 
 def first_limits(cut: ElementCut, speeds: Array, depths: Array) -> Array:
-    """First limit (n,) of stability, m; inf where none was found. Deeper ones are not looked for.
-
-    Parameters
-    ----------
-    cut, speeds, depths
-        As for `stable_depths`.
-    """
-    growth_rate = _growth_rate_at(cut, speeds)
+    """First limit (n,) of stability, m; inf where none was found; see `stable_depths`."""
+    growth_rate = growth_rate_of(cut, speeds)
     # a speed that has lost its stability needs no deeper look
     grid = np.ones((speeds.size, depths.size))
     open_speeds = np.arange(speeds.size)
@@ -151,14 +143,4 @@ def first_limits(cut: ElementCut, speeds: Array, depths: Array) -> Array:
         if open_speeds.size == 0:
             break
     crossings = find_crossings(grid, depths, growth_rate, _TOLERANCE)
-    return np.array([found[0] if len(found) else np.inf for found in crossings])
-
-
-def _growth_rate_at(cut: ElementCut, speeds: Array) -> Callable[[NDArray[np.int64], Array], Array]:
-    """Logarithm of the spectral radius at (indices of speeds, depths)."""
-
-    def growth_rate(index: NDArray[np.int64], depth: Array) -> Array:
-        radius = np.abs(collocation.multipliers(cut, speeds[index], depth))
-        return np.log(np.maximum(radius, _SMALLEST))
-
-    return growth_rate
+    return first_crossings(crossings)

@@ -17,8 +17,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, ComplexArray, IntegerArray
 from chatter.simulation.reconstruction import WALLS
 from chatter.stability.model import MillingModel
 from cutting.edge_segments.segments import period_angle
@@ -26,9 +26,6 @@ from cutting.engagement.immersion import slice_engagement
 from cutting.force.force_spectrum import ForceSpectrum, RigidCut, slices_at
 from cutting.tool.cutter import EdgeSlices, corner_height, edge_slices
 from dynamics.modal.modes import receptance_matrix
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 _REVOLUTION = 2.0 * math.pi
 #: harmonics reach to this multiple of the highest mode, and over so many of the period at least
@@ -64,11 +61,7 @@ class SteadyCuts(NamedTuple):
 class SteadyModel:
     """Steady cuts of a case at its radial depth and feed; speed and axial depth left open.
 
-    Parameters
-    ----------
-    model : MillingModel
-    slowest : float
-        Slowest spindle speed that will be asked for, rad/s: it decides how many harmonics count.
+    The slowest spindle speed that will be asked for, rad/s, decides how many harmonics count.
     """
 
     def __init__(self, model: MillingModel, slowest: float) -> None:
@@ -114,7 +107,7 @@ class SteadyModel:
             [self.rigid_cut(float(depth), 0).force(mean).torque[0].real for depth in depths]
         )
 
-    def motion(self, speeds: Array, rigid: RigidCut, spectrum: ForceSpectrum) -> Complex:
+    def motion(self, speeds: Array, rigid: RigidCut, spectrum: ForceSpectrum) -> ComplexArray:
         """Harmonics u_k (n, k, 3) of the motion of the tool against the work, m."""
         frequency = np.outer(speeds, self.harmonic) / _REVOLUTION
         receptance = receptance_matrix(self.modes, frequency.ravel())
@@ -132,7 +125,7 @@ class SteadyModel:
             )
         return motion
 
-    def _coupled_counts(self, speeds: Array) -> NDArray[np.int64]:
+    def _coupled_counts(self, speeds: Array) -> IntegerArray:
         """Harmonics (n,) that act on each other, in few steps of about a factor of 1.4."""
         highest = max(mode.frequency for mode in self.modes)
         wanted = _HIGHEST_COUPLED * highest * _REVOLUTION / speeds / self.stride
@@ -140,7 +133,9 @@ class SteadyModel:
         most = min(self.harmonic.size, _MOST_COUPLED + 1)
         return np.minimum(np.ceil(2.0 ** (0.5 * steps)).astype(np.int64) + 1, most)
 
-    def _coupled(self, feedback: Complex, receptance: Complex, rigid_motion: Complex) -> Complex:
+    def _coupled(
+        self, feedback: ComplexArray, receptance: ComplexArray, rigid_motion: ComplexArray
+    ) -> ComplexArray:
         """Harmonics (n, k, 3) with what the motion itself adds to the force."""
         basis, count = self.model.basis, rigid_motion.shape[1]
         middle = (len(feedback) - 1) // 2
@@ -159,7 +154,7 @@ class SteadyModel:
             found[n] = np.linalg.solve(matrix, start[n].reshape(-1)).reshape(size, rank)
         return found[:, count - 1 :] @ basis.T
 
-    def _feedback(self, rigid: RigidCut, count: int) -> Complex:
+    def _feedback(self, rigid: RigidCut, count: int) -> ComplexArray:
         """Force at harmonic k by motion at harmonic m, N/m, (k, r, m, r), of both signs."""
         wanted = self.stride * np.arange(2 * count - 1)
         coupling = rigid.coupling(wanted, self.model.basis, self.model.dashpot)
@@ -172,12 +167,12 @@ class SteadyModel:
             total = total + since[:, None, None] * _at(series, apart)
         return np.moveaxis(total, 2, 1)
 
-    def _in_parts(self, motion: Complex) -> list[Complex]:
+    def _in_parts(self, motion: ComplexArray) -> list[ComplexArray]:
         points = _POINTS_A_HARMONIC * motion.shape[1] * 3
         count = max(1, math.ceil(len(motion) * points / _MOST_POINTS))
         return np.array_split(motion, count)
 
-    def _surface_error(self, motion: Complex, depth: float) -> Array:
+    def _surface_error(self, motion: ComplexArray, depth: float) -> Array:
         """Location error (n,) of the walls at the height where it is largest, m."""
         slices = self._wall_slices(depth)
         walls = [self._wall(motion, slices, side) for side in WALLS[self.model.case.cut.mode]]
@@ -201,7 +196,7 @@ class SteadyModel:
         levels = np.flatnonzero(chosen)
         return slices_at(slices, np.unique(np.append(levels[::_EVERY], levels[-1])))
 
-    def _wall(self, motion: Complex, slices: EdgeSlices, side: str) -> Array:
+    def _wall(self, motion: ComplexArray, slices: EdgeSlices, side: str) -> Array:
         """Location error (n, L) of a wall: mean of the envelope of all passes, m.
 
         Notes
@@ -239,16 +234,8 @@ class SteadyModel:
 def _mean_envelope(reach: Array, position: Array, feed: float, curvature: Array) -> Array:
     """Mean along the feed (n, L) of the highest of parabolas, m.
 
-    Parameters
-    ----------
-    reach : (n, N, L) array of float
-        Top of the arc that each tooth leaves, m.
-    position : (N, L) array of float
-        Where along the feed of a turn, m.
-    feed : float
-        Of a turn, m.
-    curvature : (L,) array of float
-        Of the arcs, half of 1/R, 1/m.
+    `reach` (n, N, L) is the top of the arc that each tooth leaves, m, `position` (N, L) where that
+    is along the feed of a turn, m, `curvature` (L,) that of the arcs, half of 1/R, 1/m.
     """
     along = (np.arange(_POINTS_ALONG) + 0.5) / _POINTS_ALONG * feed
     highest = np.full((reach.shape[0], reach.shape[2], _POINTS_ALONG), -np.inf)
@@ -280,13 +267,13 @@ def _polynomial(derivatives: list[Array], shift: Array) -> Array:
     return total
 
 
-def _at(series: Complex, apart: NDArray[np.int64]) -> Complex:
+def _at(series: ComplexArray, apart: IntegerArray) -> ComplexArray:
     """Coefficients (k, m, r, r) of a real function at differences of either sign."""
     found = series[np.abs(apart)]
     return np.where((apart < 0)[..., None, None], found.conj(), found)
 
 
-def _peak(series: Complex) -> Array:
+def _peak(series: ComplexArray) -> Array:
     """Largest length (n,) within the period of vectors given by harmonics (n, k, c)."""
     count = _POINTS_A_HARMONIC * series.shape[1]
     motion = np.fft.irfft(series, count, axis=1) * count

@@ -93,16 +93,7 @@ def _side_by_side(search: OptimumSearch, candidates: Sequence[Candidate]) -> lis
 
 
 class _Verifier:
-    """Check of one candidate, in one thread.
-
-    Parameters
-    ----------
-    search : OptimumSearch
-    progress : callable
-        Of this candidate.
-    stopped : Event
-        Set where the search is interrupted.
-    """
+    """Check of one candidate, in one thread; `stopped` is set where the search is interrupted."""
 
     def __init__(self, search: OptimumSearch, progress: Progress, stopped: threading.Event) -> None:
         self.search, self.runs = search, 0
@@ -168,18 +159,8 @@ def verification_of(
 ) -> Verification:
     """Simulate the cut of a candidate from rest, with the delayed chip.
 
-    Parameters
-    ----------
-    model : MillingModel
-    limits : Limits
-    candidate : Candidate
-    progress : callable, optional
-        Called with (done, total) steps.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        A run that was cut short shows nothing.
+    `progress` is called with (done, total) steps. KeyboardInterrupt is raised where a run was cut
+    short: it shows nothing.
     """
     here = case_at(model.case, candidate.point).patch({"simulation": None, "stock": None})
     setup = set_up(here, _modes(model, here))

@@ -14,9 +14,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from chatter.description.arrays import Array
 
 _REVOLUTION = 2.0 * math.pi
 
@@ -67,11 +66,6 @@ def families(teeth: int) -> tuple[Family, ...]:
 def regeneration(pitch: Array, speed: float, frequency: float) -> float:
     """Magnitude of the mean of the waves that the teeth meet, 1 where all are in phase.
 
-    Parameters
-    ----------
-    pitch : (N,) array of float
-        rad.
-    speed, frequency : float
-        Of the spindle and of chatter, rad/s.
+    Pitch angles (N,) in rad; speed of the spindle and frequency of chatter in rad/s.
     """
     return float(abs(np.exp(-1j * frequency * np.asarray(pitch) / speed).mean()))

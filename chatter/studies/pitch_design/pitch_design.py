@@ -8,9 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from chatter.compile.cutter import pitch_angles
+from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
@@ -25,8 +25,6 @@ from chatter.studies.pitch_design.families import families
 from chatter.studies.pitch_design.pitch_result import FamilyCurve, PitchResult
 from chatter.studies.pitch_design.pitch_search import DIFFERENCES, MAX_MOVES, Design, PitchSearch
 from chatter.studies.result_cache import ResultCache
-
-Array = NDArray[np.float64]
 
 _DEPTHS = 40
 #: speeds at which the designs are ranked, to one of the search
@@ -97,8 +95,9 @@ def _designed(case: Case, cache: ResultCache, progress: Progress) -> PitchResult
         )
     start = max((one for curve in curves for one in curve.designs), key=lambda one: one.score)
     free = search.improved(start)
-    designs = _distinct([free, *(curve.best for curve in curves), original])
-    ranked = _ranked_on(search, designs, fine)
+    # of designs with the same angles the last gives the name
+    distinct = {one.pitch: one for one in (free, *(curve.best for curve in curves), original)}
+    ranked = _ranked_on(search, list(distinct.values()), fine)
     progress(total, total)
     return PitchResult(
         case=case,
@@ -147,8 +146,3 @@ def _chatter_frequency(case: Case, search: PitchSearch, even: Design, speed: flo
     model = milling_model(case.patch({"tool.pitch": None}))
     cut = element_cut(model, float(search.depths[-1]))
     return 2.0 * math.pi * collocation.chatter_frequency(cut, speed, depth)
-
-
-def _distinct(designs: Sequence[Design]) -> list[Design]:
-    """Designs of different angles; the last of those that are alike gives the name."""
-    return list({one.pitch: one for one in designs}.values())

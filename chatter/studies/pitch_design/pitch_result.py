@@ -8,15 +8,13 @@ from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.units import rpm
-from chatter.io.result_files import SavedResult, as_json, csv_text
+from chatter.io.result_files import SavedResult, csv_text
 from chatter.studies.pitch_design.families import regeneration
 from chatter.studies.pitch_design.pitch_search import Design
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,14 +139,6 @@ class PitchResult(SavedResult):
             lines.append("no pitch within the bounds is better than that of the case")
         return lines
 
-    def texts(self) -> dict[str, str]:
-        """Content of pitch.csv, lobes.csv and summary.json."""
-        return {
-            "pitch.csv": self._table(),
-            "lobes.csv": self._lobes(),
-            "summary.json": as_json(self.summary()),
-        }
-
     def save(self, folder: str | Path) -> list[Path]:
         """Write pitch.csv, lobes.csv, summary.json, pitch.png and case-pitch.toml."""
         path = Path(folder) / "case-pitch.toml"
@@ -156,10 +146,11 @@ class PitchResult(SavedResult):
         self.best_case.save(path)
         return [*written, path]
 
-    def _table(self) -> str:
+    def tables(self) -> dict[str, str]:
+        """Content of pitch.csv and lobes.csv."""
         found = self.designs
         angles = [" ".join(f"{angle:g}" for angle in one.pitch) for one in found]
-        return csv_text(
+        designs = csv_text(
             {
                 "rank": (range(1, len(found) + 1), "d"),
                 "name": ([one.name for one in found], ""),
@@ -169,12 +160,11 @@ class PitchResult(SavedResult):
                 "max_pitch_ratio": ([one.max_pitch_ratio for one in found], ".5g"),
             }
         )
-
-    def _lobes(self) -> str:
-        return csv_text(
+        limits = csv_text(
             {
                 "spindle_speed [rpm]": (rpm(self.speeds), ".4f"),
                 "critical_depth_before [mm]": (self.original.limits * 1e3, ".6g"),
                 "critical_depth_after [mm]": (self.best.limits * 1e3, ".6g"),
             }
         )
+        return {"pitch.csv": designs, "lobes.csv": limits}

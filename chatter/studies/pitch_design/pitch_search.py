@@ -8,17 +8,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.model import milling_model
-from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
+from chatter.stability.pockets import DEPTH_MARGIN, lowest_within_margin
 from chatter.studies.optimisation.stable_depths import first_limits
 from chatter.studies.pitch_design.families import Family
 from chatter.studies.result_cache import ResultCache
-
-Array = NDArray[np.float64]
 
 #: angles are whole multiples of this, deg
 RESOLUTION = 0.1
@@ -61,11 +59,7 @@ def lowest_limit(speeds: Array, limits: Array) -> float:
 
 def highest_removal(speeds: Array, limits: Array) -> float:
     """Goal: the highest depth times speed that keeps the usual margins of depth and speed."""
-    robust = [
-        limits[np.abs(speeds / speed - 1.0) <= SPEED_MARGIN * (1.0 + 1e-9)].min()
-        for speed in speeds
-    ]
-    return float((1.0 - DEPTH_MARGIN) * np.max(np.array(robust) * speeds))
+    return float((1.0 - DEPTH_MARGIN) * np.max(lowest_within_margin(speeds, limits) * speeds))
 
 
 #: name in a case file -> goal
@@ -86,21 +80,11 @@ def rounded_pitch(pitch: Sequence[float]) -> tuple[float, ...]:
 
 
 class PitchSearch:
-    """Limits of a case by its pitch angles, over a range of speeds.
+    """Limits of a case by its pitch angles, at speeds (rad/s), on a grid of depths (m).
 
-    Parameters
-    ----------
-    case : Case
-    speeds, depths : (n,), (m,) arrays of float
-        rad/s and grid of depths, m.
-    goal : str
-        Key of `GOALS`.
-    max_pitch_ratio : float
-        Largest pitch, in units of the mean; the smallest is 2 less this.
-    evaluated : callable
-        Called after every evaluation.
-    cache : ResultCache
-        Limits that are known already.
+    `goal` is a key of `GOALS`. The largest pitch is `max_pitch_ratio` in units of the mean, the
+    smallest 2 less this. `evaluated` is called after every evaluation; the cache holds limits that
+    are known.
     """
 
     def __init__(

@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.studies.uncertainty.uncertain_parameters import UncertainParameter
 
 BLOCK = 50
@@ -21,8 +21,8 @@ def samples(
     parameters: Sequence[UncertainParameter],
     count: int,
     seed: int,
-    correlation: NDArray[np.float64] | None = None,
-) -> NDArray[np.float64]:
+    correlation: Array | None = None,
+) -> Array:
     """Draw values of all parameters.
 
     Parameters
@@ -52,7 +52,7 @@ def samples(
     )
 
 
-def _in_order(cube: NDArray[np.float64], correlation: NDArray[np.float64]) -> NDArray[np.float64]:
+def _in_order(cube: Array, correlation: Array) -> Array:
     """Hypercube with its columns reordered as normal scores of a correlation."""
     from scipy.special import ndtri
 

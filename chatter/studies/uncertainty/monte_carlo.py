@@ -8,12 +8,12 @@ from functools import partial
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, BooleanArray, IntegerArray
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.units import rpm
-from chatter.io.result_files import SavedResult, as_json, csv_text, finite_or_none
+from chatter.io.result_files import SavedResult, csv_text, finite_or_none
 from chatter.studies.model import fingerprint, patched
 from chatter.studies.result_cache import Execution, ResultCache
 from chatter.studies.uncertainty.latin_hypercube import samples
@@ -21,6 +21,7 @@ from chatter.studies.uncertainty.sample_limits import (
     Grid,
     SampleLimits,
     check_counts,
+    confidence_interval,
     sample_limits,
     shared_grid,
 )
@@ -32,8 +33,6 @@ from chatter.studies.uncertainty.uncertain_parameters import (
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
-
-Array = NDArray[np.float64]
 
 #: probabilities of the band
 LEVELS = (0.05, 0.5, 0.95)
@@ -73,7 +72,7 @@ class Uncertainty(SavedResult):
     speeds: Array
     limits: Array
     operating: Array
-    stable: NDArray[np.bool_]
+    stable: BooleanArray
     max_depth: float
     seed: int
 
@@ -85,7 +84,7 @@ class Uncertainty(SavedResult):
     @property
     def interval(self) -> tuple[float, float]:
         """95 % confidence interval of that probability, from the number of samples."""
-        return _interval(int(self.stable.sum()), len(self.stable))
+        return confidence_interval(int(self.stable.sum()), len(self.stable))
 
     def quantiles(self, levels: Sequence[float] = LEVELS) -> Array:
         """Quantiles (levels, m) of the limit at every speed, m."""
@@ -99,11 +98,11 @@ class Uncertainty(SavedResult):
         """Probability (m,) that the first limit lies above a depth (m), at every speed."""
         return np.mean(self.limits > depth, axis=0)
 
-    def convergence(self, counts: NDArray[np.int64]) -> tuple[Array, Array]:
+    def convergence(self, counts: IntegerArray) -> tuple[Array, Array]:
         """Probability (n,) from the first samples, of each of some counts, and interval (n, 2)."""
         stable = np.cumsum(self.stable)[counts - 1]
         pairs = zip(stable.tolist(), counts.tolist(), strict=True)
-        return stable / counts, np.array([_interval(*pair) for pair in pairs])
+        return stable / counts, np.array([confidence_interval(*pair) for pair in pairs])
 
     def shares(self) -> dict[str, float | None]:
         """Share of each parameter in the variance of the limit of the cut, to first order.
@@ -165,30 +164,21 @@ class Uncertainty(SavedResult):
             ],
         }
 
-    def texts(self) -> dict[str, str]:
-        """Content of uncertainty.csv, samples.csv and summary.json."""
-        return {
-            "uncertainty.csv": self._table(),
-            "samples.csv": self._samples(),
-            "summary.json": as_json(self.summary()),
-        }
-
-    def _table(self) -> str:
+    def tables(self) -> dict[str, str]:
+        """Content of uncertainty.csv and samples.csv."""
         limits = {
             f"limit_{100.0 * level:.0f}_percent [mm]": (row * 1e3, ".7g")
             for level, row in zip(LEVELS, self.quantiles(), strict=True)
         }
         probability = self.probability_at(self.case.cut.axial_depth)
-        return csv_text(
+        band = csv_text(
             {
                 "spindle_speed [rpm]": (rpm(self.speeds), ".4f"),
                 **limits,
                 "probability_of_stability": (probability, ".6g"),
             }
         )
-
-    def _samples(self) -> str:
-        return csv_text(
+        drawn = csv_text(
             {
                 **{
                     f"{one.path} [SI]": (column, ".9g")
@@ -198,17 +188,7 @@ class Uncertainty(SavedResult):
                 "stable": (self.stable.tolist(), ""),
             }
         )
-
-
-def _interval(successes: int, count: int) -> tuple[float, float]:
-    """95 % confidence interval of a probability (Wilson 1927), from independent trials.
-
-    Samples of a Latin hypercube spread less.
-    """
-    from scipy.stats import binomtest
-
-    low, high = binomtest(successes, count).proportion_ci(method="wilson")
-    return float(low), float(high)
+        return {"uncertainty.csv": band, "samples.csv": drawn}
 
 
 def _quantiles(limits: Array, levels: Sequence[float]) -> Array:

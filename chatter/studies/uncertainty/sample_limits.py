@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.progress import no_progress
@@ -23,8 +23,8 @@ _DEPTHS = 32
 class Grid:
     """Speeds and depths that all samples share."""
 
-    speeds: NDArray[np.float64]  # rad/s (n,)
-    depths: NDArray[np.float64]  # m, ascending (m,)
+    speeds: Array  # rad/s (n,)
+    depths: Array  # m, ascending (m,)
 
 
 @dataclass(frozen=True)
@@ -37,13 +37,7 @@ class SampleLimits:
 
 
 def shared_grid(case: Case, speed_count: int) -> Grid:
-    """Speeds and depths from the case with its mean values.
-
-    Raises
-    ------
-    InputError
-        If the case lacks something.
-    """
+    """Speeds and depths from the case with its mean values."""
     model = milling_model(case)
     wide = spindle_speeds(case)
     speeds = np.linspace(float(wide[0]), float(wide[-1]), speed_count)
@@ -54,17 +48,7 @@ def shared_grid(case: Case, speed_count: int) -> Grid:
 def sample_limits(case: Case, grid: Grid, method: str | None) -> SampleLimits:
     """Limits of one sample at the shared speeds and at the speed of its cut.
 
-    Parameters
-    ----------
-    case : Case
-    grid : Grid
-    method : str, optional
-        Of stability.
-
-    Raises
-    ------
-    InputError
-        If the sample describes no cut.
+    Raises InputError if the sample describes no cut.
     """
     chosen = chosen_method(case, method)
     model = milling_model(case)
@@ -84,14 +68,19 @@ def sample_limits(case: Case, grid: Grid, method: str | None) -> SampleLimits:
 
 
 def check_counts(samples: int, speeds: int, seed: int) -> None:
-    """Refuse counts that give no result.
-
-    Raises
-    ------
-    InputError
-        If one is out of range.
-    """
+    """Raise InputError for counts that give no result."""
     limits = (("--samples", samples, 2, 1_000_000), ("--speeds", speeds, 2, 20_000))
     for name, given, low, high in (*limits, ("--seed", seed, 0, 2**31)):
         if not low <= given <= high:
             raise InputError(f"{name} {given}: a number from {low} to {high} is wanted")
+
+
+def confidence_interval(successes: int, count: int) -> tuple[float, float]:
+    """95 % confidence interval of a probability (Wilson 1927), from independent trials.
+
+    Samples of a Latin hypercube spread less.
+    """
+    from scipy.stats import binomtest
+
+    low, high = binomtest(successes, count).proportion_ci(method="wilson")
+    return float(low), float(high)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.description.errors import InputError
 from chatter.studies.model import field_of, standard_deviations, value_of
 
@@ -30,7 +30,7 @@ class UncertainParameter:
     low: float = -np.inf  # bound, SI; infinite where there is none
     high: float = np.inf  # bound, SI; infinite where there is none
 
-    def at(self, probability: NDArray[np.float64]) -> NDArray[np.float64]:
+    def at(self, probability: Array) -> Array:
         """Quantiles (n,), SI, at probabilities between 0 and 1."""
         from scipy.stats import truncnorm
 
@@ -40,12 +40,9 @@ class UncertainParameter:
 
 
 def parameters_of(model: Model) -> tuple[UncertainParameter, ...]:
-    """Uncertain values of a case with its machine; `correlation_of` says how they go together.
+    """Uncertain values of a case with its machine; InputError if there are none.
 
-    Raises
-    ------
-    InputError
-        If no value has a deviation.
+    `correlation_of` says how they go together.
     """
     found = []
     for path, deviation in standard_deviations(model).items():
@@ -59,9 +56,7 @@ def parameters_of(model: Model) -> tuple[UncertainParameter, ...]:
     return tuple(found)
 
 
-def correlation_of(
-    case: Case, parameters: Sequence[UncertainParameter]
-) -> NDArray[np.float64] | None:
+def correlation_of(case: Case, parameters: Sequence[UncertainParameter]) -> Array | None:
     """Correlation (p, p) of the normal distributions that [uncertainty] gives; None without.
 
     Raises

@@ -53,13 +53,7 @@ def chosen_layout(variations: Sequence[Variation], tornado: bool) -> Layout:
 
 
 def points_of(variations: Sequence[Variation], layout: Layout) -> tuple[DesignPoint, ...]:
-    """Points in the order in which they are computed.
-
-    Raises
-    ------
-    InputError
-        If there are too many.
-    """
+    """Points in the order in which they are computed; InputError if there are too many."""
     if layout == "tornado":
         none = (None,) * len(variations)
         points = [_point(variations, none)]

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.units import rpm
@@ -67,7 +67,7 @@ class Measure:
     logarithmic: bool = False  # scale of the curves
 
 
-def _numbers(values: NDArray[np.float64]) -> list[float | None]:
+def _numbers(values: Array) -> list[float | None]:
     return [
         float(f"{value:.{_SIGNIFICANT}g}") if math.isfinite(value) else None
         for value in np.asarray(values, dtype=np.float64)
@@ -131,13 +131,14 @@ def _forces(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
     result = _simulated(case)
     summary = result.summary()
     mean = summary["mean_force_N"]
+    settled = np.ptp(result.displacement[result.settled], axis=0)
     numbers = {
         "peak_resultant_N": summary["peak_resultant_N"],
         "mean_Fx_N": mean["Fx"],
         "mean_Fy_N": mean["Fy"],
         "mean_Fz_N": mean["Fz"],
         "mean_power_W": summary["power"]["mean_W"],
-        "settled_displacement_um": float(_settled_motion(result) * 1e6),
+        "settled_displacement_um": float(settled.max(initial=0.0)) * 1e6,
         "chatter_frequency_Hz": summary["chatter_frequency_Hz"],
     }
     turned = result.spindle_angle / (2.0 * math.pi)
@@ -156,11 +157,6 @@ def _forces(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
         label = "displacement of the tool [µm]"
         curves.append(Curve(label, "", x, _numbers(motion), across))
     return Outcome(numbers, {"verdict": summary["verdict"]}, tuple(curves))
-
-
-def _settled_motion(result: SimulationResult) -> float:
-    """Largest extent of the motion after the start, m."""
-    return float(np.ptp(result.displacement[result.settled], axis=0).max(initial=0.0))
 
 
 def _surface(case: Case, method: str | None, only: tuple[str, ...]) -> Outcome:
@@ -254,10 +250,9 @@ _CRITICAL = Quantity("critical depth at {speed}", "mm", beyond="max_axial_depth_
 _LOWEST = Quantity("lowest critical depth over speed", "mm", beyond="max_axial_depth_mm")
 _CHATTER_FREQUENCY = Quantity("chatter frequency", "Hz")
 
-#: name -> kind of result
-MEASURES: dict[str, Measure] = {
-    "lobes": Measure("lobes", {"critical_depth_mm": _CRITICAL, "lowest_limit_mm": _LOWEST}, _lobes),
-    "critical depth": Measure(
+_MEASURES = (
+    Measure("lobes", {"critical_depth_mm": _CRITICAL, "lowest_limit_mm": _LOWEST}, _lobes),
+    Measure(
         "critical depth",
         {
             "critical_depth_mm": _CRITICAL,
@@ -266,7 +261,7 @@ MEASURES: dict[str, Measure] = {
         },
         _critical_depth,
     ),
-    "forces": Measure(
+    Measure(
         "forces",
         {
             "peak_resultant_N": Quantity("peak of the resultant force", "N"),
@@ -279,7 +274,7 @@ MEASURES: dict[str, Measure] = {
         },
         _forces,
     ),
-    "surface": Measure(
+    Measure(
         "surface",
         {
             "surface_location_error_um": Quantity("surface location error", "um"),
@@ -289,7 +284,7 @@ MEASURES: dict[str, Measure] = {
         },
         _surface,
     ),
-    "frf": Measure(
+    Measure(
         "frf",
         {
             "highest_peak": Quantity("highest peak of the FRF", ""),
@@ -298,7 +293,9 @@ MEASURES: dict[str, Measure] = {
         _frf,
         logarithmic=True,
     ),
-}
+)
+#: name -> kind of result
+MEASURES: dict[str, Measure] = {one.name: one for one in _MEASURES}
 
 
 def measure_of(name: str | None, model: Model) -> Measure:

@@ -29,13 +29,7 @@ class PresetStudy:
     tornado: bool = False
 
     def file(self) -> Path:
-        """Case or machine file of the shipped example.
-
-        Raises
-        ------
-        InputError
-            If it is not there.
-        """
+        """Case or machine file of the shipped example; InputError if it is not there."""
         from chatter.io.shipped_examples import examples
 
         folders = {Path(one.folder).parent for one in examples().values()}
@@ -55,13 +49,7 @@ def preset_studies() -> dict[str, PresetStudy]:
 
 
 def preset_study(name: str) -> PresetStudy:
-    """Return a preset study.
-
-    Raises
-    ------
-    InputError
-        If there is none of that name.
-    """
+    """Return a preset study; InputError if there is none of that name."""
     known = preset_studies()
     if name not in known:
         raise InputError(f'--study "{name}" is not known; {nearest(name, list(known))}')

@@ -63,15 +63,7 @@ class Variation:
 
 
 def read_variation(text: str, model: Model, count: int | None = None) -> Variation:
-    """Read a variation of the command line.
-
-    Parameters
-    ----------
-    text : str
-    model : Case or MachineFile
-        That it is to change.
-    count : int, optional
-        Values of a range.
+    """Read a variation of the command line; a range has `count` values.
 
     Raises
     ------

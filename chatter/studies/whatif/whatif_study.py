@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
-from io import StringIO
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from chatter.description.errors import InputError, RunError
-from chatter.io.result_files import SavedResult, as_json
+from chatter.io.result_files import SavedResult, csv_of_rows
 from chatter.studies.model import fingerprint, patched
 from chatter.studies.result_cache import Execution, ResultCache
 from chatter.studies.whatif.design import AS_GIVEN, DesignPoint, Layout, chosen_layout, points_of
@@ -85,18 +83,11 @@ class WhatIf(SavedResult):
             "changes": self.sentences(),
         }
 
-    def texts(self) -> dict[str, str]:
-        """Content of whatif.csv and summary.json."""
-        return {"whatif.csv": self._table(), "summary.json": as_json(self.summary())}
-
-    def _table(self) -> str:
-        """One row a point: values of the paths, then words and numbers."""
+    def tables(self) -> dict[str, str]:
+        """Content of whatif.csv: one row a point: values of the paths, then words and numbers."""
         words = list(dict.fromkeys(key for one in self.outcomes for key in one.words))
         numbers = list(dict.fromkeys(key for one in self.outcomes for key in one.numbers))
-        text = StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        heads = [one.axis_label for one in self.variations]
-        writer.writerow([*heads, *words, *numbers])
+        rows = [[*(one.axis_label for one in self.variations), *words, *numbers]]
         for point, outcome in zip(self.points, self.outcomes, strict=True):
             given = [
                 _cell(one, index) for one, index in zip(self.variations, point.indices, strict=True)
@@ -104,8 +95,8 @@ class WhatIf(SavedResult):
             words_found = [outcome.words.get(key, "") for key in words]
             found = [outcome.numbers.get(key) for key in numbers]
             cells = ["" if one is None else f"{one:.9g}" for one in found]
-            writer.writerow([*given, *words_found, *cells])
-        return text.getvalue()
+            rows.append([*given, *words_found, *cells])
+        return {"whatif.csv": csv_of_rows(rows)}
 
 
 def _cell(one: Variation, index: int | None) -> str:

@@ -11,10 +11,10 @@ from chatter.compile.structure import structure_of
 from chatter.description.case import Case, loads
 from chatter.description.errors import InputError
 from chatter.description.progress import no_progress
+from chatter.engine.parallel import SerialExecutor
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import milling_model
 from chatter.stability.registry import METHODS
-from chatter.studies.grid_blocks import radius_in_blocks
 from dynamics.modal.modes import Mode, receptance_matrix
 
 RPM = math.pi / 30.0
@@ -135,11 +135,8 @@ def test_the_diagram_its_grid_and_the_check_agree():
         )
     assert any("depends on the spindle speed" in note for note in diagram.notes)
     assert any("from 0 to 20000 rpm" in note for note in diagram.notes)
-    limits = diagram.limits
-    blocks = radius_in_blocks(
-        GYROSCOPIC, limits.spindle_speed, diagram.grid.y_axis.values * 1e-3, "collocation"
-    )
-    assert blocks == pytest.approx(diagram.grid.spectral_radius, rel=1e-6)
+    blocks = chatter.lobes(GYROSCOPIC, grid=True, cluster=SerialExecutor()).grid
+    assert blocks.spectral_radius == pytest.approx(diagram.grid.spectral_radius, rel=1e-6)
 
 
 def test_the_chatter_frequency_follows_the_falling_mode():

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, ComplexArray, IntegerArray
 from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 from chatter.stability.hessenberg import dominant_pair
 from chatter.stability.methods.collocation.monodromy import apply_batch_monodromy, batch_scratch
@@ -33,10 +33,10 @@ _BEYOND_NUMBERS = 1e300
 class DominantPairs(NamedTuple):
     """Multipliers of largest magnitude of eight points, imaginary part >= 0, and their vectors."""
 
-    value: NDArray[np.complex128]  # (8,)
-    basis: NDArray[np.float64]  # (K + 1, D, 8)
-    coordinates: NDArray[np.complex128]  # of the vector in the basis (8, K)
-    used: NDArray[np.int64]  # of the basis (8,)
+    value: ComplexArray  # (8,)
+    basis: Array  # (K + 1, D, 8)
+    coordinates: ComplexArray  # of the vector in the basis (8, K)
+    used: IntegerArray  # of the basis (8,)
 
 
 @njit(**SINGLE_KERNEL)
@@ -103,17 +103,10 @@ def _orthogonalise(basis, k, hessenberg):
 
 @njit(**SINGLE_KERNEL)
 def dominant_pairs(period, tolerance):
-    """Multiplier of largest magnitude of every member.
+    """Multiplier of largest magnitude of every member of a `BatchMonodromy`.
 
-    Parameters
-    ----------
-    period : BatchMonodromy
-    tolerance : float
-        Residual of the dominant eigenpair, relative to its magnitude, at which a member is done.
-
-    Returns
-    -------
-    DominantPairs
+    `tolerance` is the residual of the eigenpair, relative to its magnitude, at which a member is
+    done.
     """
     _, values, size, _ = period.couple.shape
     dimension = size + period.assembly.memory * (values + period.output.shape[0])

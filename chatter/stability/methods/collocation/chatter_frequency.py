@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 from chatter.stability.methods.collocation.monodromy import apply_batch_monodromy, batch_scratch
 from chatter.stability.simd_batch import BATCH_SIZE, load, spread, store
@@ -20,10 +20,10 @@ _HIGHEST = 2.0
 class _Turning(NamedTuple):
     """exp(-(sigma + i omega) t) at N times, and what takes it to the next harmonic (N, 8)."""
 
-    real: NDArray[np.float64]
-    imaginary: NDArray[np.float64]
-    real_step: NDArray[np.float64]
-    imaginary_step: NDArray[np.float64]
+    real: Array
+    imaginary: Array
+    real_step: Array
+    imaginary_step: Array
 
 
 @njit(**INNER_KERNEL)
@@ -166,17 +166,8 @@ def _loudest(structure, base, line, time, force, out):
 def chatter_frequencies_of(arrays, assemblies, batch_points, speeds, period, found, out):
     """Set out (8,) to the chatter frequency (Hz) of the dominant motion of every member.
 
-    Parameters
-    ----------
-    arrays : OperatorArrays
-    assemblies : CouplingAssemblies
-    batch_points : (8,) array of int
-        Point of every member.
-    speeds : (1, 8) array of float
-        rad/s.
-    period : BatchMonodromy
-    found : DominantPairs
-    out : (8,) array of float
+    `batch_points` (8,) are their points among the `CouplingAssemblies`, `speeds` (1, 8) in rad/s,
+    `period` is their `BatchMonodromy` and `found` their `DominantPairs`.
     """
     vectors, image = _vectors(found), np.empty((found.basis.shape[1], BATCH_SIZE))
     real, imaginary = batch_scratch(period), batch_scratch(period)

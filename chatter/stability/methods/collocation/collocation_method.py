@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.stability.stability_method import Multiplier, StabilityMethod, Sweep
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ class Collocation(StabilityMethod):
         cut_at = element_cuts(model, sweep.max_depth)
         return converged_limit_curve(cut_at, speeds, depths, progress, model.tolerance)
 
-    def radius_of(self, sweep: Sweep) -> NDArray[np.float64]:
+    def radius_of(self, sweep: Sweep) -> Array:
         """Spectral radius at points."""
         from chatter.stability.methods.collocation.element_cut import element_cut
         from chatter.stability.methods.collocation.multipliers import multipliers

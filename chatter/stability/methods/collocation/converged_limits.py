@@ -6,13 +6,11 @@ is the error.
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
+from chatter.description.arrays import Array
 from chatter.description.progress import Progress, no_progress
 from chatter.stability.limit_curve import LimitCurve, limits_at
 from chatter.stability.methods.collocation.element_cut import RESOLUTION, CutAt, ElementCut
-from chatter.stability.methods.collocation.error_estimate import checked_limits
+from chatter.stability.methods.collocation.finer_limits import checked_limits, moved_limits
 from chatter.stability.methods.collocation.multipliers import (
     FINER,
     evaluated_points,
@@ -20,7 +18,6 @@ from chatter.stability.methods.collocation.multipliers import (
     limit_curve,
     points_of_periods,
 )
-from chatter.stability.methods.collocation.nearby_limits import moved_limits
 from chatter.stability.methods.collocation.varying_limits import limits_of_varying_speed
 from chatter.stability.methods.collocation.varying_speed import varies
 from chatter.stability.model import LIMIT_ERROR
@@ -41,26 +38,15 @@ _SEARCHED = 0.1
 
 def converged_limit_curve(
     cut_at: CutAt,
-    speeds: NDArray[np.float64],
-    depths: NDArray[np.float64],
+    speeds: Array,
+    depths: Array,
     progress: Progress = no_progress,
     tolerance: float = LIMIT_ERROR,
 ) -> LimitCurve:
     """Limits at every spindle speed, with finer elements until they are good to a tolerance.
 
-    Parameters
-    ----------
-    cut_at : callable
-        Cut at a resolution.
-    speeds, depths, progress
-        As for `multipliers.limit_curve`.
-    tolerance : float
-        On the critical depths, relative.
-
-    Returns
-    -------
-    LimitCurve
-        With the estimated error.
+    `speeds`, `depths` and `progress` are as for `multipliers.limit_curve`; the tolerance is on the
+    critical depths, relative. The curve has the estimated error.
     """
     search = _SEARCHED * tolerance
     finer_ones = FINER if tolerance < LIMIT_ERROR else FINER[:_USUAL]
@@ -79,7 +65,7 @@ def converged_limit_curve(
 
 
 def _limits_of_finer(
-    limits: LimitCurve, cut: ElementCut, depths: NDArray[np.float64], tolerance: float
+    limits: LimitCurve, cut: ElementCut, depths: Array, tolerance: float
 ) -> LimitCurve:
     speeds = limits.spindle_speed
     evaluated = evaluated_points(cut, speeds)

@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
+from chatter.description.arrays import Array, IntegerArray
+from chatter.engine.presets import DRIVER, INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 from chatter.stability.methods.collocation.coupling_structure import (
     packed_assemblies,
     packed_numbers,
@@ -57,17 +57,17 @@ _SPEED_STEP = 0.5
 class _Sources(NamedTuple):
     """Blocks that take the motion at the points of an earlier element to the force at a point."""
 
-    element: NDArray[np.int64]
-    point: NDArray[np.int64]
-    block: NDArray[np.float64]  # N/m (sources, r, (p + 1) r)
-    share: NDArray[np.float64]  # of each point of an element in a position (p + 1,), scratch
+    element: IntegerArray
+    point: IntegerArray
+    block: Array  # N/m (sources, r, (p + 1) r)
+    share: Array  # of each point of an element in a position (p + 1,), scratch
 
 
 class _Edge(NamedTuple):
     """Edge segments down to a depth, and the quadrature along them."""
 
-    tops: NDArray[np.float64]  # part of each segment below the depth (P,)
-    reach: NDArray[np.float64]  # spindle angles, see `reach_of_segment`, rad (P, 4)
+    tops: Array  # part of each segment below the depth (P,)
+    reach: Array  # spindle angles, see `reach_of_segment`, rad (P, 4)
     elements: float  # that pass while the tool turns by a radian at the mean speed
     speed_factor: float  # one over the radius where there are dashpots, else 0, 1/m
 
@@ -75,11 +75,11 @@ class _Edge(NamedTuple):
 class _Couplings(NamedTuple):
     """Couplings at all points of a period, and scratch for one of them."""
 
-    stiffness: NDArray[np.float64]  # N/m (E p, r, r)
-    dashpot: NDArray[np.float64]  # N s/m times the mean speed (E p, r, r)
-    of_delay: NDArray[np.float64]  # of each distinct delay, last of a single point (G + 1, r, r)
-    part: NDArray[np.float64]  # (r, r)
-    part_dashpot: NDArray[np.float64]  # (r, r)
+    stiffness: Array  # N/m (E p, r, r)
+    dashpot: Array  # N s/m times the mean speed (E p, r, r)
+    of_delay: Array  # of each distinct delay, last of a single point (G + 1, r, r)
+    part: Array  # (r, r)
+    part_dashpot: Array  # (r, r)
 
 
 @njit(**INNER_KERNEL)
@@ -291,19 +291,11 @@ def assemble_couplings(cut, rotation, layout, speed, depth):
     )
 
 
-@njit(**SINGLE_KERNEL)
-def assemblies_of(cut, speeds, depths):
-    """Coupling assemblies of n points; neighbours of equal depth and equal elements share one.
+@njit(**DRIVER)
+def coupling_assemblies(cut, speeds, depths):
+    """Coupling assemblies of n points of speed (rad/s) and depth (m).
 
-    Parameters
-    ----------
-    cut : ElementCut
-    speeds, depths : (n,) array of float
-        rad/s, m.
-
-    Returns
-    -------
-    CouplingAssemblies
+    Neighbours of equal depth and equal elements share one.
     """
     arrays = cut.arrays
     of_point = np.empty(speeds.shape[0], dtype=np.int64)

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, IntegerArray
 from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 
 #: whole numbers before the lists of a structure
@@ -17,22 +17,22 @@ _HEADER = 5
 class CouplingAssemblies(NamedTuple):
     """Coupling assemblies of N points, P distinct ones, one behind the other."""
 
-    structure: NDArray[np.int64]  # see `packed_structure`
-    first_structure: NDArray[np.int64]  # where that of each assembly begins (P + 1,)
-    number: NDArray[np.float64]  # see `packed_numbers`
-    first_number: NDArray[np.int64]  # (P + 1,)
-    of_point: NDArray[np.int64]  # assembly of each point (N,)
+    structure: IntegerArray  # see `packed_structure`
+    first_structure: IntegerArray  # where that of each assembly begins (P + 1,)
+    number: Array  # see `packed_numbers`
+    first_number: IntegerArray  # (P + 1,)
+    of_point: IntegerArray  # assembly of each point (N,)
 
 
 class AssemblyStructure(NamedTuple):
     """Structure of an assembly: M elements, E in the cut, S distinct lengths, p points each."""
 
-    cut: NDArray[np.int64]  # number of each element among those in the cut, or -1 (M,)
-    shape: NDArray[np.int64]  # number of the length of each element (M,)
-    length_cuts: NDArray[np.int64]  # 1 where an element in the cut has the length (S,)
-    first_source: NDArray[np.int64]  # of each point (E p + 1,)
-    source: NDArray[np.int64]  # element, counted from the period's first; negative before it
-    point: NDArray[np.int64]  # the only one that a source needs of its element, or -1
+    cut: IntegerArray  # number of each element among those in the cut, or -1 (M,)
+    shape: IntegerArray  # number of the length of each element (M,)
+    length_cuts: IntegerArray  # 1 where an element in the cut has the length (S,)
+    first_source: IntegerArray  # of each point (E p + 1,)
+    source: IntegerArray  # element, counted from the period's first; negative before it
+    point: IntegerArray  # the only one that a source needs of its element, or -1
     memory: int  # elements before the period that are referred to
 
 
@@ -87,16 +87,7 @@ def packed_numbers(layout, stiffness, dashpot, block, sources):
 def packed_assemblies(structures, numbers, of_point):
     """Lay lists of packed assemblies one behind the other.
 
-    Parameters
-    ----------
-    structures : list of arrays of int
-    numbers : list of arrays of float
-    of_point : (N,) array of int
-        Place in the lists.
-
-    Returns
-    -------
-    CouplingAssemblies
+    `of_point` (N,) is the place in the lists of the assembly of each point.
     """
     count = len(structures)
     first_structure = np.zeros(count + 1, dtype=np.int64)

@@ -1,4 +1,4 @@
-"""Compiled loops that Python calls: coupling assemblies and multipliers of many points."""
+"""Compiled loops that Python calls: multipliers of many points, and points of a period."""
 
 from __future__ import annotations
 
@@ -8,30 +8,12 @@ from numba import njit
 from chatter.engine.presets import DRIVER
 from chatter.stability.methods.collocation.batch_multipliers import dominant_pairs
 from chatter.stability.methods.collocation.chatter_frequency import chatter_frequencies_of
-from chatter.stability.methods.collocation.coupling_assembly import assemblies_of
 from chatter.stability.methods.collocation.coupling_structure import same_structure, structure_at
 from chatter.stability.methods.collocation.element_assembly import build_batch_monodromy
 from chatter.stability.methods.collocation.element_borders import period_borders
 from chatter.stability.methods.collocation.element_layout import element_counts, element_layout
 from chatter.stability.simd_batch import BATCH_SIZE
 from chatter.stability.spindle_rotation import in_mean_angle, spindle_rotation_at
-
-
-@njit(**DRIVER)
-def coupling_assemblies(cut, speeds, depths):
-    """What the cut couples at n points.
-
-    Parameters
-    ----------
-    cut : ElementCut
-    speeds, depths : (n,) array of float
-        rad/s, m. Neighbours of the same depth cost less.
-
-    Returns
-    -------
-    CouplingAssemblies
-    """
-    return assemblies_of(cut, speeds, depths)
 
 
 @njit(**DRIVER)

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 from chatter.stability.methods.collocation.coupling_structure import (
     structure_at,
@@ -27,10 +27,10 @@ from chatter.stability.simd_batch import BATCH_SIZE, load, spread, store
 class Structure(NamedTuple):
     """Modes as the map sees them."""
 
-    natural_frequency: NDArray[np.float64]  # rad/s (n,)
-    damping: NDArray[np.float64]  # (n,)
-    shape: NDArray[np.float64]  # (n, r)
-    force_gain: NDArray[np.float64]  # 1/kg (n, r)
+    natural_frequency: Array  # rad/s (n,)
+    damping: Array  # (n,)
+    shape: Array  # (n, r)
+    force_gain: Array  # 1/kg (n, r)
 
 
 class OperatorArrays(NamedTuple):
@@ -46,8 +46,8 @@ class OperatorArrays(NamedTuple):
 class _Rates(NamedTuple):
     """Velocity at the Gauss points, which dashpots feel; of no lengths where there are none."""
 
-    of_state: NDArray[np.float64]  # (S, q, 2n, 8)
-    of_force: NDArray[np.float64]  # (S, q, q, 8)
+    of_state: Array  # (S, q, 2n, 8)
+    of_force: Array  # (S, q, q, 8)
 
 
 def operator_arrays(cut: ElementCut) -> OperatorArrays:
@@ -223,20 +223,10 @@ def _multiply_all(a, factor):
 
 @njit(**SINGLE_KERNEL)
 def build_batch_monodromy(arrays, assemblies, batch_points, speeds):
-    """Assemble the elements of one period.
+    """Assemble the `BatchMonodromy` of one period from `OperatorArrays` and `CouplingAssemblies`.
 
-    Parameters
-    ----------
-    arrays : OperatorArrays
-    assemblies : CouplingAssemblies
-    batch_points : (8,) array of int
-        Point of every member; their assemblies have the same structure.
-    speeds : (1, 8) array of float
-        Mean spindle speed of every member, rad/s.
-
-    Returns
-    -------
-    BatchMonodromy
+    `batch_points` (8,) are the points of the members, whose assemblies have the same structure;
+    `speeds` (1, 8) their mean spindle speeds, rad/s.
     """
     structure, table = arrays.structure, arrays.response
     packed = structure_at(assemblies, batch_points[0])

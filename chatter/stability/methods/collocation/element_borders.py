@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, IntegerArray
 from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL
 from cutting.edge_segments.coupling import (
     chip_vanishes,
@@ -46,9 +46,9 @@ _SMEARED = 0.9
 class PeriodBorders(NamedTuple):
     """I intervals of a period of the tool between the borders that the cut sets."""
 
-    angle: NDArray[np.float64]  # of the spindle, rad (I + 1,)
-    levels: NDArray[np.int64]  # of ever smaller elements, where a chip vanishes (I + 1,)
-    engaged: NDArray[np.int64]  # 1 in the cut (I,)
+    angle: Array  # of the spindle, rad (I + 1,)
+    levels: IntegerArray  # of ever smaller elements, where a chip vanishes (I + 1,)
+    engaged: IntegerArray  # 1 in the cut (I,)
 
 
 @njit(**LEAF_KERNEL)
@@ -129,17 +129,7 @@ def _distinct(angles, levels, count, period):
 def period_borders(segments, period, depth):
     """Spindle angles at which a tip or a top of an edge enters or leaves.
 
-    Parameters
-    ----------
-    segments : EdgeSegments
-    period : float
-        Angle after which the tool repeats itself, rad.
-    depth : float
-        Axial depth, m.
-
-    Returns
-    -------
-    PeriodBorders
+    `period` is the angle after which the tool repeats itself, rad; `depth` the axial depth, m.
     """
     room = 4 * segments.bottom.shape[0] + 2
     angles, levels = np.empty(room), np.empty(room, dtype=np.int64)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 from chatter.stability.cut_arrays import CutArrays
@@ -68,8 +69,4 @@ def element_cut(
 
 def element_cuts(model: MillingModel, max_depth: float) -> CutAt:
     """The cut of a model at any resolution, down to a depth (m)."""
-
-    def cut_at(points: int, wavelengths: float) -> ElementCut:
-        return element_cut(model, max_depth, points, wavelengths)
-
-    return cut_at
+    return partial(element_cut, model, max_depth)

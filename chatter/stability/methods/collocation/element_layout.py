@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, IntegerArray
 from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 from chatter.stability.methods.collocation.element_borders import LEVEL_RATIO, SAME_BORDER
 from chatter.stability.spindle_rotation import speed_at, time_at
@@ -37,21 +37,21 @@ class ElementLayout(NamedTuple):
     Mean angle is time times the mean spindle speed.
     """
 
-    cut: NDArray[np.int64]  # number among the elements in the cut, -1 for free motion (M,)
-    shape: NDArray[np.int64]  # number of the length (M,)
-    length: NDArray[np.float64]  # distinct lengths, rad (S,)
-    length_cuts: NDArray[np.int64]  # 1 where an element in the cut has the length (S,)
-    cut_start: NDArray[np.float64]  # start of the elements in the cut, rad (E,)
-    cut_length: NDArray[np.float64]  # rad (E,)
+    cut: IntegerArray  # number among the elements in the cut, -1 for free motion (M,)
+    shape: IntegerArray  # number of the length (M,)
+    length: Array  # distinct lengths, rad (S,)
+    length_cuts: IntegerArray  # 1 where an element in the cut has the length (S,)
+    cut_start: Array  # start of the elements in the cut, rad (E,)
+    cut_length: Array  # rad (E,)
     period: float  # rad
 
 
 class _Spans(NamedTuple):
     """Elements by the angle that the spindle turns (M,)."""
 
-    start: NDArray[np.float64]  # rad
-    length: NDArray[np.float64]  # rad
-    engaged: NDArray[np.int64]
+    start: Array  # rad
+    length: Array  # rad
+    engaged: IntegerArray
 
 
 @njit(**LEAF_KERNEL)
@@ -151,21 +151,10 @@ def _lasting(rotation, start, angle, length):
 
 @njit(**INNER_KERNEL)
 def element_layout(borders, counts, rotation, tool_period):
-    """Cut a period into elements.
+    """Cut a period into elements, `counts` (I,) in each interval of the `PeriodBorders`.
 
-    Parameters
-    ----------
-    borders : PeriodBorders
-    counts : (I,) array of int
-        Elements of each interval.
-    rotation : SpindleRotation
-        In mean angle.
-    tool_period : float
-        Angle after which the tool repeats itself, rad.
-
-    Returns
-    -------
-    ElementLayout
+    `rotation` is in mean angle; `tool_period` is the angle after which the tool repeats itself,
+    rad.
     """
     spans = _tool_period_spans(borders, counts)
     # every half of a cycle has a corner

@@ -16,6 +16,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.engine.presets import INNER_KERNEL
 from chatter.stability.simd_batch import load, spread, store
 
@@ -26,9 +27,9 @@ _LEAST_REACH, _STEP = 1e-3, 0.125
 class ElementPoints(NamedTuple):
     """Points of an element on [0, 1]: its start, then p Gauss points."""
 
-    position: NDArray[np.float64]  # (p+1,)
-    weight: NDArray[np.float64]  # of the Gauss quadrature (p,)
-    barycentric: NDArray[np.float64]  # weights of the polynomial through all points (p+1,)
+    position: Array  # (p+1,)
+    weight: Array  # of the Gauss quadrature (p,)
+    barycentric: Array  # weights of the polynomial through all points (p+1,)
 
 
 class ResponseTable(NamedTuple):
@@ -38,8 +39,8 @@ class ResponseTable(NamedTuple):
     at the start, then force per mass and omega at the points.
     """
 
-    coefficient: NDArray[np.float64]  # (n, K, 2p + 2, p + 2)
-    furthest: NDArray[np.float64]  # omega h up to which the series holds (n,)
+    coefficient: Array  # (n, K, 2p + 2, p + 2)
+    furthest: Array  # omega h up to which the series holds (n,)
 
 
 @lru_cache(maxsize=32)
@@ -52,7 +53,7 @@ def element_points(count: int) -> ElementPoints:
     return ElementPoints(position, 0.5 * weights, 1.0 / np.prod(difference, axis=1))
 
 
-def _through_gauss_points(nodes: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray:
+def _through_gauss_points(nodes: Array, at: Array) -> NDArray:
     """Lagrange polynomials (len(at), p) through the Gauss points alone."""
     values = np.ones((at.size, nodes.size))
     for j in range(nodes.size):
@@ -74,7 +75,7 @@ def _pushes_before(count: int, order: int) -> list[tuple[float, NDArray, NDArray
     ]
 
 
-def _responses(x: NDArray[np.float64], ratio: float, count: int) -> NDArray[np.float64]:
+def _responses(x: Array, ratio: float, count: int) -> Array:
     """Response (len(x), 2p + 2, p + 2) of one mode at omega h = x, of p points."""
     damped = math.sqrt(1.0 - ratio * ratio)
     out = np.zeros((x.size, 2 * count + 2, count + 2))
@@ -99,7 +100,7 @@ def _responses(x: NDArray[np.float64], ratio: float, count: int) -> NDArray[np.f
 
 
 @lru_cache(maxsize=128)
-def _coefficients(ratio: float, reach: float, terms: int, count: int) -> NDArray[np.float64]:
+def _coefficients(ratio: float, reach: float, terms: int, count: int) -> Array:
     """Chebyshev coefficients (terms, 2p + 2, p + 2) of the response of one mode up to a reach."""
     # Chebyshev points of the first kind; the series follows from the cosine sums
     angle = math.pi * (np.arange(terms) + 0.5) / terms
@@ -110,20 +111,11 @@ def _coefficients(ratio: float, reach: float, terms: int, count: int) -> NDArray
 
 
 def response_table(
-    natural_frequency: NDArray[np.float64],
-    damping: NDArray[np.float64],
-    points: ElementPoints,
-    longest: float,
+    natural_frequency: Array, damping: Array, points: ElementPoints, longest: float
 ) -> ResponseTable:
-    """Tabulate the response of every mode for elements up to a length.
+    """Tabulate the response of every mode for elements up to a length, s.
 
-    Parameters
-    ----------
-    natural_frequency, damping : (n,) array of float
-        rad/s and ratio.
-    points : ElementPoints
-    longest : float
-        s.
+    Natural frequencies (n,) in rad/s, damping ratios (n,).
     """
     reach = np.maximum(natural_frequency * longest, _LEAST_REACH)
     # in steps, so that like structures share their series
@@ -139,16 +131,9 @@ def response_table(
 
 @njit(**INNER_KERNEL)
 def mode_response(coefficient, furthest, x, out):
-    """Set out to the first rows of the response of a mode at omega h = x.
+    """Set out (rows, p + 2, 8) to the first rows of the response of a mode at omega h = x (1, 8).
 
-    Parameters
-    ----------
-    coefficient : (K, 2p + 2, p + 2) array of float
-        Of the mode, in the `ResponseTable`.
-    furthest : float
-        omega h up to which it holds.
-    x : (1, 8) array of float
-    out : (rows, p + 2, 8) array of float
+    `coefficient` and `furthest` are those of the mode in the `ResponseTable`.
     """
     t = (2.0 / furthest) * load(x, 0) - 1.0
     before, now = spread(1.0), t

@@ -14,6 +14,7 @@ import numpy as np
 from chatter.engine.parallel import worker_count
 from chatter.engine.presets import is_compiled
 from chatter.stability.methods.collocation import drivers
+from chatter.stability.methods.collocation.coupling_assembly import coupling_assemblies
 from chatter.stability.methods.collocation.coupling_structure import CouplingAssemblies
 from chatter.stability.methods.collocation.element_assembly import OperatorArrays, Structure
 from chatter.stability.methods.collocation.element_cut import RESOLUTION, ElementCut
@@ -26,12 +27,8 @@ def compile_side_by_side(cut: ElementCut) -> None:
     """Compile what collocation needs where the cache does not hold it, in half the time.
 
     A second process compiles the map and its multipliers and leaves them in the cache, while this
-    one compiles the assemblies. Where it cannot, what is missing is compiled at its first call.
-
-    Parameters
-    ----------
-    cut : ElementCut
-        Any one.
+    one compiles the assemblies, of any cut. Where it cannot, what is missing is compiled at its
+    first call.
     """
     if drivers.element_multipliers.signatures:
         return
@@ -42,7 +39,7 @@ def compile_side_by_side(cut: ElementCut) -> None:
         if other is None:
             return
         try:
-            drivers.coupling_assemblies(cut, np.ones(1), np.zeros(1))
+            coupling_assemblies(cut, np.ones(1), np.zeros(1))
             drivers.points_of_periods(cut, np.ones(1), 0.0)
             other.wait()
         finally:

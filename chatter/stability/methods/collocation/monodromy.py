@@ -17,8 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.engine.presets import INNER_KERNEL, LEAF_KERNEL, SINGLE_KERNEL
 from chatter.stability.methods.collocation.coupling_structure import AssemblyStructure
 from chatter.stability.simd_batch import BATCH_SIZE, load, spread, store
@@ -31,14 +31,14 @@ class BatchMonodromy(NamedTuple):
     """
 
     assembly: AssemblyStructure
-    free: NDArray[np.float64]  # of each mode over a length (S, n, 2, 2, 8)
-    motion_of_state: NDArray[np.float64]  # (S, q, 2n, 8)
-    motion_of_force: NDArray[np.float64]  # (S, q, q, 8)
-    state_of_force: NDArray[np.float64]  # (S, 2n, q, 8)
-    factors: NDArray[np.float64]  # of the matrix that the force solves (E, q, q, 8)
-    couple: NDArray[np.float64]  # force from the state, negative (E, q, 2n, 8)
-    block: NDArray[np.float64]  # of the sources (sources, r, (p + 1) r, 8)
-    output: NDArray[np.float64]  # motion of the tool point from the state, scaled (r, 2n)
+    free: Array  # of each mode over a length (S, n, 2, 2, 8)
+    motion_of_state: Array  # (S, q, 2n, 8)
+    motion_of_force: Array  # (S, q, q, 8)
+    state_of_force: Array  # (S, 2n, q, 8)
+    factors: Array  # of the matrix that the force solves (E, q, q, 8)
+    couple: Array  # force from the state, negative (E, q, 2n, 8)
+    block: Array  # of the sources (sources, r, (p + 1) r, 8)
+    output: Array  # motion of the tool point from the state, scaled (r, 2n)
 
 
 @njit(**LEAF_KERNEL)
@@ -60,10 +60,10 @@ def _solve(factors, x):
 class BatchScratch(NamedTuple):
     """Scratch of `apply_batch_monodromy`, which leaves the force at all points in `force`."""
 
-    motion: NDArray[np.float64]  # of all elements (memory + E, q + r, 8)
-    force: NDArray[np.float64]  # (E, q, 8)
-    state: NDArray[np.float64]  # (2n, 8)
-    next_state: NDArray[np.float64]  # (2n, 8)
+    motion: Array  # of all elements (memory + E, q + r, 8)
+    force: Array  # (E, q, 8)
+    state: Array  # (2n, 8)
+    next_state: Array  # (2n, 8)
 
 
 @njit(**INNER_KERNEL)

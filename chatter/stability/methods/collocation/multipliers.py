@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, BooleanArray, ComplexArray, IntegerArray
 from chatter.description.errors import RunError
 from chatter.description.progress import Progress, no_progress
 from chatter.description.units import rpm
@@ -20,6 +20,7 @@ from chatter.stability.brackets import GrowthRate
 from chatter.stability.limit_curve import LimitCurve, limits_at
 from chatter.stability.limit_search import EvaluatedPoints, growth_rate
 from chatter.stability.methods.collocation import drivers
+from chatter.stability.methods.collocation.coupling_assembly import coupling_assemblies
 from chatter.stability.methods.collocation.element_assembly import OperatorArrays, operator_arrays
 from chatter.stability.methods.collocation.element_cut import RESOLUTION, CutAt, ElementCut
 from chatter.stability.methods.collocation.first_use import compile_side_by_side
@@ -43,11 +44,8 @@ _FEWEST_POINTS, _PARTS = 16, 4
 
 
 def multipliers(
-    cut: ElementCut,
-    speeds: NDArray[np.float64],
-    depths: NDArray[np.float64],
-    progress: Progress = no_progress,
-) -> NDArray[np.complex128]:
+    cut: ElementCut, speeds: Array, depths: Array, progress: Progress = no_progress
+) -> ComplexArray:
     """Dominant multiplier over one period at every point.
 
     Parameters
@@ -68,11 +66,11 @@ def multipliers(
 
 def _solved(
     cut: ElementCut,
-    speeds: NDArray[np.float64],
-    depths: NDArray[np.float64],
-    frequency_wanted: NDArray[np.bool_],
+    speeds: Array,
+    depths: Array,
+    frequency_wanted: BooleanArray,
     progress: Progress = no_progress,
-) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+) -> tuple[ComplexArray, Array]:
     """Multipliers, and chatter frequencies (Hz) where they are wanted, nan elsewhere."""
     if len(speeds) == 0:
         return np.empty(0, dtype=np.complex128), np.empty(0)
@@ -93,7 +91,7 @@ def _solved(
     return multiplier, frequency
 
 
-def _refuse_endless(cut: ElementCut, speeds: NDArray[np.float64]) -> None:
+def _refuse_endless(cut: ElementCut, speeds: Array) -> None:
     """Raise RunError where a period at one of the speeds (rad/s) holds too many vibrations."""
     hertz = cut.arrays.fastest / (2.0 * math.pi)
     of_tool = hertz * cut.arrays.period_angle / float(np.min(speeds))
@@ -128,17 +126,15 @@ def _chunk_size(cut: ElementCut, count: int) -> int:
 def _solved_together(
     cut: ElementCut,
     arrays: OperatorArrays,
-    speeds: NDArray[np.float64],
-    depths: NDArray[np.float64],
-    frequency_wanted: NDArray[np.bool_],
-) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
-    assemblies = drivers.coupling_assemblies(cut, speeds, depths)
+    speeds: Array,
+    depths: Array,
+    frequency_wanted: BooleanArray,
+) -> tuple[ComplexArray, Array]:
+    assemblies = coupling_assemblies(cut, speeds, depths)
     return drivers.element_multipliers(arrays, assemblies, speeds, frequency_wanted)
 
 
-def _neighbours_together(
-    cut: ElementCut, speeds: NDArray[np.float64], depths: NDArray[np.float64]
-) -> NDArray[np.int64]:
+def _neighbours_together(cut: ElementCut, speeds: Array, depths: Array) -> IntegerArray:
     """Order of the points in which those follow each other that can share work."""
     if varies(cut):
         # those of like periods go side by side
@@ -156,14 +152,7 @@ def converged_multiplier(
 ) -> Multiplier:
     """Dominant multiplier at one point, refined until two resolutions agree.
 
-    Parameters
-    ----------
-    cut_at : callable
-        Cut at a resolution.
-    speed, depth : float
-        rad/s, m.
-    tolerance : float
-        On |mu|, relative to max(1, |mu|).
+    Speed in rad/s, depth in m; the tolerance is on |mu|, relative to max(1, |mu|).
     """
     point = np.array([speed]), np.array([depth])
     cut = cut_at(*RESOLUTION)
@@ -179,9 +168,7 @@ def converged_multiplier(
     return Multiplier(value, steps, float(error))
 
 
-def growth_rate_at(
-    cut: ElementCut, speeds: NDArray[np.float64], depths: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def growth_rate_at(cut: ElementCut, speeds: Array, depths: Array) -> Array:
     """Growth rate at n points per period of the tool, many of which the cut's period may hold.
 
     Speeds in rad/s, depths in m.
@@ -197,8 +184,8 @@ def chatter_frequency(cut: ElementCut, speed: float, depth: float) -> float:
 
 def limit_curve(
     cut: ElementCut,
-    speeds: NDArray[np.float64],
-    depths: NDArray[np.float64],
+    speeds: Array,
+    depths: Array,
     progress: Progress = no_progress,
     tolerance: float = DEPTH_TOLERANCE,
     stride: int = STRIDE,
@@ -232,37 +219,24 @@ def limit_curve(
         return limits_at(evaluated.at_limits, speeds, crossings, steps)
 
 
-def growth_rate_of(cut: ElementCut, speeds: NDArray[np.float64]) -> GrowthRate:
-    """Growth rate per period of the tool, as the search for limits asks for it.
+def growth_rate_of(cut: ElementCut, speeds: Array) -> GrowthRate:
+    """Growth rate per period of the tool at speeds (rad/s), as the search for limits asks."""
 
-    Parameters
-    ----------
-    cut : ElementCut
-    speeds : (n,) array of float
-        rad/s.
-    """
-
-    def growth_rate_here(
-        points: NDArray[np.int64], depth: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def growth_rate_here(points: IntegerArray, depth: Array) -> Array:
         return growth_rate_at(cut, speeds[points], depth)
 
     return growth_rate_here
 
 
-def points_of_periods(
-    cut: ElementCut, speeds: NDArray[np.float64], depths: NDArray[np.float64]
-) -> NDArray[np.int64]:
+def points_of_periods(cut: ElementCut, speeds: Array, depths: Array) -> IntegerArray:
     """Collocation points (n,) in a period at n speeds (rad/s) and the last of the depths (m)."""
     return drivers.points_of_periods(cut, speeds, float(depths[-1]))
 
 
-def evaluated_points(cut: ElementCut, speeds: NDArray[np.float64]) -> EvaluatedPoints:
+def evaluated_points(cut: ElementCut, speeds: Array) -> EvaluatedPoints:
     """Points near limits at n speeds (rad/s), with multipliers and frequencies."""
 
-    def evaluate(
-        points: NDArray[np.int64], depth: NDArray[np.float64]
-    ) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+    def evaluate(points: IntegerArray, depth: Array) -> tuple[ComplexArray, Array]:
         return _solved(cut, speeds[points], depth, np.ones(len(points), dtype=np.bool_))
 
     return EvaluatedPoints(evaluate)

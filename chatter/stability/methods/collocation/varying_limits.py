@@ -7,14 +7,16 @@ elements and a far closer fit of the period change at some of the limits.
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
+from chatter.description.arrays import Array
 from chatter.description.progress import Progress
 from chatter.stability.boundary_continuation import continued_crossings
 from chatter.stability.limit_curve import LimitCurve, first_crossings, limits_at
 from chatter.stability.methods.collocation.element_cut import RESOLUTION, CutAt
-from chatter.stability.methods.collocation.error_estimate import CheckedLimits, checked_limits
+from chatter.stability.methods.collocation.finer_limits import (
+    CheckedLimits,
+    checked_limits,
+    moved_limits,
+)
 from chatter.stability.methods.collocation.multipliers import (
     FINER,
     evaluated_points,
@@ -22,7 +24,6 @@ from chatter.stability.methods.collocation.multipliers import (
     growth_rate_of,
     points_of_periods,
 )
-from chatter.stability.methods.collocation.nearby_limits import moved_limits
 from chatter.stability.methods.collocation.varying_speed import (
     Pair,
     beside,
@@ -48,32 +49,13 @@ _CHECKED, _CHECK, _CHECK_PERIODS = 8, (10, 0.3), 150
 #: tool periods in a period at the least, one after the other until limits are good
 _LEAST_PERIODS = (20, 40)
 
-_Crossings = list[NDArray[np.float64]]
+_Crossings = list[Array]
 
 
 def limits_of_varying_speed(
-    cut_at: CutAt,
-    speeds: NDArray[np.float64],
-    depths: NDArray[np.float64],
-    progress: Progress,
-    tolerance: float,
+    cut_at: CutAt, speeds: Array, depths: Array, progress: Progress, tolerance: float
 ) -> LimitCurve:
-    """Limits at every mean spindle speed, good to a tolerance.
-
-    Parameters
-    ----------
-    cut_at : callable
-        Cut at a resolution.
-    speeds, depths, progress
-        As for `multipliers.limit_curve`.
-    tolerance : float
-        On the critical depths, relative.
-
-    Returns
-    -------
-    LimitCurve
-        With the estimated error.
-    """
+    """Limits at every mean spindle speed, good to a tolerance; see `converged_limit_curve`."""
     first = cut_at(*_RESOLUTIONS[0]).with_fit(_FIRST_FIT)
     crossings = continued_crossings(
         len(speeds), depths, growth_rate_of(first, speeds), _FIRST_TOLERANCE, _STRIDE, progress
@@ -104,11 +86,7 @@ def limits_of_varying_speed(
 
 
 def _between(
-    crossings: _Crossings,
-    pair: Pair,
-    speeds: NDArray[np.float64],
-    depths: NDArray[np.float64],
-    tolerance: float,
+    crossings: _Crossings, pair: Pair, speeds: Array, depths: Array, tolerance: float
 ) -> _Crossings:
     """Limits at the true ratio, between those of the two beside it."""
     fewer, more = (
@@ -120,7 +98,7 @@ def _between(
     return interpolated(fewer, more, share_between(pair, speeds))
 
 
-def _rates_between(pair: Pair, checked: CheckedLimits) -> NDArray[np.float64]:
+def _rates_between(pair: Pair, checked: CheckedLimits) -> Array:
     """Growth rate at limits, at the true ratio."""
     fewer, more = (growth_rate_at(cut, checked.speed, checked.depth) for cut in pair)
     return fewer + share_between(pair, checked.speed) * (more - fewer)

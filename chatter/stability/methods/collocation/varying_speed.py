@@ -9,8 +9,8 @@ of the true ratio, with an error of second order in what the frequency has been 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.stability.methods.collocation.element_cut import ElementCut
 from chatter.stability.spindle_rotation import PeriodFit, SpindleRotation, spindle_rotation_at
 
@@ -28,17 +28,13 @@ def varies(cut: ElementCut) -> bool:
 def beside(cut: ElementCut, least_periods: int) -> Pair:
     """The cut with periods of fewer and of more tool periods than the true ratio asks for.
 
-    Parameters
-    ----------
-    cut : ElementCut
-    least_periods : int
-        Tool periods in a period at the least.
+    A period has `least_periods` tool periods at the least.
     """
     fit = cut.arrays.fit._replace(least_periods=least_periods)
     return cut.with_fit(fit._replace(beyond=0)), cut.with_fit(fit._replace(beyond=1))
 
 
-def rotations(cut: ElementCut, speeds: NDArray[np.float64]) -> list[SpindleRotation]:
+def rotations(cut: ElementCut, speeds: Array) -> list[SpindleRotation]:
     """Rotation of the spindle at every speed (rad/s)."""
     arrays = cut.arrays
     return [
@@ -47,14 +43,14 @@ def rotations(cut: ElementCut, speeds: NDArray[np.float64]) -> list[SpindleRotat
     ]
 
 
-def tool_periods(cut: ElementCut, speeds: NDArray[np.float64]) -> NDArray[np.float64]:
+def tool_periods(cut: ElementCut, speeds: Array) -> Array:
     """Tool periods in a period (n,) at n speeds (rad/s)."""
     if not varies(cut):
         return np.ones(len(speeds))
     return np.array([float(rotation.patterns) for rotation in rotations(cut, speeds)])
 
 
-def share_between(pair: Pair, speeds: NDArray[np.float64]) -> NDArray[np.float64]:
+def share_between(pair: Pair, speeds: Array) -> Array:
     """Where the true ratio (n,) lies: 0 is what the first of the two takes, 1 the second."""
     fewer, more = (
         np.array([rotation.patterns / rotation.cycles for rotation in rotations(cut, speeds)])
@@ -65,9 +61,7 @@ def share_between(pair: Pair, speeds: NDArray[np.float64]) -> NDArray[np.float64
     return np.where(more > fewer, (true - fewer) / np.where(more > fewer, more - fewer, 1.0), 0.0)
 
 
-def interpolated(
-    taken: list[NDArray[np.float64]], other: list[NDArray[np.float64]], share: NDArray[np.float64]
-) -> list[NDArray[np.float64]]:
+def interpolated(taken: list[Array], other: list[Array], share: Array) -> list[Array]:
     """Crossings of every speed between two lists of them (shares 0 and 1).
 
     Where their numbers differ, those of the first.

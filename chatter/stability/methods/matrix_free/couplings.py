@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, IntegerArray
 from chatter.engine.presets import KERNEL, LEAF_KERNEL
 from chatter.stability.spindle_rotation import SpindleRotation, angle_at, speed_at, time_at
 from cutting.edge_segments.coupling import coupling_at, delay_at, part_below, share_of_height
@@ -34,35 +34,35 @@ _TURNS = 4
 class Sources(NamedTuple):
     """What couples the force at a time to the motion before it."""
 
-    node: NDArray[np.int64]  # earlier of the two (sources,)
-    weight: NDArray[np.float64]  # of displacement and velocity at both (sources, 4)
-    block: NDArray[np.float64]  # force per displacement, N/m (sources, r, r)
+    node: IntegerArray  # earlier of the two (sources,)
+    weight: Array  # of displacement and velocity at both (sources, 4)
+    block: Array  # force per displacement, N/m (sources, r, r)
 
 
 class EdgeAtDepth(NamedTuple):
     """Parts of the segments that cut at a depth."""
 
-    top: NDArray[np.float64]  # part of each segment below the depth (P,)
-    reach: NDArray[np.float64]  # spindle angles, see `reach_of_segment`, rad (P, 4)
+    top: Array  # part of each segment below the depth (P,)
+    reach: Array  # spindle angles, see `reach_of_segment`, rad (P, 4)
     most: int  # sources of one time
 
 
 class Present(NamedTuple):
     """Couplings to the motion at the time itself, and room to sum up those of one delay."""
 
-    stiffness: NDArray[np.float64]  # N/m (r, r)
-    dashpot: NDArray[np.float64]  # N s/m (r, r)
-    part: NDArray[np.float64]  # (r, r)
-    part_dashpot: NDArray[np.float64]  # (r, r)
-    of_delay: NDArray[np.float64]  # N/m (G, r, r)
-    used: NDArray[np.int64]  # (G,)
+    stiffness: Array  # N/m (r, r)
+    dashpot: Array  # N s/m (r, r)
+    part: Array  # (r, r)
+    part_dashpot: Array  # (r, r)
+    of_delay: Array  # N/m (G, r, r)
+    used: IntegerArray  # (G,)
 
 
 class Instant(NamedTuple):
     """A time within a step."""
 
     rotation: SpindleRotation
-    node: NDArray[np.float64]  # starts and middles of the steps, s (2 N + 1,)
+    node: Array  # starts and middles of the steps, s (2 N + 1,)
     rate: float  # by which velocities are divided, rad/s
     step: int
     time: float  # s
@@ -199,25 +199,10 @@ def add_contact(basis, contact, share, stiffness, dashpot):
 
 @njit(**LEAF_KERNEL)
 def couple(cut, edge, now, speed_factor, sources, count, present):
-    """Enter the couplings at one time.
+    """Enter the couplings at one time; returns the height of edge in the cut, m, and the sources.
 
-    Parameters
-    ----------
-    cut : CutArrays
-    edge : EdgeAtDepth
-    now : Instant
-    speed_factor : float
-        One over the cutting speed, s/m.
-    sources : Sources
-        With room for `edge.most` of them beyond `count`.
-    count : int
-    present : Present
-        Stiffness and dashpot are overwritten.
-
-    Returns
-    -------
-    (float, int)
-        Height of edge in the cut, m, and the number of sources.
+    `speed_factor` is one over the cutting speed, s/m; `sources` have room for `edge.most` of them
+    beyond `count`; stiffness and dashpot of `present` are overwritten.
     """
     segments, rotation = cut.segments, now.rotation
     clear(present.stiffness)

@@ -22,14 +22,7 @@ _FIRST_CHECK, _MOST_FUNCTIONS = 6, 320
 def dominant_motion(cut, speed, depth, steps_per_wavelength, refinement):
     """Dominant multiplier over one period and the motion that belongs to it.
 
-    Parameters
-    ----------
-    cut : SteppedCut
-    speed, depth : float
-        rad/s, m.
-    steps_per_wavelength : float
-    refinement : int
-        See `period_steps`.
+    Speed in rad/s, depth in m; see `period_steps` for the others.
 
     Returns
     -------

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.stability.stability_method import Multiplier, StabilityMethod, Sweep
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ class MatrixFree(StabilityMethod):
         model, speeds, depths, _, progress = sweep
         return limit_curve(stepped_cuts(model, sweep.max_depth), speeds, depths, progress)
 
-    def radius_of(self, sweep: Sweep) -> NDArray[np.float64]:
+    def radius_of(self, sweep: Sweep) -> Array:
         """Spectral radius at points."""
         from chatter.stability.methods.matrix_free.multipliers import multipliers
         from chatter.stability.methods.matrix_free.stepped_cut import stepped_cut

@@ -11,8 +11,8 @@ collocation but the couplings of the edge.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, ComplexArray, IntegerArray
 from chatter.description.errors import RunError
 from chatter.description.progress import Progress, no_progress
 from chatter.description.units import rpm
@@ -45,11 +45,11 @@ _CHECKED = 12
 
 def multipliers(
     cut: SteppedCut,
-    speeds: NDArray[np.float64],
-    depths: NDArray[np.float64],
+    speeds: Array,
+    depths: Array,
     progress: Progress = no_progress,
     refinements: tuple[int, ...] = _EXTRAPOLATED,
-) -> NDArray[np.complex128]:
+) -> ComplexArray:
     """Dominant multiplier over one period at every point.
 
     Parameters
@@ -75,7 +75,7 @@ def multipliers(
     if len(speeds) == 0:
         return np.empty(0, dtype=np.complex128)
 
-    def at(index: NDArray[np.int64]) -> NDArray[np.complex128]:
+    def at(index: IntegerArray) -> ComplexArray:
         values = [
             np.array([_multiplier(cut, float(speeds[i]), float(depths[i]), r) for i in index])
             for r in refinements
@@ -113,16 +113,7 @@ def converged_multiplier(
 
     With the steps the edge segments are halved. The estimate is what the extrapolation adds to the
     finer steps, and a third of what the finer segments change: chords of an edge are of second
-    order.
-
-    Parameters
-    ----------
-    cut_at : callable
-        The cut with edge segments of a relative length.
-    speed, depth : float
-        rad/s, m.
-    tolerance : float
-        On |mu|, relative to max(1, |mu|).
+    order. Speed in rad/s, depth in m; the tolerance is on |mu|, relative to max(1, |mu|).
     """
     refinement, cut = 1, cut_at(1.0)
     coarse = _multiplier(cut, speed, depth, refinement)
@@ -156,10 +147,7 @@ def chatter_frequency(cut: SteppedCut, speed: float, depth: float) -> float:
 
 
 def limit_curve(
-    cut_at: CutAt,
-    speeds: NDArray[np.float64],
-    depths: NDArray[np.float64],
-    progress: Progress = no_progress,
+    cut_at: CutAt, speeds: Array, depths: Array, progress: Progress = no_progress
 ) -> LimitCurve:
     """Limits of stability at every spindle speed; see `limit_search`.
 
@@ -168,29 +156,19 @@ def limit_curve(
     """
     cut = cut_at(1.0)
 
-    def plain(
-        points: NDArray[np.int64], depth: NDArray[np.float64], report: Progress
-    ) -> NDArray[np.complex128]:
-        return multipliers(cut, speeds[points], depth, report, _PLAIN)
+    def at(
+        index: IntegerArray, depth: Array, refinements: tuple[int, ...], report: Progress
+    ) -> ComplexArray:
+        return multipliers(cut, speeds[index], depth, report, refinements)
 
-    def refined(
-        points: NDArray[np.int64], depth: NDArray[np.float64], report: Progress
-    ) -> NDArray[np.complex128]:
-        return multipliers(cut, speeds[points], depth, report, _EXTRAPOLATED)
-
-    def frequencies(points: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
-        def some(index: NDArray[np.int64]) -> list[float]:
-            return [
-                chatter_frequency(cut, float(speeds[points[i]]), float(depth[i])) for i in index
-            ]
-
-        return np.concatenate(sweep(some, len(points), points_a_chunk=8))
+    def frequency(index: int, depth: float) -> float:
+        return chatter_frequency(cut, float(speeds[index]), depth)
 
     max_depth, finer = float(depths[-1]), _EXTRAPOLATED[-1]
     steps = np.array(
         [steps_per_period(cut, float(v), max_depth, STEPS_PER_WAVELENGTH, finer) for v in speeds]
     )
-    method = PointMethod(plain, refined, frequencies)
+    method = PointMethod(at, _EXTRAPOLATED, frequency)
     limits = limit_curve_by(method, speeds, depths, steps, progress)
     return limits._replace(error=_limit_error(cut, cut_at(0.5), limits))
 

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.engine.presets import KERNEL
 from chatter.stability.arnoldi import register_operator
 from chatter.stability.methods.matrix_free.step_assembly import StepAssembly
@@ -16,9 +16,9 @@ from chatter.stability.methods.matrix_free.step_assembly import StepAssembly
 class PropagationScratch(NamedTuple):
     """Scratch of `propagate`; N steps."""
 
-    motion: NDArray[np.float64]  # of the nodes of the period before and of this one (4 N + 1, 2, r)
-    force: NDArray[np.float64]  # (2, r)
-    free: NDArray[np.float64]  # (2, 2, r)
+    motion: Array  # of the nodes of the period before and of this one (4 N + 1, 2, r)
+    force: Array  # (2, r)
+    free: Array  # (2, 2, r)
 
 
 @njit(**KERNEL)

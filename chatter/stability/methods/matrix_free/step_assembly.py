@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, IntegerArray
 from chatter.engine.presets import KERNEL
 from chatter.stability.methods.matrix_free.couplings import (
     Instant,
@@ -44,19 +44,19 @@ class StepAssembly(NamedTuple):
     mode.
     """
 
-    time: NDArray[np.float64]  # of the nodes of this period, and its end, s (2 N + 1,)
-    kind: NDArray[np.int64]  # number of the kind of a step (N,)
-    response: NDArray[np.float64]  # of every mode, see `mode_response` (S, n, 4, 2, 4)
-    engaged: NDArray[np.int64]  # 1 in the cut (N,)
-    from_motion: NDArray[np.float64]  # force at the Gauss points from free motion (N, 2r, 4r)
-    from_earlier: NDArray[np.float64]  # and from the force of the earlier motion (N, 2r, 2r)
-    first_source: NDArray[np.int64]  # of each Gauss point (2 N + 1,)
-    node: NDArray[np.int64]  # earlier of the two of a source (sources,)
-    weight: NDArray[np.float64]  # of displacement and velocity at both nodes (sources, 4)
-    block: NDArray[np.float64]  # force per displacement, N/m (sources, r, r)
-    shape: NDArray[np.float64]  # displacement per modal coordinate (n, r)
-    shape_rate: NDArray[np.float64]  # velocity over `rate` per x'/omega (n, r)
-    gain: NDArray[np.float64]  # modal acceleration per force, 1/kg (n, r)
+    time: Array  # of the nodes of this period, and its end, s (2 N + 1,)
+    kind: IntegerArray  # number of the kind of a step (N,)
+    response: Array  # of every mode, see `mode_response` (S, n, 4, 2, 4)
+    engaged: IntegerArray  # 1 in the cut (N,)
+    from_motion: Array  # force at the Gauss points from free motion (N, 2r, 4r)
+    from_earlier: Array  # and from the force of the earlier motion (N, 2r, 2r)
+    first_source: IntegerArray  # of each Gauss point (2 N + 1,)
+    node: IntegerArray  # earlier of the two of a source (sources,)
+    weight: Array  # of displacement and velocity at both nodes (sources, 4)
+    block: Array  # force per displacement, N/m (sources, r, r)
+    shape: Array  # displacement per modal coordinate (n, r)
+    shape_rate: Array  # velocity over `rate` per x'/omega (n, r)
+    gain: Array  # modal acceleration per force, 1/kg (n, r)
     rate: float  # rad/s
 
 
@@ -141,22 +141,9 @@ def _eliminate(system, first, second):
 
 @njit(**KERNEL)
 def assemble_steps(stepped, speed, depth, steps_per_wavelength, refinement):
-    """Lay out the steps of one period.
+    """Lay out the steps of one period at a mean spindle speed (rad/s) and an axial depth (m).
 
-    Parameters
-    ----------
-    stepped : SteppedCut
-    speed : float
-        Mean spindle speed, rad/s.
-    depth : float
-        Axial depth, m.
-    steps_per_wavelength : float
-    refinement : int
-        See `period_steps`.
-
-    Returns
-    -------
-    StepAssembly
+    See `period_steps` for the other parameters.
     """
     cut, rate = stepped.arrays, stepped.fastest
     rotation = spindle_rotation_at(cut.variation, cut.fit, speed, cut.period_angle)

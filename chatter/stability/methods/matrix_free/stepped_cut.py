@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -54,8 +55,4 @@ def stepped_cut(model: MillingModel, max_depth: float, relative_length: float = 
 
 def stepped_cuts(model: MillingModel, max_depth: float) -> CutAt:
     """The cut of a model with edge segments of any relative length, down to a depth (m)."""
-
-    def cut_at(relative_length: float) -> SteppedCut:
-        return stepped_cut(model, max_depth, relative_length)
-
-    return cut_at
+    return partial(stepped_cut, model, max_depth)

@@ -17,8 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.engine.presets import KERNEL
 from chatter.stability.methods.matrix_free.modal_response import POSITIONS
 from chatter.stability.spindle_rotation import angle_at, time_at
@@ -54,12 +54,12 @@ class Steps(NamedTuple):
     A plain step has power 1 and goes from 0 to 1.
     """
 
-    node: NDArray[np.float64]  # starts and middles of the steps and the end, s (2 N + 1,)
-    anchor: NDArray[np.float64]  # s (N,)
-    span: NDArray[np.float64]  # s, below zero before a border (N,)
-    power: NDArray[np.float64]  # (N,)
-    low: NDArray[np.float64]  # (N,)
-    high: NDArray[np.float64]  # (N,)
+    node: Array  # starts and middles of the steps and the end, s (2 N + 1,)
+    anchor: Array  # s (N,)
+    span: Array  # s, below zero before a border (N,)
+    power: Array  # (N,)
+    low: Array  # (N,)
+    high: Array  # (N,)
 
 
 @njit(**KERNEL)

@@ -18,8 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, ComplexArray
 from chatter.engine.presets import DRIVER, KERNEL
 
 #: largest change of the phase of the determinant from one frequency to the next, rad
@@ -34,8 +34,8 @@ _LINES_SEARCHED = 41
 class FrequencyResponse(NamedTuple):
     """Relative receptance in r directions over frequency."""
 
-    omega: NDArray[np.float64]  # rad/s (m,)
-    receptance: NDArray[np.complex128]  # m/N (m, r, r)
+    omega: Array  # rad/s (m,)
+    receptance: ComplexArray  # m/N (m, r, r)
 
 
 @njit(**KERNEL)

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, ComplexArray
 from chatter.engine.presets import DRIVER, KERNEL
 from cutting.edge_segments.coupling import arc_at, coupling_at, delay_at, part_below, radius_at
 
@@ -22,9 +22,9 @@ _SHORT_PART, _LONG_PART = 0.5, 1.5
 class Harmonics(NamedTuple):
     """Fourier coefficients of the couplings at one depth, orders -K .. K."""
 
-    delay: NDArray[np.float64]  # rad (g,)
-    stiffness: NDArray[np.complex128]  # N/m (g, 2K + 1, r, r)
-    dashpot: NDArray[np.complex128]  # N s/m times the spindle speed (2K + 1, r, r)
+    delay: Array  # rad (g,)
+    stiffness: ComplexArray  # N/m (g, 2K + 1, r, r)
+    dashpot: ComplexArray  # N s/m times the spindle speed (2K + 1, r, r)
 
 
 @njit(**KERNEL)
@@ -153,20 +153,7 @@ def _add_exactly(cut, segment, position, length, speed_factor, orders, stiffness
 
 @njit(**DRIVER)
 def harmonics_at(cut, depth, orders):
-    """Fourier coefficients of the couplings over a period of the tool, orders -K .. K.
-
-    Parameters
-    ----------
-    cut : CutArrays
-    depth : float
-        m.
-    orders : int
-        K.
-
-    Returns
-    -------
-    Harmonics
-    """
+    """Fourier coefficients of the couplings at a depth (m) over a period, orders -K .. K."""
     segments = cut.segments
     rank = cut.shape.shape[1]
     highest = orders * 2.0 * math.pi / cut.period_angle

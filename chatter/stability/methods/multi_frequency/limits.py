@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, IntegerArray
 from chatter.description.errors import RunError
 from chatter.description.progress import Progress, no_progress
 from chatter.description.units import rpm
-from chatter.engine.parallel import sweep
+from chatter.engine.parallel import each
 from chatter.stability.crossings import find_crossings
 from chatter.stability.cut_arrays import CutArrays
 from chatter.stability.limit_curve import LimitCurve, limits_at
@@ -34,15 +34,10 @@ _DEPTH_TOLERANCE = 1e-4
 _FLIP = 1e-3
 
 
-def harmonic_counts(
-    highest: float, period_angle: float, speeds: NDArray[np.float64]
-) -> NDArray[np.int64]:
+def harmonic_counts(highest: float, period_angle: float, speeds: Array) -> IntegerArray:
     """Harmonics on either side (n,) that reach beyond the highest resonance (rad/s).
 
-    Raises
-    ------
-    RunError
-        If they cannot at a speed.
+    RunError is raised if they cannot at a speed.
     """
     base = 2.0 * np.pi / period_angle * np.asarray(speeds)
     slowest = float(base.min())
@@ -56,7 +51,7 @@ def harmonic_counts(
     return np.clip(np.ceil(_REACH * highest / base), _FEWEST, _MOST).astype(np.int64)
 
 
-def _changing_lines(response: FrequencyResponse) -> NDArray[np.float64]:
+def _changing_lines(response: FrequencyResponse) -> Array:
     """Lines, rad/s, between which the receptance changes by no more than a share of itself."""
     flat = response.receptance.reshape(response.omega.size, -1)
     size = np.linalg.norm(flat, axis=1)
@@ -66,7 +61,7 @@ def _changing_lines(response: FrequencyResponse) -> NDArray[np.float64]:
     return response.omega[np.flatnonzero(np.diff(passed) > 0.0)]
 
 
-def frequency_marks(lines: NDArray[np.float64], base: float) -> NDArray[np.float64]:
+def frequency_marks(lines: Array, base: float) -> Array:
     """Frequencies w in 0 .. base/2, ascending, at which some w + l base is one of the lines.
 
     A resonance far narrower than the base would else be stepped over: the determinant turns there
@@ -79,28 +74,15 @@ def frequency_marks(lines: NDArray[np.float64], base: float) -> NDArray[np.float
 def limit_curve(
     cut: CutArrays,
     response: FrequencyResponse,
-    speeds: NDArray[np.float64],
-    depths: NDArray[np.float64],
+    speeds: Array,
+    depths: Array,
     progress: Progress = no_progress,
 ) -> LimitCurve:
-    """Limits of stability at every spindle speed.
+    """Limits of stability at every spindle speed (rad/s), searched on a grid of depths (m).
 
-    Parameters
-    ----------
-    cut : CutArrays
-        At a constant speed; of its modes only the highest frequency is used.
-    response : FrequencyResponse
-    speeds : (n,) array of float
-        rad/s.
-    depths : (m,) array of float
-        Grid, m.
-    progress : callable, optional
-        Called with (done, total) depths of the grid.
-
-    Raises
-    ------
-    RunError
-        If the harmonics do not reach up to the highest mode; see `harmonic_counts`.
+    The cut is at a constant speed; of its modes only the highest frequency is used. `progress` is
+    called with (done, total) depths of the grid. RunError is raised if the harmonics do not reach
+    up to the highest mode; see `harmonic_counts`.
     """
     counts = harmonic_counts(cut.fastest, cut.period_angle, speeds)
     orders = 2 * int(counts.max()) + 1
@@ -117,29 +99,22 @@ def limit_curve(
     def side(speed: int, harmonics: Harmonics) -> float:
         return 1.0 if unstable_roots(*at(speed, harmonics)) > 0 else -1.0
 
-    def at_depths(index: NDArray[np.int64]) -> list[list[float]]:
-        return [
-            [side(speed, harmonics) for speed in range(len(speeds))]
-            for harmonics in (harmonics_at(cut, float(depths[i]), orders) for i in index)
-        ]
+    def at_depth(row: int) -> list[float]:
+        harmonics = harmonics_at(cut, float(depths[row]), orders)
+        return [side(speed, harmonics) for speed in range(len(speeds))]
 
     # the coefficients of one depth at a time: a tool of many delays has a good many of them
-    rows = sweep(at_depths, len(depths), progress, points_a_chunk=1)
-    grid = np.array([row for part in rows for row in part]).T
+    grid = np.array(each(at_depth, len(depths), progress)).T
 
-    def sides(index: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
-        def some(points: NDArray[np.int64]) -> list[float]:
-            return [
-                -1.0 if depth[p] == 0.0
-                else side(int(index[p]), harmonics_at(cut, float(depth[p]), orders))
-                for p in points
-            ]  # fmt: skip
+    def sides(index: IntegerArray, depth: Array) -> Array:
+        def at(point: int) -> float:
+            if depth[point] == 0.0:
+                return -1.0
+            return side(int(index[point]), harmonics_at(cut, float(depth[point]), orders))
 
-        return np.array([v for part in sweep(some, len(index), points_a_chunk=4) for v in part])
+        return np.array(each(at, len(index), points_a_chunk=4))
 
-    def at_limits(
-        index: NDArray[np.int64], depth: NDArray[np.float64]
-    ) -> tuple[list[str], NDArray[np.float64]]:
+    def at_limits(index: IntegerArray, depth: Array) -> tuple[list[str], Array]:
         found = [
             chatter_frequency(*at(int(i), harmonics_at(cut, float(d), orders)))
             for i, d in zip(index, depth, strict=True)

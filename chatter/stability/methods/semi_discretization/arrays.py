@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.stability.model import MillingModel
 from cutting.force.directional_coefficients import DirectionalTable
 
@@ -18,10 +18,10 @@ class MillingArrays(NamedTuple):
     r is its dimension (1 to 3) and n the number of modes.
     """
 
-    natural_frequency: NDArray[np.float64]  # rad/s (n,)
-    damping: NDArray[np.float64]  # ratio (n,)
-    shape: NDArray[np.float64]  # displacement per modal coordinate (n, r)
-    force_gain: NDArray[np.float64]  # modal acceleration per force, 1/kg (n, r)
+    natural_frequency: Array  # rad/s (n,)
+    damping: Array  # ratio (n,)
+    shape: Array  # displacement per modal coordinate (n, r)
+    force_gain: Array  # modal acceleration per force, 1/kg (n, r)
     table: DirectionalTable
     tooth_pitch: float  # rad
     lag_per_depth: float  # tan(helix)/R, rad/m

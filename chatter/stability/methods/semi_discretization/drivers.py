@@ -13,29 +13,16 @@ from chatter.stability.methods.semi_discretization.monodromy import (
     advance_step,
     build_monodromy,
     first_check,
+    record_motion,
     start_vector,
 )
 
 
 @njit(**DRIVER)
 def multipliers_at(scheme, arrays, speeds, depths, steps, refinement):
-    """Dominant multipliers of n points.
+    """Dominant multipliers (n,), imaginary part >= 0, at n speeds (rad/s) and depths (m).
 
-    Parameters
-    ----------
-    scheme : ZerothOrder, FirstOrder, SecondOrder or FullDiscretization
-    arrays : MillingArrays
-    speeds, depths : (n,) array of float
-        rad/s, m.
-    steps : (n,) array of int
-        Steps per tooth period.
-    refinement : int
-        Every step in the cut is divided by this.
-
-    Returns
-    -------
-    (n,) array of complex
-        Imaginary part >= 0.
+    `steps` (n,) a tooth period; every step in the cut is divided by `refinement`.
     """
     out = np.empty(speeds.shape[0], dtype=np.complex128)
     for i in range(speeds.shape[0]):
@@ -76,9 +63,7 @@ def _motion_over_period(period, vector):
     motion = np.zeros((steps + 1, rank))
     state, next_state = vector[:size].copy(), np.empty(size)
     for s in range(steps + 1):
-        for k in range(rank):
-            for j in range(size):
-                motion[s, k] += period.output[k, j] * state[j]
+        record_motion(period.output, state, motion[s])
         if s < steps:
             advance_step(period, s, vector, state, next_state)
     return motion

@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit, types
 from numba.extending import overload
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, IntegerArray
 from chatter.engine.presets import KERNEL, SUMMING_KERNEL
 from chatter.stability.arnoldi import register_operator
 from chatter.stability.methods.semi_discretization.first_order_step import first_order_step
@@ -46,15 +46,15 @@ class Monodromy(NamedTuple):
     ``left`` to ``left + 1``; a free step has ``left = -1``.
     """
 
-    transition: NDArray[np.float64]  # (steps, 2n, 2n)
-    from_left: NDArray[np.float64]  # of the delayed motion at the left node, (steps, 2n, r)
-    from_right: NDArray[np.float64]  # at the right node, (steps, 2n, r)
-    left: NDArray[np.int64]  # (steps,)
-    duration: NDArray[np.float64]  # s, (steps,)
-    output: NDArray[np.float64]  # motion of the tool point from the state, (r, 2n)
+    transition: Array  # (steps, 2n, 2n)
+    from_left: Array  # of the delayed motion at the left node, (steps, 2n, r)
+    from_right: Array  # at the right node, (steps, 2n, r)
+    left: IntegerArray  # (steps,)
+    duration: Array  # s, (steps,)
+    output: Array  # motion of the tool point from the state, (r, 2n)
     nodes: int
-    further: NDArray[np.int64]  # third node of a parabola (steps,); empty where there is none
-    from_further: NDArray[np.float64]  # (steps, 2n, r)
+    further: IntegerArray  # third node of a parabola (steps,); empty where there is none
+    from_further: Array  # (steps, 2n, r)
 
 
 @njit(**KERNEL)
@@ -292,7 +292,7 @@ def build_monodromy(scheme, arrays, speed, depth, steps, refinement, free_steps)
 
 
 @njit(**KERNEL)
-def _record_motion(output, state, motion):
+def record_motion(output, state, motion):
     """Set motion (r,) to that of the tool point."""
     rank, size = output.shape
     for k in range(rank):
@@ -338,12 +338,7 @@ def monodromy_scratch(period):
 def apply_monodromy(period, vector, out, scratch):
     """Set out to the image of the vector after one tooth period.
 
-    Parameters
-    ----------
-    period : Monodromy
-    vector, out : (2n + nodes r,) array of float
-        State, then the motion at the nodes during the last period.
-    scratch : tuple of two (2n,) arrays of float
+    Vectors (2n + nodes r,) hold the state, then the motion at the nodes during the last period.
     """
     state, next_state = scratch
     steps, size, rank = period.from_left.shape
@@ -351,10 +346,10 @@ def apply_monodromy(period, vector, out, scratch):
     for s in range(steps):
         base = size + period.left[s] * rank
         if period.left[s] >= 0:
-            _record_motion(period.output, state, out[base : base + rank])
+            record_motion(period.output, state, out[base : base + rank])
         advance_step(period, s, vector, state, next_state)
         if period.left[s] >= 0:
-            _record_motion(period.output, state, out[base + rank : base + 2 * rank])
+            record_motion(period.output, state, out[base + rank : base + 2 * rank])
     out[:size] = state
 
 

@@ -8,8 +8,8 @@ order from two to four.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, ComplexArray, IntegerArray
 from chatter.description.errors import RunError
 from chatter.description.progress import Progress, no_progress
 from chatter.description.units import rpm
@@ -41,7 +41,7 @@ _LARGEST_CORRECTION = 0.2
 _ORDER = 2
 
 
-def automatic_steps(arrays: MillingArrays, speeds: NDArray[np.float64]) -> NDArray[np.int64]:
+def automatic_steps(arrays: MillingArrays, speeds: Array) -> IntegerArray:
     """Steps per tooth period (n,) that resolve the chatter wavelength at each speed (rad/s)."""
     period = arrays.tooth_pitch / np.asarray(speeds)
     fastest = CHATTER_ABOVE_NATURAL * relevant_frequency(*arrays[:4])
@@ -57,8 +57,8 @@ def automatic_steps(arrays: MillingArrays, speeds: NDArray[np.float64]) -> NDArr
 
 
 def _resolution(
-    arrays: MillingArrays, speeds: NDArray[np.float64], steps: int | None
-) -> tuple[NDArray[np.int64], tuple[int, ...]]:
+    arrays: MillingArrays, speeds: Array, steps: int | None
+) -> tuple[IntegerArray, tuple[int, ...]]:
     """Steps (n,) and refinements: plain where the user fixes the steps, else extrapolated."""
     if steps is None:
         return automatic_steps(arrays, speeds), _EXTRAPOLATED
@@ -67,12 +67,12 @@ def _resolution(
 
 def multipliers(
     arrays: MillingArrays,
-    speeds: NDArray[np.float64],
-    depths: NDArray[np.float64],
+    speeds: Array,
+    depths: Array,
     steps: int | None = None,
     progress: Progress = no_progress,
     scheme: Scheme = FIRST_ORDER,
-) -> NDArray[np.complex128]:
+) -> ComplexArray:
     """Dominant multiplier over one tooth period at every point.
 
     Parameters
@@ -102,13 +102,7 @@ def converged_multiplier(
 ) -> Multiplier:
     """Dominant multiplier at one point, refined until its estimated error meets a tolerance.
 
-    Parameters
-    ----------
-    arrays : MillingArrays
-    speed, depth : float
-        rad/s, m.
-    tolerance : float
-        On |mu|, relative to max(1, |mu|).
+    Speed in rad/s, depth in m; the tolerance is on |mu|, relative to max(1, |mu|).
     """
     point = np.array([speed]), np.array([depth])
     # the first value is there to be compared with: it may be coarser than what is needed
@@ -138,58 +132,39 @@ def chatter_frequency(arrays: MillingArrays, speed: float, depth: float) -> floa
 
 def limit_curve(
     arrays: MillingArrays,
-    speeds: NDArray[np.float64],
-    depths: NDArray[np.float64],
+    speeds: Array,
+    depths: Array,
     steps: int | None = None,
     progress: Progress = no_progress,
     scheme: Scheme = FIRST_ORDER,
 ) -> LimitCurve:
-    """Limits of stability at every spindle speed.
+    """Limits of stability at every spindle speed (rad/s), searched on a grid of depths (m).
 
-    Parameters
-    ----------
-    arrays : MillingArrays
-    speeds : (n,) array of float
-        rad/s.
-    depths : (m,) array of float
-        m, ascending, > 0: grid on which changes of stability are searched; an unstable or
-        stable interval that fits between two of its depths is not seen.
-    steps : int, optional
-        As in `multipliers`.
-    progress : callable, optional
-        Called with (done, total) points of the grid.
+    See `limit_curve_by`; `steps` and `scheme` are as in `multipliers`.
     """
     count, refinements = _resolution(arrays, speeds, steps)
 
-    def refined(
-        index: NDArray[np.int64], depth: NDArray[np.float64], report: Progress
-    ) -> NDArray[np.complex128]:
+    def at(
+        index: IntegerArray, depth: Array, refinements: tuple[int, ...], report: Progress
+    ) -> ComplexArray:
         return _at_points(arrays, speeds[index], depth, count[index], refinements, report, scheme)
 
-    def plain(
-        index: NDArray[np.int64], depth: NDArray[np.float64], report: Progress
-    ) -> NDArray[np.complex128]:
-        return _at_points(arrays, speeds[index], depth, count[index], _PLAIN, report, scheme)
+    def frequency(index: int, depth: float) -> float:
+        return chatter_frequency(arrays, float(speeds[index]), depth)
 
-    def frequencies(index: NDArray[np.int64], depth: NDArray[np.float64]) -> NDArray[np.float64]:
-        def some(points: NDArray[np.int64]) -> list[float]:
-            return [chatter_frequency(arrays, float(speeds[index[i]]), depth[i]) for i in points]
-
-        return np.concatenate(sweep(some, len(index), points_a_chunk=8))
-
-    method = PointMethod(plain, refined if len(refinements) > 1 else plain, frequencies)
+    method = PointMethod(at, refinements, frequency)
     return limit_curve_by(method, speeds, depths, count, progress)
 
 
 def _at_points(
     arrays: MillingArrays,
-    speeds: NDArray[np.float64],
-    depths: NDArray[np.float64],
-    steps: NDArray[np.int64],
+    speeds: Array,
+    depths: Array,
+    steps: IntegerArray,
     refinements: tuple[int, ...],
     progress: Progress = no_progress,
     scheme: Scheme = FIRST_ORDER,
-) -> NDArray[np.complex128]:
+) -> ComplexArray:
     """Dominant multipliers (n,) at n points, in parallel threads.
 
     From two refinements the second-order error is removed (Richardson).
@@ -197,7 +172,7 @@ def _at_points(
     if len(speeds) == 0:
         return np.empty(0, dtype=np.complex128)
 
-    def chunk(index: NDArray[np.int64]) -> NDArray[np.complex128]:
+    def chunk(index: IntegerArray) -> ComplexArray:
         points = speeds[index], depths[index], steps[index]
         values = [drivers.multipliers_at(scheme, arrays, *points, r) for r in refinements]
         if len(values) == 1:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.stability.stability_method import Multiplier, StabilityMethod, Sweep
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class SemiDiscretization(DiscretizedDelay):
 
     gives_radius = gives_multiplier = True
 
-    def radius_of(self, sweep: Sweep) -> NDArray[np.float64]:
+    def radius_of(self, sweep: Sweep) -> Array:
         """Spectral radius at points."""
         from chatter.stability.methods.semi_discretization.arrays import milling_arrays
         from chatter.stability.methods.semi_discretization.multipliers import multipliers

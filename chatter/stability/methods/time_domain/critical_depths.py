@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, IntegerArray
 from chatter.description.case import Case
 from chatter.description.progress import Progress, no_progress
-from chatter.engine.parallel import sweep
+from chatter.engine.parallel import each
 from chatter.simulation.perturbation.multiplier import SimulatedMultiplier, simulated_multiplier
 from chatter.stability.crossings import find_crossings
 from chatter.stability.limit_curve import LimitCurve, limits_at
@@ -35,41 +35,28 @@ def case_at(case: Case, speed: float, depth: float) -> Case:
 def growths(
     case: Case,
     modes: tuple[Mode, ...],
-    speeds: NDArray[np.float64],
-    depths: NDArray[np.float64],
+    speeds: Array,
+    depths: Array,
     progress: Progress = no_progress,
 ) -> list[SimulatedMultiplier]:
     """Growth at n points of speed (rad/s) and depth (m), in parallel threads."""
 
-    def at(points: NDArray[np.int64]) -> list[SimulatedMultiplier]:
-        return [
-            simulated_multiplier(case_at(case, float(speeds[i]), float(depths[i])), modes)
-            for i in points
-        ]
+    def at(i: int) -> SimulatedMultiplier:
+        return simulated_multiplier(case_at(case, float(speeds[i]), float(depths[i])), modes)
 
-    return [growth for chunk in sweep(at, len(speeds), progress, 1) for growth in chunk]
+    return each(at, len(speeds), progress)
 
 
 def time_limit_curve(
     case: Case,
     modes: tuple[Mode, ...],
-    speeds: NDArray[np.float64],
-    depths: NDArray[np.float64],
+    speeds: Array,
+    depths: Array,
     progress: Progress = no_progress,
 ) -> LimitCurve:
-    """Limits in depth at every speed.
+    """Limits in depth at every speed (rad/s); the grid of depths (m) is thinned to at most 32.
 
-    Parameters
-    ----------
-    case : Case
-    modes : tuple of Mode
-        Of its structure.
-    speeds : (n,) array of float
-        rad/s.
-    depths : (m,) array of float
-        Grid, m; thinned to at most 32 depths.
-    progress : callable
-        Called with (done, total) points of the grid.
+    `modes` are those of the structure; `progress` is called with (done, total) points of the grid.
     """
     grid_depths = depths[:: -(-len(depths) // _MOST_DEPTHS)]
     if grid_depths[-1] != depths[-1]:
@@ -77,15 +64,13 @@ def time_limit_curve(
     speed, depth = (part.ravel() for part in np.meshgrid(speeds, grid_depths, indexing="ij"))
     grid = _logarithms(growths(case, modes, speed, depth, progress))
 
-    def refined(index: NDArray[np.int64], at: NDArray[np.float64]) -> NDArray[np.float64]:
+    def refined(index: IntegerArray, at: Array) -> Array:
         found = np.full(len(index), _AT_REST)
         cut = at > 0.0
         found[cut] = _logarithms(growths(case, modes, speeds[index[cut]], at[cut]))
         return found
 
-    def at_limits(
-        index: NDArray[np.int64], at: NDArray[np.float64]
-    ) -> tuple[list[str], NDArray[np.float64]]:
+    def at_limits(index: IntegerArray, at: Array) -> tuple[list[str], Array]:
         found = growths(case, modes, speeds[index], _BEYOND * at)
         return [one.bifurcation for one in found], np.array([one.frequency for one in found])
 
@@ -95,7 +80,7 @@ def time_limit_curve(
     return limits_at(at_limits, speeds, crossings, np.zeros(len(speeds), dtype=np.int64))
 
 
-def _logarithms(found: list[SimulatedMultiplier]) -> NDArray[np.float64]:
+def _logarithms(found: list[SimulatedMultiplier]) -> Array:
     """Logarithm of the spectral radius, within bounds that a root search can use."""
     radius = np.array([growth.radius for growth in found])
     bounded = np.clip(radius, math.exp(-_LARGEST_GROWTH), math.exp(_LARGEST_GROWTH))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array
 from chatter.stability.stability_method import StabilityMethod, Sweep
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ class TimeDomain(StabilityMethod):
         model, speeds, depths, _, progress = sweep
         return time_limit_curve(model.case, model.structure.modes, speeds, depths, progress)
 
-    def radius_of(self, sweep: Sweep) -> NDArray[np.float64]:
+    def radius_of(self, sweep: Sweep) -> Array:
         """Spectral radius at points."""
         from chatter.stability.methods.time_domain.critical_depths import growths
 

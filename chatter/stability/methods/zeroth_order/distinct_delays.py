@@ -14,10 +14,11 @@ import math
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, ComplexArray, IntegerArray
 from chatter.engine.parallel import sweep
 from chatter.engine.presets import DRIVER, KERNEL
+from chatter.stability.methods.zeroth_order.kernels import order_like
 
 _ROOT_SWEEPS = 60
 #: lines: the phase of the longest delay turns by no more than this from one to the next, rad
@@ -85,12 +86,7 @@ def _inverse_depths(omega, receptance, delays, means, speed, before, now):
     for j in range(rank):
         # inverse depth: it passes through zero, where the depth goes to infinity
         now[j] = -now[j]
-    for j in range(rank - 1):
-        nearest = j
-        for k in range(j + 1, rank):
-            if abs(now[k] - before[j]) < abs(now[nearest] - before[j]):
-                nearest = k
-        now[j], now[nearest] = now[nearest], now[j]
+    order_like(before, now)
 
 
 @njit(**KERNEL)
@@ -142,29 +138,15 @@ def _limits(omega, receptance, coarse, delays, means, speeds):
 
 
 def limits_of_delays(
-    frequency: NDArray[np.float64],
-    receptance: NDArray[np.complex128],
-    delays: NDArray[np.float64],
-    means: NDArray[np.float64],
-    speeds: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Critical depth (m) and chatter frequency (Hz) at every spindle speed.
+    frequency: Array, receptance: ComplexArray, delays: Array, means: Array, speeds: Array
+) -> tuple[Array, Array]:
+    """Critical depth (m) and chatter frequency (Hz) at every spindle speed (rad/s).
 
-    Parameters
-    ----------
-    frequency : (m,) array of float
-        Hz, ascending, > 0.
-    receptance : (m, r, r) array of complex
-        m/N.
-    delays : (g,) array of float
-        rad.
-    means : (g, r, r) array of float
-        Mean directional matrix of each delay, N/m^2.
-    speeds : (n,) array of float
-        rad/s.
+    Receptance (m, r, r), m/N, at frequencies (m,), Hz, ascending, > 0; mean directional matrices
+    (g, r, r), N/m^2, of delays (g,), rad.
     """
 
-    def chunk(index: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def chunk(index: IntegerArray) -> tuple[Array, Array]:
         own = speeds[index]
         lines, values = _enough_lines(frequency, receptance, delays.max() / own.min())
         omega = 2.0 * np.pi * lines
@@ -177,9 +159,7 @@ def limits_of_delays(
     return depth, omega / (2.0 * np.pi)
 
 
-def _coarse_lines(
-    omega: NDArray[np.float64], receptance: NDArray[np.complex128], delay: float
-) -> NDArray[np.int64]:
+def _coarse_lines(omega: Array, receptance: ComplexArray, delay: float) -> IntegerArray:
     """Lines between which neither the phase of a delay nor the receptance changes by much."""
     flat = receptance.reshape(omega.size, -1)
     size = np.linalg.norm(flat, axis=1)
@@ -191,9 +171,7 @@ def _coarse_lines(
     return np.unique(np.concatenate([[0], kept, [omega.size - 1]])).astype(np.int64)
 
 
-def _on_lattice(
-    delays: NDArray[np.float64], means: NDArray[np.float64], spacing: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _on_lattice(delays: Array, means: Array, spacing: float) -> tuple[Array, Array]:
     """Fewer delays, evenly spaced, that stand for many by cubic interpolation of the phase."""
     position = np.floor(delays / spacing).astype(np.int64)
     number = position[:, None] + np.arange(-1, 3)
@@ -216,8 +194,8 @@ def _on_lattice(
 
 
 def _enough_lines(
-    frequency: NDArray[np.float64], receptance: NDArray[np.complex128], delay: float
-) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+    frequency: Array, receptance: ComplexArray, delay: float
+) -> tuple[Array, ComplexArray]:
     """More lines, between those there are, where the phase of a delay turns too far."""
     spacing = _LARGEST_PHASE_STEP / (2.0 * np.pi * delay)
     between = np.ceil(np.diff(frequency) / spacing).astype(np.int64)

@@ -63,22 +63,22 @@ def _lowest_between_lines(delay, omega, step, start, change, limit, frequency):
     return limit, frequency
 
 
+@njit(**KERNEL)
+def order_like(before, now):
+    """Reorder values (r,) in position, each next to that before it."""
+    for branch in range(now.shape[0] - 1):
+        nearest = branch
+        for other in range(branch + 1, now.shape[0]):
+            if abs(now[other] - before[branch]) < abs(now[nearest] - before[branch]):
+                nearest = other
+        now[branch], now[nearest] = now[nearest], now[branch]
+
+
 @njit(**DRIVER)
 def order_like_neighbours(eigenvalues):
     """Reorder the rows (n, r) in position so that each column is continuous."""
-    lines, rank = eigenvalues.shape
-    for line in range(1, lines):
-        for branch in range(rank - 1):
-            nearest = branch
-            for other in range(branch + 1, rank):
-                before = eigenvalues[line - 1, branch]
-                if abs(eigenvalues[line, other] - before) < abs(
-                    eigenvalues[line, nearest] - before
-                ):
-                    nearest = other
-            value = eigenvalues[line, branch]
-            eigenvalues[line, branch] = eigenvalues[line, nearest]
-            eigenvalues[line, nearest] = value
+    for line in range(1, eigenvalues.shape[0]):
+        order_like(eigenvalues[line - 1], eigenvalues[line])
 
 
 @njit(**KERNEL)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, IntegerArray
 from chatter.description.progress import Progress, no_progress
 from chatter.stability.averaged_coefficients import AveragedCoefficients
 from chatter.stability.methods.zeroth_order.distinct_delays import limits_of_delays
@@ -16,7 +16,7 @@ from chatter.stability.reference_speeds import over_reference_speeds
 _DEPTH_STEPS, _SPEEDS_FOR_DEPTH, _SAME_DEPTH = 8, 24, 0.05
 
 
-def zero_order_of(model: MillingModel, speeds: NDArray[np.float64]) -> ZeroOrderLimit:
+def zero_order_of(model: MillingModel, speeds: Array) -> ZeroOrderLimit:
     """Zeroth-order limits of a model at given speeds (rad/s).
 
     The coefficients of any tool but a uniform-pitch cylindrical end mill are averaged at the depth
@@ -24,7 +24,7 @@ def zero_order_of(model: MillingModel, speeds: NDArray[np.float64]) -> ZeroOrder
     grows.
     """
 
-    def limits(own: MillingModel, index: NDArray[np.int64], _: Progress) -> ZeroOrderLimit:
+    def limits(own: MillingModel, index: IntegerArray, _: Progress) -> ZeroOrderLimit:
         return _limits_of_structure(own, speeds[index])
 
     found = over_reference_speeds(model, speeds, limits, no_progress)
@@ -35,7 +35,7 @@ def zero_order_of(model: MillingModel, speeds: NDArray[np.float64]) -> ZeroOrder
     return ZeroOrderLimit(speeds, depth, frequency, lowest.lowest_depth, lowest.lowest_frequency)
 
 
-def _limits_of_structure(model: MillingModel, speeds: NDArray[np.float64]) -> ZeroOrderLimit:
+def _limits_of_structure(model: MillingModel, speeds: Array) -> ZeroOrderLimit:
     if model.is_uniform:
         return zero_order_limit(*model.receptance, model.averaged_directional, model.teeth, speeds)
     averaged = model.averaged_coefficients
@@ -53,7 +53,7 @@ def _limits_of_structure(model: MillingModel, speeds: NDArray[np.float64]) -> Ze
 
 
 def _limits_of_delays(
-    model: MillingModel, averaged: AveragedCoefficients, speeds: NDArray[np.float64]
+    model: MillingModel, averaged: AveragedCoefficients, speeds: Array
 ) -> ZeroOrderLimit:
     delays, means = averaged
     # a uniform pitch with the same mean gives the scale of the lowest limit

@@ -15,27 +15,27 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, ComplexArray
 from chatter.stability.methods.zeroth_order.kernels import order_like_neighbours, zero_order_limits
 
 
 class ZeroOrderLimit(NamedTuple):
     """Limit over spindle speed by the zeroth-order solution."""
 
-    spindle_speed: NDArray[np.float64]  # rad/s (n,)
-    critical_depth: NDArray[np.float64]  # m (n,), inf where no lobe reaches
-    chatter_frequency: NDArray[np.float64]  # Hz (n,), nan there
+    spindle_speed: Array  # rad/s (n,)
+    critical_depth: Array  # m (n,), inf where no lobe reaches
+    chatter_frequency: Array  # Hz (n,), nan there
     lowest_depth: float  # m, over all speeds
     lowest_frequency: float  # Hz
 
 
 def zero_order_limit(
-    frequency: NDArray[np.float64],
-    receptance: NDArray[np.complex128],
-    averaged_directional: NDArray[np.float64],
+    frequency: Array,
+    receptance: ComplexArray,
+    averaged_directional: Array,
     teeth: int,
-    speeds: NDArray[np.float64],
+    speeds: Array,
 ) -> ZeroOrderLimit:
     """Critical depth at every spindle speed.
 
@@ -65,7 +65,7 @@ def zero_order_limit(
     return ZeroOrderLimit(speeds, depth, chatter, lowest, float(frequency[line]))
 
 
-def _eigenvalues(matrices: NDArray[np.complex128]) -> NDArray[np.complex128]:
+def _eigenvalues(matrices: ComplexArray) -> ComplexArray:
     """Eigenvalues (m, r) of every line; those of two by two in closed form, ten times as fast."""
     if matrices.shape[1] != 2:
         return np.linalg.eigvals(matrices)
@@ -79,7 +79,7 @@ def _eigenvalues(matrices: NDArray[np.complex128]) -> NDArray[np.complex128]:
     return np.stack([larger, smaller], axis=1)
 
 
-def _continuous(eigenvalues: NDArray[np.complex128]) -> NDArray[np.complex128]:
+def _continuous(eigenvalues: ComplexArray) -> ComplexArray:
     """Order the eigenvalues of every line like those of the line before."""
     ordered = eigenvalues.copy()
     order_like_neighbours(ordered)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from chatter.description.arrays import Array, IntegerArray
 from chatter.stability.limit_curve import LimitCurve, limits_at
 from chatter.stability.stability_method import StabilityMethod, Sweep
 
@@ -27,9 +27,9 @@ class ZerothOrder(StabilityMethod):
         crossings = [depth[depth <= sweep.depths[-1]] for depth in limit.critical_depth[:, None]]
 
         def at_limits(
-            index: NDArray[np.int64],
-            depth: NDArray[np.float64],  # noqa: ARG001
-        ) -> tuple[list[str], NDArray[np.float64]]:
+            index: IntegerArray,
+            depth: Array,  # noqa: ARG001
+        ) -> tuple[list[str], Array]:
             return ["hopf"] * index.size, limit.chatter_frequency[index]
 
         count = len(sweep.speeds)
