@@ -202,10 +202,10 @@ def _check_point(view: Mapping[str, float], speed: float, depth: float) -> None:
     for name, value in (("spindle_speed_rpm", speed), ("axial_depth_mm", depth)):
         number = isinstance(value, (int, float)) and not isinstance(value, bool)
         if not number or not math.isfinite(value):
-            raise InputError(f"{name}: a number is wanted")
+            raise InputError(f"{name}: a number is required")
     inside = 0.9 * view["lobes.speeds.from"] <= speed <= 1.1 * view["lobes.speeds.to"]
     if not inside or not 0.0 < depth <= 1.1 * view["lobes.depths.to"]:
-        raise InputError(f"{speed:g} rpm, {depth:g} mm is no point of the diagram")
+        raise InputError(f"{speed:g} rpm, {depth:g} mm is not a point of the diagram")
 
 
 def _envelope(x: Array, y: Array) -> dict[str, list[float | None]]:

@@ -151,10 +151,10 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _request(self) -> dict[str, Any]:
         if self.headers.get_content_type() != "application/json":
-            raise _RefusedError(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "JSON is wanted")
+            raise _RefusedError(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "JSON is required")
         length = self.headers.get("Content-Length", "")
         if not (length.isascii() and length.isdigit()):
-            raise _RefusedError(HTTPStatus.LENGTH_REQUIRED, "the length of the request is wanted")
+            raise _RefusedError(HTTPStatus.LENGTH_REQUIRED, "the length of the request is required")
         if len(length) > 9 or int(length) > LARGEST_REQUEST:
             raise _RefusedError(
                 HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"at most {LARGEST_REQUEST} bytes are allowed"
@@ -162,15 +162,15 @@ class _Handler(BaseHTTPRequestHandler):
         try:
             given = json.loads(self.rfile.read(int(length)))
         except (ValueError, RecursionError):
-            raise _RefusedError(HTTPStatus.BAD_REQUEST, "the request is no JSON") from None
+            raise _RefusedError(HTTPStatus.BAD_REQUEST, "the request is not JSON") from None
         if not isinstance(given, dict):
-            raise _RefusedError(HTTPStatus.BAD_REQUEST, "the request is no table")
+            raise _RefusedError(HTTPStatus.BAD_REQUEST, "the request is not a table")
         return given
 
     def _diagram(self, given: dict[str, Any]) -> tuple[bytes, str]:
         stage = given.get("stage")
         if not isinstance(stage, str) or stage not in STAGES:
-            raise _RefusedError(HTTPStatus.BAD_REQUEST, f"stage: {' or '.join(STAGES)} is wanted")
+            raise _RefusedError(HTTPStatus.BAD_REQUEST, f"stage: {' or '.join(STAGES)} is required")
         live, values = self.server.live, given.get("values")
         return _as_json(
             self.server.diagrams.run(
@@ -214,7 +214,7 @@ def _page_of(given: dict[str, Any]) -> str:
     """Name that a page gives itself, so that its newest request is told from another page's."""
     name = given.get("page", "")
     if not isinstance(name, str) or len(name) > _LONGEST_PAGE_NAME:
-        raise _RefusedError(HTTPStatus.BAD_REQUEST, "page: a short name is wanted")
+        raise _RefusedError(HTTPStatus.BAD_REQUEST, "page: a short name is required")
     return name
 
 

@@ -216,7 +216,7 @@ def checked_values(given: Any, sliders: Mapping[str, Slider]) -> dict[str, float
         If they are no table of known paths and numbers in range; all problems are in it.
     """
     if not isinstance(given, dict):
-        raise InputError("values: a table of paths and numbers is wanted")
+        raise InputError("values: a table of paths and numbers is required")
     values, problems = {}, []
     for path, value in given.items():
         slider = sliders.get(path)
@@ -236,7 +236,7 @@ def checked_values(given: Any, sliders: Mapping[str, Slider]) -> dict[str, float
 def _problem(slider: Slider, value: Any) -> str:
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
     if not number or not abs(value) < 1e300:
-        return f"{slider.path}: {formatted(value)} is no number"
+        return f"{slider.path}: {formatted(value)} is not a number"
     slack = 1e-6 * max(abs(slider.low), abs(slider.high))
     if not slider.low - slack <= value <= slider.high + slack:
         unit = f" {slider.unit}" if slider.unit else ""
@@ -245,5 +245,5 @@ def _problem(slider: Slider, value: Any) -> str:
             f"{slider.low:g} to {slider.high:g}{unit} is allowed"
         )
     if slider.whole and value != int(value):
-        return f"{slider.path}: {value:g} is no whole number"
+        return f"{slider.path}: {value:g} is not a whole number"
     return ""

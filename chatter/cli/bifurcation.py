@@ -48,10 +48,10 @@ def _range(vary: str, count: int) -> tuple[str, list[float]]:
     low, dots, high = span.partition("..")
     if not (equals and dots and path.strip()):
         raise InputError(
-            f'--vary "{vary}": PATH=FROM..TO is wanted, such as cut.axial_depth="1 mm..4 mm"'
+            f'--vary "{vary}": PATH=FROM..TO is required, such as cut.axial_depth="1 mm..4 mm"'
         )
     if not 2 <= count <= 100_000:
-        raise InputError(f"--count {count}: a number from 2 to 100000 is wanted")
+        raise InputError(f"--count {count}: a number from 2 to 100000 is required")
     path = path.strip()
     field = field_at(Case, parse_path(path))
     if field is None:

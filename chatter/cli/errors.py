@@ -39,8 +39,8 @@ def reports_errors(command: Callable[Parameters, None]) -> Callable[Parameters, 
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             raise typer.Exit(EXIT_RUN_FAILED) from None
         except OSError as error:
-            place = f"{error.filename}: " if error.filename else ""
-            _leave([f"{place}{error.strerror or error}"], EXIT_INPUT_WRONG)
+            file = f"{error.filename}: " if error.filename else ""
+            _leave([f"{file}{error.strerror or error}"], EXIT_INPUT_WRONG)
         except (typer.Exit, typer.Abort):
             raise
         except Exception as error:

@@ -69,7 +69,7 @@ def _as_keys(changes: Mapping[str, Any]) -> dict[str, Any]:
 def _pair(option: str, text: str) -> tuple[str, str]:
     axis, equals, value = text.partition("=")
     if not equals or not axis.strip():
-        raise InputError(f'{option} {text!r}: wanted is AXIS=VALUE, such as {option} "Y=1 mm"')
+        raise InputError(f'{option} {text!r}: expected AXIS=VALUE, such as {option} "Y=1 mm"')
     return axis.strip(), value.strip()
 
 

@@ -53,12 +53,12 @@ def _print_errors(summaries: dict) -> None:
         rows = [
             [
                 axis,
-                f"{told['motor_error_um']:.4g}",
-                f"{told['tracking_error_um']:.4g}",
-                f"{told['tool_error_um']:.4g}" if "tool_error_um" in told else "",
-                f"{told['effort']:.4g}",
+                f"{errors['motor_error_um']:.4g}",
+                f"{errors['tracking_error_um']:.4g}",
+                f"{errors['tool_error_um']:.4g}" if "tool_error_um" in errors else "",
+                f"{errors['effort']:.4g}",
             ]
-            for axis, told in summary["axes"].items()
+            for axis, errors in summary["axes"].items()
         ]
         titles = ["axis", "motor [um]", "scale [um]", "tool [um]", "effort [N m or N]"]
         print_table(f"{name}: largest set less actual", titles, rows)

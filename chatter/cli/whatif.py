@@ -72,7 +72,7 @@ def whatif(options: WhatIfOptions) -> None:
     chosen = _chosen(study, options.vary)
     if file is None:
         if chosen is None:
-            raise InputError("a case or machine file is wanted, or --study NAME; --studies lists")
+            raise InputError("a case or machine file is required, or --study NAME; --studies lists")
         file = chosen.file()
     from chatter.studies.model import load_model, patched
 

@@ -93,8 +93,10 @@ def machine_cut(case: Case, friction: bool | None = None) -> MachineCut:
     tip, workpiece = _ends(file, section.position or {})
     tool = np.array(
         [
-            machine.row("tool", (Term(tip.body, way, tip.at), Term(workpiece, -way, tip.at)))
-            for way in axes
+            machine.row(
+                "tool", (Term(tip.body, direction, tip.at), Term(workpiece, -direction, tip.at))
+            )
+            for direction in axes
         ]
     )
     name = _spindle_axis(case, file, machine)

@@ -214,8 +214,8 @@ def _travel(composition: Composition, name: str, at: tuple[float, ...] | None) -
     axis, geometry = composition.file.axis[name], composition.geometry(name)
     if axis.drive is not None and axis.drive.is_rotary:
         return geometry.turning(geometry.moving), geometry.turning(geometry.carrying, -1.0)
-    place = None if at is None else np.asarray(at) + composition.shift(axis.driven_part)
-    return geometry.travel(place)
+    position = None if at is None else np.asarray(at) + composition.shift(axis.driven_part)
+    return geometry.travel(position)
 
 
 def _connector_names(file: MachineFile, name: str) -> list[str]:

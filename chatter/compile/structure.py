@@ -121,18 +121,18 @@ def reference_speeds(case: Case, speeds: NDArray[np.float64]) -> NDArray[np.floa
 
 
 def _measured_speeds(case: Case) -> list[float]:
-    """Speeds (rad/s) at which FRFs were measured, ascending; none where they are not told."""
-    told = {frf.spindle_speed for frf in case.structure.frf if frf.spindle_speed is not None}
-    return sorted(told)
+    """Speeds (rad/s) at which FRFs were measured, ascending; none where no speed is given."""
+    measured = {frf.spindle_speed for frf in case.structure.frf if frf.spindle_speed is not None}
+    return sorted(measured)
 
 
 def _given_modes(case: Case, speed: float) -> GivenModes:
     modes = []
-    for place, mode in enumerate(case.structure.mode):
+    for index, mode in enumerate(case.structure.mode):
         frequency = mode.frequency_at(speed)
         if not frequency > 0.0:
             raise InputError(
-                f"{case.name}: structure.mode[{place}].frequency_slope: {mode.frequency_slope:g} "
+                f"{case.name}: structure.mode[{index}].frequency_slope: {mode.frequency_slope:g} "
                 f"s/rad leaves no frequency at {rpm(speed):.0f} rpm"
             )
         damping, mass = mode.damping_at(speed), mode.mass_at(speed)
@@ -144,11 +144,11 @@ def _notes_on_speed(case: Case) -> tuple[str, ...]:
     if not depends_on_speed(case):
         return ()
     notes = ["the structure depends on the spindle speed, and is taken as it is at each speed"]
-    for place, mode in enumerate(case.structure.mode):
+    for index, mode in enumerate(case.structure.mode):
         if mode.speed_dependence is not None:
             first, *_, last = mode.speed_dependence.speeds
             notes.append(
-                f"structure.mode[{place}].speed_dependence goes from {rpm(first):.0f} to "
+                f"structure.mode[{index}].speed_dependence goes from {rpm(first):.0f} to "
                 f"{rpm(last):.0f} rpm; beyond, the mode is held as at the end"
             )
     measured = _measured_speeds(case)
@@ -184,8 +184,8 @@ def structure_at(case: Case, spindle_speed: float) -> Structure:
     if section.mode:
         return _given_modes(case, spindle_speed)
     if section.frf:
-        told = _measured_speeds(case)
-        nearest = min(told, key=lambda speed: abs(speed - spindle_speed)) if told else None
+        measured = _measured_speeds(case)
+        nearest = min(measured, key=lambda speed: abs(speed - spindle_speed)) if measured else None
         chosen = tuple(frf for frf in section.frf if frf.spindle_speed in (None, nearest))
         sides, notes = measured_sides(case, chosen)
         return MeasuredStructure(sides, (*notes, *_notes_on_speed(case)))

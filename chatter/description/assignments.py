@@ -28,7 +28,7 @@ def parse_assignments(assignments: Sequence[str]) -> dict[str, Any]:
         path, equals, text = assignment.partition("=")
         if not equals or not path.strip():
             problems.append(
-                f"--set {formatted(assignment)}: PATH=VALUE is wanted, "
+                f"--set {formatted(assignment)}: PATH=VALUE is required, "
                 'such as cut.axial_depth="2 mm"'
             )
         elif not text.strip():

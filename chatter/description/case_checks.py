@@ -53,10 +53,10 @@ def friction_problems(
     known = ", ".join(f"[friction.{name}]" for name in frictions) or "none"
     return [
         (
-            f"structure.mode[{place}].friction",
+            f"structure.mode[{index}].friction",
             f"there is no [friction.{mode.friction}]; there is {known}",
         )
-        for place, mode in enumerate(structure.mode if structure is not None else ())
+        for index, mode in enumerate(structure.mode if structure is not None else ())
         if mode.friction is not None and mode.friction not in frictions
     ]
 

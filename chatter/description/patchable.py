@@ -121,7 +121,7 @@ class Description(Section):
         """
         name = name or cls.NOUN
         if not isinstance(data, Mapping):
-            raise InputError(f"{name}: {formatted(data)} is given, a table of sections is wanted")
+            raise InputError(f"{name}: {formatted(data)} is given, a table of sections is required")
         try:
             document = tomlkit.item(plain(data, noun=cls.NOUN))
         except InputError as error:
@@ -190,7 +190,7 @@ class Description(Section):
         found = [key for key in keys if key in data]
         if len(found) > 1:
             listed = " and ".join(f"[{key}]" for key in found)
-            raise InputError(f"{name}: is a {noun} ({listed}); a {cls.NOUN} is wanted")
+            raise InputError(f"{name}: is a {noun} ({listed}); a {cls.NOUN} is required")
 
     def get(self, path: str) -> Any:
         """Return the value at a dotted path, in SI; a tuple of all where a step is ``[*]``.
@@ -202,24 +202,24 @@ class Description(Section):
         """
         return self._value_of(self, self._steps(path), 0)
 
-    def _value_of(self, item: Any, steps: tuple[Step, ...], place: int) -> Any:
-        if place == len(steps):
+    def _value_of(self, item: Any, steps: tuple[Step, ...], index: int) -> Any:
+        if index == len(steps):
             return item
-        step, here = steps[place], steps[: place + 1]
+        step, here = steps[index], steps[: index + 1]
         if isinstance(item, Section):
             key = key_of(type(item), str(step))
             if key is None:
                 raise InputError(
                     f"{self.name}: {join_path(steps)}: {unknown_key(type(self), here)}"
                 )
-            return self._value_of(getattr(item, key), steps, place + 1)
+            return self._value_of(getattr(item, key), steps, index + 1)
         if isinstance(item, tuple) and step == "*":
-            return tuple(self._value_of(entry, steps, place + 1) for entry in item)
+            return tuple(self._value_of(entry, steps, index + 1) for entry in item)
         in_table = isinstance(item, dict) and step in item
         in_list = isinstance(item, tuple) and isinstance(step, int) and step < len(item)
         if not (in_table or in_list):
             raise InputError(f"{self.name}: {join_path(steps)}: there is no {join_path(here)}")
-        return self._value_of(item[step], steps, place + 1)
+        return self._value_of(item[step], steps, index + 1)
 
     def patch(self, values: Mapping[str, Any]) -> Self:
         """Return the description with some values changed; this one stays as it is.
@@ -318,18 +318,18 @@ class Description(Section):
     @classmethod
     def _check_known(cls, steps: tuple[Step, ...]) -> None:
         """Refuse a path with an unknown key before anything is changed."""
-        for place, step in enumerate(steps):
-            section = model_at(cls, steps[:place])
+        for index, step in enumerate(steps):
+            section = model_at(cls, steps[:index])
             named = section is not None and isinstance(step, str) and step != "*"
             if named and key_of(section, step) is None:
-                here = steps[: place + 1]
+                here = steps[: index + 1]
                 raise InputError(f"{join_path(steps)}: {unknown_key(cls, here)}")
 
     @classmethod
     def _newly_made(cls, document: Any, steps: tuple[Step, ...]) -> list[str]:
         """Say where a path leads into a table of a name that none of its kind has."""
-        for place in range(1, len(steps) - 1):
-            kind, name = steps[:place], steps[place]
+        for index in range(1, len(steps) - 1):
+            kind, name = steps[:index], steps[index]
             info = info_at(cls, kind)
             stands = value_at(document, kind)
             if info is None or not is_mapping(info.annotation) or not stands or name in stands:
@@ -358,8 +358,8 @@ class Description(Section):
             for key, value in item.items():
                 cls._collect_deviations(value, (*steps, key), found)
         elif isinstance(item, list):
-            for place, value in enumerate(item):
-                cls._collect_deviations(value, (*steps, place), found)
+            for index, value in enumerate(item):
+                cls._collect_deviations(value, (*steps, index), found)
         elif isinstance(item, str):
             field = field_at(cls, steps)
             if field is not None:

@@ -22,10 +22,10 @@ _STEP = re.compile(r"\.?([A-Za-z_][\w-]*)|\[(\d+|\*)\]|\.(\d+|\*)(?=[.\[]|$)")
 def parse_path(text: str, into: str = "a case, such as cut.axial_depth") -> tuple[Step, ...]:
     """Split a dotted path into its steps.
 
-    What it leads into is for the message of an InputError if it is no path.
+    What it leads into is for the message of an InputError if it is not a path.
     """
     if not isinstance(text, str):
-        raise InputError(f"{formatted(text)} is no path into {into}")
+        raise InputError(f"{formatted(text)} is not a path into {into}")
     steps: list[Step] = []
     position = 0
     while position < len(text):
@@ -33,11 +33,11 @@ def parse_path(text: str, into: str = "a case, such as cut.axial_depth") -> tupl
         if match is None:
             break
         key, bracket, dotted = match.groups()
-        place = bracket or dotted
-        steps.append(key if key else "*" if place == "*" else int(place))
+        at = bracket or dotted
+        steps.append(key if key else "*" if at == "*" else int(at))
         position = match.end()
     if not steps or position < len(text) or not isinstance(steps[0], str):
-        raise InputError(f"{formatted(text)} is no path into {into}")
+        raise InputError(f"{formatted(text)} is not a path into {into}")
     return tuple(steps)
 
 
@@ -45,8 +45,8 @@ def join_path(steps: tuple[Step, ...]) -> str:
     """Write steps as a dotted path."""
     text = ""
     for step in steps:
-        place = isinstance(step, int) or step == "*"
-        text += f"[{step}]" if place else f".{step}" if text else step
+        position = isinstance(step, int) or step == "*"
+        text += f"[{step}]" if position else f".{step}" if text else step
     return text
 
 

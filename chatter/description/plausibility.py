@@ -40,9 +40,9 @@ def check_plausible(case: Case) -> None:
         section = path.partition(".")[0]
         value = _value(case, path) if getattr(case, section) is not None else None
         problems += _problem(case.name, path, value, bounds)
-    for place, mode in enumerate(case.structure.mode if case.structure else ()):
+    for index, mode in enumerate(case.structure.mode if case.structure else ()):
         for key, bounds in PLAUSIBLE_MODE.items():
-            path = f"structure.mode[{place}].{key.removeprefix('modal_')}"
+            path = f"structure.mode[{index}].{key.removeprefix('modal_')}"
             problems += _problem(case.name, path, getattr(mode, key), bounds)
     helix = case.tool.helix
     angles = helix if isinstance(helix, tuple) else (helix,)

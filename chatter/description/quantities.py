@@ -53,7 +53,7 @@ class QuantityField:
 
     @property
     def noun(self) -> str:
-        """What is wanted, with its article."""
+        """What is required, with its article."""
         return units.DIMENSIONS[self.dimension].name
 
     @property
@@ -144,7 +144,7 @@ class EitherQuantityField(QuantityField):
 
     @property
     def noun(self) -> str:
-        """What is wanted, with its article."""
+        """What is required, with its article."""
         names = [units.DIMENSIONS[one].name for one in (self.dimension, *self.others)]
         return " or ".join(dict.fromkeys(names))
 
@@ -191,7 +191,7 @@ def list_type(
 def list_reader(
     field: QuantityField, wanted: str, fewest: int = 0, most: float = math.inf
 ) -> Callable[[Any], tuple[float, ...]]:
-    """Return what reads a list of quantities and says what is wanted where it is none."""
+    """Return what reads a list of quantities and says what is required where it is none."""
 
     def read(given: Any) -> tuple[float, ...]:
         if not isinstance(given, (list, tuple)) or not fewest <= len(given) <= most:
@@ -205,7 +205,7 @@ def quantities(count: int, dimension: str, **bounds: float) -> Any:
     """Return the field type of so many quantities of one dimension; bounds as for `quantity`."""
     field = QuantityField(dimension, **bounds)
     example = f"[{', '.join([field.example] * count)}]"
-    wanted = f"is given; {count} quantities are wanted, such as {example}"
+    wanted = f"is given; {count} quantities are required, such as {example}"
     read = list_reader(field, wanted, count, count)
     description = f"{count} quantities, each {field.noun}"
     kind = GenericAlias(tuple, (float,) * count)
@@ -217,7 +217,7 @@ def quantity_list(dimension: str, fewest: int, most: int, **bounds: float) -> An
     field = QuantityField(dimension, **bounds)
     read = list_reader(
         field,
-        f"is given; a list of {fewest} to {most} quantities is wanted, such as "
+        f"is given; a list of {fewest} to {most} quantities is required, such as "
         f"[{field.example}, ...]",
         fewest,
         most,
@@ -238,7 +238,7 @@ def whole_number(at_least: int, at_most: int, meaning: str) -> Any:
 
     def read(given: Any) -> int:
         if isinstance(given, bool) or not isinstance(given, int):
-            raise ValueError(f"{formatted(given)} is no whole number")
+            raise ValueError(f"{formatted(given)} is not a whole number")
         if not at_least <= given <= at_most:
             raise ValueError(
                 f"{formatted(given)} is out of range; {meaning} go from {at_least} to {at_most}"

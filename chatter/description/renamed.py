@@ -64,10 +64,10 @@ def rename(document: Any, renamed: Sequence[Renamed]) -> list[str]:
                     table[last] = one.new
                     notes.append(_note((*steps, last), one))
                 continue
-            for place, section in _tables(table, (last,), steps):
+            for path, section in _tables(table, (last,), steps):
                 if one.old in section and one.new not in section:
                     section[one.new] = section.pop(one.old)
-                    notes.append(_note((*place, one.old), one))
+                    notes.append(_note((*path, one.old), one))
     return notes
 
 

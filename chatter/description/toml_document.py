@@ -36,7 +36,7 @@ def read_text(path: Path, noun: str = "case") -> str:
     """
     try:
         if path.is_dir():
-            raise InputError(f"{path}: is a folder; a {noun} file is wanted")
+            raise InputError(f"{path}: is a folder; a {noun} file is required")
         with path.open("rb") as file:
             # a size is no use: pipes and devices have none
             raw = file.read(_LARGEST_FILE + 1)
@@ -45,7 +45,7 @@ def read_text(path: Path, noun: str = "case") -> str:
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from None
     except ValueError:
-        raise InputError(f"{formatted(str(path))}: is no name of a file") from None
+        raise InputError(f"{formatted(str(path))}: is not a file name") from None
     if b"\0" in raw:
         raise InputError(f"{path}: is a binary file; a {noun} file is TOML text")
     if len(raw) > _LARGEST_FILE:
@@ -101,10 +101,10 @@ def plain(value: Any, steps: tuple[Step, ...] = (), noun: str = "case") -> Any:
         given = {str(key): plain(each, (*steps, str(key)), noun) for key, each in value.items()}
         return {key: entry for key, entry in given.items() if entry is not None}
     if isinstance(value, (list, tuple)):
-        return [plain(entry, (*steps, place), noun) for place, entry in enumerate(value)]
+        return [plain(entry, (*steps, index), noun) for index, entry in enumerate(value)]
     known = value is None or isinstance(value, (bool, int, float, str, date, time))
     if not known or (isinstance(value, int) and abs(value) > _LARGEST_INTEGER):
-        raise InputError(f"{join_path(steps)}: {formatted(value)} is no value of a {noun} file")
+        raise InputError(f"{join_path(steps)}: {formatted(value)} is not a value of a {noun} file")
     return value
 
 
@@ -141,9 +141,9 @@ def move_references(document: Any, old: Path, new: Path) -> None:
     if isinstance(structure.get("machine"), str):
         structure["machine"] = moved(structure["machine"])
     for entries in [frf] if isinstance(frf, list) else []:
-        for place, entry in enumerate(entries):
+        for index, entry in enumerate(entries):
             if isinstance(entry, str):
-                entries[place] = moved(entry)
+                entries[index] = moved(entry)
             elif isinstance(entry, dict) and "file" in entry:
                 entry["file"] = moved(entry["file"])
     if isinstance(frf, dict) and "file" in frf:

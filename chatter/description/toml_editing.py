@@ -53,19 +53,19 @@ def set_value(
     Tables on the way that are not there are made, and a table set one place past the end of a
     list is appended.
 
-    InputError if the path leads through something that is no table or list, or past the end of a
+    InputError if the path leads through something that is not a table or list, or past the end of a
     list.
     """
     reached = [document]
-    for place in range(len(steps) - 1):
+    for index in range(len(steps) - 1):
         reached = [
             inner
             for item in reached
             for inner in _enter(
                 item,
                 steps,
-                place,
-                None if value is None else _empty(steps, place, layout, containers),
+                index,
+                None if value is None else _empty(steps, index, layout, containers),
             )
         ]
     for item in reached:
@@ -75,16 +75,16 @@ def set_value(
             _assign_places(item, steps, value)
 
 
-def _enter(item: Any, steps: tuple[Step, ...], place: int, empty: Any) -> list[Any]:
+def _enter(item: Any, steps: tuple[Step, ...], index: int, empty: Any) -> list[Any]:
     """Return what the step at a place leads to; where there is nothing, put what is empty there.
 
     With None for it, nothing is put there and nothing reached.
     """
-    step = steps[place]
+    step = steps[index]
     if isinstance(step, int) or step == "*":
-        return [item[k] for k in _places(item, steps, place)]
+        return [item[k] for k in _places(item, steps, index)]
     if not isinstance(item, dict):
-        raise InputError(f"{join_path(steps)}: {join_path(steps[:place])} is no table")
+        raise InputError(f"{join_path(steps)}: {join_path(steps[:index])} is not a table")
     if step not in item:
         if empty is None:
             return []
@@ -92,10 +92,10 @@ def _enter(item: Any, steps: tuple[Step, ...], place: int, empty: Any) -> list[A
     return [item[step]]
 
 
-def _empty(steps: tuple[Step, ...], place: int, layout: Layout, containers: Containers) -> Any:
-    if isinstance(steps[place + 1], int) or steps[place + 1] == "*":
+def _empty(steps: tuple[Step, ...], index: int, layout: Layout, containers: Containers) -> Any:
+    if isinstance(steps[index + 1], int) or steps[index + 1] == "*":
         return containers.tables()
-    headed = _is_headed(steps[: place + 1], layout)
+    headed = _is_headed(steps[: index + 1], layout)
     return containers.table() if headed else containers.inline_table()
 
 
@@ -108,10 +108,10 @@ def _is_headed(steps: tuple[Step, ...], layout: Layout) -> bool:
     )
 
 
-def _places(item: Any, steps: tuple[Step, ...], place: int) -> range:
-    step, where = steps[place], join_path(steps[:place])
+def _places(item: Any, steps: tuple[Step, ...], index: int) -> range:
+    step, where = steps[index], join_path(steps[:index])
     if not isinstance(item, list):
-        raise InputError(f"{join_path(steps)}: {where} is no list")
+        raise InputError(f"{join_path(steps)}: {where} is not a list")
     if not len(item):
         raise InputError(f"{join_path(steps)}: {where} has no entries")
     if step == "*":
@@ -128,7 +128,7 @@ def _assign_key(
     item: Any, steps: tuple[Step, ...], value: Any, layout: Layout, containers: Containers
 ) -> None:
     if not isinstance(item, dict):
-        raise InputError(f"{join_path(steps)}: {join_path(steps[:-1])} is no table")
+        raise InputError(f"{join_path(steps)}: {join_path(steps[:-1])} is not a table")
     key = steps[-1]
     if value is None:
         item.pop(key, None)

@@ -26,7 +26,7 @@ Speed = TypeVar("Speed", float, "NDArray[np.float64]")
 
 
 class QuantityError(ValueError):
-    """A quantity that cannot be read; the message says what was given and what is wanted."""
+    """A quantity that cannot be read; the message says what was given and what is required."""
 
 
 @dataclass(frozen=True)
@@ -164,8 +164,8 @@ def registry() -> pint.UnitRegistry:
 def _wanted(dimension: str) -> str:
     entry = DIMENSIONS[dimension]
     if not entry.unit:
-        return f"a plain number is wanted, such as {entry.example}"
-    return f'{entry.name} is wanted, such as "{entry.example}"'
+        return f"a plain number is required, such as {entry.example}"
+    return f'{entry.name} is required, such as "{entry.example}"'
 
 
 @lru_cache(maxsize=512)
@@ -282,15 +282,15 @@ def parse(given: Any, dimension: str) -> Quantity:
     Raises
     ------
     QuantityError
-        If it is no quantity, of another dimension or not finite.
+        If it is not a quantity, of another dimension or not finite.
     """
     if isinstance(given, bool) or not isinstance(given, (int, float, str)):
-        raise QuantityError(f"{formatted(given)} is no quantity; {_wanted(dimension)}")
+        raise QuantityError(f"{formatted(given)} is not a quantity; {_wanted(dimension)}")
     if not isinstance(given, str):
         return Quantity(_finite(_as_float(given), given), 0.0, "")
     match = _QUANTITY.match(given) if len(given) <= _LONGEST_TEXT else None
     if match is None:
-        raise QuantityError(f"{formatted(given)} is no quantity; {_wanted(dimension)}")
+        raise QuantityError(f"{formatted(given)} is not a quantity; {_wanted(dimension)}")
     if _DECIMAL_COMMA.match(given):
         raise QuantityError(f"{formatted(given)} has a decimal comma; write a decimal point")
     unit = match["unit"]

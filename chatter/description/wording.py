@@ -74,15 +74,15 @@ def _wrong_type(item: Any, steps: tuple[Step, ...]) -> str:
     if kind.startswith(("model", "dict")):
         tables = isinstance(given, list) and given and all(isinstance(e, dict) for e in given)
         hint = f"; write [{key}], not [[{key}]]" if tables else ""
-        return f"{formatted(given)} is given, a table is wanted{hint}"
+        return f"{formatted(given)} is given, a table is required{hint}"
     if kind.startswith(("tuple", "list")):
         table = join_path(steps)
         hint = f"; write [[{table}]], not [{table}]" if isinstance(given, dict) else ""
-        return f"{formatted(given)} is given, a list is wanted{hint}"
+        return f"{formatted(given)} is given, a list is required{hint}"
     if kind.startswith("string"):
-        return f"{formatted(given)} is given, text in quotes is wanted"
+        return f"{formatted(given)} is given, text in quotes is required"
     if kind.startswith("bool"):
-        return f"{formatted(given)} is given, true or false is wanted"
+        return f"{formatted(given)} is given, true or false is required"
     return f"{formatted(given)} is not allowed here"
 
 
@@ -104,7 +104,7 @@ def _nearest_key(model: type[BaseModel], steps: tuple[Step, ...]) -> str | None:
 
 
 def unknown_key(model: type[BaseModel], steps: tuple[Step, ...]) -> str:
-    """Say that the last step is no key of its section, with the nearest that is."""
+    """Say that the last step is not a key of its section, with the nearest that is."""
     section = model_at(model, steps[:-1])
     return f"unknown key; {nearest(str(steps[-1]), keys_of(section))}" if section else "unknown key"
 
@@ -112,7 +112,7 @@ def unknown_key(model: type[BaseModel], steps: tuple[Step, ...]) -> str:
 def _missing(model: type[BaseModel], steps: tuple[Step, ...]) -> str:
     quantity, info = field_at(model, steps), info_at(model, steps)
     if quantity is not None:
-        return f"{_IS_MISSING}; {quantity.noun} is wanted, such as {quantity.example}"
+        return f"{_IS_MISSING}; {quantity.noun} is required, such as {quantity.example}"
     if info is not None and get_origin(info.annotation) is Literal:
         allowed = ", ".join(formatted(value) for value in get_args(info.annotation))
         return f"{_IS_MISSING}; allowed are {allowed}"

@@ -67,12 +67,12 @@ def directions_of(matrix: NDArray[np.float64]) -> tuple[NDArray, NDArray]:
 
 def growth_rate_of(sizes: NDArray[np.float64]) -> tuple[float, float]:
     """Slope of the logarithm of the sizes a period, and its standard error."""
-    place = np.arange(len(sizes), dtype=float)
-    place -= place.mean()
+    index = np.arange(len(sizes), dtype=float)
+    index -= index.mean()
     log = np.log(np.maximum(sizes, 1e-300))
-    slope = float(place @ log / (place @ place))
-    rest = log - log.mean() - slope * place
-    error = float(np.sqrt(rest @ rest / max(len(sizes) - 2, 1) / (place @ place)))
+    slope = float(index @ log / (index @ index))
+    rest = log - log.mean() - slope * index
+    error = float(np.sqrt(rest @ rest / max(len(sizes) - 2, 1) / (index @ index)))
     return slope, error
 
 

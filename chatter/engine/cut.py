@@ -118,17 +118,17 @@ def _prescribed_rotation(spindle, path, bus, clock):
 @register_jitable(**INLINED)
 def _bin_of(spindle, angle):
     """Whole and part of the bin of an angle of the port, and both since the start."""
-    place = (angle - spindle.angle) * spindle.bins / (2.0 * math.pi)
-    whole = math.floor(place)
-    return int(whole) % spindle.bins, place - whole, place
+    position = (angle - spindle.angle) * spindle.bins / (2.0 * math.pi)
+    whole = math.floor(position)
+    return int(whole) % spindle.bins, position - whole, position
 
 
 @register_jitable(**INLINED)
 def _rotation_of_port(spindle, path, bus, clock):
     """Rotation over the step as the structure turns the spindle."""
     i, now, p = clock.row, clock.row + 1, spindle.port
-    whole_before, part_before, place_before = _bin_of(spindle, bus.u_before[p])
-    whole, part, place = _bin_of(spindle, bus.u[p])
+    whole_before, part_before, position_before = _bin_of(spindle, bus.u_before[p])
+    whole, part, position = _bin_of(spindle, bus.u[p])
     angle = 2.0 * math.pi / spindle.bins
     angle_before, angle_now = (whole_before + part_before) * angle, (whole + part) * angle
     return Rotation(
@@ -140,7 +140,7 @@ def _rotation_of_port(spindle, path, bus, clock):
         math.cos(angle_before),
         whole_before,
         part_before,
-        place - place_before,
+        position - position_before,
         bus.v[p],
         bus.step,
         path.x[now],

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def interruptions_held() -> Iterator[None]:
+def interruptions_deferred() -> Iterator[None]:
     """Hold Ctrl-C back until compiled code has returned; a second one is passed on at once.
 
     Tuples of tuples are built by Python code while they are handed over, and an exception there is

@@ -29,8 +29,8 @@ from dynamics.structure.linear_structure import StructureError
 _NEUTRAL = 1e-3
 #: steps of the common period beyond which the samples have no useful one
 _LONGEST_PERIOD = 200_000
-#: steps over which the frequency of a motion is heard
-_HEARD = 4096
+#: steps over which the frequency of a motion is evaluated
+_OBSERVED_STEPS = 4096
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,8 +97,8 @@ def least_stable_motion(machine: Machine, step: float) -> LoopMotion | None:
     motion[~still] = vectors[:, decisive]
     time = period * step
     growth = math.log(max(abs(multipliers[decisive]), 1e-300)) / time
-    frequency, place = _heard(tables, drives, motion.real, growth)
-    return LoopMotion(growth, frequency, machine.drives[place].name)
+    frequency, index = _strongest_frequency(tables, drives, motion.real, growth)
+    return LoopMotion(growth, frequency, machine.drives[index].name)
 
 
 def refuse_unstable_control(machine: Machine, step: float) -> None:
@@ -177,10 +177,10 @@ def _map_over(
     transition = np.empty((sum(sizes), sum(sizes)))
     laws, column = Laws(tables.explicit), 0
     for chosen, size in zip(states, sizes, strict=True):
-        for place in range(size):
+        for index in range(size):
             for state in states:
                 state[:] = 0.0
-            chosen[place] = 1.0
+            chosen[index] = 1.0
             _ports_follow_state(tables.bus)
             run(laws, tables.bus, 0, 0, period)
             transition[:, column] = np.concatenate(states)
@@ -201,7 +201,7 @@ def _unread(transition: NDArray[np.float64], structure: int) -> NDArray[np.bool_
         unread = more
 
 
-def _heard(
+def _strongest_frequency(
     tables: StructureTables, drives: ControlledDrives, motion: NDArray[np.float64], growth: float
 ) -> tuple[float, int]:
     """Strongest frequency of a motion, Hz, at the drive that puts the most work into it."""
@@ -214,15 +214,15 @@ def _heard(
     # what is linear may be scaled at each step, so that no growth leaves the numbers
     kept = math.exp(-growth * tables.bus.step)
     laws = Laws(tables.explicit)
-    speed = np.empty((_HEARD, len(drives.port)))
+    speed = np.empty((_OBSERVED_STEPS, len(drives.port)))
     work = np.zeros(len(drives.port))
-    for i in range(_HEARD):
+    for i in range(_OBSERVED_STEPS):
         run(laws, tables.bus, i, 0, 1)
         speed[i] = tables.bus.v[drives.port]
-        way = tables.bus.u[drives.port] - tables.bus.u_before[drives.port]
-        work += tables.bus.force[drives.port] * way
+        travel = tables.bus.u[drives.port] - tables.bus.u_before[drives.port]
+        work += tables.bus.force[drives.port] * travel
         for state in (*states, tables.bus.u, tables.bus.v):
             state *= kept
-    place = int(np.argmax(work))
-    lines = np.abs(np.fft.rfft(np.hanning(_HEARD) * speed[:, place]))
-    return float(np.argmax(lines) / (_HEARD * tables.bus.step)), place
+    index = int(np.argmax(work))
+    lines = np.abs(np.fft.rfft(np.hanning(_OBSERVED_STEPS) * speed[:, index]))
+    return float(np.argmax(lines) / (_OBSERVED_STEPS * tables.bus.step)), index

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.progress import Progress, no_progress
-from chatter.engine.interruption import interruptions_held
+from chatter.engine.interruption import interruptions_deferred
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -157,7 +157,7 @@ def sweep(
     results: list[Result] = []
     if len(chunks) == 1:
         # a thread would take longer to start
-        with interruptions_held():
+        with interruptions_deferred():
             results.append(function(chunks[0]))
         progress(count, count)
         return results

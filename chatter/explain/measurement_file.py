@@ -44,7 +44,7 @@ def read_measurement(folder: str | Path, case: str | Path | Case | None = None) 
     unknown = [key for key in content if key not in _KEYS]
     if unknown:
         raise InputError(
-            [f"{path}: {key} is no key; there are {', '.join(_KEYS)}" for key in unknown]
+            [f"{path}: {key} is not a key; there are {', '.join(_KEYS)}" for key in unknown]
         )
     name = content.get("kind")
     if name not in KINDS:
@@ -88,12 +88,12 @@ def _refuse_names_twice(path: Path, runs: Sequence[Run]) -> None:
 
 def _tolerances(path: Path, given: Any) -> dict[str, float]:
     if not isinstance(given, dict):
-        raise InputError(f"{path}: tolerance: {formatted(given)} is no table of keys and shares")
+        raise InputError(f"{path}: tolerance: {formatted(given)} is not a table of keys and shares")
     for key, value in given.items():
         is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
         if not is_number or not 0.0 <= value < 10.0:
             raise InputError(
-                f"{path}: tolerance.{key}: {formatted(value)} is no share such as 0.05"
+                f"{path}: tolerance.{key}: {formatted(value)} is not a share such as 0.05"
             )
     return {key: float(value) for key, value in given.items()}
 
@@ -101,14 +101,14 @@ def _tolerances(path: Path, given: Any) -> dict[str, float]:
 def _file(path: Path, content: Mapping[str, Any], key: str) -> Path:
     name = content.get(key)
     if not isinstance(name, str):
-        raise InputError(f"{path}: {key}: {formatted(name)} is no file name")
+        raise InputError(f"{path}: {key}: {formatted(name)} is not a file name")
     return path.parent / name
 
 
 def _run(path: Path, kind: str, number: int, entry: Mapping[str, Any], declared: Case) -> Run:
     where = f"{path}: run {number}"
     if not isinstance(entry.get("file"), str):
-        raise InputError(f"{where}: file: {formatted(entry.get('file'))} is no file name")
+        raise InputError(f"{where}: file: {formatted(entry.get('file'))} is not a file name")
     file = _file(path, entry, "file")
     where = f"{where} ({file.name})"
     overrides = {
@@ -138,4 +138,4 @@ def _path_of(where: str, key: str, declared: Case) -> str:
         for kind in getattr(fields, "__args__", (fields,)):
             if key in getattr(kind, "model_fields", {}):
                 return f"{section}.{key}"
-    raise InputError(f"{where}: {key} is no key of a run, nor of cut, tool, material or axis")
+    raise InputError(f"{where}: {key} is not a key of a run, nor of cut, tool, material or axis")

@@ -89,7 +89,7 @@ def read_hammer_folder(path: str | Path) -> HammerFolder:
     Raises
     ------
     MeasurementError
-        If `path` is no folder or holds no record.
+        If `path` is not a folder or holds no record.
     """
     path = Path(path)
     if not path.is_dir():
@@ -204,10 +204,10 @@ def _rate(time: Array, rounding: float) -> float:
     index = np.arange(count) - 0.5 * (count - 1)
     rate = float(np.sum(index**2) / np.sum(index * (time - time.mean())))
     # standard error of the slope where each time is off by up to half its last digit
-    doubt = 5.0 * rate**2 * rounding / count**1.5
+    uncertainty = 5.0 * rate**2 * rounding / count**1.5
     for digits in range(-3, 4):
         rounded = round(rate, digits)
-        if rounded > 0.0 and abs(rounded - rate) <= doubt:
+        if rounded > 0.0 and abs(rounded - rate) <= uncertainty:
             return rounded
     return rate
 

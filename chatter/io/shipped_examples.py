@@ -54,8 +54,8 @@ def _main_of(script: Path) -> Callable[[Path], list[Path]]:
 
 def examples() -> dict[str, Example]:
     """Return the shipped examples by name."""
-    for place in _PLACES:
-        folders = sorted(path.parent for path in place.glob(f"*/{_SCRIPT}"))
+    for root in _PLACES:
+        folders = sorted(path.parent for path in root.glob(f"*/{_SCRIPT}"))
         if folders:
             return {folder.name: Example(folder.name, folder) for folder in folders}
     return {}

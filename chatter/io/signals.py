@@ -46,7 +46,7 @@ def read_signals(path: Path, kind: str = "", direction: str = "") -> Signals:
     Raises
     ------
     InputError
-        If it is missing, of a format that is not read, or holds what is no number.
+        If it is missing, of a format that is not read, or holds what is not a number.
     """
     try:
         if kind == "frf":
@@ -97,7 +97,7 @@ def _number(table: Table, column: Column, row: int) -> float:
         return float(text) if text else np.nan
     except ValueError:
         where = f"{table.path}: {table.where(row)}: {column.heading}"
-        raise InputError(f"{where}: {formatted(text)} is no number") from None
+        raise InputError(f"{where}: {formatted(text)} is not a number") from None
 
 
 def _verdict(table: Table, column: Column, row: int) -> float:

@@ -63,7 +63,7 @@ class Table:
         Raises
         ------
         MeasurementError
-            If a cell is no finite number; the message names file and line.
+            If a cell is not a finite number; the message names file and line.
         """
         cells = self.columns[index].cells
         try:

@@ -39,8 +39,8 @@ def plot_frf(result: FrfResult) -> Figure:
     )
     figure.suptitle(result.machine, fontsize=11.0, x=0.01, ha="left")
     units = {curve.unit for curve in result.curves}
-    for place, curve in enumerate(result.curves):
-        colour = _COLOURS[place % len(_COLOURS)]
+    for index, curve in enumerate(result.curves):
+        colour = _COLOURS[index % len(_COLOURS)]
         label = curve.name if not curve.state else f"{curve.name}: {curve.state}"
         if len(units) > 1:
             label += f" [{curve.unit}]"

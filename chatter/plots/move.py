@@ -23,16 +23,16 @@ def plot_move(result: MoveResult) -> Figure:
     figure.suptitle(result.name, fontsize=11.0, x=0.01, ha="left")
     axes = figure.subplots(2, 2) if not plane else figure.subplots(2, 3).reshape(2, 3)
     time = result.time
-    for place, axis in enumerate(result.axes):
-        colour = _COLOURS[place % len(_COLOURS)]
-        axes[0, 0].plot(time, result.wanted[:, place] * 1e3, color=colour, lw=1.2, label=axis)
-        axes[0, 1].plot(time, result.velocity[:, place], color=colour, lw=1.0, label=axis)
-        at_motor = (result.wanted - result.motor)[:, place] * 1e6
+    for index, axis in enumerate(result.axes):
+        colour = _COLOURS[index % len(_COLOURS)]
+        axes[0, 0].plot(time, result.wanted[:, index] * 1e3, color=colour, lw=1.2, label=axis)
+        axes[0, 1].plot(time, result.velocity[:, index], color=colour, lw=1.0, label=axis)
+        at_motor = (result.wanted - result.motor)[:, index] * 1e6
         axes[1, 0].plot(time, at_motor, color=colour, lw=1.0, label=f"{axis} motor")
         if result.tool is not None:
-            at_tool = (result.wanted - result.tool)[:, place] * 1e6
+            at_tool = (result.wanted - result.tool)[:, index] * 1e6
             axes[1, 0].plot(time, at_tool, color=colour, lw=1.0, ls=":", label=f"{axis} tool")
-        axes[1, 1].plot(time, result.effort[:, place], color=colour, lw=0.8, label=axis)
+        axes[1, 1].plot(time, result.effort[:, index], color=colour, lw=0.8, label=axis)
     _label(axes[0, 0], "position set [mm]")
     _label(axes[0, 1], "velocity [m/s]")
     _label(axes[1, 0], "set less actual [µm]")

@@ -27,10 +27,10 @@ def plot_findings(findings: Sequence[Finding], columns: int = 2) -> Figure:
     columns = max(1, min(columns, len(shown)))
     rows = max(1, math.ceil(len(shown) / columns))
     figure = style.new_figure(_WIDTH * columns, _HEIGHT * rows)
-    places = figure.subplots(rows, columns, squeeze=False).ravel()
-    for axes, finding in zip(places, shown, strict=False):
+    panels = figure.subplots(rows, columns, squeeze=False).ravel()
+    for axes, finding in zip(panels, shown, strict=False):
         draw_finding(axes, finding)
-    for axes in places[len(shown) :]:
+    for axes in panels[len(shown) :]:
         axes.set_visible(False)
     return figure
 

@@ -55,8 +55,8 @@ def plot_simulation(result: SimulationResult) -> Figure:
     bottom = grid[3].subgridspec(1, 2)
     if _shows_workpiece(result):
         layers = len(result.setup.slices.height)
-        for place, layer in enumerate(sorted({0, layers - 1})):
-            panel = figure.add_subplot(bottom[place])
+        for index, layer in enumerate(sorted({0, layers - 1})):
+            panel = figure.add_subplot(bottom[index])
             height = result.setup.slices.height[layer] * 1e3
             panel.set_title(f"workpiece {height:.2g} mm above the tip", loc="left")
             draw_workpiece(panel, result, layer)
@@ -212,9 +212,14 @@ def _mark_chatter(axes: Axes, result: SimulationResult) -> None:
     found = result.detection
     if found is None or not math.isfinite(found.chatter_frequency):
         return
-    heard = found.chatter_frequency
+    chatter = found.chatter_frequency
     axes.axvline(
-        heard, color=style.RED, linewidth=2.2, alpha=0.45, zorder=2, label=f"chatter {heard:.0f} Hz"
+        chatter,
+        color=style.RED,
+        linewidth=2.2,
+        alpha=0.45,
+        zorder=2,
+        label=f"chatter {chatter:.0f} Hz",
     )
 
 

@@ -34,7 +34,7 @@ class Finding:
 
     @property
     def deviation(self) -> float | None:
-        """Obtained over published less one; None where one is no number."""
+        """Obtained over published less one; None where one is not a number."""
         if isinstance(self.published, str) or isinstance(self.obtained, str):
             return None
         return self.obtained / self.published - 1.0 if self.published else None

@@ -71,13 +71,13 @@ class FollowingStock:
         return self.cut
 
     def _keep_walls(self, stock: DexelStock, lines: int) -> None:
-        place = line_coordinates(stock, 1)[:lines]
+        position = line_coordinates(stock, 1)[:lines]
         layers = range(stock.interval.shape[0])
         walls = {
-            side: np.array([dexel_wall_profile(stock, k, place, _SIGN[side]) for k in layers])
+            side: np.array([dexel_wall_profile(stock, k, position, _SIGN[side]) for k in layers])
             for side in self._sides
         }
-        self.left_behind.append(WallPiece(place, walls))
+        self.left_behind.append(WallPiece(position, walls))
 
 
 def after_run(setup: Setup, stock: FollowingStock) -> Setup:
@@ -98,12 +98,12 @@ def carved_walls(result: SimulationResult) -> list[WallProfiles]:
     cut: DiscreteCut = result.setup.groups[0]
     if isinstance(cut.stock, DexelStock):
         dexel_flush(cut.stock)
-    place = result.setup.path.position_at(result.time[[result.settled.start, -1]])
+    position = result.setup.path.position_at(result.time[[result.settled.start, -1]])
     slices = result.setup.slices
     swing = float(np.ptp(result.displacement[result.settled, 1]))
     a_turn = result.case.cut.feed_per_tooth * result.case.tool.teeth
     unfinished = math.sqrt(2.0 * float(slices.radius.max()) * swing) + a_turn
-    low, high = float(place[0, 0]), float(place[0, 1]) - unfinished
+    low, high = float(position[0, 0]), float(position[0, 1]) - unfinished
     spacing = cut.stock.spacing
     count = min(_MOST_POINTS, int((high - low) / spacing))
     if count < _LEAST_POINTS:
@@ -136,10 +136,10 @@ def _profile(
     if not pieces:
         return of_stock(cut.stock, level, x, _SIGN[side])
     held = line_coordinates(cut.stock, 1)
-    place = np.concatenate([*(piece.x for piece in pieces), held])
+    position = np.concatenate([*(piece.x for piece in pieces), held])
     last = of_stock(cut.stock, level, held, _SIGN[side])
     y = np.concatenate([*(piece.y[side][level] for piece in pieces), last])
-    return np.interp(x, place, y, left=np.nan, right=np.nan)
+    return np.interp(x, position, y, left=np.nan, right=np.nan)
 
 
 def carving_notes(cut: DiscreteCut) -> list[str]:

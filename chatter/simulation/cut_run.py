@@ -18,7 +18,7 @@ from chatter.engine.cut import (
     ToolOnPorts,
     tool_point_on_modes,
 )
-from chatter.engine.interruption import interruptions_held
+from chatter.engine.interruption import interruptions_deferred
 from chatter.engine.loop import Laws, run
 from chatter.engine.record import COLUMNS, CutRecord, PortRecord, port_record
 from chatter.simulation.carved_workpiece import FollowingStock
@@ -88,7 +88,7 @@ class CutRun:
         structure = self.setup.structure
         if structure.settling:
             laws = Laws(structure.tables.explicit, (), structure.tables.implicit)
-            with interruptions_held():
+            with interruptions_deferred():
                 run(laws, self.bus, 0, 0, structure.settling)
 
     def _carve_before(self) -> None:
@@ -129,7 +129,7 @@ class CutRun:
                 tables.explicit, (self._cut(count, share),), tables.implicit, self._observers
             )
             try:
-                with interruptions_held():
+                with interruptions_deferred():
                     ran = run(laws, self.bus, self.done, before, count)
                 self.done += ran
                 progress(self.done, last)

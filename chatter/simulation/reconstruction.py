@@ -102,11 +102,12 @@ def _record(result: SimulationResult) -> _Record | None:
     if settled.stop - start < 8 or last - angle[start] < 0.5 * _TURN:
         return None
     before = int(np.searchsorted(angle, 2.0 * angle[start] - last))
-    place = result.displacement.copy()
-    place[:, :2] += result.setup.path.position_at(result.time).T
+    position = result.displacement.copy()
+    position[:, :2] += result.setup.path.position_at(result.time).T
     evaluated, longer = slice(start, settled.stop), slice(before, None)
     return _Record(
-        ToolMotion(angle[evaluated], place[evaluated]), ToolMotion(angle[longer], place[longer])
+        ToolMotion(angle[evaluated], position[evaluated]),
+        ToolMotion(angle[longer], position[longer]),
     )
 
 
@@ -157,8 +158,8 @@ def _wall(result: SimulationResult, record: _Record, side: str) -> WallProfiles 
 
 def _spacing(result: SimulationResult, motion: ToolMotion) -> float:
     """Distance between points along the feed, m."""
-    way = float(np.ptp(motion.position[:, 0]))
-    return max(result.case.cut.feed_per_tooth / _POINTS_A_TOOTH, way / _MOST_POINTS)
+    travel = float(np.ptp(motion.position[:, 0]))
+    return max(result.case.cut.feed_per_tooth / _POINTS_A_TOOTH, travel / _MOST_POINTS)
 
 
 def _wall_passes(motion: ToolMotion, slices: EdgeSlices, level: int, side: str) -> WallPasses:
@@ -193,9 +194,9 @@ def _floor(result: SimulationResult, record: _Record) -> tuple[FloorProfile | No
     direction = crossing if case.cut.mode != "down" else math.pi - crossing
     angle, edge = record.longer.passes(slices.angle[:, 0], direction, _MARGIN)
     steep = math.sin(crossing)
-    place = record.longer.at(angle)
-    at = place[:, 0] + (tip_radius + cutter.radial_offsets[edge]) * steep
-    lowest = place[:, 2] - cutter.axial_offsets[edge]
+    position = record.longer.at(angle)
+    at = position[:, 0] + (tip_radius + cutter.radial_offsets[edge]) * steep
+    lowest = position[:, 2] - cutter.axial_offsets[edge]
     if cutter.corner_radius == 0.0 and not lowest.any():
         return None, "floor: a sharp corner that does not move along z leaves no marks"
     feed_per_revolution = case.cut.feed_per_tooth * cutter.teeth

@@ -220,9 +220,9 @@ class MachineResult(SimulationResult):
 
     def summary(self) -> dict:
         """Return the content of summary.json."""
-        told = super().summary()
+        summary = super().summary()
         machine = self.setup.on_machine.machine
-        told["machine"] = {
+        summary["machine"] = {
             "file": self.setup.on_machine.file.name,
             "drives": {
                 drive.name: {
@@ -236,4 +236,4 @@ class MachineResult(SimulationResult):
                 "mean": float(rpm(self.spindle_speed[self.settled].mean())),
             },
         }
-        return told
+        return summary

@@ -65,15 +65,15 @@ class ToolPath:
 
     def position_at(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
         """Place (2, ...) of the tool axis, m; before time zero it came straight to the first."""
-        way = self.feed * np.asarray(time)
+        travel = self.feed * np.asarray(time)
         legs = np.diff(self.corners, axis=0)
         length = np.hypot(*legs.T)
         if len(legs) == 1:
             heading = legs[0] / length[0]
-            return np.stack([self.corners[0, axis] + way * heading[axis] for axis in range(2)])
+            return np.stack([self.corners[0, axis] + travel * heading[axis] for axis in range(2)])
         start = np.concatenate([[0.0], np.cumsum(length)[:-1]])
-        leg = np.clip(np.searchsorted(start, way, side="right") - 1, 0, len(legs) - 1)
-        along = (way - start[leg]) / length[leg]
+        leg = np.clip(np.searchsorted(start, travel, side="right") - 1, 0, len(legs) - 1)
+        along = (travel - start[leg]) / length[leg]
         return (self.corners[leg] + along[..., None] * legs[leg]).T
 
 
@@ -106,9 +106,9 @@ def counted_bins(number: NDArray[np.int64], bins: int) -> Bins:
 
 def bins_at(spindle: Spindle, time: NDArray[np.float64], bins: int) -> Bins:
     """Bins at any times, s."""
-    place = spindle.angle_at(time) * (bins / _REVOLUTION)
-    floor = np.floor(place)
-    return floor.astype(np.int64) % bins, place - floor, np.diff(place)
+    position = spindle.angle_at(time) * (bins / _REVOLUTION)
+    floor = np.floor(position)
+    return floor.astype(np.int64) % bins, position - floor, np.diff(position)
 
 
 def prescribed_spindle(

@@ -91,8 +91,8 @@ def modes_in_time(
     step = 2.0 * math.pi / (case.cut.spindle_speed * resolution.steps_per_revolution)
     given = case.structure.mode if case.structure is not None else ()
     frictions = {
-        place: case.friction[mode.friction].spec()
-        for place, mode in enumerate(given)
+        index: case.friction[mode.friction].spec()
+        for index, mode in enumerate(given)
         if mode.friction
     }
     tables = modal_tables(modes, step, tuple(frictions.values()), tuple(frictions))
@@ -139,7 +139,7 @@ def _time_before(case: Case, cut: MachineCut) -> float:
         raise InputError(
             f"{case.name}: structure.settling: {settling:g} s is given, but the axes "
             f"{', '.join(cut.feeds)} of {cut.file.name} have to come to the feed in it; "
-            f"{_LEAST_SPEEDING_UP:g} s or more is wanted"
+            f"{_LEAST_SPEEDING_UP:g} s or more is required"
         )
     return settling
 
@@ -186,7 +186,7 @@ def _set_points(
     share = np.clip(time / ramp, 0.0, 1.0)
     # half a cosine of velocity
     rising = 0.5 * (1.0 - np.cos(np.pi * share))
-    way = np.where(
+    travel = np.where(
         share < 1.0,
         0.5 * ramp * (share - np.sin(np.pi * share) / np.pi),
         time - 0.5 * ramp,
@@ -194,11 +194,11 @@ def _set_points(
     gain = np.where(share < 1.0, 0.5 * np.pi / ramp * np.sin(np.pi * share), 0.0)
     position, velocity, acceleration = np.zeros((3, time.size, max(len(machine.axes), 1)))
     for axis, full in cut.velocities(feed, speed).items():
-        place = machine.axes.index(axis)
+        index = machine.axes.index(axis)
         turning = axis == cut.spindle_axis
-        position[:, place] = full * (time if turning else way)
-        velocity[:, place] = full * (1.0 if turning else rising)
-        acceleration[:, place] = 0.0 if turning else full * gain
+        position[:, index] = full * (time if turning else travel)
+        velocity[:, index] = full * (1.0 if turning else rising)
+        acceleration[:, index] = 0.0 if turning else full * gain
     return SetPoints(position, velocity, acceleration, round(cycle / cut.file.step))
 
 

@@ -203,12 +203,12 @@ def _ends(
     if not follows(case, path):
         x = _swept(resolution, spindle, path)[0]
         return float(x.min()) - 3.0 * float(slices.radius.max()), float(x.max()) + far
-    way = steps_a_chunk(case, slices, resolution) * _feed_a_step(case, resolution)
+    travel = steps_a_chunk(case, slices, resolution) * _feed_a_step(case, resolution)
     start = float(path.corners[0, 0]) - REVOLUTIONS_BEFORE * _feed_a_turn(case)
     start -= _feed_a_step(case, resolution) + far
     # a stock that moves by whole steps lags behind by up to one
     step = DISCRETE_CHIPS[case.simulation.chip].cells_a_move
-    return start, start + (math.ceil((2.0 * far + way) / size) + step) * size
+    return start, start + (math.ceil((2.0 * far + travel) / size) + step) * size
 
 
 def _swept(resolution: Resolution, spindle: Spindle, path: ToolPath) -> NDArray[np.float64]:

@@ -54,7 +54,7 @@ Each = Callable[..., "list[dict[str, Any]]"]
 
 
 class _Point(NamedTuple):
-    """A patched case, and speeds (rad/s) and depths (m) at which its radius is wanted."""
+    """A patched case, and speeds (rad/s) and depths (m) at which its radius is required."""
 
     case: Case
     method: str
@@ -148,7 +148,7 @@ def lobes_over(
     each = _each if cluster is None else partial(_kept, cluster, folder)
     if y is None:
         if x is None:
-            raise InputError("a path is wanted for x or y; chatter.lobes draws over speed")
+            raise InputError("a path is required for x or y; chatter.lobes draws over speed")
         axis = axis_of(x, case, "--x", _CURVE_COUNT)
         if axis.path == DEPTH_PATH:
             raise InputError(

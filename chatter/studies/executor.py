@@ -60,20 +60,20 @@ class DaskExecutor:
 
         waiting = list(range(len(items)))[::-1]
         task_size = _TaskSize(self._task_seconds)
-        places: dict[Any, list[int]] = {}
+        indices: dict[Any, list[int]] = {}
         ended = as_completed()
         try:
-            while waiting or places:
+            while waiting or indices:
                 workers = sum(self._client.nthreads().values())
                 wanted = _TASKS_PER_WORKER * max(1, workers)
-                while waiting and len(places) < wanted:
+                while waiting and len(indices) < wanted:
                     size = task_size.items_per_task(len(waiting), wanted)
                     mine = [waiting.pop() for _ in range(size)]
-                    future = self._submit(function, [items[place] for place in mine])
-                    places[future] = mine
+                    future = self._submit(function, [items[index] for index in mine])
+                    indices[future] = mine
                     ended.add(future)
                 future = next(ended)
-                mine = places.pop(future)
+                mine = indices.pop(future)
                 found, seconds = _result_of(future)
                 task_size.add(len(mine), seconds)
                 yield from zip(mine, found, strict=True)
@@ -82,9 +82,9 @@ class DaskExecutor:
             raise RunError(lost) from None
         finally:
             # a client that is closed has taken its tasks along
-            if places and self._client.status == "running":
+            if indices and self._client.status == "running":
                 with suppress(OSError):
-                    self._client.cancel(list(places))
+                    self._client.cancel(list(indices))
 
     def _submit(self, function: Callable, items: list) -> Any:
         # each task is new: a result of the same name may be that of another version

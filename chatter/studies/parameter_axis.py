@@ -47,12 +47,12 @@ def axis_of(given: AxisGiven, case: Case, option: str, count: int) -> Variation:
     try:
         found = _read(given, case, option, count)
     except InputError as error:
-        told = [text.replace("--vary", option) for text in error.messages]
-        raise InputError(told) from None
+        messages = [text.replace("--vary", option) for text in error.messages]
+        raise InputError(messages) from None
     numbers = found.numbers
     if numbers is None or len(set(numbers)) < 2:
         raise InputError(
-            f"{option} {found.path}: the range is empty; two different ends are wanted"
+            f"{option} {found.path}: the range is empty; two different ends are required"
         )
     ascending = sorted(found.values, key=lambda value: value.number)
     return Variation(found.path, tuple(ascending), found.unit)
@@ -66,7 +66,7 @@ def _read(given: AxisGiven, case: Case, option: str, count: int) -> Variation:
     path, equals, span = given.partition("=")
     if not (equals and path.strip() and ".." in span):
         raise InputError(
-            f"{option} {formatted(given)}: PATH=FROM..TO[:COUNT] is wanted, {_EXAMPLE}"
+            f"{option} {formatted(given)}: PATH=FROM..TO[:COUNT] is required, {_EXAMPLE}"
         )
     _require_quantity(case, path.strip(), option)
     wanted = _COUNT.search(span)
@@ -74,7 +74,7 @@ def _read(given: AxisGiven, case: Case, option: str, count: int) -> Variation:
         count, span = int(wanted[1]), span[: wanted.start()]
     if not 2 <= count <= _MOST_VALUES:
         raise InputError(
-            f"{option} {path.strip()}: a count of {count} is given; 2 to {_MOST_VALUES} is wanted"
+            f"{option} {path.strip()}: a count of {count} is given; 2 to {_MOST_VALUES} is required"
         )
     return read_variation(f"{path}={span}", case, count)
 
@@ -97,7 +97,7 @@ def speed_axis(case: Case) -> Variation:
 
 
 def case_value(case: Case, axis: Variation) -> float:
-    """What the case itself has at the path of an axis, in its unit; nan where that is no number."""
+    """What the case has at the path of an axis, in its unit; nan where that is not a number."""
     value = value_of(case, axis.path)
     kind = field_of(case, axis.path)
     if kind is None or isinstance(value, bool) or not isinstance(value, (int, float, np.floating)):

@@ -69,11 +69,11 @@ def _motion_since(cut, tooth, piece, rotation, now):
     """Fill the scratch with the motion of the tool since each earlier pass, m."""
     bins = cut.edges.bins
     for k in range(cut.since.shape[0]):
-        place = rotation.whole + rotation.part - cut.delay[tooth, piece, k]
-        if place < 0.0:
-            place += bins
-        whole = int(place)
-        t = place - whole
+        position = rotation.whole + rotation.part - cut.delay[tooth, piece, k]
+        if position < 0.0:
+            position += bins
+        whole = int(position)
+        t = position - whole
         if whole >= bins:
             whole -= bins
         after = whole + 1
@@ -211,8 +211,8 @@ def _part_of_slice(cut, tooth, piece, low, high, width):
     middle, half = 0.5 * (clear_low + clear_high), 0.5 * (clear_high - clear_low)
     length = 0.5 * share * cut.edges.edge_length[piece]
     for side in range(2):
-        place = middle + (2.0 * side - 1.0) * GAUSS_POINT * half
-        sine, cosine = math.sin(place * angle), math.cos(place * angle)
+        position = middle + (2.0 * side - 1.0) * GAUSS_POINT * half
+        sine, cosine = math.sin(position * angle), math.cos(position * angle)
         chip = _chip(cut, tooth, piece, sine, cosine)
         if chip > 0.0:
             total = _add_edge_force(cut, tooth, piece, sine, cosine, chip, length, total)
@@ -220,11 +220,11 @@ def _part_of_slice(cut, tooth, piece, low, high, width):
 
 
 @register_jitable(**INLINED)
-def _straight_mean(cut, tooth, piece, place, rotation):
+def _straight_mean(cut, tooth, piece, position, rotation):
     """Force of a straight edge over the turn of a step, so that a jump keeps its impulse."""
     half = 0.5 * rotation.advance
-    low = max(place - half, cut.entry[piece])
-    high = min(place + half, cut.exit[piece])
+    low = max(position - half, cut.entry[piece])
+    high = min(position + half, cut.exit[piece])
     return _part_of_slice(cut, tooth, piece, low, high, rotation.advance)
 
 
@@ -273,8 +273,8 @@ _add_flank_force = by_table({one.table: _off_flank if one is BARE else _on_flank
 def _all_in_air(cut, tooth, rotation):
     """Tell whether no part of an edge is in the arc of the cut."""
     whole, part = spindle_bin(cut.edges, tooth, 0, rotation.whole, rotation.part)
-    place = signed_bin(cut.edges, whole, part)
-    low, high = place + cut.reach[tooth, 0], place + cut.reach[tooth, 1]
+    position = signed_bin(cut.edges, whole, part)
+    low, high = position + cut.reach[tooth, 0], position + cut.reach[tooth, 1]
     for turns in range(-1, 2):
         shift = turns * cut.edges.bins
         if high + shift >= cut.arc[0] and low + shift <= cut.arc[1]:
@@ -295,29 +295,29 @@ def delayed_forces(group, rotation, point):
         looked_back = False
         for piece in range(pieces):
             whole, part = spindle_bin(edges, tooth, piece, rotation.whole, rotation.part)
-            place = signed_bin(edges, whole, part)
+            position = signed_bin(edges, whole, part)
             half = edges.half_width[tooth, piece]
             entry, leave = cut.entry[piece], cut.exit[piece]
             straight = half < 0.5 * rotation.advance
             blur = 0.5 * rotation.advance if straight else half
-            if place + blur < entry or place - blur > leave:
+            if position + blur < entry or position - blur > leave:
                 continue
             if cut.helices > 1 or not looked_back:
                 _motion_since(cut, tooth, piece if cut.helices > 1 else 0, rotation, now)
                 looked_back = True
             settled = False
             force = (0.0, 0.0, 0.0, 0.0, 0.0)
-            if place - blur >= entry and place + blur <= leave:
+            if position - blur >= entry and position + blur <= leave:
                 force, settled = _whole_slice(cut, tooth, piece, rotation)
             if not settled:
                 # at a jump the limit from the right: one tooth leaves as another one enters
-                seen = place + _NUDGE if straight else place
+                seen = position + _NUDGE if straight else position
                 low, high = max(seen - half, entry), min(seen + half, leave)
                 force = _part_of_slice(cut, tooth, piece, low, high, 2.0 * half)
             force = _add_flank_force(cut.flank, cut, tooth, piece, rotation, point, force)
             mean = force
             if straight and not settled:
-                mean = _straight_mean(cut, tooth, piece, place, rotation)
+                mean = _straight_mean(cut, tooth, piece, position, rotation)
                 mean = _add_flank_force(cut.flank, cut, tooth, piece, rotation, point, mean)
             sx += force[0]
             sy += force[1]
@@ -344,9 +344,9 @@ def _vibration(point, axis, share, step):
     rise, fall = point.velocity_before[axis] * step, point.velocity[axis] * step
     gain = u1 - u0
     bend = (1.0 - share) * (rise - gain) + share * (gain - fall)
-    place = u0 + share * gain + share * (1.0 - share) * bend
+    position = u0 + share * gain + share * (1.0 - share) * bend
     rate = gain + (1.0 - 2.0 * share) * bend + share * (1.0 - share) * (2.0 * gain - rise - fall)
-    return place, rate
+    return position, rate
 
 
 @register_jitable(**INLINED)
@@ -360,21 +360,21 @@ def _store_motion(cut, rotation, point):
         if passed >= bins:
             passed -= bins
         for axis in range(3):
-            place, rate = _vibration(point, axis, share, rotation.step)
+            position, rate = _vibration(point, axis, share, rotation.step)
             if axis == 0:
-                place += rotation.x_before + share * (rotation.x - rotation.x_before)
+                position += rotation.x_before + share * (rotation.x - rotation.x_before)
                 rate += rotation.x - rotation.x_before
             if axis == 1:
-                place += rotation.y_before + share * (rotation.y - rotation.y_before)
+                position += rotation.y_before + share * (rotation.y - rotation.y_before)
                 rate += rotation.y - rotation.y_before
-            cut.history[0, passed, axis] = place
+            cut.history[0, passed, axis] = position
             cut.history[1, passed, axis] = rate / rotation.advance
 
 
 @register_jitable(**INLINED)
-def _store_surface(cut, tooth, piece, place, rotation, point):
+def _store_surface(cut, tooth, piece, position, rotation, point):
     """Let the flank store what surface lies behind the edge now."""
-    if place < cut.entry[piece] or place > cut.exit[piece]:
+    if position < cut.entry[piece] or position > cut.exit[piece]:
         end_contact(cut.flank, tooth, piece)
         return
     sine, cosine = direction(cut.edges, tooth, piece, 0, rotation)
@@ -393,13 +393,13 @@ def _surfaces_behind(flank, cut, rotation, point):  # noqa: ARG001
         looked_back = False
         for piece in range(pieces):
             whole, part = spindle_bin(edges, tooth, piece, rotation.whole, rotation.part)
-            place = signed_bin(edges, whole, part)
-            if place < cut.entry[piece] - _MARGIN or place > cut.exit[piece] + _MARGIN:
+            position = signed_bin(edges, whole, part)
+            if position < cut.entry[piece] - _MARGIN or position > cut.exit[piece] + _MARGIN:
                 continue
             if cut.helices > 1 or not looked_back:
                 _motion_since(cut, tooth, piece if cut.helices > 1 else 0, rotation, now)
                 looked_back = True
-            _store_surface(cut, tooth, piece, place, rotation, point)
+            _store_surface(cut, tooth, piece, position, rotation, point)
 
 
 @register_jitable(**INLINED)

@@ -49,8 +49,8 @@ def mean_line(profile: Array, spacing: float, cut_off: float) -> Array:
     that there are.
     """
     half = min(int(cut_off / spacing), profile.shape[-1] - 1)
-    place = np.arange(-half, half + 1) * spacing / (_ALPHA * cut_off)
-    weight = np.exp(-math.pi * place**2)
+    position = np.arange(-half, half + 1) * spacing / (_ALPHA * cut_off)
+    weight = np.exp(-math.pi * position**2)
     share = np.convolve(np.ones(profile.shape[-1]), weight)[half : -half or None]
     rows = profile.reshape(-1, profile.shape[-1])
     smooth = [np.convolve(row, weight)[half : -half or None] / share for row in rows]

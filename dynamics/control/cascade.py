@@ -159,8 +159,8 @@ class DriveController:
         p, v, c = (timing.sample_time for timing in self.timings)
         whole_ratio("position", p, "the velocity loop's", v)
         whole_ratio("velocity", v, "the current loop's", c)
-        for place in self.filters:
-            place.sampled(c)
+        for one in self.filters:
+            one.sampled(c)
         if self.velocity.reference_model is not None:
             self.velocity.reference_model.sampled(v)
 
@@ -172,8 +172,8 @@ class DriveController:
     def steps_per_sample(self, step: float) -> tuple[int, int, int]:
         """Return the steps per sample of the position, velocity and current loop.
 
-        The step is that of the simulation, s. Raises ControlError if it is no number above 0, or a
-        sample time no whole multiple of it; the message names loop, sample time and step.
+        The step is that of the simulation, s. Raises ControlError if it is not a number above 0 or
+        a sample time is not a whole multiple of it; the message names loop, sample time and step.
         """
         require_positive("simulation", "step", step)
         names = ("position", "velocity", "current")

@@ -117,19 +117,19 @@ def velocity_sample(table, k, sample, x_motor, v_motor):
 def current_sample(table, k, sample):
     """Input of the current plant: filtered torque set point, or voltage of the PI controller."""
     torque = table.state[k, TORQUE_SET] + table.state[k, TORQUE_INJECTED]
-    for place in range(table.filters.shape[1]):
+    for index in range(table.filters.shape[1]):
         torque, first, second = second_order_sample(
-            table.filters[k, place, 0],
-            table.filters[k, place, 1],
-            table.filters[k, place, 2],
-            table.filters[k, place, 3],
-            table.filters[k, place, 4],
-            table.filter_state[k, place, 0],
-            table.filter_state[k, place, 1],
+            table.filters[k, index, 0],
+            table.filters[k, index, 1],
+            table.filters[k, index, 2],
+            table.filters[k, index, 3],
+            table.filters[k, index, 4],
+            table.filter_state[k, index, 0],
+            table.filter_state[k, index, 1],
             torque,
         )
-        table.filter_state[k, place, 0] = first
-        table.filter_state[k, place, 1] = second
+        table.filter_state[k, index, 0] = first
+        table.filter_state[k, index, 1] = second
     torque = clipped(torque, table.torque_limit[k])
     measured = delayed(table, k, MEASURED_CURRENT, sample, table.state[k, PLANT_FIRST])
     deviation = torque / table.input_law[k, 4] - measured

@@ -60,12 +60,12 @@ def control_table(controllers: Sequence[DriveController], step: float) -> Contro
     if not controllers:
         raise ControlError("control table: no drive given")
     count = len(controllers)
-    places = max(len(drive.filters) for drive in controllers)
+    sections = max(len(drive.filters) for drive in controllers)
     delays = np.array([_delays(drive) for drive in controllers], dtype=np.int64)
-    filters = np.tile(UNFILTERED, (count, places, 1))
+    filters = np.tile(UNFILTERED, (count, sections, 1))
     for k, drive in enumerate(controllers):
-        for place, spec in enumerate(drive.filters):
-            filters[k, place] = spec.sampled(drive.current_timing.sample_time)
+        for index, spec in enumerate(drive.filters):
+            filters[k, index] = spec.sampled(drive.current_timing.sample_time)
     laws = [drive.current.input_law(drive.current_timing.sample_time) for drive in controllers]
     table = ControlTable(
         samples=np.array([drive.steps_per_sample(step) for drive in controllers], dtype=np.int64),
@@ -94,7 +94,7 @@ def control_table(controllers: Sequence[DriveController], step: float) -> Contro
         plant=_column([_plant(drive, step) for drive in controllers]),
         state=np.zeros((count, STATES)),
         history=np.zeros((count, CHANNELS, int(delays.max()) + 1)),
-        filter_state=np.zeros((count, places, 2)),
+        filter_state=np.zeros((count, sections, 2)),
     )
     for column in table[:-3]:
         column.flags.writeable = False

@@ -84,12 +84,12 @@ class AxisForce:
         self, position: NDArray[np.float64], velocity: NDArray[np.float64], step: float
     ) -> NDArray[np.float64]:
         """Coulomb friction with its onset, its presliding and its asymmetry, N."""
-        way = np.tanh(velocity / SMOOTH)
+        direction = np.tanh(velocity / SMOOTH)
         static = self.coulomb if self.static is None else self.static
         if self.presliding_stiffness is None or self.coulomb <= 0.0:
             law = CoulombStribeck(self.coulomb, static, self.stribeck_velocity)
             sliding = law.steady_state_force(np.abs(velocity))
-            return (sliding + self.asymmetry * way) * way
+            return (sliding + self.asymmetry * direction) * direction
         damping = self.presliding_damping
         if damping is None:
             damping = 2.0 * _BRISTLE_DAMPING * math.sqrt(self.mass * self.presliding_stiffness)
@@ -101,7 +101,7 @@ class AxisForce:
             static=max(static, self.coulomb),
             stribeck_velocity=self.stribeck_velocity,
         )
-        return friction_along(law, position, step) + self.asymmetry * way * way
+        return friction_along(law, position, step) + self.asymmetry * direction * direction
 
 
 def drives_slide(position: NDArray[np.float64], backlash: float) -> NDArray[np.bool_]:
@@ -110,10 +110,10 @@ def drives_slide(position: NDArray[np.float64], backlash: float) -> NDArray[np.b
     The slide follows as in play: it stays where it is until the motor has crossed the gap.
     """
     slide = np.empty_like(position)
-    place, half = position[0], 0.5 * backlash
+    at, half = position[0], 0.5 * backlash
     touching = np.empty(position.size, dtype=bool)
     for i, x in enumerate(position):
-        moved = min(max(place, x - half), x + half)
+        moved = min(max(at, x - half), x + half)
         touching[i] = abs(abs(x - moved) - half) < 1e-12
-        slide[i] = place = moved
+        slide[i] = at = moved
     return touching

@@ -104,8 +104,8 @@ def coulomb_stribeck_table(
 
 
 @leaf
-def _resist(law, i, sign, way, h):  # noqa: ARG001
-    speed = way / h
+def _resist(law, i, sign, travel, h):  # noqa: ARG001
+    speed = travel / h
     ratio = speed / law.stribeck_velocity[i]
     power = ratio * ratio if law.stribeck_shape[i] == 2.0 else ratio ** law.stribeck_shape[i]
     dry = law.coulomb[i] + (law.static[i] - law.coulomb[i]) * math.exp(-power)

@@ -34,15 +34,15 @@ def describing_function(
         )
     turn = 2.0 * math.pi / _STEPS
     time = 1.0 / (frequency * _STEPS)
-    place, work, elastic = 0.0, 0.0, 0.0
+    before, work, elastic = 0.0, 0.0, 0.0
     for step in range(1, _CYCLES * _STEPS + 1):
         after = amplitude * math.sin(turn * (step % _STEPS))
         if step > (_CYCLES - 1) * _STEPS:
-            held = force(law, 0, after - place, time)
-            work += held * (after - place)
+            held = force(law, 0, after - before, time)
+            work += held * (after - before)
             elastic += held * amplitude * math.sin(turn * (step - 0.5))
-        advance(law, 0, after - place, time)
-        place = after
+        advance(law, 0, after - before, time)
+        before = after
     omega = 2.0 * math.pi * frequency
     stiffness = 2.0 * elastic / (_STEPS * amplitude**2)
     return float(stiffness), float(work / (math.pi * amplitude**2 * omega))

@@ -97,22 +97,22 @@ def _solve(rest, opposing, law, i, free, compliance, h):
     if high <= 0.0:
         return at_rest, 0.0
     guess = min(max(sign * law.rate[i] * h, 0.0), high)
-    way = _way(opposing, law, i, sign, h, sign * free, compliance, high, guess)
-    if way == 0.0:
+    travel = _travel(opposing, law, i, sign, h, sign * free, compliance, high, guess)
+    if travel == 0.0:
         return free / compliance, 0.0
-    return sign * opposing(law, i, sign, way, h), sign * way
+    return sign * opposing(law, i, sign, travel, h), sign * travel
 
 
 @leaf
-def _way(opposing, law, i, sign, h, free, compliance, high, guess):
+def _travel(opposing, law, i, sign, h, free, compliance, high, guess):
     """Root of way - free + compliance opposing(way) in [0, high], that next to the guess.
 
     A falling force over speed has several roots if the step is coarse; the one that continues
     the motion is taken. 0 is a root also if rest can be held.
     """
-    way = _contracted(opposing, law, i, sign, h, free, compliance, high, guess)
-    if way > 0.0:
-        return way
+    travel = _contracted(opposing, law, i, sign, h, free, compliance, high, guess)
+    if travel > 0.0:
+        return travel
     low, f_low, top, f_top = 0.0, -1.0, high, 1.0
     if guess > 0.0:
         f = guess - free + compliance * opposing(law, i, sign, guess, h)
@@ -145,16 +145,16 @@ def _contracted(opposing, law, i, sign, h, free, compliance, high, guess):
 
     A law much softer than the step's compliance closes in by orders of magnitude each time.
     """
-    way, last = guess, high
+    travel, last = guess, high
     for _ in range(_CONTRACTIONS):
-        following = free - compliance * opposing(law, i, sign, way, h)
-        change = abs(following - way)
+        following = free - compliance * opposing(law, i, sign, travel, h)
+        change = abs(following - travel)
         if not 0.0 < following <= high or change > _CLOSING * last:
             break
         # the next change would be smaller by as much as this one is than the last
         if change * change <= 2.0 * _ROUNDING * following * last:
             return following
-        way, last = following, change
+        travel, last = following, change
     return 0.0
 
 

@@ -52,7 +52,7 @@ def friction_groups(laws: Sequence[FrictionLaw], ports: Sequence[int]) -> tuple[
     """Tables of frictions at rest, one a law that occurs, in the order of `LAWS`."""
     groups = []
     for kind, entry in BY_SPEC.items():
-        chosen = [place for place, law in enumerate(laws) if isinstance(law, kind)]
+        chosen = [index for index, law in enumerate(laws) if isinstance(law, kind)]
         if chosen:
             columns = entry.columns([laws[i] for i in chosen], [ports[i] for i in chosen])
             force, beyond = np.zeros(len(chosen)), np.zeros(len(chosen))

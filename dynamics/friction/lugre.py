@@ -150,11 +150,11 @@ def lugre_bent(law, i, speed):
 
 
 @leaf
-def _bend(law, i, sign, way, h):
+def _bend(law, i, sign, travel, h):
     """Mean and final deflection along sign over a motion at constant speed, and g, m."""
     start = sign * law.deflection[i]
-    slip = lugre_bent(law, i, way / h)
-    lengths = way / slip
+    slip = lugre_bent(law, i, travel / h)
+    lengths = travel / slip
     kept = -math.expm1(-lengths)
     # (1 - exp(-x)) / x loses digits only below rounding
     mean = kept / lengths if lengths > 1e-12 else 1.0 - 0.5 * lengths
@@ -163,12 +163,12 @@ def _bend(law, i, sign, way, h):
 
 
 @leaf
-def _resist(law, i, sign, way, h):
-    mean, end, slip = _bend(law, i, sign, way, h)
+def _resist(law, i, sign, travel, h):
+    mean, end, slip = _bend(law, i, sign, travel, h)
     start = sign * law.deflection[i]
     change = (end - start) / h
     force = law.bristle_stiffness[i] * mean + law.bristle_damping[i] * change
-    force += law.viscous[i] * way / h
+    force += law.viscous[i] * travel / h
     return max(force, 0.0) if start > slip else force
 
 

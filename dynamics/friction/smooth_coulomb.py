@@ -92,8 +92,8 @@ def smooth_coulomb_table(laws: Sequence[SmoothCoulomb], ports: Sequence[int]) ->
 
 
 @leaf
-def _resist(law, i, sign, way, h):  # noqa: ARG001
-    speed = way / h
+def _resist(law, i, sign, travel, h):  # noqa: ARG001
+    speed = travel / h
     return law.coulomb[i] * math.tanh(speed / law.smoothing_velocity[i]) + law.viscous[i] * speed
 
 

@@ -127,9 +127,9 @@ def tanh_table(laws: Sequence[TanhHysteresis], ports: Sequence[int]) -> TanhTabl
 
 
 @leaf
-def _resist(law, i, sign, way, h):
-    mean = branch_mean(law, i, sign, way)
-    speed = way / h
+def _resist(law, i, sign, travel, h):
+    mean = branch_mean(law, i, sign, travel)
+    speed = travel / h
     slow = law.low_speed_viscous[i] * math.exp(-law.low_speed_decay[i] * speed)
     return law.coulomb[i] * mean + (law.viscous[i] + slow) * speed * max(mean, 0.0)
 
@@ -142,11 +142,11 @@ def _rest(law, i):
 @leaf
 def _stored(law, i, motion, h):  # noqa: ARG001
     sign = 1.0 if motion >= 0.0 else -1.0
-    way = abs(motion)
-    if way == 0.0:
+    travel = abs(motion)
+    if travel == 0.0:
         return 0.0
-    lost = branch_lost(law, i, sign, way)
-    return law.coulomb[i] * (branch_mean(law, i, sign, way) * way - lost)
+    lost = branch_lost(law, i, sign, travel)
+    return law.coulomb[i] * (branch_mean(law, i, sign, travel) * travel - lost)
 
 
 @leaf

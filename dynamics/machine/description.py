@@ -218,13 +218,13 @@ def reduced(full: Machine, highest: float, kept_points: Sequence[str] | None = N
     """
     structure = full.structure
     names = structure.points if kept_points is None else kept_points
-    forces = [structure.port(name, way) for name in names for way in np.eye(3)]
-    places = [
+    forces = [structure.port(name, direction) for name in names for direction in np.eye(3)]
+    points = [
         *(drive.row for drive in full.drives),
         *(friction.row for friction in full.frictions),
         *(preload.row for preload in full.preloads),
     ]
-    loads = np.array([*places, *forces]).reshape(-1, structure.size)
+    loads = np.array([*points, *forces]).reshape(-1, structure.size)
     compact, basis = with_static_shapes(structure, undamped_modes(structure, highest), loads)
     return replace(
         full,

@@ -54,8 +54,8 @@ def at_amplitude(amplitude: float) -> Linearised:
         nodes = np.geomspace(lines.min(), lines.max(), _CYCLES_GONE_THROUGH)
         found = at(law, nodes)
         return sum(
-            way * PchipInterpolator(np.log(nodes), part)(np.log(lines))
-            for way, part in ((1.0, found.real), (1j, found.imag))
+            factor * PchipInterpolator(np.log(nodes), part)(np.log(lines))
+            for factor, part in ((1.0, found.real), (1j, found.imag))
         )
 
     return describing
@@ -128,12 +128,12 @@ def structure_receptance(
     damping = modes.shapes.T @ (machine.structure.damping @ modes.shapes)
     result = np.empty((len(frequency), len(rows), len(rows)), dtype=np.complex128)
     undamped = ~damping.any(axis=0)
-    for place, line in enumerate(2.0 * np.pi * frequency):
+    for index, line in enumerate(2.0 * np.pi * frequency):
         stiffness = omega**2 - line**2
         # infinite there: the least number that can be told from none
         stiffness[undamped & (stiffness == 0.0)] = np.spacing(line**2)
         dynamic = np.diag(stiffness) + 1j * line * damping
-        result[place] = seen @ np.linalg.solve(dynamic, seen.T)
+        result[index] = seen @ np.linalg.solve(dynamic, seen.T)
     return result
 
 
@@ -149,10 +149,10 @@ def _feedback(
     size = 2 * k + len(chosen)
     feedback = np.zeros((lines.size, size, size), dtype=np.complex128)
     hold = zero_order_hold_response(lines, step)
-    for place, drive in enumerate(machine.drives):
+    for index, drive in enumerate(machine.drives):
         answer = controller_response(drive.controller, step, lines)
-        feedback[:, place, place] = hold * answer.per_motor_angle(lines)
-        feedback[:, place, k + place] = hold * answer.x_scale
-    for place, one in enumerate(chosen, start=2 * k):
-        feedback[:, place, place] = -frictions[one.name](one.law, lines)
+        feedback[:, index, index] = hold * answer.per_motor_angle(lines)
+        feedback[:, index, k + index] = hold * answer.x_scale
+    for index, one in enumerate(chosen, start=2 * k):
+        feedback[:, index, index] = -frictions[one.name](one.law, lines)
     return feedback

@@ -66,12 +66,12 @@ def modal_structure(modes: Sequence[Mode], step: float, rubbing: Sequence[int] =
     unit = np.stack([np.ones(count), natural], axis=1)
     per_force = unit / stiffness[:, None]
     shape = np.array([mode.direction for mode in modes], dtype=np.float64).reshape(count, 3)
-    places = np.array(rubbing, dtype=np.int64)
-    ports = np.vstack([shape.T, np.eye(count)[places]])
+    indices = np.array(rubbing, dtype=np.int64)
+    ports = np.vstack([shape.T, np.eye(count)[indices]])
     constant = over[:, :2, 2] * per_force
     fixed = {
         "shape": shape,
-        "rubbing": places,
+        "rubbing": indices,
         "transition": (over[:, :2, :2] * unit[:, :, None] / unit[:, None, :]).reshape(count, 4),
         "constant": constant,
         "ramp": over[:, :2, 3] * per_force,

@@ -67,19 +67,19 @@ def machine_tables(
         if name in rows:
             raise StructureError(f'"{name}" names two places of the machine')
         rows[name] = row
-    port = {name: place for place, name in enumerate(rows)}
+    port = {name: index for index, name in enumerate(rows)}
     matrix = np.array(list(rows.values())).reshape(-1, machine.structure.size)
     bus = structure_steps(machine.structure, matrix, step, velocity)
     explicit: tuple = ()
     if machine.drives:
         explicit += (_controlled(machine, step, points, port),)
     if machine.preloads:
-        places = np.array([port[one.name] for one in machine.preloads], dtype=np.int64)
-        explicit += (ConstantForces(places, np.array([one.value for one in machine.preloads])),)
+        indices = np.array([port[one.name] for one in machine.preloads], dtype=np.int64)
+        explicit += (ConstantForces(indices, np.array([one.value for one in machine.preloads])),)
     if loads:
-        places = np.array([port[name] for name in loads], dtype=np.int64)
+        indices = np.array([port[name] for name in loads], dtype=np.int64)
         force = np.stack([force for _, force in loads.values()], axis=1, dtype=np.float64)
-        explicit += (Loads(places, force),)
+        explicit += (Loads(indices, force),)
     frictions = friction_groups(
         [one.law for one in machine.frictions], [port[_friction(one)] for one in machine.frictions]
     )
@@ -98,9 +98,9 @@ def modal_tables(
     At a step, s; `rubbing` is the mode that each law acts on.
     """
     bus = modal_structure(modes, step, rubbing)
-    port = {f"tool {axis}": place for place, axis in enumerate("xyz")}
-    places = range(len(port), len(port) + len(rubbing))
-    frictions = friction_groups(list(laws), list(places))
+    port = {f"tool {axis}": index for index, axis in enumerate("xyz")}
+    indices = range(len(port), len(port) + len(rubbing))
+    frictions = friction_groups(list(laws), list(indices))
     implicit: tuple = (modal_energy(modes),)
     if frictions:
         implicit += (frictions_on_ports(frictions, bus.step_compliance),)

@@ -97,7 +97,7 @@ class ImportedPart:
         Raises
         ------
         StructureError
-            If the position is no point and there is no rail, or it lies off its ends.
+            If the position is not a point and there is no rail, or it lies off its ends.
         """
         at = np.asarray(position, dtype=np.float64)
         for name, point in self.positions.items():

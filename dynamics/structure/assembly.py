@@ -188,7 +188,9 @@ def _refuse_free_parts(
     for name, part in parts.items():
         single = part.rigid_motions.shape[1] == 1
         turning += [True] if single else [False] * 3 + [True] * 3
-        labels += [f'"{name}" {way}' for way in (("rotation",) if single else DIRECTIONS)]
+        labels += [
+            f'"{name}" {direction}' for direction in (("rotation",) if single else DIRECTIONS)
+        ]
     restrained = [
         deformation[rate > 0.0] for deformation, rate in zip(deformations, stiffness, strict=True)
     ]

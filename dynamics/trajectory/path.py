@@ -112,9 +112,9 @@ def foot(element: Line | Arc, points: NDArray[np.float64]) -> Foot:
     """Return the nearest place on an element for points (n, 2), m."""
     length = element.nearest_length(points)
     position, tangent = element.at(length)
-    way = points - position
-    left = tangent[:, 0] * way[:, 1] - tangent[:, 1] * way[:, 0]
-    return Foot(length, np.hypot(way[:, 0], way[:, 1]), left)
+    offset = points - position
+    left = tangent[:, 0] * offset[:, 1] - tangent[:, 1] * offset[:, 0]
+    return Foot(length, np.hypot(offset[:, 0], offset[:, 1]), left)
 
 
 @dataclass(frozen=True)

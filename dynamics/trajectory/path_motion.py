@@ -74,9 +74,9 @@ class PathMotion:
         d = np.clip(t, 0.0, self.duration) - p.time[i]
         gain = p.acceleration[i] + p.jerk[i] * d
         speed = p.speed[i] + d * (p.acceleration[i] + d * p.jerk[i] / 2.0)
-        way = d * (p.speed[i] + d * (p.acceleration[i] / 2.0 + d * p.jerk[i] / 6.0))
+        travel = d * (p.speed[i] + d * (p.acceleration[i] / 2.0 + d * p.jerk[i] / 6.0))
         moving = (t > 0.0) & (t < self.duration)
-        covered = np.where(t >= self.duration, self.path.breaks[-1], p.length[i] + way)
+        covered = np.where(t >= self.duration, self.path.breaks[-1], p.length[i] + travel)
         return covered, np.where(moving, speed, 0.0), np.where(moving, gain, 0.0)
 
     def at(self, time: ArrayLike) -> Motion:

@@ -51,20 +51,20 @@ class AxisSection(Section):
         problems = []
         kind = None if self.drive is None else self.drive.kind
         if self.moving is None and kind != "spindle":
-            problems.append(("moving", "is missing; the part that the axis moves is wanted"))
+            problems.append(("moving", "is missing; the part that the axis moves is required"))
         if self.at is None and kind is not None:
-            problems.append(("at", "is missing; the position where the drive acts is wanted"))
+            problems.append(("at", "is missing; the position where the drive acts is required"))
         for key in ("brake", "control"):
             if kind is None and getattr(self, key) is not None:
                 problems.append((key, "is given, but the axis has no drive"))
         if self.control is not None and self.control.motors == "each":
             problems += [
                 (
-                    f"drive.motors[{place}].preload",
+                    f"drive.motors[{index}].preload",
                     f'{motor.preload:g} N m is given, but with control.motors = "each" the '
                     'controllers of the motors take it back; "together" keeps it',
                 )
-                for place, motor in enumerate(() if kind is None else self.drive.motors)
+                for index, motor in enumerate(() if kind is None else self.drive.motors)
                 if motor.preload
             ]
         if kind is not None and self.drive.is_rotary and (self.carries or self.position):

@@ -23,7 +23,7 @@ _ENTRIES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 def _inertia(given: Any) -> tuple[float, ...]:
     if not isinstance(given, (list, tuple)) or len(given) not in (3, 6):
         raise ValueError(
-            f"{formatted(given)} is given; three principal moments of inertia are wanted, or six "
+            f"{formatted(given)} is given; three principal moments of inertia are required, or six "
             "entries of the tensor: xx, yy, zz, xy, xz, yz"
         )
     return tuple(_INERTIA.read(part) for part in given)
@@ -55,7 +55,7 @@ class BodySection(Section):
         given = (self.inertia is not None) + (self.size is not None)
         text = {
             0: "is missing; give three moments of inertia, or the size of a block",
-            2: "inertia and size are both given; one is wanted",
+            2: "inertia and size are both given; one is required",
         }
         key = "inertia" if given == 0 else ""
         raise_if_any([(key, text[given])] if given != 1 else [])
@@ -131,8 +131,8 @@ class ConnectorSection(Section):
     def _check_place(self) -> ConnectorSection:
         given = (self.at is not None) + (self.positions is not None)
         text = {
-            0: ("at", 'is missing; a place is wanted, such as ["0 mm", "0 mm", "0 mm"]'),
-            2: ("", "at and places are both given; one is wanted"),
+            0: ("at", 'is missing; a place is required, such as ["0 mm", "0 mm", "0 mm"]'),
+            2: ("", "at and places are both given; one is required"),
         }
         raise_if_any([text[given]] if given != 1 else [])
         return self
@@ -145,7 +145,7 @@ class ConnectorSection(Section):
 
     def parts(self, name: str, shift: NDArray[np.float64]) -> list[Connector]:
         """The connectors, shifted (3,) m with the first part."""
-        places = self.positions if self.at is None else (self.at,)
+        positions = self.positions if self.at is None else (self.at,)
         return [
             Connector(
                 one,
@@ -155,7 +155,7 @@ class ConnectorSection(Section):
                 self.damping.values,
                 np.eye(3) if self.axes is None else np.array(self.axes),
             )
-            for one, at in zip(self.names(name), places, strict=True)
+            for one, at in zip(self.names(name), positions, strict=True)
         ]
 
 
@@ -181,7 +181,7 @@ class ContactSection(Section):
 def _nodes(given: Any) -> tuple[int, ...]:
     whole = isinstance(given, (list, tuple)) and given
     if not whole or not all(isinstance(one, int) and not isinstance(one, bool) for one in given):
-        raise ValueError(f"{formatted(given)} is given; a list of numbers of nodes is wanted")
+        raise ValueError(f"{formatted(given)} is given; a list of numbers of nodes is required")
     return tuple(given)
 
 

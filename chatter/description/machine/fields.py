@@ -27,7 +27,7 @@ def _places(given: Any) -> tuple[tuple[float, ...], ...]:
     many = isinstance(given, (list, tuple)) and given
     if not many or not all(isinstance(one, (list, tuple)) and len(one) == 3 for one in given):
         raise ValueError(
-            f"{formatted(given)} is given; a list of places is wanted, "
+            f"{formatted(given)} is given; a list of places is required, "
             'such as [["0 mm", "0 mm", "0 mm"], ...]'
         )
     return tuple(tuple(Coordinate.read(part) for part in one) for one in given)
@@ -60,11 +60,11 @@ def _direction(given: Any) -> tuple[float, float, float]:
     )
     if not numbers or len(given) != 3:
         raise ValueError(
-            f"{formatted(given)} is no direction; three numbers are wanted, such as [1, 0, 0]"
+            f"{formatted(given)} is not a direction; three numbers are required, such as [1, 0, 0]"
         )
     length = math.hypot(*given)
     if length < 1e-9:
-        raise ValueError(f"{formatted(given)} is no direction; it has no length")
+        raise ValueError(f"{formatted(given)} is not a direction; it has no length")
     return tuple(part / length for part in given)
 
 
@@ -84,7 +84,7 @@ def pair(dimension: str, **bounds: float) -> Any:
         both = given if isinstance(given, (list, tuple)) else (given, given)
         if len(both) != 2:
             raise ValueError(
-                f"{formatted(given)} is given; {field.noun}, or a list of two, is wanted"
+                f"{formatted(given)} is given; {field.noun}, or a list of two, is required"
             )
         return field.read(both[0]), field.read(both[1])
 

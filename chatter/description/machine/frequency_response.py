@@ -40,7 +40,7 @@ def parse_tested_point(text: str) -> TestedPoint:
     match = _PLACE.fullmatch(text) if isinstance(text, str) else None
     if match is None:
         raise ValueError(
-            f'{text!r} is given; a point and a direction are wanted, such as "table:y", '
+            f'{text!r} is given; a point and a direction are required, such as "table:y", '
             '"tool/table:y" (against another point) or "motor:Y" (torque of an axis)'
         )
     _, motor, point, against, direction = match.groups()

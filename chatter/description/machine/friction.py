@@ -37,7 +37,9 @@ class FrictionTarget(Section):
         given = [key for key in _TARGETS if getattr(self, key) is not None]
         problems = []
         if len(given) != 1:
-            problems.append(("", f"one of {', '.join(_TARGETS)} is wanted; {len(given)} are given"))
+            problems.append(
+                ("", f"one of {', '.join(_TARGETS)} is required; {len(given)} are given")
+            )
         if (self.direction is None) == ("connector" in given):
             text = "is missing; a connector has x, y, z, rx, ry and rz"
             problems.append(("direction", text if given else "belongs to connector"))

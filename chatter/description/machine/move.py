@@ -31,7 +31,7 @@ def _plane_points(given: Any) -> tuple[tuple[float, float], ...]:
     fits = isinstance(given, (list, tuple)) and len(given) >= 2
     if not fits or not all(isinstance(one, (list, tuple)) and len(one) == 2 for one in given):
         raise ValueError(
-            'a list of points is wanted, such as [["0 mm", "0 mm"], ["50 mm", "0 mm"], ...]'
+            'a list of points is required, such as [["0 mm", "0 mm"], ["50 mm", "0 mm"], ...]'
         )
     return tuple((_LENGTH.read(x), _LENGTH.read(y)) for x, y in given)
 

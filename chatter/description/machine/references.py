@@ -51,19 +51,19 @@ def _references(file: MachineFile) -> Iterator[tuple[str, str, Sequence[str]]]:
     """Path, name and what may stand there, of every name that a section refers to."""
     parts = file.part_names
     for name, connector in file.connector.items():
-        for place, part in enumerate(connector.between):
-            yield f"connector.{name}.between[{place}]", part, parts
+        for index, part in enumerate(connector.between):
+            yield f"connector.{name}.between[{index}]", part, parts
     for name, point in file.point.items():
         yield f"point.{name}.on", point.on, parts
     for name, beam in file.beam.items():
-        for place, bearing in enumerate(beam.bearings):
-            yield f"beam.{name}.bearings[{place}].on", bearing.on, parts
+        for index, bearing in enumerate(beam.bearings):
+            yield f"beam.{name}.bearings[{index}].on", bearing.on, parts
     for name, axis in file.axis.items():
         for key in ("moving", "carrying"):
             if getattr(axis, key) is not None:
                 yield f"axis.{name}.{key}", getattr(axis, key), parts
-        for place, part in enumerate(axis.carries or ()):
-            yield f"axis.{name}.carries[{place}]", part, parts
+        for index, part in enumerate(axis.carries or ()):
+            yield f"axis.{name}.carries[{index}]", part, parts
         if axis.drive is not None and axis.drive.beam is not None:
             yield f"axis.{name}.drive.beam", axis.drive.beam, tuple(file.beam)
     for key in ("tool_point", "workpiece"):
@@ -75,13 +75,13 @@ def _references(file: MachineFile) -> Iterator[tuple[str, str, Sequence[str]]]:
 def _friction_references(file: MachineFile) -> Iterator[tuple[str, str, Sequence[str]]]:
     driven = tuple(name for name, axis in file.axis.items() if axis.drive is not None)
     bearings = [f"{name}.{one.name}" for name, beam in file.beam.items() for one in beam.bearings]
-    places = {
+    references = {
         "axis": tuple(file.axis),
         "motor": driven,
         "connector": (*file.connector, *bearings),
     }
     for name, friction in file.friction.items():
-        for key, known in places.items():
+        for key, known in references.items():
             given = getattr(friction.on, key)
             if given is not None:
                 yield f"friction.{name}.on.{key}", given, known

@@ -129,7 +129,7 @@ class Axis(Section):
 _COORDINATE = QuantityField("length", above=-100.0, below=100.0)
 PlanePoint = list_type(
     tuple[float, float],
-    list_reader(_COORDINATE, 'is no point; two lengths are wanted: ["0 mm", "5 mm"]', 2, 2),
+    list_reader(_COORDINATE, 'is not a point; two lengths are required: ["0 mm", "5 mm"]', 2, 2),
     _COORDINATE,
     fewest=2,
     most=2,

@@ -36,11 +36,11 @@ def _unit_vector(given: Any) -> tuple[float, float, float]:
     )
     if not numbers or len(given) != 3:
         raise ValueError(
-            f"{formatted(given)} is no direction; three numbers are wanted, such as [1, 0, 0]"
+            f"{formatted(given)} is not a direction; three numbers are required, such as [1, 0, 0]"
         )
     length = math.hypot(*given)
     if abs(length - 1.0) > _UNIT_TOLERANCE:
-        raise ValueError(f"{formatted(given)} has length {length:.4g}; a unit vector is wanted")
+        raise ValueError(f"{formatted(given)} has length {length:.4g}; a unit vector is required")
     return tuple(float(part) / length for part in given)
 
 
@@ -74,7 +74,7 @@ class SpeedDependence(Section):
         columns = {key: getattr(self, key) for key in ("frequency", "damping", *_INERTIA)}
         given = {key: column for key, column in columns.items() if column is not None}
         problems = [
-            (key, f"has {len(column)} values for {count} speeds; one for each is wanted")
+            (key, f"has {len(column)} values for {count} speeds; one for each is required")
             for key, column in given.items()
             if len(column) != count
         ]
@@ -92,12 +92,12 @@ class SpeedDependence(Section):
         column = getattr(self, key)
         if column is None:
             return None
-        place = bisect(self.speeds, spindle_speed)
-        if place in (0, len(column)):
-            return column[min(place, len(column) - 1)]
-        low, high = self.speeds[place - 1], self.speeds[place]
+        index = bisect(self.speeds, spindle_speed)
+        if index in (0, len(column)):
+            return column[min(index, len(column) - 1)]
+        low, high = self.speeds[index - 1], self.speeds[index]
         share = (spindle_speed - low) / (high - low)
-        return column[place - 1] + share * (column[place] - column[place - 1])
+        return column[index - 1] + share * (column[index] - column[index - 1])
 
 
 class ModeSection(Section):
@@ -179,7 +179,9 @@ class ModeSection(Section):
 
 def _in_case_folder(given: Any, info: ValidationInfo) -> Path:
     if not isinstance(given, (str, Path)) or not str(given) or not str(given).isprintable():
-        raise ValueError(f'{formatted(given)} is no file name; one is wanted, such as "tap.uff"')
+        raise ValueError(
+            f'{formatted(given)} is not a file name; one is required, such as "tap.uff"'
+        )
     return (info.context or {}).get("folder", Path()) / given
 
 
@@ -212,7 +214,9 @@ class MeasuredFrf(Section):
     @classmethod
     def _check_direction(cls, given: str | None) -> str | None:
         if given is not None and not _DIRECTION.fullmatch(given):
-            raise ValueError(f'"{given}" is no direction; "x", "y", "z" or two of them are wanted')
+            raise ValueError(
+                f'"{given}" is not a direction; "x", "y", "z" or two of them are required'
+            )
         return given
 
     @field_validator("node", mode="before")
@@ -227,8 +231,8 @@ def _as_tables(given: Any) -> Any:
     for entry in entries:
         if not isinstance(entry, (str, dict)):
             raise ValueError(
-                f"{formatted(entry)} is no measured FRF; "
-                "a file name is wanted, or a table with file"
+                f"{formatted(entry)} is not a measured FRF; "
+                "a file name is required, or a table with file"
             )
     return [{"file": entry} if isinstance(entry, str) else entry for entry in entries]
 

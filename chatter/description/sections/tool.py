@@ -54,13 +54,15 @@ HelixAngles = Annotated[
 ]
 PitchAngles = list_type(
     tuple[float, ...],
-    list_reader(_PITCH, 'is no list; a list of angles is wanted, such as ["90 deg", ...]'),
+    list_reader(_PITCH, 'is not a list; a list of angles is required, such as ["90 deg", ...]'),
     _PITCH,
     "angle from each tooth to the next; they make a revolution",
 )
 ToothErrors = list_type(
     tuple[float, ...],
-    list_reader(_ERROR, 'is no list; one length for each tooth is wanted, such as ["5 um", ...]'),
+    list_reader(
+        _ERROR, 'is not a list; one length for each tooth is required, such as ["5 um", ...]'
+    ),
     _ERROR,
     "deviation of each tooth, positive outwards",
 )

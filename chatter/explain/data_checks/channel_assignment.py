@@ -118,8 +118,8 @@ def _compared(measurement: Measurement, runs: Sequence[Run]) -> list[SignalFindi
     coefficients = of_most_runs(declared.measured, declared.basis)
     found = [
         SignalFinding(RUN, run.name, "Fx, Fy", f"{run.name}: {description}")
-        for place, run in enumerate(runs)
-        if (description := _single(place, declared, others, coefficients))
+        for index, run in enumerate(runs)
+        if (description := _single(index, declared, others, coefficients))
     ]
     about = "the forces of {count} of {runs} runs do not belong to the cut that is declared"
     return of_all_or_some(found, measurement, about)
@@ -161,17 +161,17 @@ def _shares(cut: Cut, coefficients: NDArray[np.float64]) -> list[float]:
 
 
 def _single(
-    place: int, declared: Cut, others: Sequence[Cut], coefficients: NDArray[np.float64]
+    index: int, declared: Cut, others: Sequence[Cut], coefficients: NDArray[np.float64]
 ) -> str:
     """What is wrong with one run by the coefficients of the others; empty for nothing."""
-    pattern, basis = declared.measured[place], declared.basis[place]
+    pattern, basis = declared.measured[index], declared.basis[index]
     share = residual_share(pattern, basis, coefficients)
     if share < _DOUBTED:
         return ""
     tried = [
-        (residual_share(cut.measured[place], cut.basis[place], coefficients), cut) for cut in others
+        (residual_share(cut.measured[index], cut.basis[index], coefficients), cut) for cut in others
     ]
-    best, cut = min(tried, key=lambda entry: entry[1].of_all(entry[0], [place]))
+    best, cut = min(tried, key=lambda entry: entry[1].of_all(entry[0], [index]))
     factor = factor_of(pattern, basis, coefficients)
     if factor > _GROSS or 0.0 < factor < 1.0 / _GROSS:
         scaled = residual_share(pattern / factor, basis, coefficients)

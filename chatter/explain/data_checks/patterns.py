@@ -66,10 +66,10 @@ def rigid_pattern(case: Case) -> Patterns:
 
 
 def _folded(angle: NDArray[np.float64], force: NDArray[np.float64], teeth: int) -> Patterns:
-    place = np.floor(np.mod(angle * teeth / (2.0 * math.pi), 1.0) * _BINS).astype(np.int64)
-    place = np.minimum(place, _BINS - 1)
-    counts = np.bincount(place, minlength=_BINS)
-    sums = np.array([np.bincount(place, weights=row, minlength=_BINS) for row in force])
+    index = np.floor(np.mod(angle * teeth / (2.0 * math.pi), 1.0) * _BINS).astype(np.int64)
+    index = np.minimum(index, _BINS - 1)
+    counts = np.bincount(index, minlength=_BINS)
+    sums = np.array([np.bincount(index, weights=row, minlength=_BINS) for row in force])
     means = sums / np.maximum(counts, 1)
     if np.any(counts == 0):
         known = np.flatnonzero(counts)

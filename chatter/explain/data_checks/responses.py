@@ -134,12 +134,12 @@ def disagreeing_responses(measurement: Measurement) -> list[SignalFinding]:
             continue
         middle = np.median(values.real, axis=0) + 1j * np.median(values.imag, axis=0)
         apart = np.linalg.norm(values - middle, axis=1) / np.linalg.norm(middle)
-        for place, run in enumerate(alike):
-            others = float(np.median(np.delete(apart, place)))
-            if apart[place] > max(_DIFFERS, _BEYOND * others):
+        for index, run in enumerate(alike):
+            others = float(np.median(np.delete(apart, index)))
+            if apart[index] > max(_DIFFERS, _BEYOND * others):
                 description = (
                     f"{run.name}: differs from the other FRFs {what} by "
-                    f"{100.0 * apart[place]:.0f} %, they among each other by {100.0 * others:.2g} %"
+                    f"{100.0 * apart[index]:.0f} %, they among each other by {100.0 * others:.2g} %"
                 )
                 found.append(SignalFinding(RUN, run.name, "real, imag", description))
     return found

@@ -160,15 +160,15 @@ def tooth_passing(time: Vector, signals: list[Vector], frequency: float) -> floa
 
 def _repeating(time: Vector, signals: list[Vector], speed: float) -> float:
     """Share of the variance that repeats with the revolution, chance taken off."""
-    place = (np.mod((time - time[0]) * speed / (2.0 * math.pi), 1.0) * _BINS).astype(np.int64)
-    place = np.minimum(place, _BINS - 1)
-    counts = np.maximum(np.bincount(place, minlength=_BINS), 1)
+    index = (np.mod((time - time[0]) * speed / (2.0 * math.pi), 1.0) * _BINS).astype(np.int64)
+    index = np.minimum(index, _BINS - 1)
+    counts = np.maximum(np.bincount(index, minlength=_BINS), 1)
     total = between = 0.0
     for values in signals:
-        means = np.bincount(place, weights=values, minlength=_BINS) / counts
+        means = np.bincount(index, weights=values, minlength=_BINS) / counts
         middle = values.mean()
         total += float(np.sum((values - middle) ** 2))
-        between += float(np.sum((means[place] - middle) ** 2))
+        between += float(np.sum((means[index] - middle) ** 2))
     chance = _BINS / time.size
     return (between / max(total, 1e-300) - chance) / (1.0 - chance)
 

@@ -97,18 +97,18 @@ def _lines(normalised: Array, weight: Array, variable: Array, wavenumber: Array)
     # every wavenumber turns the samples on by the same angle
     wave = weight * np.exp(2j * np.pi * wavenumber[0] * variable)
     turned = np.exp(2j * np.pi * (wavenumber[1] - wavenumber[0]) * variable)
-    for place, k in enumerate(wavenumber):
-        if place:
+    for index, k in enumerate(wavenumber):
+        if index:
             wave = wave * turned
         cosine, sine = wave.real, wave.imag
         a, b, c = cosine @ cosine, cosine @ sine, sine @ sine
         if k * reach < _LEAST_TURNS:
-            taken[place] = 2.0
+            taken[index] = 2.0
             continue
         p, q = cosine @ normalised, sine @ normalised
         determinant = a * c - b * b
         if determinant > 1e-9 * a * c:
-            taken[place] = (c * p * p - 2.0 * b * p * q + a * q * q) / determinant
+            taken[index] = (c * p * p - 2.0 * b * p * q + a * q * q) / determinant
         else:
-            taken[place] = 0.0
+            taken[index] = 0.0
     return stride * (taken - 2.0)

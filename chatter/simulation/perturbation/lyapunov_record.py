@@ -111,8 +111,8 @@ class LyapunovRecord:
         error = math.inf
         if parts >= _FEWEST_PARTS:
             length = round(math.floor((end - begin) / parts / self.period) * self.period)
-            places = end - np.arange(parts + 1) * length
-            error = float(np.std(np.diff(self.size[places]) / length, ddof=1)) / math.sqrt(parts)
+            positions = end - np.arange(parts + 1) * length
+            error = float(np.std(np.diff(self.size[positions]) / length, ddof=1)) / math.sqrt(parts)
         return self.rate(begin, end), error
 
     def from_rest_converges(self, share: float, slope: float) -> bool:
@@ -172,8 +172,8 @@ class LyapunovRecord:
         steady = []
         for turn in range(begin, end):
             motion = self.motion[turn]
-            place = turn + np.arange(len(motion)) / len(motion)
-            size = np.interp(place, np.arange(len(self.size)) + 0.5, self.size)
+            position = turn + np.arange(len(motion)) / len(motion)
+            size = np.interp(position, np.arange(len(self.size)) + 0.5, self.size)
             steady.append(motion * np.exp(self.scale[turn] - size)[:, None])
         return _strongest(steady, self.step)
 

@@ -152,7 +152,7 @@ def peaks(frf: Frf) -> list[dict]:
 def peaks_of_test(frf: Frf) -> list[dict]:
     """Peaks that stand out from the noise of a test, as `peaks`.
 
-    Noise is told from the roughness of the logarithm around each line, which also shows what is
+    Noise is found from the roughness of the logarithm around each line, which also shows what is
     the same in every average (friction, motion), and from the coherence.
     """
     wanted = np.maximum(np.log(_STANDS_OUT), _SURE * _roughness(frf))
@@ -165,14 +165,14 @@ def peaks_of_test(frf: Frf) -> list[dict]:
 
 
 def _peaks(frf: Frf, wanted: NDArray[np.float64]) -> list[dict]:
-    """Peaks whose logarithm stands out by what is wanted at their line."""
+    """Peaks whose logarithm stands out by what is required at their line."""
     height = np.abs(frf.values)
     level = np.log(np.maximum(height, np.finfo(np.float64).tiny))
-    places, told = find_peaks(level, prominence=0.0)
+    indices, properties = find_peaks(level, prominence=0.0)
     found = []
-    for place in places[told["prominences"] >= wanted[places]]:
-        top, at = _vertex(frf.frequency, height, place)
-        damping = _half_power(frf.frequency, height, place, top, at)
+    for index in indices[properties["prominences"] >= wanted[indices]]:
+        top, at = _vertex(frf.frequency, height, index)
+        damping = _half_power(frf.frequency, height, index, top, at)
         found.append({"frequency_Hz": at, "magnitude": top, "damping": finite_or_none(damping)})
     return found
 
@@ -190,9 +190,9 @@ def _roughness(frf: Frf) -> NDArray[np.float64]:
     return np.pad(around, (1, 2), mode="edge") / (_MEDIAN * _THIRD_DIFFERENCE)
 
 
-def _vertex(frequency: NDArray, height: NDArray, place: int) -> tuple[float, float]:
+def _vertex(frequency: NDArray, height: NDArray, index: int) -> tuple[float, float]:
     """Height and frequency of the parabola through a peak and its neighbours."""
-    f, y = frequency[place - 1 : place + 2], height[place - 1 : place + 2]
+    f, y = frequency[index - 1 : index + 2], height[index - 1 : index + 2]
     bend, slope, _ = np.polyfit(f - f[1], y, 2)
     if bend >= 0.0:
         return float(y[1]), float(f[1])
@@ -200,18 +200,18 @@ def _vertex(frequency: NDArray, height: NDArray, place: int) -> tuple[float, flo
     return float(y[1] + 0.5 * slope * off), float(f[1] + off)
 
 
-def _half_power(frequency: NDArray, height: NDArray, place: int, top: float, at: float) -> float:
+def _half_power(frequency: NDArray, height: NDArray, index: int, top: float, at: float) -> float:
     level = top / np.sqrt(2.0)
     sides = []
-    for way in (-1, 1):
-        line = place
+    for direction in (-1, 1):
+        line = index
         while 0 < line < len(height) - 1 and height[line] > level:
-            if (height[line + way] - height[line]) > 0.0 and line != place:
+            if (height[line + direction] - height[line]) > 0.0 and line != index:
                 return float("nan")
-            line += way
+            line += direction
         if height[line] > level:
             return float("nan")
-        inner = line - way
+        inner = line - direction
         share = (height[inner] - level) / (height[inner] - height[line])
         sides.append(frequency[inner] + share * (frequency[line] - frequency[inner]))
     return float((sides[1] - sides[0]) / (2.0 * at))

@@ -59,10 +59,10 @@ def default_frfs(file: MachineFile) -> dict[str, FrfSection]:
         )
     against = f"/{file.workpiece}" if file.workpiece else ""
     return {
-        f"{file.tool_point} {way}": FrfSection(
-            excite=f"{file.tool_point}{against}:{way}", band=(5.0, 500.0)
+        f"{file.tool_point} {direction}": FrfSection(
+            excite=f"{file.tool_point}{against}:{direction}", band=(5.0, 500.0)
         )
-        for way in "xyz"
+        for direction in "xyz"
     }
 
 
@@ -143,7 +143,7 @@ def _one_frf(
     if section.by != "linearised" and section.band[1] >= 0.5 / file.step:
         raise InputError(
             f"{where}.band: {section.band[1]:g} Hz cannot be tested with a step of "
-            f"{file.step:g} s; below {0.5 / file.step:g} Hz is wanted, or a shorter step"
+            f"{file.step:g} s; below {0.5 / file.step:g} Hz is required, or a shorter step"
         )
     velocity = {axis: speed for axis, speed in section.moving.items() if abs(speed) > _RESTING}
     _refuse_unmovable(where, machine, velocity)
@@ -231,7 +231,10 @@ def file_move(
     tool = None
     if file.tool_point is not None:
         tool = np.array(
-            [machine.structure.port(file.tool_point, way, file.workpiece) for way in np.eye(3)]
+            [
+                machine.structure.port(file.tool_point, direction, file.workpiece)
+                for direction in np.eye(3)
+            ]
         )
     title = file.title or file.name
     with _told_with(where, file.name):

@@ -217,10 +217,10 @@ def _answer(
     closed = receptance(machine, lines, rows, step, frictions)
     hold = zero_order_hold_response(lines, step)
     return sum(
-        closed[:, 0, place]
+        closed[:, 0, index]
         * hold
         * per_set_point(controller_response(drive.controller, step, lines))
-        for place, drive in enumerate(drives, start=1)
+        for index, drive in enumerate(drives, start=1)
     )
 
 

@@ -95,14 +95,14 @@ class MoveResult:
 
     def _csv(self) -> str:
         names, columns = ["time [s]"], [self.time]
-        for place, axis in enumerate(self.axes):
+        for index, axis in enumerate(self.axes):
             names += [f"{axis} set [m]", f"{axis} motor [m]", f"{axis} scale [m]"]
-            columns += [self.wanted[:, place], self.motor[:, place], self.scale[:, place]]
+            columns += [self.wanted[:, index], self.motor[:, index], self.scale[:, index]]
             if self.tool is not None:
                 names.append(f"{axis} tool [m]")
-                columns.append(self.tool[:, place])
+                columns.append(self.tool[:, index])
             names += [f"{axis} velocity [m/s]", f"{axis} effort [N or N*m]"]
-            columns += [self.velocity[:, place], self.effort[:, place]]
+            columns += [self.velocity[:, index], self.effort[:, index]]
         if self.contour is not None:
             names.append("contour error [m]")
             columns.append(self.contour)
@@ -142,18 +142,20 @@ def move_axes(
         If the machine runs away.
     """
     refuse_unstable_control(machine, step)
-    ways = [rigid_motion(machine, {axis: 1.0}) for axis in plan.axes]
+    motions = [rigid_motion(machine, {axis: 1.0}) for axis in plan.axes]
     points = _set_points(machine, plan, step)
-    rows = {} if tool is None else {f"tool {way}": tool[i] for i, way in enumerate("xyz")}
+    rows = (
+        {} if tool is None else {f"tool {direction}": tool[i] for i, direction in enumerate("xyz")}
+    )
     duration = len(points.position) * points.steps * step + plan.afterwards
     finer = _records_a_cycle(machine, points.steps)
     inputs = RunInputs(duration, points, outputs=rows, stride=points.steps // finer)
     run = _by_cycle(run_machine(machine, step, inputs, progress), finer)
     columns = [machine.axes.index(axis) for axis in plan.axes]
     # a row is read at the end of its cycle, when the next set point holds
-    place = np.minimum(np.arange(1, len(run.time) + 1), len(points.position) - 1)
-    wanted = points.position[place][:, columns]
-    tip = None if tool is None else _at_tool(run, tool, ways)
+    index = np.minimum(np.arange(1, len(run.time) + 1), len(points.position) - 1)
+    wanted = points.position[index][:, columns]
+    tip = None if tool is None else _at_tool(run, tool, motions)
     motor = _mean_of_drives(
         machine, plan.axes, lambda one: _travel(one) * run.displacement[f"drive {one.name}"]
     )
@@ -242,10 +244,10 @@ def _set_points(machine: Machine, plan: MovePlan, step: float) -> SetPoints:
     return SetPoints(position, velocity, acceleration, points.steps)
 
 
-def _at_tool(run: MachineRun, tool: NDArray, ways: Sequence[NDArray]) -> NDArray[np.float64]:
+def _at_tool(run: MachineRun, tool: NDArray, motions: Sequence[NDArray]) -> NDArray[np.float64]:
     """Axis coordinates (n, axes) of the tool against the workpiece."""
-    moved = np.array([run.displacement[f"tool {way}"] for way in "xyz"])
-    directions = np.array([tool @ way for way in ways]).T
+    moved = np.array([run.displacement[f"tool {direction}"] for direction in "xyz"])
+    directions = np.array([tool @ direction for direction in motions]).T
     return np.linalg.lstsq(directions, moved, rcond=None)[0].T
 
 

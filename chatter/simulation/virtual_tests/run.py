@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from chatter.description.errors import InputError, RunError
 from chatter.description.progress import Progress, no_progress
-from chatter.engine.interruption import interruptions_held
+from chatter.engine.interruption import interruptions_deferred
 from chatter.engine.loop import Laws, run
 from chatter.engine.record import port_record
 from dynamics.control.sampling import ControlError
@@ -109,7 +109,7 @@ def run_machine(
     try:
         while done < total:
             count = min(_STEPS_A_CHUNK, total - done)
-            with interruptions_held():
+            with interruptions_deferred():
                 ran = run(laws, tables.bus, done, 0, count)
             done += ran
             progress(done, total)
@@ -122,7 +122,7 @@ def run_machine(
         interrupted = True
     rows = done // stride
     signals = {
-        what: {name: getattr(record, what)[:rows, place] for name, place in tables.port.items()}
+        what: {name: getattr(record, what)[:rows, index] for name, index in tables.port.items()}
         for what in ("displacement", "velocity", "force")
     }
     time = step * stride * np.arange(1, rows + 1)

@@ -153,8 +153,8 @@ def _as_sampled(machine: Machine, step: float, test: FrfTest, values: NDArray) -
     ]
     # samples count from the start of the run
     before = round(test.settling / step)
-    place = np.arange(before, before + len(values))
-    held = place - place % max(every) - before
+    index = np.arange(before, before + len(values))
+    held = index - index % max(every) - before
     return np.where(held >= 0, values[np.maximum(held, 0)], 0.0)
 
 
@@ -170,9 +170,9 @@ def _at_angle(test: FrfTest, width: float, step: float) -> PulseTrain:
     return angle_triggered_pulses(angle, test.at_angle, pulse, step, revolutions)
 
 
-def _share_of(progress: Progress, place: int, test: FrfTest) -> Progress:
+def _share_of(progress: Progress, index: int, test: FrfTest) -> Progress:
     """Progress of one of several runs as part of the whole."""
-    return lambda done, total: progress(place * total + done, test.averages * total)
+    return lambda done, total: progress(index * total + done, test.averages * total)
 
 
 def _of_blows(

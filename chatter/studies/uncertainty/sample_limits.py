@@ -72,7 +72,7 @@ def check_counts(samples: int, speeds: int, seed: int) -> None:
     limits = (("--samples", samples, 2, 1_000_000), ("--speeds", speeds, 2, 20_000))
     for name, given, low, high in (*limits, ("--seed", seed, 0, 2**31)):
         if not low <= given <= high:
-            raise InputError(f"{name} {given}: a number from {low} to {high} is wanted")
+            raise InputError(f"{name} {given}: a number from {low} to {high} is required")
 
 
 def confidence_interval(successes: int, count: int) -> tuple[float, float]:

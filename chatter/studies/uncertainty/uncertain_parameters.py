@@ -69,8 +69,8 @@ def correlation_of(case: Case, parameters: Sequence[UncertainParameter]) -> Arra
         return None
     known = [one.path for one in parameters]
     matrix = np.eye(len(known))
-    for place, pair in enumerate(pairs):
-        where = f"{case.name}: uncertainty.correlation[{place}]"
+    for index, pair in enumerate(pairs):
+        where = f"{case.name}: uncertainty.correlation[{index}]"
         for number, path in enumerate(pair.between):
             if path not in known:
                 raise InputError(

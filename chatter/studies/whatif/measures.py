@@ -121,7 +121,7 @@ def _simulated(case: Case) -> SimulationResult:
 
     result = simulate(case)
     if result.interrupted:
-        # half a run is no point of a study
+        # half a run is not a point of a study
         raise KeyboardInterrupt
     return result
 

@@ -39,7 +39,7 @@ class Value:
 
     label: str  # as people read it
     patch: Mapping[str, Any] = field(hash=False)  # what it changes
-    number: float | None = None  # in the unit of the variation; None for what is no quantity
+    number: float | None = None  # in the unit of the variation; None for what is not a quantity
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ def read_variation(text: str, model: Model, count: int | None = None) -> Variati
     path, equals, given = text.partition("=")
     path = path.strip()
     if not equals or not path:
-        raise InputError(f"--vary {formatted(text)}: PATH=VALUES is wanted, {_EXAMPLE}")
+        raise InputError(f"--vary {formatted(text)}: PATH=VALUES is required, {_EXAMPLE}")
     if not isinstance(model, Case):
         path = path.removeprefix(PREFIX)
     kind = field_of(model, path)
@@ -189,7 +189,7 @@ def _unit(path: str, given: list[Any], kind: QuantityField | None) -> str:
 def _range(path: str, text: str, kind: QuantityField, count: int | None) -> Variation:
     count = DEFAULT_COUNT if count is None else count
     if not 2 <= count <= _MOST_VALUES:
-        raise InputError(f"--count {count}: a number from 2 to {_MOST_VALUES} is wanted")
+        raise InputError(f"--count {count}: a number from 2 to {_MOST_VALUES} is required")
     low, _, high = (part.strip().strip('"') for part in text.partition(".."))
     # "1..4 mm" is meant as 1 mm..4 mm
     unit = re.sub(rf"^\s*{NUMBER}", "", high).strip()

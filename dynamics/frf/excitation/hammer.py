@@ -84,7 +84,7 @@ def several_blows(
     Raises
     ------
     ExcitationError
-        If a time is no whole number of steps or a blow does not end before the next.
+        If a time is not a whole number of steps or a blow does not end before the next.
     """
     if count < 1:
         raise ExcitationError(f"several blows: count is {count}; 1 at least")

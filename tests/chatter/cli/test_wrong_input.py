@@ -169,9 +169,9 @@ def test_several_problems_are_told_together(tmp_path):
         ("cut.axial_dept=2 mm", "axial_depth"),
         ("cut.axial_depth=2 kg", "mass"),
         ("structure.mode[7].damping=0.1", "structure.mode"),
-        ("cut.axial_depth.x=3", "no table"),
+        ("cut.axial_depth.x=3", "not a table"),
         ("nothing=3", "nothing"),
-        ("cut..x=3", "no path"),
+        ("cut..x=3", "not a path"),
     ],
 )
 def test_wrong_assignments(tmp_path, assignment, word):

@@ -250,7 +250,7 @@ def test_refusals(tmp_path, options, told):
 
 def test_refusals_in_python():
     case = two_degrees_of_freedom()
-    with pytest.raises(InputError, match="a path is wanted"):
+    with pytest.raises(InputError, match="a path is required"):
         chatter.lobes_over(case)
     with pytest.raises(InputError, match="range is empty"):
         chatter.lobes_over(case, ("cut.radial_depth", ["1 mm", "1 mm"]))

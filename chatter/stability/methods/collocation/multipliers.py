@@ -71,7 +71,7 @@ def _solved(
     frequency_wanted: BooleanArray,
     progress: Progress = no_progress,
 ) -> tuple[ComplexArray, Array]:
-    """Multipliers, and chatter frequencies (Hz) where they are wanted, nan elsewhere."""
+    """Multipliers, and chatter frequencies (Hz) where they are required, nan elsewhere."""
     if len(speeds) == 0:
         return np.empty(0, dtype=np.complex128), np.empty(0)
     _refuse_endless(cut, speeds)

@@ -150,7 +150,7 @@ def test_linear_motor_takes_newtons(line, changed):
         MachineFile.from_dict(data)
     text = str(caught.value)
     assert "axis.Y.control.velocity.proportional_gain" in text
-    assert "a damping coefficient is wanted" in text
+    assert "a damping coefficient is required" in text
     assert "axis.Y.brake.stiffness" in text
 
 

@@ -40,7 +40,7 @@ def test_all_views_and_the_lead_are_drawn(milling, axis, tmp_path):
 
 
 def test_nothing_is_told_where_nothing_is_predicted():
-    # bins 0 to 3 hold a cut; in bin 4 hardly anything is predicted, and noise is no share of it
+    # bins 0 to 3 hold a cut; in bin 4 hardly anything is predicted, and noise is not a share of it
     rng = np.random.default_rng(1)
     samples = []
     for _ in range(5):

@@ -94,7 +94,7 @@ def test_no_time_to_come_to_the_feed(tmp_path):
     told = refused(tmp_path, slide(True), {"settling": 0.01})
     assert "structure.settling: 0.01 s is given" in told
     assert "X" in told
-    assert "0.05 s or more is wanted" in told
+    assert "0.05 s or more is required" in told
     # where there is little, axes come to the feed in what there is
     path = written(tmp_path, slide(True))
     case = cut_case({"machine": str(path), "settling": 0.1})

@@ -45,7 +45,7 @@ def test_studies_are_listed():
         (["--study", "pitch", "--vary", "a=1"], "both given"),
         (["CASE"], "nothing varies"),
         (["CASE", "--study", "guide-friction"], "is made for the example"),
-        (["CASE", "--vary", "cut.axial_depth=1 mm,2 Hz"], "a length is wanted"),
+        (["CASE", "--vary", "cut.axial_depth=1 mm,2 Hz"], "a length is required"),
         (["nowhere.toml", "--vary", "a=1"], "there is no such file"),
     ],
 )

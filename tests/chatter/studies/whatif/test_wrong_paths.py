@@ -25,8 +25,8 @@ def folder():
             ["whatif", MACHINE, "--vary", "body.tabel.mass=1 kg, 2 kg"],
             ["machine.toml: body.tabel.mass", "there is no body.tabel", '"table"'],
         ),
-        (["frf", CASE], ["case.toml: is a case ([tool] and [material]", "a machine is wanted"]),
-        (["check", MACHINE], ["machine.toml: is a machine ([body]", "a case is wanted"]),
+        (["frf", CASE], ["case.toml: is a case ([tool] and [material]", "a machine is required"]),
+        (["check", MACHINE], ["machine.toml: is a machine ([body]", "a case is required"]),
         (
             ["simulate", CASE, "--set", "structure.condition.Q=brake"],
             ["case.toml: structure.condition", '"Q"', "there are Y"],
