@@ -164,12 +164,7 @@ def other_tools():
     """Cost of a point for tools beyond the plain end mill, and of one mode in one direction."""
     tools = {
         "ball, 160 and 200 deg, helix 30": (
-            {
-                "kind": "ball",
-                "teeth": 2,
-                "pitch": ["160 deg", "200 deg"],
-                "helix": "30 deg",
-            },
+            {"kind": "ball", "teeth": 2, "pitch": ["160 deg", "200 deg"], "helix": "30 deg"},
             6e-3,
         ),
         "helix 30/32/30/32": (
@@ -177,11 +172,7 @@ def other_tools():
             2e-3,
         ),
         "four teeth, helix 30, runout 20 um": (
-            {
-                "teeth": 4,
-                "helix": "30 deg",
-                "runout": {"offset": "20 um", "angle": "30 deg"},
-            },
+            {"teeth": 4, "helix": "30 deg", "runout": {"offset": "20 um", "angle": "30 deg"}},
             2e-3,
         ),
     }

@@ -574,10 +574,7 @@ def main() -> dict[str, list[dict]]:
         f"one core: {peak / 1e9:.1f} Gflop/s of vector multiply-adds; copies "
         f"{bandwidth / 1e9:.1f} GB/s in memory, {cached / 1e9:.1f} GB/s in 128 KiB of cache"
     )
-    tables = {
-        "delayed chip": delayed_chip(peak),
-        "workpiece": workpieces(bandwidth),
-    }
+    tables = {"delayed chip": delayed_chip(peak), "workpiece": workpieces(bandwidth)}
     if importlib.util.find_spec("jitcdde") is None:
         print("\n3. jitcdde is not installed; pip install jitcdde setuptools")
         return tables

@@ -27,8 +27,6 @@ description  case, machine and measurement files: keys, units, patches, errors
 ============ =========================================================================
 """
 
-from __future__ import annotations
-
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 

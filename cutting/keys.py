@@ -4,8 +4,6 @@ Sections, their schema and their messages are made from these declarations. `cut
 `dynamics` know nothing of each other: both have this module, and a test keeps the two alike.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple

@@ -8,8 +8,6 @@ wait for the compiler to load: what is decorated here waits until something is t
 two alike.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable, Mapping
 from typing import TypeVar

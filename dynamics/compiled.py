@@ -7,8 +7,6 @@ Compiled code that calls leaves has its `njit` from here, or its presets from
 two alike.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from numba import njit as njit

@@ -7,8 +7,6 @@ same normal equations, gradient and sum of squares: to `scipy.optimize.least_squ
 problem itself.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Generic, Protocol, TypeVar
 

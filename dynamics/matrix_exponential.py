@@ -1,7 +1,5 @@
 """Exact steps of linear systems: the matrix exponential of the system with its inputs."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -166,11 +166,7 @@ def contact(rng: Rng, plant: Plant, about: Conditions, strength: float) -> Drawn
         "damping_Ns_per_m": damping,
         "acts": "with the engaged share of the depth" if share else "whole while in the cut",
     }
-    changes = {
-        "contact_stiffness": stiffness,
-        "contact_damping": damping,
-        "contact_share": share,
-    }
+    changes = {"contact_stiffness": stiffness, "contact_damping": damping, "contact_share": share}
     return Drawn("contact", shown, changes, {"stiffness": stiffness, "damping": damping})
 
 

@@ -1,7 +1,5 @@
 """A case on the page: diagrams, simulated points and case files for values of its sliders."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """The newest request wins: a computation asks now and then whether a newer one has come."""
 
-from __future__ import annotations
-
 import threading
 import time
 from collections import OrderedDict

@@ -1,7 +1,5 @@
 """HTTP server of the page: loopback only, a random token in the path, the Host header checked."""
 
-from __future__ import annotations
-
 import hmac
 import json
 import os

@@ -1,7 +1,5 @@
 """Sliders of a case: paths with units and ranges, and a check of the values that a page sends."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass

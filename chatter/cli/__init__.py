@@ -11,8 +11,6 @@ errors         one clear message and an exit code for every error
 ============== ===============================================================================
 """
 
-from __future__ import annotations
-
 import os
 
 # matrices here are small: threads of BLAS cost more than they bring, and take cores from the sweeps

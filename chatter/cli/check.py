@@ -1,7 +1,5 @@
 """`chatter check CASE`: verdict on the operating point, as JSON."""
 
-from __future__ import annotations
-
 from chatter.cli import options
 from chatter.cli.progress import announce_compilation
 from chatter.report.console import print_json, print_notes, print_written

@@ -1,7 +1,5 @@
 """Turn errors into one clear message and an exit code."""
 
-from __future__ import annotations
-
 import functools
 import os
 import sys

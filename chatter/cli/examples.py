@@ -1,7 +1,5 @@
 """`chatter examples [NAME]`: list, copy or run the shipped examples."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

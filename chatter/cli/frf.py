@@ -38,16 +38,14 @@ class FrfOptions:
     excite: Annotated[
         str | None,
         typer.Option(
-            "--excite",
-            help='A test of your own: "table:y", "tool/table:y" or "motor:Y" (torque).',
+            "--excite", help='A test of your own: "table:y", "tool/table:y" or "motor:Y" (torque).'
         ),
     ] = None
     read: Annotated[str | None, typer.Option("--read", help="What is read in it.")] = None
     by: Annotated[
         str | None,
         typer.Option(
-            "--by",
-            help="hammer, chirp, multisine, torque impulse, torque multisine or linearised.",
+            "--by", help="hammer, chirp, multisine, torque impulse, torque multisine or linearised."
         ),
     ] = None
     level: Annotated[

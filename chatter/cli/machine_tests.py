@@ -1,7 +1,5 @@
 """Tests of a machine as the command line asks for them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """`chatter move MACHINE`: tracking and contour error of a trajectory."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 import typer
@@ -16,8 +14,7 @@ def move(
     machine: options.MachinePath,
     assignments: options.Assignments = None,
     only: Annotated[
-        list[str] | None,
-        typer.Option("--only", help="Name of a [move.NAME] to run; repeatable."),
+        list[str] | None, typer.Option("--only", help="Name of a [move.NAME] to run; repeatable.")
     ] = None,
     out: options.OutputFolder = None,
     json: options.Json = False,

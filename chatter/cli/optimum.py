@@ -1,7 +1,5 @@
 """`chatter optimum CASE`: the best speed, depth and radial depth within the limits."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 import typer

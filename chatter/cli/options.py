@@ -41,11 +41,7 @@ Cluster = Annotated[
     ),
 ]
 Method = Annotated[
-    str | None,
-    typer.Option(
-        "--method",
-        help=f"{AUTO} (default), {', '.join(METHODS.names())}.",
-    ),
+    str | None, typer.Option("--method", help=f"{AUTO} (default), {', '.join(METHODS.names())}.")
 ]
 
 

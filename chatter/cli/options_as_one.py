@@ -1,7 +1,5 @@
 """Commands of many options take them as one frozen dataclass; typer still sees each by itself."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable
 from dataclasses import MISSING, fields

@@ -1,7 +1,5 @@
 """`chatter pitch CASE`: pitch angles for a range of speeds."""
 
-from __future__ import annotations
-
 from chatter.cli import options
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present, print_sentences

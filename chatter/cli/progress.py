@@ -1,7 +1,5 @@
 """Progress of long work on the terminal, and what the first use takes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 

@@ -1,7 +1,5 @@
 """What every command does with its result: files, JSON or words, notes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Protocol, TypeVar

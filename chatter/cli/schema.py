@@ -1,7 +1,5 @@
 """`chatter schema`: the JSON schema of a case file or machine file."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 import typer

@@ -39,8 +39,7 @@ class WhatIfOptions:
     ] = None
     count: Annotated[int | None, typer.Option("--count", help="Values of a range [5].")] = None
     result: Annotated[
-        str | None,
-        typer.Option("--result", help="lobes, critical depth, forces, surface or frf."),
+        str | None, typer.Option("--result", help="lobes, critical depth, forces, surface or frf.")
     ] = None
     tornado: Annotated[
         bool, typer.Option("--tornado", help="Each path low and high, one at a time.")

@@ -1,7 +1,5 @@
 """Tool and force laws of a case, as `cutting` knows them."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

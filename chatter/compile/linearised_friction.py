@@ -1,7 +1,5 @@
 """Motion of a machine without strain, its frictions linearised about it, and FRFs with them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The machine of a case as the stability methods see it: FRFs at the tool point, linearised."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

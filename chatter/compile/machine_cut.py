@@ -1,7 +1,5 @@
 """A case on a machine: who moves, where the cut acts, at which step."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

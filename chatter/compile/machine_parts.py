@@ -1,7 +1,5 @@
 """From a machine file, at positions of its axes, to the parts of a machine and the machine."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TypeVar
@@ -65,9 +63,7 @@ def assembled_machine(
 
 
 def machine_parts(
-    file: MachineFile,
-    positions: Mapping[str, float | str] | None = None,
-    in_cut: bool = False,
+    file: MachineFile, positions: Mapping[str, float | str] | None = None, in_cut: bool = False
 ) -> MachineParts:
     """Everything a machine is made of, at positions of its axes.
 

@@ -6,8 +6,6 @@ dampers make the motions of a machine complex; real modes that are close to one 
 for that as far as they can.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

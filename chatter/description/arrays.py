@@ -1,7 +1,5 @@
 """Types of arrays, for annotations; their shapes stand beside them."""
 
-from __future__ import annotations
-
 from typing import TypeAlias
 
 import numpy as np

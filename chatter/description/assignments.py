@@ -1,7 +1,5 @@
 """Assignments of the command line, ``--set PATH=VALUE``, as values for a patch."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Checks across sections of a case."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Errors for people: which file, which key, what was given, what is allowed."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 

@@ -1,7 +1,5 @@
 """Values as messages show them: short, printable, as they stand in a case file."""
 
-from __future__ import annotations
-
 from typing import Any
 
 _LONGEST = 60

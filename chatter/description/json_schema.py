@@ -1,7 +1,5 @@
 """JSON schemas of the case file and the machine file, from the declarations that read them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Dotted paths into a case: "cut.axial_depth", "structure.mode[0].damping", "structure.mode[*]"."""
 
-from __future__ import annotations
-
 import re
 from types import UnionType
 from typing import Annotated, Any, Union, get_args, get_origin

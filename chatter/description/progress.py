@@ -1,7 +1,5 @@
 """Type of the callable by which a computation reports its progress."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 #: called with (done, total) parts of the work; may raise to give it up

@@ -9,8 +9,6 @@ declares an entry of the group, in its ``pyproject.toml``::
 is found: the object it names is of the same kind as an entry of the list here.
 """
 
-from __future__ import annotations
-
 import difflib
 from collections.abc import Iterable, Iterator
 from functools import lru_cache

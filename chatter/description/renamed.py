@@ -4,8 +4,6 @@ Each kind of file lists its own, `CASE` and `MACHINE`; they are applied when a f
 a description is patched, so that everything else knows the new names alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """What all sections of the case file share."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from pydantic import BaseModel, ConfigDict

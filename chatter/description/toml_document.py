@@ -1,7 +1,5 @@
 """The TOML document behind a case or machine: reading text, values for it, file names in it."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """Change a TOML document in place, so that comments, order and units stay as they are."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 

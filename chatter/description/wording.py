@@ -1,7 +1,5 @@
 """Say what is wrong with a case: which file, which key, what was given, what is allowed."""
 
-from __future__ import annotations
-
 import difflib
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal, get_args, get_origin

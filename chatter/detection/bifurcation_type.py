@@ -1,7 +1,5 @@
 """Bifurcation of a sustained motion: quasi-periodic (Hopf), of double (flip) or n-fold period."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Chatter detection: whether a recorded cut is stable, its bifurcation and chatter frequency."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -261,11 +259,7 @@ def _decays(trend: _Trend, per_revolution: int) -> bool:
 
 
 def _metrics(
-    record: CutRecord,
-    periods: Periods,
-    deviations: Deviations,
-    trend: _Trend,
-    share: float,
+    record: CutRecord, periods: Periods, deviations: Deviations, trend: _Trend, share: float
 ) -> dict[str, float]:
     sections = once_per_revolution(record)
     later = sections[len(sections) // 2 :]

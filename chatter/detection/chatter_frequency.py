@@ -1,7 +1,5 @@
 """Chatter frequency: argument of the multiplier of a motion, and its line in the spectrum."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Measured or simulated signals of a cut, as chatter detection takes them."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """What differs from period to period: size, growth, noise."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

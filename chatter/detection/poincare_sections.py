@@ -1,7 +1,5 @@
 """Signals over the spindle angle: whole periods, Poincaré sections per revolution and tooth."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

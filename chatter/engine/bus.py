@@ -4,8 +4,6 @@ Ports are those of a structure (`dynamics.machine.steps.StructureSteps`): displa
 at both ends of the step, force held over it and its change. The clock says which step it is.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 

@@ -6,8 +6,6 @@ of the step. What the chip takes for the path of the tool is its nominal motion;
 displacement.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

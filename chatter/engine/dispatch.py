@@ -6,8 +6,6 @@ Every group answers two calls with the bus and the clock: `forces` puts its forc
 law that is absent from a case costs nothing.
 """
 
-from __future__ import annotations
-
 from chatter.engine.cut import CutOnPorts, cut_commit, cut_forces
 from chatter.engine.record import CutRecord, PortRecord, cut_record_commit, port_record_commit
 from cutting.compiled import by_table, for_each

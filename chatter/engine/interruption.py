@@ -1,7 +1,5 @@
 """Ctrl-C and compiled code: an exception while results are handed to Python can end the process."""
 
-from __future__ import annotations
-
 import signal
 import threading
 from collections.abc import Iterator

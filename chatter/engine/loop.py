@@ -6,8 +6,6 @@ corrected once with the change of those that depend on the motion at its end; fr
 last, together with the motion.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from numba import njit

@@ -5,8 +5,6 @@ samples, time-invariant. Its map over that period is found column by column with
 that run it, and its eigenvalues decide.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

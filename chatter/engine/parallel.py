@@ -5,8 +5,6 @@ be sent to other processes, go through an `Executor`; that of a Dask cluster is 
 `chatter.studies.executor`.
 """
 
-from __future__ import annotations
-
 import os
 import threading
 from collections.abc import Callable, Iterator, Sequence

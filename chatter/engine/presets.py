@@ -6,8 +6,6 @@ the cached function, so that an edit of a leaf would go unseen; the cache folder
 by a hash of all sources.
 """
 
-from __future__ import annotations
-
 import hashlib
 import os
 import shutil

@@ -1,7 +1,5 @@
 """What is kept of a run: laws that put on no force and write a row every `stride` steps."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

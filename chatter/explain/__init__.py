@@ -25,8 +25,6 @@ comparison          `compare`: errors of the declared case
 =================== ================================================================
 """
 
-from __future__ import annotations
-
 import sys
 from types import ModuleType
 from typing import Any

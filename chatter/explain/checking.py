@@ -1,7 +1,5 @@
 """Checks of a measurement, group by group, and the exclusion of what they find."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any

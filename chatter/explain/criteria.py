@@ -3,8 +3,6 @@
 Residuals are counted in standard deviations of the noise; a model that is right leaves 1.
 """
 
-from __future__ import annotations
-
 #: rms of the normalised residual up to which a channel is at its noise: of runs of a few thousand
 #: samples the estimate of the noise itself scatters by some percent, and the prediction by other
 #: numerics by up to half a percent of the signal

@@ -1,7 +1,5 @@
 """Errors of predictions by run and channel, as shares of the signals."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ Parameters are counted in standard deviations of their priors (or in a typical s
 have none) from where they start, so that one step fits all. A prior is one more row of residuals.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace

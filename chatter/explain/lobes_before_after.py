@@ -1,7 +1,5 @@
 """Stability lobes of the declared, the refitted and the repaired case."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

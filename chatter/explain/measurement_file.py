@@ -1,7 +1,5 @@
 """Measurement folders: measurement.toml, the declared case, and the signals of every run."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any

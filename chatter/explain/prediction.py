@@ -1,7 +1,5 @@
 """Predictions of a case for every run, each made once."""
 
-from __future__ import annotations
-
 from collections import OrderedDict
 from threading import Lock
 

@@ -1,7 +1,5 @@
 """How far cutting tests are from the stability limit of a case."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

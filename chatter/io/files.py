@@ -1,7 +1,5 @@
 """Measured files: opened within limits, text told from binary content and decoded."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from dynamics.frf.container import MeasurementError
@@ -9,11 +7,7 @@ from dynamics.frf.container import MeasurementError
 #: largest file read, bytes: a record of ten million samples is smaller
 LARGEST_FILE = 1024**3
 
-_BYTE_ORDER_MARKS = {
-    b"\xef\xbb\xbf": "utf-8-sig",
-    b"\xff\xfe": "utf-16",
-    b"\xfe\xff": "utf-16",
-}
+_BYTE_ORDER_MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 
 
 def require_readable(path: Path) -> None:

@@ -1,7 +1,5 @@
 """Hammer records from files: one file, a folder of files."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from pathlib import Path

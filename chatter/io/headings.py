@@ -1,7 +1,5 @@
 """Headings of columns: names, units and their dimensions, and the spellings that are understood."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

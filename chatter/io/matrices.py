@@ -1,7 +1,5 @@
 """Matrices and nodes that a finite element program wrote, read and checked."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Sequence
 from pathlib import Path

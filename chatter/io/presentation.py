@@ -4,8 +4,6 @@ Results know how to plot and save themselves, yet no layer imports the pictures 
 names the module of `chatter.plots` or `chatter.report` that presents it.
 """
 
-from __future__ import annotations
-
 from importlib import import_module
 from types import ModuleType
 

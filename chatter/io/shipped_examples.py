@@ -1,7 +1,5 @@
 """The shipped examples: one folder a case, with case file, short script and what to see."""
 
-from __future__ import annotations
-
 import importlib.util
 import shutil
 from collections.abc import Callable

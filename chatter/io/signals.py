@@ -1,7 +1,5 @@
 """Signals of a measurement from files of any format: columns in SI by their standard names."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Pictures of a modal identification: measured against fitted, stabilisation diagram."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -67,11 +65,7 @@ def draw_magnitude(axes: Axes, fit: ModalFit, frf: Frf, model: FrfModel) -> None
         label="measured",
     )
     axes.semilogy(
-        lines,
-        np.abs(model.values(lines)) * factor,
-        color=style.RED,
-        linewidth=1.0,
-        label="fitted",
+        lines, np.abs(model.values(lines)) * factor, color=style.RED, linewidth=1.0, label="fitted"
     )
     for mode in fit.identified:
         colour = style.ORANGE if mode.warning else style.BLUE

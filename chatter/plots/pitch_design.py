@@ -30,10 +30,7 @@ def plot_pitch(found: PitchResult) -> Figure:
 def draw_limits(axes: Axes, found: PitchResult) -> None:
     """Draw the first limit over speed before and after; where none was found the line ends."""
     speed = rpm(found.speeds)
-    curves = (
-        ("before", found.original, style.GREY),
-        ("after", found.best, style.BLUE),
-    )
+    curves = (("before", found.original, style.GREY), ("after", found.best, style.BLUE))
     for name, design, colour in curves:
         limits = design.limits
         angles = ", ".join(f"{angle:g}" for angle in design.pitch)

@@ -1,7 +1,5 @@
 """Panels of residual diagnostics, and pages of them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import singledispatch

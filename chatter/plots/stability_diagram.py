@@ -27,12 +27,7 @@ _FEW_VALUES = 150
 _HIGHEST_RADIUS = 2.0
 _RADIUS_COLOURS = LinearSegmentedColormap.from_list(
     "spectral radius",
-    [
-        (0.0, "#5AB08F"),
-        (0.5, style.STABLE_FILL),
-        (0.5, style.UNSTABLE_FILL),
-        (1.0, "#D9905F"),
-    ],
+    [(0.0, "#5AB08F"), (0.5, style.STABLE_FILL), (0.5, style.UNSTABLE_FILL), (1.0, "#D9905F")],
 )
 
 

@@ -1,7 +1,5 @@
 """One look for every picture: readable in print, distinguishable without colour vision."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg

@@ -1,7 +1,5 @@
 """Tables, lines and notes on the terminal; where files were written."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from pathlib import Path

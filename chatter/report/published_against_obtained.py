@@ -1,7 +1,5 @@
 """Table of what a publication found beside what a model obtains."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Sequence
 from dataclasses import dataclass

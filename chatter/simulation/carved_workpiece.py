@@ -83,9 +83,7 @@ class FollowingStock:
 def after_run(setup: Setup, stock: FollowingStock) -> Setup:
     """Setup of a run whose stock has followed the tool, with the stock as it is now."""
     return replace(
-        setup,
-        groups=(stock.cut, *setup.groups[1:]),
-        left_behind=tuple(stock.left_behind),
+        setup, groups=(stock.cut, *setup.groups[1:]), left_behind=tuple(stock.left_behind)
     )
 
 

@@ -1,7 +1,5 @@
 """A run of what was set up: chunks of steps, between which the stock follows the tool."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -23,12 +21,7 @@ from chatter.engine.loop import Laws, run
 from chatter.engine.record import COLUMNS, CutRecord, PortRecord, port_record
 from chatter.simulation.carved_workpiece import FollowingStock
 from chatter.simulation.setup import Setup
-from chatter.simulation.spindle import (
-    bins_at,
-    counted_bins,
-    prescribed_path,
-    prescribed_spindle,
-)
+from chatter.simulation.spindle import bins_at, counted_bins, prescribed_path, prescribed_spindle
 from chatter.simulation.workpiece import STEPS_A_CHUNK, follows, reach_of, steps_a_chunk
 from cutting.chip.discrete_chip import DiscreteCut
 from cutting.chip.tool_point import ToolPoint, tool_point

@@ -1,7 +1,5 @@
 """Steps, slices and length of a run, chosen where the case is silent."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """A case compiled to law groups, modes and record."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -20,11 +18,7 @@ from chatter.simulation.spindle import (
     path_of_last_revolution,
     spindle_of,
 )
-from chatter.simulation.structure_in_time import (
-    StructureInTime,
-    modes_in_time,
-    structure_in_time,
-)
+from chatter.simulation.structure_in_time import StructureInTime, modes_in_time, structure_in_time
 from chatter.simulation.workpiece import REVOLUTIONS_BEFORE, discrete_cut
 from cutting.chip.delayed_chip import DelayedCut
 from cutting.chip.discrete_chip import DiscreteCut

@@ -1,7 +1,5 @@
 """Run a case in the time domain."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

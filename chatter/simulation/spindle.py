@@ -1,7 +1,5 @@
 """Rotation of the spindle and path of the tool over the steps of a run."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The structure of a case in the time domain: modes, or a machine with its drives and frictions."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -187,9 +185,7 @@ def _set_points(
     # half a cosine of velocity
     rising = 0.5 * (1.0 - np.cos(np.pi * share))
     travel = np.where(
-        share < 1.0,
-        0.5 * ramp * (share - np.sin(np.pi * share) / np.pi),
-        time - 0.5 * ramp,
+        share < 1.0, 0.5 * ramp * (share - np.sin(np.pi * share) / np.pi), time - 0.5 * ramp
     )
     gain = np.where(share < 1.0, 0.5 * np.pi / ramp * np.sin(np.pi * share), 0.0)
     position, velocity, acceleration = np.zeros((3, time.size, max(len(machine.axes), 1)))

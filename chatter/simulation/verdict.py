@@ -1,7 +1,5 @@
 """Chatter or not: by the record of a simulated cut, and by perturbed runs where need be."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import TypeVar

@@ -4,8 +4,6 @@ A case without a stock is cut out of an endless one. What is held of it is a win
 tool, which moves along between chunks of steps.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -6,8 +6,6 @@ registered here; compiled code finds it by its type. Collocation iterates on a S
 operators whose members converge one by one: `batch_multipliers` holds that loop.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Directional coefficients averaged over a revolution, for every delay: what zeroth order keeps."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

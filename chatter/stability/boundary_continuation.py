@@ -8,8 +8,6 @@ between the columns of the coarse grid, or between two depths where nothing besi
 zero (see `crossings`).
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from chatter.description.arrays import Array, BooleanArray, IntegerArray

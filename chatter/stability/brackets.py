@@ -1,7 +1,5 @@
 """The depth at which growth rate is zero, in brackets between two depths, all at once."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """JSON schema of the case file with the stability methods that there are."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from chatter.description.json_schema import case_schema

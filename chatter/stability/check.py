@@ -1,7 +1,5 @@
 """Verdict on the operating point of a case."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

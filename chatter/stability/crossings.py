@@ -7,8 +7,6 @@ The search knows nothing of the method: it asks for the growth_rate (logarithm o
 radius) at batches of points, which the sweep spreads over the threads.
 """
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

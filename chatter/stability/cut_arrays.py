@@ -1,7 +1,5 @@
 """A cut of any tool on a modal structure: the flat arrays that the methods for any tool share."""
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from typing import NamedTuple

@@ -4,8 +4,6 @@ The spindle speed is one axis: `chatter.stability.lobes` draws over it, `chatter
 path of a case.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -6,8 +6,6 @@ of the last in phase and cuts the chip of a rigid tool; else the chip changes by
 less that when the earlier tooth passed, and where this exceeds the chip the tooth loses contact.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -4,8 +4,6 @@ LAPACK's driver for general matrices, the only one that compiled code can reach,
 its time on what these matrices do not need (complex arithmetic, reduction to the form they have).
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

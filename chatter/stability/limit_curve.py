@@ -1,7 +1,5 @@
 """Limits of stability over spindle speed: what every method returns."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 

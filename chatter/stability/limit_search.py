@@ -1,7 +1,5 @@
 """From multipliers at points to limits over spindle speed, whatever the method."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Stability lobe diagram of a case: limits over spindle speed by two independent methods."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

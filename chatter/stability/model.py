@@ -21,11 +21,7 @@ from chatter.stability.averaged_coefficients import AveragedCoefficients, averag
 from chatter.stability.cut_arrays import CutArrays, cut_arrays
 from chatter.stability.spindle_rotation import CONSTANT_SPEED, SpeedVariation
 from cutting.edge_segments.edge_profile import crossing_heights
-from cutting.edge_segments.segments import (
-    EdgeSegments,
-    edge_segments,
-    period_angle,
-)
+from cutting.edge_segments.segments import EdgeSegments, edge_segments, period_angle
 from cutting.engagement.immersion import engagement
 from cutting.force.directional_coefficients import (
     DirectionalTable,

@@ -1,7 +1,5 @@
 """Pockets of a stability diagram: speeds at which a deep cut is stable, with a margin."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -4,8 +4,6 @@ The speeds of a sweep are grouped by their reference speed, whose structure they
 goes to the method on a model with that structure.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import TypeVar
 

@@ -1,7 +1,5 @@
 """The stability methods, and which one a case takes."""
 
-from __future__ import annotations
-
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted

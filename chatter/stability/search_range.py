@@ -1,7 +1,5 @@
 """Speeds and depths of a diagram: what the case asks for, completed from the model."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -5,8 +5,6 @@ calculate with batches as with plain numbers; an operation is one vector instruc
 processor has such. What happens in a member never depends on the other batch.
 """
 
-from __future__ import annotations
-
 import operator
 
 from llvmlite import ir

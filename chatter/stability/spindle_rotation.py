@@ -1,7 +1,5 @@
 """Rotation of the spindle over a period of the cut, at a constant or a varying speed."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Bifurcation diagram: Poincaré sections of simulated cuts over a value of the case."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Stability diagrams over any path of a case: the critical depth over one, a map over two."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Axis of a diagram over any path of a case: `PATH=FROM..TO[:COUNT]`, or values of Python."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Sequence

@@ -9,8 +9,6 @@ taken in part, and each slice is integrated by two Gauss points, so that forces 
 converge with the fourth power of the slice height and vary smoothly in time.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

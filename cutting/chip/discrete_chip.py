@@ -5,8 +5,6 @@ vibration are all in the places of the edges, so that entry, exit, corners and s
 missed cuts and earlier passes come out of themselves.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

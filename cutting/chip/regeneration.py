@@ -1,7 +1,5 @@
 """Set up the delayed chip: which teeth passed before, and where the tool was at that time."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Where the cut meets the machine: the tool point, and the rotation of the tool in a step."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

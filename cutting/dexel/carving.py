@@ -9,8 +9,6 @@ of a tooth, in air as well, and `dexel_flush` at the end.
 
 # ruff: noqa: ARG001 - workpieces share one signature, the reading here is pointwise
 
-from __future__ import annotations
-
 import math
 
 from numba.extending import register_jitable

@@ -6,8 +6,6 @@ family after Mueller et al. 2003). Interval ends are real numbers, so a smooth s
 second order in the spacing of the lines.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -142,11 +140,7 @@ def _intervals(
 
 
 def _store(
-    stock: DexelStock,
-    layer: int,
-    family: int,
-    start: NDArray[np.float64],
-    end: NDArray[np.float64],
+    stock: DexelStock, layer: int, family: int, start: NDArray[np.float64], end: NDArray[np.float64]
 ) -> None:
     """Keep the longest intervals of each line; those of no length are none."""
     length = end - start

@@ -3,8 +3,6 @@
 See `edge_segments` for the segments themselves.
 """
 
-from __future__ import annotations
-
 import math
 
 from numba.extending import register_jitable

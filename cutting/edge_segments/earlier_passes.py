@@ -7,8 +7,6 @@ stays the same one; where a interval of arc comes or goes it opens or closes lik
 edge is cut into segments there, and into ever smaller ones towards that position.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from typing import NamedTuple

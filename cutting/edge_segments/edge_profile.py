@@ -1,7 +1,5 @@
 """Profile of the edge of a tool: where the segments border on each other along its length."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from typing import NamedTuple

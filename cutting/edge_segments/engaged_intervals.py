@@ -3,8 +3,6 @@
 Leaves for compiled code.
 """
 
-from __future__ import annotations
-
 import math
 
 from numba.extending import register_jitable

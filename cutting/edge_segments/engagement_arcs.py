@@ -1,7 +1,5 @@
 """Segments of the edges of all teeth with the arcs in which they cut."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Ends of segments at which the engagement of an edge changes: leaves for compiled code."""
 
-from __future__ import annotations
-
 import math
 
 from numba.extending import register_jitable

@@ -9,8 +9,6 @@ segment from the tip to any height; corners are cut into segments by their curva
 setting errors or serration decide which pass left the surface, every pass has its own arc.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

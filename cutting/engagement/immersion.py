@@ -1,7 +1,5 @@
 """Engagement of the teeth: entry and exit angles, cutting speed, removal rate."""
 
-from __future__ import annotations
-
 import math
 from typing import Literal, NamedTuple
 

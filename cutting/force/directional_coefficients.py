@@ -10,8 +10,6 @@ engaged arc with its first and second integral in phi, so that the mean over a t
 the lagging edge of a helix is a difference of table values, without slices.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import NamedTuple

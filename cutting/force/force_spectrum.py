@@ -5,8 +5,6 @@ coefficients have no aliasing however sharply a tooth enters or leaves. Which ea
 surface is decided by the thinnest chip, as everywhere in this package.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import lru_cache
@@ -84,8 +82,7 @@ class RigidCut:
         self.slices = slices_at(slices, cuts)
         entry, leave = entry[cuts], leave[cuts]
         points = max(
-            _LEAST_POINTS,
-            math.ceil(_POINTS_A_CYCLE * highest * _longest(entry, leave) / _TURN),
+            _LEAST_POINTS, math.ceil(_POINTS_A_CYCLE * highest * _longest(entry, leave) / _TURN)
         )
         node, weight = _gauss(points)
         half = 0.5 * (leave - entry)

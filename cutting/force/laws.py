@@ -1,7 +1,5 @@
 """The force laws: one module and one line here each, and their leaves for the kernels."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Linear law whose coefficients follow from orthogonal cutting data and the helix of the edge."""
 
-from __future__ import annotations
-
 import math
 
 from cutting.force.law import EDGE_KEYS, ForceLawEntry

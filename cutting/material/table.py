@@ -1,7 +1,5 @@
 """Published cutting coefficients, each row with its source and what it does not stand for."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 _CJME = "Chinese Journal of Mechanical Engineering 2021, 10.1186/s10033-021-00536-9, Table 5"

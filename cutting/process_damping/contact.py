@@ -1,7 +1,5 @@
 """Contact of tool and workpiece while the tool is in the cut, as a spring and a damper."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from numba.extending import register_jitable

@@ -4,8 +4,6 @@ A law is added by its module, which ends in `FlankLeaves`, and by its line here.
 three calls: the force on a segment of the edge, the surface left by a step, the end of contact.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple, Protocol
 
 import numpy as np

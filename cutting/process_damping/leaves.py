@@ -1,7 +1,5 @@
 """Leaves of a force on the flank: what the kernels call, by the type of its table."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

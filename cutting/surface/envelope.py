@@ -5,8 +5,6 @@ an arc about the tool axis at that moment; what stands behind is the furthest re
 all passes.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Texture of a surface after ISO 4287, 4288 and 16610-21: roughness, waviness and place."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

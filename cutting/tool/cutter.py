@@ -1,7 +1,5 @@
 """Tool geometry: teeth around the axis, and their edges cut into slices along it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The edges of a tool as the time-domain kernels see them."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

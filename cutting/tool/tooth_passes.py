@@ -1,7 +1,5 @@
 """Passes of the other teeth before each tooth."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -10,9 +8,7 @@ from numpy.typing import NDArray
 _REVOLUTION = 2.0 * math.pi
 
 
-def earlier_passes(
-    angle: NDArray[np.float64],
-) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+def earlier_passes(angle: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Teeth that passed within the revolution before each tooth, and how far ahead they are.
 
     Parameters

@@ -8,8 +8,6 @@ sector of the same area: it is a mean over the step, or over the last `VoxelStoc
 movement where steps are shorter.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

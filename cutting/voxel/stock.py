@@ -4,8 +4,6 @@ A layer of the workpiece is a bitmap, 64 cells along x to a word; a cell is mate
 centre.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import NamedTuple

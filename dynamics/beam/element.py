@@ -5,8 +5,6 @@ Two-node elements whose shape functions solve the static equations exactly, with
 Computers & Structures 47, 1993); consistent mass with rotary inertia. No gyroscopic terms.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

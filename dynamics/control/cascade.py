@@ -10,8 +10,6 @@ A spindle under velocity control has position gain 0 and velocity feedforward 1;
 point is v_set.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

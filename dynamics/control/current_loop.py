@@ -7,8 +7,6 @@ itself (ideal, lags), or the voltage of a PI controller (motor of resistance and
 The torque of a step is that at its beginning.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import NamedTuple

@@ -4,8 +4,6 @@ At a step that is a sample of a loop the loop reads, computes and puts out; betw
 output is held. Delays are rings of past samples, one slot longer than the longest delay.
 """
 
-from __future__ import annotations
-
 from numba.extending import register_jitable
 
 from dynamics.compiled import INLINED

@@ -1,7 +1,5 @@
 """Columns of k drives for the time loop, from their specifications."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

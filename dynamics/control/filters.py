@@ -10,8 +10,6 @@ The factor (1 + z^-1)^2 cancels, so that a notch stays at f_n, the poles stay at
 at rest stays 1. A numerator of infinite f_n (low pass) becomes (1 + z^-1)^2/4, zero at Nyquist.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -5,8 +5,6 @@ either that of the motor itself, or the difference of two encoder positions over
 which delays it by half a sample and turns a resolution into velocity noise.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Literal

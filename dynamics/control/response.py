@@ -5,8 +5,6 @@ finer samples and the dead times. Exact for the component of the torque at the f
 input, within limits and without resolution (see `sampling`).
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

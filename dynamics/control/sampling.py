@@ -7,8 +7,6 @@ Systems, section 5.2 and chapter 11). Nested loops therefore multiply like filte
 Nyquist frequency too.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

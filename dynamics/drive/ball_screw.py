@@ -4,8 +4,6 @@ The screw stands as a rotor whose bearings, shaft and nut act in a row, with the
 the shaft from the position of the axis. `dynamics.drive.screw_on_beam` has the screw as a beam.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

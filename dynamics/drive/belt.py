@@ -1,7 +1,5 @@
 """Toothed belt between a motor and what it drives."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from dynamics.beam.element import positive

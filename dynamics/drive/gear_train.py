@@ -4,8 +4,6 @@ All angles are scaled to the travel of the axis that they would give if nothing 
 springs in a row add their compliances whatever gears lie between them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Linear motors: a force along the axis, at one place or evenly shared by several."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """What a drive is made of, as the structure sees it: rotors, springs, and where motors act."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Rack and pinion: one or several motors, each with gearbox and pinion, on one axis."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal

@@ -1,7 +1,5 @@
 """Drives of what turns: a spindle or rotary table, behind a coupling or belt or directly."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

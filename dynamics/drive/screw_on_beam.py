@@ -1,7 +1,5 @@
 """Ball screw whose shaft is a line of beam elements of the machine."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -112,10 +110,7 @@ class ScrewOnBeam:
         turns = turning_direction(axis, self.lead)
         end = np.asarray(axis.at) - (self.nut_at + axis.position) * np.asarray(axis.direction)
         housing = Housing(axis.carrying, end, turns)
-        angle = (
-            turning(self.beam, end, turns, self.travel),
-            housing.turning(-self.travel),
-        )
+        angle = (turning(self.beam, end, turns, self.travel), housing.turning(-self.travel))
         stages = self._stages(f"{axis.name}: ", self.coupling_stiffness)
         train = gear_train(where, stages, angle, housing)
         motor = Motor(f"{axis.name}: motor", train.motor_angle, self.transmission)

@@ -1,7 +1,5 @@
 """Shaft of a ball screw: its axial and torsional stiffness where the nut is."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, get_args
 

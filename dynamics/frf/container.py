@@ -22,11 +22,7 @@ QUANTITY_OF_MOTION: dict[str, Quantity] = {
 }
 
 #: SI unit of each quantity
-QUANTITY_UNIT: dict[str, str] = {
-    "receptance": "m/N",
-    "mobility": "m/s/N",
-    "accelerance": "m/s^2/N",
-}
+QUANTITY_UNIT: dict[str, str] = {"receptance": "m/N", "mobility": "m/s/N", "accelerance": "m/s^2/N"}
 
 
 class MeasurementError(ValueError):

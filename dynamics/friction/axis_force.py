@@ -3,8 +3,6 @@
 The axis is a mass on its guide; the force is that of the motor, referred to the slide.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

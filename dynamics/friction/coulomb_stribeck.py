@@ -4,8 +4,6 @@ F = (FC + (FS - FC) exp(-(|v|/vS)^beta)) sgn(v) + c v, |F| <= FS at v = 0 (Armst
 Dupont and Canudas de Wit 1994, Automatica 30:1083, section 2.1).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

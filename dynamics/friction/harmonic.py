@@ -1,7 +1,5 @@
 """Equivalent stiffness and damping of friction laws under harmonic motion."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any

@@ -9,8 +9,6 @@ from step to step; the law is then solved at d = (1-s) dx + s h v1, which brings
 s from 0 (resolved) to 1 (rigid), or less if that would create energy.
 """
 
-from __future__ import annotations
-
 import math
 
 from dynamics.leaves import leaf

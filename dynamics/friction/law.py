@@ -1,7 +1,5 @@
 """What a friction law is: a specification, keys of files, a table and leaves for the kernels."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol

@@ -1,7 +1,5 @@
 """The friction laws: one module and one line here each, and their tables for the time loops."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

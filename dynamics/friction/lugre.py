@@ -10,8 +10,6 @@ energy, when a far bent bristle meets a sudden high speed (Barahanov and Ortega 
 Autom. Control 45:1208); there the force is held at zero instead.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

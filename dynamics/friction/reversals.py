@@ -6,8 +6,6 @@ branch n - 1; as branches are alike, branch n meets that reversal's forerunner a
 branch n - 2 goes on from where it was left, at u_(n-1). Nothing but r_n and u_n is needed.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -26,9 +24,7 @@ _TINY = 3e-4
 _GAUSS = 0.5 * math.sqrt(0.6)
 
 
-def reversal_columns(
-    count: int,
-) -> tuple[NDArray[np.int64], NDArray, NDArray, NDArray, NDArray]:
+def reversal_columns(count: int) -> tuple[NDArray[np.int64], NDArray, NDArray, NDArray, NDArray]:
     """Return count, value, length, side and travel of hystereses that have not moved."""
     return (
         np.zeros(count, dtype=np.int64),

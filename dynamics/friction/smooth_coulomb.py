@@ -5,8 +5,6 @@ sticks. It is what many simulations take for Coulomb friction (Andersson, Soderb
 2007, equation 5), so that their results can be met exactly.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -19,8 +19,6 @@ The speed-dependent part multiplies r only where r opposes the motion; it would 
 back, as the presliding spring relaxes fast, energy that was never put in.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Which lines of the measured FRFs can be used."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Modal identification of measured FRFs, from band to real modes, with no hand tuning."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -148,10 +146,7 @@ def _nothing_found(measurement: Measurement, frf_set: FrfSet, max_order: int | N
 
 
 def _search(
-    measurement: Measurement,
-    frf_set: FrfSet,
-    mode_count: int | None,
-    max_order: int | None,
+    measurement: Measurement, frf_set: FrfSet, mode_count: int | None, max_order: int | None
 ) -> tuple[StabilisationDiagram, ModalModel]:
     """Complex modes that the lines searched support."""
     records = measurement.of(frf_set.members, measurement.searched)

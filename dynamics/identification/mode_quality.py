@@ -1,7 +1,5 @@
 """What one mode of a model is worth: statistically, and against its neighbours."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Poly-reference least-squares complex frequency-domain estimator: poles for every model order."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

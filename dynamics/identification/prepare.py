@@ -1,7 +1,5 @@
 """Measured FRFs sorted into sets with common poles, and brought to common lines."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 

@@ -1,19 +1,12 @@
 """Real modes at the tool point: undamped frequency, damping ratio, mass and direction."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.identification.refinement import (
-    ModalModel,
-    bounded_poles,
-    pole_reach,
-    solve_linear,
-)
+from dynamics.identification.refinement import ModalModel, bounded_poles, pole_reach, solve_linear
 from dynamics.identification.residues import (
     Records,
     as_real,

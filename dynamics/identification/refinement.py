@@ -1,7 +1,5 @@
 """Maximum-likelihood refinement of the poles: variable projection over all FRFs."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

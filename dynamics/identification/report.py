@@ -1,7 +1,5 @@
 """Fitted models turned into what is reported: modes with uncertainty, warnings, FRF models."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import NamedTuple
 

@@ -33,10 +33,7 @@ class Records:
     def lines(self, keep: NDArray[np.bool_]) -> Records:
         """Return the same FRFs on some of the lines."""
         return replace(
-            self,
-            frequency=self.frequency[keep],
-            values=self.values[keep],
-            noise=self.noise[keep],
+            self, frequency=self.frequency[keep], values=self.values[keep], noise=self.noise[keep]
         )
 
 
@@ -89,10 +86,7 @@ def residual_columns(
 
 
 def design_matrix(
-    records: Records,
-    shapes: Shapes,
-    natural_frequency: NDArray[np.float64],
-    terms: tuple[int, ...],
+    records: Records, shapes: Shapes, natural_frequency: NDArray[np.float64], terms: tuple[int, ...]
 ) -> NDArray[np.complex128]:
     """Columns of all unknowns: modes, their parts in quadrature, residual terms, (n, unknowns)."""
     s = records.laplace[:, None]

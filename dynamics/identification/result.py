@@ -1,7 +1,5 @@
 """What a modal identification found, and how well it describes the measurement."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How many modes the data support: candidates dropped and missing modes added."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np
@@ -159,8 +157,7 @@ def _newcomer(model: ModalModel, grown: ModalModel) -> int:
     left = set(range(grown.count))
     for r in range(model.count):
         near = min(
-            left,
-            key=lambda i: abs(np.log(grown.natural_frequency[i] / model.natural_frequency[r])),
+            left, key=lambda i: abs(np.log(grown.natural_frequency[i] / model.natural_frequency[r]))
         )
         left.discard(near)
     return left.pop()

@@ -1,7 +1,5 @@
 """Stabilisation diagram and the poles that stay put in it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -79,9 +77,7 @@ def _stable(
     return np.any(same, axis=1)
 
 
-def stable_poles(
-    diagram: StabilisationDiagram,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def stable_poles(diagram: StabilisationDiagram) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Poles that recur over the orders: the candidates for modes.
 
     The stable entries are gathered from the highest order down; each either joins the group

@@ -5,8 +5,6 @@ each of the many small operations over threads, which gains nothing and on share
 times the work; blocks of a few hundred rows stay on one thread.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

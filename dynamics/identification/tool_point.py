@@ -1,7 +1,5 @@
 """From complex modes of a set of FRFs to real modes that the tool point has."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -4,8 +4,6 @@ The free motion splits into parts that do not know of one another: a pair of rea
 each damped vibration, and one block for what is left - rigid-body motion, overdamped motion.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

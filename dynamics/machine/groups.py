@@ -5,8 +5,6 @@ the motion of the step into its memory. Drives, constant forces and loads are kn
 of a step; frictions are solved for together with its motion.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Harmonic response of a linearised machine, its control loops closed."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 
 import numpy as np

@@ -5,8 +5,6 @@ oscillator together with the force and its rate (first-order hold; Franklin, Pow
 1998, section 6.3.2). The step is exact whatever its size, so that only the force limits accuracy.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import NamedTuple

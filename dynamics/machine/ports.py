@@ -1,7 +1,5 @@
 """What every structure on ports answers, whatever its table: predict, correct, one force more."""
 
-from __future__ import annotations
-
 from dynamics.compiled import by_table
 from dynamics.machine.modal_structure import (
     ModalSteps,

@@ -5,8 +5,6 @@ Forces are constant over a step (drives, friction), or vary linearly over it (lo
 state is a block of coordinates and pairs.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

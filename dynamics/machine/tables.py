@@ -1,7 +1,5 @@
 """A machine, or modes, compiled for the time loop: ports in order, structure, law groups."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -12,12 +10,7 @@ from dynamics.control.drive_table import control_table
 from dynamics.friction.law import FrictionLaw
 from dynamics.friction.laws import friction_groups
 from dynamics.machine.description import Machine
-from dynamics.machine.groups import (
-    ConstantForces,
-    ControlledDrives,
-    Loads,
-    frictions_on_ports,
-)
+from dynamics.machine.groups import ConstantForces, ControlledDrives, Loads, frictions_on_ports
 from dynamics.machine.modal_structure import ModalSteps, modal_energy, modal_structure
 from dynamics.machine.steps import StructureSteps, structure_steps
 from dynamics.modal.modes import Mode

@@ -1,7 +1,5 @@
 """Limit of the travel of every port: beyond it a machine has run away."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from numba.extending import register_jitable

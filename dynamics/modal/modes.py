@@ -1,7 +1,5 @@
 """Modal model at the tool point: real modes with directions, on the tool or the workpiece side."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal

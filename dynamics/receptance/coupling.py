@@ -229,9 +229,7 @@ def _joining(
 
 
 def without_tool(
-    assembly: NDArray[np.complex128],
-    tool: Component,
-    joint: NDArray[np.complex128] | None = None,
+    assembly: NDArray[np.complex128], tool: Component, joint: NDArray[np.complex128] | None = None
 ) -> NDArray[np.complex128]:
     """Receptance of holder and spindle from a measured assembly and a known tool.
 

@@ -4,8 +4,6 @@ Fixed-interface modes and constraint modes (Craig and Bampton, AIAA Journal 6, 1
 elimination of the dependent freedoms, or by springs and dampers between points.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -245,9 +243,7 @@ def _relative(
     return points[ends[0]] - points[ends[1]]
 
 
-def _solved_for(
-    rows: NDArray[np.float64],
-) -> tuple[scipy.sparse.csr_array, scipy.sparse.csr_array]:
+def _solved_for(rows: NDArray[np.float64]) -> tuple[scipy.sparse.csr_array, scipy.sparse.csr_array]:
     """Motions with `rows @ x = u`: x = given @ u + free @ (freedoms that stay coordinates).
 
     Freedoms to solve for are picked by pivoting; rows that follow from others are left out.

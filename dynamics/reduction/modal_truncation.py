@@ -6,8 +6,6 @@ out is kept between the points asked for; of a free structure it is the inertia-
 (Craig and Kurdila, Fundamentals of Structural Dynamics, 2006, section 17.3).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

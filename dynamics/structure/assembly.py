@@ -4,8 +4,6 @@ Displacements and rotations are small; an axis may travel far along its guides, 
 resists it there.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Structures given by their matrices: points tied to the nodes, the mass matrix checked."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -5,8 +5,6 @@ imported matrices, reduced models. What acts on it - a cut, a drive, friction - 
 port: a direction at a point, or between two points.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TypeAlias

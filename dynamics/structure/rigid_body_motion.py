@@ -1,7 +1,5 @@
 """Rigid-body motions of parts that nothing holds."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -43,10 +41,7 @@ def free_motions(
 
 
 def refuse_free_motion(
-    restrained: NDArray[np.float64],
-    turning: NDArray[np.bool_],
-    labels: Sequence[str],
-    allowed: int,
+    restrained: NDArray[np.float64], turning: NDArray[np.bool_], labels: Sequence[str], allowed: int
 ) -> None:
     """Refuse more free motions than allowed.
 

@@ -3,8 +3,6 @@
 Its mass belongs to the body that carries it; here is only what turns.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

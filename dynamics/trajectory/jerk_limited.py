@@ -6,8 +6,6 @@ cruising, and the speed-up backwards in time: seven pieces, some of which vanish
 3.4; Lambrechts, Boerlage and Steinbuch 2005, Control Engineering Practice 13:145).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """What every trajectory answers: how long it lasts, and where its axes are at any time."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import NamedTuple, Protocol

@@ -5,8 +5,6 @@ tracking error is the distance to where the axis should be at that time (Altinta
 Manufacturing Automation, chapter 5).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -8,8 +8,6 @@ by three pieces of constant jerk, and acceleration is zero at their ends. A shar
 reached at rest.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -90,9 +88,7 @@ class PathMotion:
     def corner_speed(self, radius: float) -> float:
         """Return the greatest speed on an arc of a radius, m; m/s."""
         return min(
-            self.feed,
-            math.sqrt(self.acceleration * radius),
-            (self.jerk * radius**2) ** (1.0 / 3.0),
+            self.feed, math.sqrt(self.acceleration * radius), (self.jerk * radius**2) ** (1.0 / 3.0)
         )
 
     def _planned(self) -> tuple[Pieces, float]:

@@ -1,7 +1,5 @@
 """Sine, circle and constant speed: the motions of drive tests."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

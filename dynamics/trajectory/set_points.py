@@ -1,7 +1,5 @@
 """Set points at the interpolation cycle, as the position controllers read them."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -33,13 +33,7 @@ ENTRY = {
     "simulation.chip": "dexel",
     "simulation.duration": "5 s",
     "stock": {
-        "box": [
-            {
-                "x": ["15.5 mm", "70 mm"],
-                "y": ["-25.5 mm", "-20 mm"],
-                "z": ["0 mm", "5 mm"],
-            }
-        ]
+        "box": [{"x": ["15.5 mm", "70 mm"], "y": ["-25.5 mm", "-20 mm"], "z": ["0 mm", "5 mm"]}]
     },
 }
 

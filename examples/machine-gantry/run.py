@@ -112,11 +112,7 @@ class PathWithStops:
         shares = [ARC_SHARE if one.curvature else 1.0 for one in self.path.elements]
         return [
             JerkLimitedMove(
-                [0.0],
-                [element.length],
-                self.velocity,
-                share * self.acceleration,
-                share * self.jerk,
+                [0.0], [element.length], self.velocity, share * self.acceleration, share * self.jerk
             )
             for element, share in zip(self.path.elements, shares, strict=True)
         ]

@@ -33,10 +33,7 @@ POSITIONS = {"in the middle": (3, 4), "at the left": (1, 2)}
 FOOT = (3e8, 3e8, 8e8, 0.0, 0.0, 0.0)
 BOLTED = (6e9, 3e9, 3e9, 1.5e8, 2e8, 2e8)
 # A rail's carriage across and along the face it is bolted to, and half of the drive along x.
-CARRIAGE = {
-    "lower": (0.0, 5e8, 4e8, 0.0, 0.0, 0.0),
-    "upper": (0.8e8, 5e8, 4e8, 0.0, 0.0, 0.0),
-}
+CARRIAGE = {"lower": (0.0, 5e8, 4e8, 0.0, 0.0, 0.0), "upper": (0.8e8, 5e8, 4e8, 0.0, 0.0, 0.0)}
 # From the middle of the carriages, m.
 GRAVITY_CENTRE = np.array([0.0, -0.15, -0.05])
 TOOL = np.array([0.0, -0.20, -0.40])

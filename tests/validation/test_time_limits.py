@@ -22,11 +22,7 @@ def cut_of(directions, mode, immersion, speeds, deepest, **changes):
     return tool_of_922_hertz(
         directions,
         tool={"diameter": values["diameter"], "helix": values["helix"]},
-        cut={
-            "mode": mode,
-            "spindle_speed": lowest,
-            "radial_depth": immersion * values["diameter"],
-        },
+        cut={"mode": mode, "spindle_speed": lowest, "radial_depth": immersion * values["diameter"]},
         lobes={
             "speeds": {"from": lowest, "to": highest, "count": values["count"]},
             "depths": {"to": deepest, "count": values["depths"]},

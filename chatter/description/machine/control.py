@@ -125,10 +125,7 @@ class CurrentLoopSection(Loop):
 _FILTERS = {
     "second order": (SecondOrderFilter, fields_of(SecondOrderFilter)),
     "low pass": (low_pass, {"frequency": True, "damping": False}),
-    "notch": (
-        notch,
-        {"frequency": True, "numerator_damping": True, "denominator_damping": True},
-    ),
+    "notch": (notch, {"frequency": True, "numerator_damping": True, "denominator_damping": True}),
 }
 
 

@@ -1,7 +1,5 @@
 """Errors of the machine's mechanics and control, told by file and key."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Field types of machine files: places, directions, pairs, names; kinds and their keys."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 import re

@@ -1,7 +1,5 @@
 """The MachineFile: an immutable description of a machine tool."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, ClassVar

@@ -1,7 +1,5 @@
 """[cut]: speed, feed and engagement."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from pydantic import Field, ValidationInfo, field_validator

@@ -1,7 +1,5 @@
 """[material]: force law and coefficients, or the name of a row of the table of materials."""
 
-from __future__ import annotations
-
 import difflib
 from typing import Any
 

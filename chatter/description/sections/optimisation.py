@@ -1,7 +1,5 @@
 """[optimum] and [pitch_design]: what a search may change, and what it must keep within."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from pydantic import Field

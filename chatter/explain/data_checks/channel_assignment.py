@@ -4,8 +4,6 @@ The residual of the cut as declared is compared with that of others; another is 
 it fits well in itself and much better.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

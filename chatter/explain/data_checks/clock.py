@@ -1,7 +1,5 @@
 """Clock of time records: rising, even, in seconds, without holes."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Displacements against the measured forces through the declared structure: axes, signs, units."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.fft
 from numpy.typing import NDArray

@@ -1,7 +1,5 @@
 """What a check of measured signals found: where, how bad, and what is excluded for it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

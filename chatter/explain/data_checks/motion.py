@@ -1,7 +1,5 @@
 """Axis moves: position, velocity, command and force against each other and the declared mass."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.signal
 from numpy.typing import NDArray
@@ -27,11 +25,7 @@ _SURE = 8.0
 
 def wrong_motion(measurement: Measurement) -> list[SignalFinding]:
     """Velocities that are not those of the position, forces with the wrong sign or unit."""
-    return [
-        *_velocities(measurement),
-        *_commands(measurement),
-        *_forces(measurement),
-    ]
+    return [*_velocities(measurement), *_commands(measurement), *_forces(measurement)]
 
 
 def _smooth(values: Vector) -> Vector:
@@ -158,12 +152,7 @@ def apparent_mass(run: Run) -> tuple[float, float, float]:
     # a sense that does not jump at rest, where noise has it
     slow = 0.02 * float(np.max(np.abs(velocity))) + 1e-12
     columns = np.column_stack(
-        [
-            np.gradient(velocity, step),
-            velocity,
-            np.tanh(velocity / slow),
-            np.ones(velocity.size),
-        ]
+        [np.gradient(velocity, step), velocity, np.tanh(velocity / slow), np.ones(velocity.size)]
     )
     size = np.linalg.norm(columns, axis=0) + 1e-300
     scaled = columns / size

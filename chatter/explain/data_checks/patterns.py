@@ -5,8 +5,6 @@ free, the residual does not depend on coefficients, edge forces or wear that the
 as it is the mean over all teeth, hardly on runout or pitch.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

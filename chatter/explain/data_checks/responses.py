@@ -1,7 +1,5 @@
 """FRFs: units, quantity, sign and directions against the declared structure; repetitions."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

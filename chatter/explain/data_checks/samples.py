@@ -1,7 +1,5 @@
 """Samples and channels by themselves: gaps, flat tops, dropouts, dead channels, copies of runs."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Size of signals against that predicted by the declared case: units and dead sensors."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """Spindle and teeth: angle and forces against the declared speed, teeth counted in the forces."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

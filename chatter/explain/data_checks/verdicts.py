@@ -1,7 +1,5 @@
 """Points judged stable or chatter: numbers out of any sense, units, verdicts turned round."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

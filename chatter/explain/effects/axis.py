@@ -1,7 +1,5 @@
 """Effects of a feed axis: its friction, offset, cogging, backlash."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from chatter.description.case import Case

@@ -1,7 +1,5 @@
 """Effects of the cutting force and its sensor: edge force, chip exponent, process damping."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from chatter.description.case import Case

@@ -3,8 +3,6 @@
 Installed packages add theirs by an entry point of the group ``chatter.effects``.
 """
 
-from __future__ import annotations
-
 from chatter.description.registry import Registry
 from chatter.explain.effects.axis import (
     Asymmetry,

@@ -1,7 +1,5 @@
 """Effects of the structure: a missing mode, a frequency that shifts, contact, dry friction."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Effects of the tool: runout, pitch, wear."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

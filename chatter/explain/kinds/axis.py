@@ -1,7 +1,5 @@
 """Axis moves: the motor's force predicted along the measured motion."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """What is derived from the record of a move: smoothed motion, weights of samples, noise."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """FRFs at the tool point: idle, and while tool and workpiece touch."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -13,12 +11,7 @@ from chatter.description.errors import InputError
 from chatter.explain.data_checks.responses import disagreeing_responses, wrong_responses
 from chatter.explain.data_checks.samples import Columns, sample_checks
 from chatter.explain.fitting import Parameter, with_priors
-from chatter.explain.kinds.kind import (
-    Array,
-    Deviation,
-    Kind,
-    Signals,
-)
+from chatter.explain.kinds.kind import Array, Deviation, Kind, Signals
 from chatter.explain.kinds.milling import structural_paths
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.residuals.over_lines import by_condition, over_lines
@@ -84,12 +77,7 @@ class FrequencyResponse(Kind):
         values = free[:, response, force]
         return {"real": values.real, "imag": values.imag}
 
-    def residuals(
-        self,
-        run: Run,
-        predicted: Signals,
-        noise: Mapping[str, float],
-    ) -> Array:
+    def residuals(self, run: Run, predicted: Signals, noise: Mapping[str, float]) -> Array:
         """Predicted less measured over the scatter of every line."""
         scatter = run.record.scatter
         return np.concatenate(
@@ -100,12 +88,7 @@ class FrequencyResponse(Kind):
         )
 
     def deviation(
-        self,
-        run: Run,
-        channel: str,
-        measured: Array,
-        predicted: Array,
-        level: float | None,
+        self, run: Run, channel: str, measured: Array, predicted: Array, level: float | None
     ) -> Deviation:
         """Scatter of every line."""
         scatter = run.record.scatter

@@ -3,8 +3,6 @@
 A kind is one module with a subclass of `Kind`, and one line in `chatter.explain.kinds.kind_list`.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, ClassVar, NamedTuple
@@ -14,13 +12,7 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.explain.criteria import (
-    AT_NOISE,
-    FIRST_NOISE,
-    LEAST_GAIN,
-    LEAST_GAIN_SHARE,
-    NUMERICS,
-)
+from chatter.explain.criteria import AT_NOISE, FIRST_NOISE, LEAST_GAIN, LEAST_GAIN_SHARE, NUMERICS
 from chatter.explain.data_checks.finding import Check
 from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement, Run

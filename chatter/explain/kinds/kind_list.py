@@ -1,7 +1,5 @@
 """Kinds of measurement by name: where a new one joins."""
 
-from __future__ import annotations
-
 from chatter.explain.kinds.axis import Axis
 from chatter.explain.kinds.frf import FrequencyResponse
 from chatter.explain.kinds.kind import Kind

@@ -1,7 +1,5 @@
 """Milling runs: forces and displacements predicted by the time-domain engine."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

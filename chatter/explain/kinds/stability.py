@@ -1,7 +1,5 @@
 """Cutting tests judged stable or chatter: how likely each verdict is by the model."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -85,12 +83,7 @@ class Stability(Kind):
         likely = scipy.special.ndtr(margins / _SCATTER)
         return {"stable": _WRONG + (1.0 - 2.0 * _WRONG) * likely}
 
-    def residuals(
-        self,
-        run: Run,
-        predicted: Signals,
-        noise: Mapping[str, float],
-    ) -> Array:
+    def residuals(self, run: Run, predicted: Signals, noise: Mapping[str, float]) -> Array:
         """Deviance residuals: their squares are twice the lost logarithm of likelihood."""
         stable = predicted["stable"]
         verdict = run.signals["stable"] > 0.5
@@ -98,12 +91,7 @@ class Stability(Kind):
         return np.where(verdict, 1.0, -1.0) * np.sqrt(-2.0 * np.log(likely))
 
     def deviation(
-        self,
-        run: Run,
-        channel: str,
-        measured: Array,
-        predicted: Array,
-        level: float | None,
+        self, run: Run, channel: str, measured: Array, predicted: Array, level: float | None
     ) -> Deviation:
         """Scatter of every verdict by its own probability."""
         likely = np.clip(predicted, _LEAST_LIKELY, 1.0 - _LEAST_LIKELY)

@@ -1,7 +1,5 @@
 """Residual by run and channel against the noise, and whether it changes within a run."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -69,9 +67,7 @@ def over_time(residual: Residual) -> Finding:
         sizes = np.array([_sizes(part) for part in parts])
         curves.append(
             Curve(
-                (np.arange(_SEGMENTS) + 0.5) / _SEGMENTS,
-                np.sqrt(np.mean(sizes, axis=0)),
-                channel,
+                (np.arange(_SEGMENTS) + 0.5) / _SEGMENTS, np.sqrt(np.mean(sizes, axis=0)), channel
             )
         )
         factor, p_value = _end_over_start(sizes)

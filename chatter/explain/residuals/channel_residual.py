@@ -1,7 +1,5 @@
 """Residual of one channel of one run, against its noise."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

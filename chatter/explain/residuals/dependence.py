@@ -7,8 +7,6 @@ by shifting every run's residual in time against its variables: that keeps its s
 size and breaks nothing but the dependence.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Result of a residual diagnostic: a sentence in plain words, its numbers, and what to draw."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any

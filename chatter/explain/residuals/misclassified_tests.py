@@ -1,7 +1,5 @@
 """Where the cutting tests lie that a case misclassifies."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

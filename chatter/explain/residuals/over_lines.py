@@ -1,7 +1,5 @@
 """At which lines, conditions and directions FRFs are off, against their scatter."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

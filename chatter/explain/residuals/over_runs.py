@@ -104,11 +104,7 @@ def _panel(shown: list[Trend]) -> Curves:
     for trend in alike:
         order = np.argsort(trend.x)
         curves.append(
-            Curve(
-                trend.x[order] * first.condition.scale,
-                trend.y[order] * scale,
-                trend.channel,
-            )
+            Curve(trend.x[order] * first.condition.scale, trend.y[order] * scale, trend.channel)
         )
     return Curves(
         tuple(curves),

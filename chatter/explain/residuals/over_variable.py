@@ -1,18 +1,11 @@
 """Residual over one variable: velocity, position, tooth angle and the like; periods in it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from chatter.explain.residuals.finding import Curve, Curves, Finding
-from chatter.explain.residuals.regression import (
-    Regression,
-    best_period,
-    best_regression,
-    panel_of,
-)
+from chatter.explain.residuals.regression import Regression, best_period, best_regression, panel_of
 from chatter.explain.residuals.residual import Residual
 from chatter.explain.residuals.variables import Variable
 

@@ -1,7 +1,5 @@
 """Periods in a variable: lines of the residual that lie at the same wavelength in every run."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Regression of a residual on one variable or on a period in it, in the form that suits best."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Description of a residual that no known effect explains: on what it depends most, and how."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

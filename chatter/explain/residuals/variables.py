@@ -3,8 +3,6 @@
 A kind of measurement lists those that it knows (`chatter.explain.kinds`).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

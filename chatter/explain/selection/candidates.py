@@ -1,7 +1,5 @@
 """Candidates: every effect that may be missing, tried on top of others."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -10,12 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.explain.criteria import (
-    EQUAL,
-    FITTED_IN_FULL,
-    FOLLOWED_STARTS,
-    MOST_EFFECTS,
-)
+from chatter.explain.criteria import EQUAL, FITTED_IN_FULL, FOLLOWED_STARTS, MOST_EFFECTS
 from chatter.explain.effects.effect import Effect
 from chatter.explain.effects.effect_list import candidates, rank
 from chatter.explain.fitting import WORKERS, Fit, Parameter

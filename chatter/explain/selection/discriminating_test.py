@@ -1,7 +1,5 @@
 """Discriminating tests: measurements in which explanations that fit alike differ."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 
@@ -44,11 +42,7 @@ def discriminating_test(
         for channel, level in trial.noise.items():
             apart = float(np.sqrt(np.mean((first[channel] - second[channel]) ** 2))) / level
             if apart > max(DISCRIMINATES, best["over_noise"] if best else 0.0):
-                best = {
-                    "description": trial.description,
-                    "channel": channel,
-                    "over_noise": apart,
-                }
+                best = {"description": trial.description, "channel": channel, "over_noise": apart}
     return best
 
 

@@ -1,7 +1,5 @@
 """Which effects the data ask for: candidates fitted on some runs and judged on others."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Tables in text: comma, semicolon, tab or space separated, names and units in the heading."""
 
-from __future__ import annotations
-
 import csv
 import re
 from collections.abc import Iterator, Sequence

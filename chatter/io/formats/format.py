@@ -1,7 +1,5 @@
 """What a file format is: its name, its extensions, and what it can hold."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path

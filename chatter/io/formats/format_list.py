@@ -1,7 +1,5 @@
 """The registry of file formats, and the format of a file."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from chatter.description.registry import Registry
@@ -18,14 +16,7 @@ from dynamics.frf.container import Frf, MeasurementError
 FORMATS: Registry[Format] = Registry(
     group="chatter.formats",
     what="file format",
-    built_in=(
-        UFF58,
-        CUTPRO,
-        CSV,
-        NPZ,
-        TDMS,
-        MATRIX_MARKET,
-    ),
+    built_in=(UFF58, CUTPRO, CSV, NPZ, TDMS, MATRIX_MARKET),
 )
 #: enough of a file to recognise its format
 _HEAD_BYTES = 65536

@@ -1,7 +1,5 @@
 """FRFs of the columns of a table: real and imaginary part, or magnitude and phase."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace

@@ -1,7 +1,5 @@
 """Matrices in Matrix Market files."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import scipy.io

@@ -1,7 +1,5 @@
 """NumPy archives: signals and FRFs as arrays by name, matrices dense or sparse."""
 
-from __future__ import annotations
-
 import zipfile
 from pathlib import Path
 

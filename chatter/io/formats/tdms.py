@@ -1,7 +1,5 @@
 """TDMS files of LabVIEW, read by npTDMS."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

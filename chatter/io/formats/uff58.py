@@ -7,8 +7,6 @@ datasets of another kind that it cannot parse, end the reading of the whole file
 files with it.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -19,13 +17,7 @@ import numpy as np
 from chatter.description.arrays import Array, ComplexArray
 from chatter.io.formats.format import Format
 from chatter.io.formats.units import Channel, channel_unit, frf_unit
-from chatter.io.formats.universal import (
-    Dataset,
-    FileUnits,
-    file_units,
-    is_universal,
-    read_datasets,
-)
+from chatter.io.formats.universal import Dataset, FileUnits, file_units, is_universal, read_datasets
 from chatter.io.table import Column, Table
 from dynamics.frf.container import QUANTITY_OF_MOTION, Frf, MeasurementError, Point, Quantity
 
@@ -381,9 +373,7 @@ def _point(node_and_direction: tuple[int, int]) -> Point:
     """Point of a node number and a direction code of a dataset 58."""
     node, code = node_and_direction
     return Point(
-        node=str(node) if node else "",
-        direction=_DIRECTIONS[abs(code)],
-        sign=-1 if code < 0 else 1,
+        node=str(node) if node else "", direction=_DIRECTIONS[abs(code)], sign=-1 if code < 0 else 1
     )
 
 

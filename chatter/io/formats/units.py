@@ -1,7 +1,5 @@
 """What a column of a measured file holds, by its unit, and its factor to SI."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Literal, TypeVar

@@ -1,7 +1,5 @@
 """Universal files (UFF, UNV): splitting into datasets; the units dataset 164."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """What a small difference along a simulated cut, followed turn by turn, tells of its growth."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

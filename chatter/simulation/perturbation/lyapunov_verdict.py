@@ -14,8 +14,6 @@ when it is full. A third run starts from rest in the full cut, to see whether it
 motion.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

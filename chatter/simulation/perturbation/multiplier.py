@@ -10,8 +10,6 @@ turn to turn as forced vibration does. So a motion large enough for teeth to lea
 taken for stable by them alone: small perturbations tell how vibration grew before.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace

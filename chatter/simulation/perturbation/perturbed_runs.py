@@ -1,7 +1,5 @@
 """A cut with a perturbed run and one from rest beside it, followed turn by turn."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

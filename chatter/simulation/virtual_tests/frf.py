@@ -95,10 +95,7 @@ class FrfResult:
 
     def summary(self) -> dict:
         """Peaks of every curve, for people and machines."""
-        return {
-            "machine": self.machine,
-            "curves": [curve.summary() for curve in self.curves],
-        }
+        return {"machine": self.machine, "curves": [curve.summary() for curve in self.curves]}
 
     def plot(self) -> Figure:
         """Picture of all curves."""

@@ -1,7 +1,5 @@
 """FRFs and moves as a machine file asks for them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -67,9 +65,7 @@ def default_frfs(file: MachineFile) -> dict[str, FrfSection]:
 
 
 def frfs(
-    file: MachineFile,
-    sections: dict[str, FrfSection],
-    progress: Progress = no_progress,
+    file: MachineFile, sections: dict[str, FrfSection], progress: Progress = no_progress
 ) -> FrfResult:
     """FRFs of a machine, one a section.
 
@@ -221,12 +217,7 @@ def file_move(
     cycles = [drive.controller.position.timing.sample_time for drive in machine.drives]
     cycle = section.cycle if section.cycle is not None else max(cycles, default=file.step)
     plan = MovePlan(
-        course.trajectory,
-        section.axes,
-        cycle,
-        section.standstill,
-        section.afterwards,
-        course.path,
+        course.trajectory, section.axes, cycle, section.standstill, section.afterwards, course.path
     )
     tool = None
     if file.tool_point is not None:

@@ -4,8 +4,6 @@ Both answer the component at the frequency of a sinusoidal set point that the lo
 of the sampling are other frequencies.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal, NamedTuple

@@ -1,7 +1,5 @@
 """Run a machine in time, in chunks, with progress."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 

@@ -5,8 +5,6 @@ preloads and settling loops take no part; on a real machine a record is detrende
 read as a velocity: with friction a blow leaves a lasting displacement, which never dies away.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """How coarse the elements of collocation may be for the limits that a search needs."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

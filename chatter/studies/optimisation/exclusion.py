@@ -1,7 +1,5 @@
 """What keeps a search from finding anything: which limits exclude how much of the coarse grid."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

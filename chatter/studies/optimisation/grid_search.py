@@ -1,7 +1,5 @@
 """Search for the highest removal rate: a coarse grid over all that may be chosen, refinement."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 

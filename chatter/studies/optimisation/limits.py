@@ -1,7 +1,5 @@
 """What a cut may use: speeds, depths, radial depths, feeds, and the limits of [optimum]."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Operating point of a cut: speed, depths and feed, written into a case or a compiled model."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import NamedTuple

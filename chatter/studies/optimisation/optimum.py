@@ -1,7 +1,5 @@
 """Result of a process optimisation: candidates, picture, files."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """`optimum`: search, probability of the best cuts, and their confirmation in the time domain."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

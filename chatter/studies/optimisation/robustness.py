@@ -1,7 +1,5 @@
 """Candidates of a search in round numbers, with a wanted probability where values are uncertain."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

@@ -5,8 +5,6 @@ that have refused others are asked first, and a cut that so many refuse that it 
 wanted probability is left. What remains is counted in full: nothing is estimated from a part.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """State that all parts of a search share: the compiled case, the result cache, progress."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -25,12 +23,7 @@ class OptimumSearch:
     """
 
     def __init__(
-        self,
-        case: Case,
-        samples: int,
-        seed: int,
-        progress: Progress,
-        folder: str | Path | None,
+        self, case: Case, samples: int, seed: int, progress: Progress, folder: str | Path | None
     ) -> None:
         self.model = milling_model(case)
         self.drawn = samples_of(self.model, samples, seed)

@@ -1,7 +1,5 @@
 """All speeds and depths at one radial depth and feed: stability and what limits the cut."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

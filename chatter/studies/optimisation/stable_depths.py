@@ -3,8 +3,6 @@
 Nothing assumes that stability ends once: a speed has as many intervals as the grid finds.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -11,8 +11,6 @@ Mann 2006, Int. J. Mach. Tools Manuf. 46:1487). Unequal pitch, runout and proces
 whole. The chip is taken as linear in u: no tooth leaves the cut because it vibrates.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

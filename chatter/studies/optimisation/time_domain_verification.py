@@ -7,8 +7,6 @@ that stays (the bistable or unsafe zone of Dombovari, Barton, Wilson and Stepan 
 Non-Linear Mech. 46:266), which the linear limit does not know.
 """
 
-from __future__ import annotations
-
 import math
 import threading
 from collections.abc import Sequence

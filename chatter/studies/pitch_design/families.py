@@ -7,8 +7,6 @@ them evenly around the cycle where the pitch grows from tooth to tooth (Altintas
 1999, J. Manuf. Sci. Eng. 121:173; Budak 2003, J. Manuf. Sci. Eng. 125:29).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

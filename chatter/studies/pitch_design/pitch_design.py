@@ -1,7 +1,5 @@
 """`pitch`: the rule, the families, the search over all angles, and limits before and after."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

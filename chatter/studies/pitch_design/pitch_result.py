@@ -1,7 +1,5 @@
 """Result of a pitch design: designs, picture, files."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import Path

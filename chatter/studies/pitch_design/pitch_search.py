@@ -1,7 +1,5 @@
 """Search for pitch angles by the limits of collocation: one-parameter families, then all angles."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable, Sequence

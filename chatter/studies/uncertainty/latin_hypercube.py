@@ -5,8 +5,6 @@ distributions evenly, and more samples go on where fewer ended. Correlation is p
 alone, so that every value keeps its own hypercube (Iman and Conover 1982, Commun. Stat. B 11:311).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Limits of stability of one sample."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

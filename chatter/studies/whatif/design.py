@@ -1,7 +1,5 @@
 """Points of a study: one after the other, a grid of two paths, or one path at a time."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Preset studies: common questions, each one command on a shipped example."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files

@@ -6,8 +6,6 @@ Cutting Forces considering the Influences of Nonlinear Friction Characteristics 
 Damping", Figures 5 to 7.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -58,11 +56,7 @@ def passages(angle: ArrayLike, at: float) -> NDArray[np.int64]:
 
 
 def angle_triggered_pulses(
-    angle: ArrayLike,
-    at: float,
-    pulse: NDArray[np.float64],
-    step: float,
-    revolutions: int = 1,
+    angle: ArrayLike, at: float, pulse: NDArray[np.float64], step: float, revolutions: int = 1
 ) -> PulseTrain:
     """Return a pulse of torque each time a spindle comes to an angle.
 

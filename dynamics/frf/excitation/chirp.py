@@ -1,7 +1,5 @@
 """Sine chirps: a sine of constant amplitude that sweeps through a band."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.signal.windows import tukey
 

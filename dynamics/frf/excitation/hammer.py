@@ -1,7 +1,5 @@
 """Blows of a hammer: half sines, one or several."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

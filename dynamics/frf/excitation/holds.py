@@ -11,8 +11,6 @@ The term m = 0 is taken off by dividing by H. The others, small where the sampli
 known in closed form where the structure answers to them by its inertia alone.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

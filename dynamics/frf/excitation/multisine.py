@@ -1,7 +1,5 @@
 """Periodic multisines: harmonics of one period, all of the same amplitude."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -48,11 +46,7 @@ def schroeder_phases(lines: NDArray[np.int64]) -> NDArray[np.float64]:
 
 
 def multisine(
-    lines: NDArray[np.int64],
-    phases: NDArray[np.float64],
-    period: float,
-    rms: float,
-    step: float,
+    lines: NDArray[np.int64], phases: NDArray[np.float64], period: float, rms: float, step: float
 ) -> PeriodicSignal:
     """Return a multisine; `PeriodicSignal.with_peak` scales it to a peak instead of an rms.
 

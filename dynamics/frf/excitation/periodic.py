@@ -1,7 +1,5 @@
 """FRFs of periodic excitation: averages over periods and realisations, and their variances."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """Spectra averaged over segments of records: blows, periods, realisations."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

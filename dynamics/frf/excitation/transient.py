@@ -1,7 +1,5 @@
 """FRFs of transients that die away within their records: blows, pulses and single chirps."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

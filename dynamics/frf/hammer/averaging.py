@@ -1,7 +1,5 @@
 """A set of hammer records examined, averaged, and what was left out of it."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 

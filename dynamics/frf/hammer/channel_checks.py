@@ -120,10 +120,7 @@ def _jumps(channel: _Channel, start: int, length: int) -> bool:
 
 
 def _without_acquisition_window(
-    signal: NDArray[np.float64],
-    starts: NDArray[np.int64],
-    lengths: NDArray[np.int64],
-    hit: Hit,
+    signal: NDArray[np.float64], starts: NDArray[np.int64], lengths: NDArray[np.int64], hit: Hit
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Drop the runs of exact zero that a force window of the acquisition leaves behind the hit."""
     reaches_end = lengths.size > 0 and starts[-1] + lengths[-1] == signal.size

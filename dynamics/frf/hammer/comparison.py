@@ -1,7 +1,5 @@
 """One record against what the others make of its blow: gain, timing, and what is left over."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What the records of a set have in common: which agree, and the function they share."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

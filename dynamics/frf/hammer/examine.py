@@ -1,7 +1,5 @@
 """Examination of the records of a set, each on its own and against the others."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

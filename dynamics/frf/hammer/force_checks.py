@@ -1,7 +1,5 @@
 """Faults of the force channel: a cut or second blow, dropouts, a baseline that moves."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import find_peaks

@@ -1,7 +1,5 @@
 """Where the hit lies in a record, and what the two channels read when nothing happens."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Putting a name and a reason to what sets a record apart from the others."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 

@@ -1,7 +1,5 @@
 """One hit: the container of a hammer record."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -11,11 +9,7 @@ from numpy.typing import NDArray
 from dynamics.frf.container import MeasurementError, Point, Quantity
 
 #: SI unit of the response by quantity of the FRF
-RESPONSE_UNIT: dict[Quantity, str] = {
-    "receptance": "m",
-    "mobility": "m/s",
-    "accelerance": "m/s^2",
-}
+RESPONSE_UNIT: dict[Quantity, str] = {"receptance": "m", "mobility": "m/s", "accelerance": "m/s^2"}
 
 FEWEST_SAMPLES = 32
 

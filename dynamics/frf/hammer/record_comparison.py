@@ -1,7 +1,5 @@
 """Records that are sound by themselves, judged against each other."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import t as student

@@ -1,7 +1,5 @@
 """Faults of the response that need no other record: drift, no answer to the blow, late bumps."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from dynamics.frf.hammer.force_checks import DRIFT_DEVIATIONS, DRIFT_SHARE, block_medians

@@ -1,7 +1,5 @@
 """Averaged spectra of hammer records and the estimators of the FRF."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -136,9 +134,7 @@ def windowed(record: HammerRecord, hit: Hit, windows: Windows) -> NDArray[np.flo
 
 
 def frf_from_records(
-    records: Sequence[HammerRecord],
-    estimator: Estimator = h1,
-    transform_length: int | None = None,
+    records: Sequence[HammerRecord], estimator: Estimator = h1, transform_length: int | None = None
 ) -> Frf:
     """Estimate the FRF of hammer records averaged together.
 

@@ -1,7 +1,5 @@
 """Windows for hammer records: the blow alone, the ringing alone, and a decay where it is needed."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

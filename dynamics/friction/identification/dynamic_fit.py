@@ -6,8 +6,6 @@ effort = inertia x acceleration + friction(motion) + offset. Nothing is simulate
 so an error of the law at one reversal does not move the next.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache

@@ -5,8 +5,6 @@ and inertia. Here one linear, zero-phase operator acts on all of them (parallel 
 inverse-dynamics identification: Gautier 1997, IEEE Int. Conf. Control Applications, 192-197).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Starting values of a friction law from the linear fit and the distance a reversal takes."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

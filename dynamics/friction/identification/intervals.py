@@ -6,8 +6,6 @@ squares would promise several times too much. Here it allows for the correlation
 residuals show (Newey and West 1987, Econometrica 55:703).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

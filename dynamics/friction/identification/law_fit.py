@@ -5,8 +5,6 @@ logarithms; an offset of the effort may have either sign and is searched as it i
 guard against local minima, of which the Stribeck curve and presliding have plenty.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields

@@ -5,8 +5,6 @@ object-oriented modelling: a machine tool case study", eq. 1, which solves it "i
 square sense". It has no presliding, so samples about zero speed are left out.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Friction referred through a transmission, and split between its two sides."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -6,8 +6,6 @@ each constant-speed move is set against its speed, and rotational and translatio
 the torque about the motor shaft, there equally.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

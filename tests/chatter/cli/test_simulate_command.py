@@ -148,10 +148,7 @@ def test_chip_of_the_option_wins_over_the_case(case_file):
 
 @pytest.mark.parametrize(
     "assignments",
-    [
-        ["simulation.revolutions=0.01"],
-        ["simulation.revolutions=null", "simulation.duration=1 us"],
-    ],
+    [["simulation.revolutions=0.01"], ["simulation.revolutions=null", "simulation.duration=1 us"]],
 )
 def test_a_run_too_short_to_judge(case_file, assignments):
     result = simulate(case_file, *assignments, options=["--json"])
@@ -182,10 +179,7 @@ def test_a_rigid_tool_does_not_chatter(case_file):
         (["simulation.steps=7"], ["simulation.steps", "7"]),
         (["simulation.slices=0"], ["simulation.slices", "0"]),
         ([f"stock.box={BOX}"], ["stock", '"dexel"']),
-        (
-            ['simulation.path=[["0 mm","0 mm"],["5 mm","0 mm"]]'],
-            ["simulation.path", '"dexel"'],
-        ),
+        (['simulation.path=[["0 mm","0 mm"],["5 mm","0 mm"]]'], ["simulation.path", '"dexel"']),
         (
             ["tool.edge_radius=20 um", "process_damping.indentation_force=1e14 N/m^3"],
             ["tool.clearance_angle", "missing"],
@@ -242,11 +236,7 @@ def test_wrong_chip_of_the_option(case_file, tmp_path):
 @pytest.mark.parametrize("depth", ["20 mm", "200 mm"])
 def test_a_run_that_leaves_the_range_of_the_model_fails(case_file, tmp_path, depth):
     refused(
-        simulate(case_file, f"cut.axial_depth={depth}"),
-        tmp_path,
-        "displaced",
-        "1.6 mm",
-        code=1,
+        simulate(case_file, f"cut.axial_depth={depth}"), tmp_path, "displaced", "1.6 mm", code=1
     )
 
 

@@ -89,11 +89,7 @@ def test_the_good_case_is_good(tmp_path):
         ("[1, 0, 0]", "[1, 1]", ["structure.mode[0].direction"]),
         ("[1, 0, 0]", "[0, 0, 1]", ["tool axis"]),
         ('mass = "0.03993 kg"', "", ["structure.mode[0]", "mass or stiffness"]),
-        (
-            'y = "922 Hz"',
-            'y = "922 m"',
-            ["structure.mode[0].frequency", "frequency"],
-        ),
+        ('y = "922 Hz"', 'y = "922 m"', ["structure.mode[0].frequency", "frequency"]),
         ('Ktc = "600 MPa"', "", ["material.Ktc", "missing"]),
         ('Ktc = "600 MPa"', 'name = "Al7075T6"', ["material.name", "Al7075-T6"]),
         ("count = 3", "count = 2000000000", ["lobes.speeds.count"]),

@@ -61,9 +61,7 @@ def changed(case, values, *replacements):
 
 def test_quantity(case):
     patched = changed(
-        case,
-        {"cut.axial_depth": "2500 um"},
-        ('axial_depth = "1 mm"', 'axial_depth = "2500 um"'),
+        case, {"cut.axial_depth": "2500 um"}, ('axial_depth = "1 mm"', 'axial_depth = "2500 um"')
     )
     assert patched.cut.axial_depth == 2.5e-3
     assert case.cut.axial_depth == 1e-3
@@ -72,9 +70,7 @@ def test_quantity(case):
 def test_bare_numbers_are_written_in_the_unit_that_stood_there(case):
     changed(case, {"cut.axial_depth": 0.0025}, ('axial_depth = "1 mm"', 'axial_depth = "2.5 mm"'))
     patched = changed(
-        case,
-        {"cut.spindle_speed": 100.0 * math.pi},
-        ('"10000 rpm" # fast', '"3000 rpm" # fast'),
+        case, {"cut.spindle_speed": 100.0 * math.pi}, ('"10000 rpm" # fast', '"3000 rpm" # fast')
     )
     assert patched.cut.spindle_speed == pytest.approx(100.0 * math.pi, rel=1e-14)
     changed(case, {"structure.mode[0].damping": 0.02}, ('"1.1 %"', '"2 %"'))

@@ -100,10 +100,7 @@ def test_every_old_name_of_a_machine_is_read_with_a_note():
     assert MachineFile.RENAMED == MACHINE
     assert len(notes) == len(MACHINE)
     assert rename(document, MACHINE) == []
-    assert document["friction"]["guide"].unwrap() == {
-        "law": "lugre",
-        "bristle_stiffness": "5 N/um",
-    }
+    assert document["friction"]["guide"].unwrap() == {"law": "lugre", "bristle_stiffness": "5 N/um"}
     assert set(document["friction"]["screw"]) == {
         "law",
         "low_speed_viscous",

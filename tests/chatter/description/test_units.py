@@ -74,10 +74,7 @@ def test_si_value_of_units(dimension, unit):
     assert parse(f"-2.5e1  {unit} ", dimension).value == pytest.approx(-25.0 * expected, rel=1e-14)
 
 
-@given(
-    pair=st.sampled_from(PAIRS),
-    value=st.floats(1e-9, 1e9) | st.floats(-1e9, -1e-9),
-)
+@given(pair=st.sampled_from(PAIRS), value=st.floats(1e-9, 1e9) | st.floats(-1e9, -1e-9))
 def test_round_trip_through_text(pair, value):
     dimension, unit = pair
     read = parse(write(value, unit, dimension), dimension)

@@ -34,12 +34,7 @@ def rows_of(path):
 def test_files_of_a_diagram(tmp_path):
     diagram = chatter.lobes(two_degrees_of_freedom(), grid=True)
     written = diagram.save(tmp_path)
-    assert {path.name for path in written} == {
-        "lobes.csv",
-        "lobes.png",
-        "summary.json",
-        "grid.npz",
-    }
+    assert {path.name for path in written} == {"lobes.csv", "lobes.png", "summary.json", "grid.npz"}
     rows = rows_of(tmp_path / "lobes.csv")
     assert list(rows[0]) == [
         "spindle_speed [rpm]",

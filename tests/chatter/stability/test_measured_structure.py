@@ -123,10 +123,7 @@ def test_tool_and_workpiece_add_up(tmp_path):
 def test_frf_without_direction_is_taken_for_both_and_said(tmp_path):
     write_frf(tmp_path / "tap.csv", receptance_matrix(MODES[:1], LINES)[:, 0, 0])
     model = milling_model(case_with({"frf": "tap.csv"}, tmp_path))
-    assert {mode.direction for mode in model.structure.modes} == {
-        (1.0, 0.0, 0.0),
-        (0.0, 1.0, 0.0),
-    }
+    assert {mode.direction for mode in model.structure.modes} == {(1.0, 0.0, 0.0), (0.0, 1.0, 0.0)}
     assert any("no direction" in note for note in model.notes)
 
 

@@ -83,8 +83,7 @@ def run_grid(folder, cluster=None):
 def run_whatif(folder, cluster=None):
     vary = {"cut.radial_depth": ["0.4 mm", "0.8 mm", "1.2 mm"], "tool.teeth": [2, 3]}
     return written(
-        chatter.whatif(small_case(), vary, "critical depth", folder=folder, cluster=cluster),
-        folder,
+        chatter.whatif(small_case(), vary, "critical depth", folder=folder, cluster=cluster), folder
     )
 
 

@@ -32,10 +32,7 @@ def test_a_path_by_name_that_holds_no_quantity_is_none():
 
 def test_what_hardly_vibrates_is_still_fitted_by_modes_that_do():
     """The stability methods take modes with damping ratios below one alone."""
-    modes = (
-        Mode(60.0, 0.04, 20.0, (1.0, 0.0, 0.0)),
-        Mode(30.0, 2.0, 50.0, (1.0, 0.0, 0.0)),
-    )
+    modes = (Mode(60.0, 0.04, 20.0, (1.0, 0.0, 0.0)), Mode(30.0, 2.0, 50.0, (1.0, 0.0, 0.0)))
     lines = lines_around(modes, 1.0, 300.0)
     fitted = real_modes(lines, receptance_matrix(modes, lines), modes[:1])
     assert max(mode.damping for mode in fitted) < 1.0

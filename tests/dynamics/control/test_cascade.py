@@ -14,10 +14,7 @@ from dynamics.control.cascade import (
     PositionController,
     VelocityController,
 )
-from dynamics.control.current_loop import (
-    RegulatedMotor,
-    SecondOrderCurrentLoop,
-)
+from dynamics.control.current_loop import RegulatedMotor, SecondOrderCurrentLoop
 from dynamics.control.drive_step import control_step
 from dynamics.control.drive_table import control_table
 from dynamics.control.filters import ReferenceModel, low_pass, notch

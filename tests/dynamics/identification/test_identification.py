@@ -166,10 +166,7 @@ def test_directions_come_from_cross_terms():
 
 
 def test_two_modes_at_one_frequency_are_told_apart_by_direction():
-    modes = (
-        Mode(600.0, 0.02, 0.5, (1.0, 0.0, 0.0)),
-        Mode(600.0, 0.03, 0.9, (0.0, 1.0, 0.0)),
-    )
+    modes = (Mode(600.0, 0.02, 0.5, (1.0, 0.0, 0.0)), Mode(600.0, 0.03, 0.9, (0.0, 1.0, 0.0)))
     fit = identify_modes(matrix_frfs(modes, ("xx", "xy", "yy"), noise=1e-3))
     assert len(fit.modes) == 2
     by_axis = sorted(fit.modes, key=lambda mode: -abs(mode.direction[0]))

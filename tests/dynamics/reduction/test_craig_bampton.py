@@ -163,10 +163,7 @@ def test_raw_freedoms_and_points_that_average_nodes_may_be_the_boundary():
     structure = shaft(free=False)
     mean = 0.5 * (structure.points["root"] + structure.points["tip"])
     given = LinearStructure(
-        structure.mass,
-        structure.damping,
-        structure.stiffness,
-        {**structure.points, "mean": mean},
+        structure.mass, structure.damping, structure.stiffness, {**structure.points, "mean": mean}
     )
     reduced = super_element(given, ["mean"], count=1000, freedoms=[22])
     assert reduced.size == structure.size

@@ -24,11 +24,9 @@ def random_case(rng):
     immersion = float(10.0 ** rng.uniform(-1.5, 0.0))
     arc = math.acos(1.0 - 2.0 * immersion)
     kind = rng.choice(["up", "down", "slot"], p=[0.42, 0.42, 0.16])
-    entry, leave = {
-        "up": (0.0, arc),
-        "down": (math.pi - arc, math.pi),
-        "slot": (0.0, math.pi),
-    }[kind]
+    entry, leave = {"up": (0.0, arc), "down": (math.pi - arc, math.pi), "slot": (0.0, math.pi)}[
+        kind
+    ]
     kt = rng.uniform(300e6, 2500e6)
     coefficients = (kt, kt * rng.uniform(0.05, 0.8), kt * rng.uniform(0.0, 0.4))
     highest = 10.0 ** rng.uniform(math.log10(60.0), math.log10(3000.0))

@@ -4,8 +4,6 @@ The map is never formed as a matrix. Each member is evaluated by itself and keep
 that has converged, so that it does not depend on its neighbours.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

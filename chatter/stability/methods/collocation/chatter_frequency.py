@@ -1,7 +1,5 @@
 """Frequency evaluated of the dominant motion of a cut, eight points at once."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

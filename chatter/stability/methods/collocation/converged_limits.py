@@ -4,8 +4,6 @@ Some of the limits are re-evaluated with far finer elements. The growth rate the
 is the error.
 """
 
-from __future__ import annotations
-
 from chatter.description.arrays import Array
 from chatter.description.progress import Progress, no_progress
 from chatter.stability.limit_curve import LimitCurve, limits_at

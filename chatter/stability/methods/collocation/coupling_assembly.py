@@ -6,8 +6,6 @@ is packed into whole numbers that give its structure and real ones that fill it:
 same structure go side by side into one SIMD batch.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Coupling assemblies packed into integers that give their structure and reals that fill it."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Compiled loops that Python calls: multipliers of many points, and points of a period."""
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

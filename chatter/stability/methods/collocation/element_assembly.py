@@ -1,7 +1,5 @@
 """Assembly of the map over one period: what modes do over every element, and what the cut adds."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -5,8 +5,6 @@ Where a size effect makes the slope of the force law infinite, at a vanishing ch
 towards that position.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 
@@ -21,12 +19,7 @@ from cutting.edge_segments.coupling import (
     first_and_last_revolution,
     part_below,
 )
-from cutting.edge_segments.segment_ends import (
-    border_at,
-    is_border,
-    lowest_height,
-    sort_with_marks,
-)
+from cutting.edge_segments.segment_ends import border_at, is_border, lowest_height, sort_with_marks
 
 #: borders closer than this share of the period are the same
 SAME_BORDER = 1e-10

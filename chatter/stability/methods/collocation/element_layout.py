@@ -6,8 +6,6 @@ element also where the speed varies. Where a triangular variation of the speed h
 elements are cut in two. Where no tooth cuts, the free motion is one element.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -6,8 +6,6 @@ mass over omega) it depends on omega h and the damping ratio alone, and is tabul
 a Chebyshev series once a mode, so that any element costs a short sum.
 """
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Limits of finer elements, next to those that are known, and the error that these have."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

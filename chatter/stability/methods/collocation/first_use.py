@@ -1,7 +1,5 @@
 """First use: the two large drivers of collocation are compiled side by side, in two processes."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -11,8 +11,6 @@ Eight points of the stability diagram make one SIMD batch, a point per member; t
 have the same structure.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

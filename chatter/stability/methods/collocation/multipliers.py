@@ -4,8 +4,6 @@ See `monodromy`. Unlike semi-discretization it takes any pitch, helix, edge, run
 the spindle speed, and converges spectrally.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

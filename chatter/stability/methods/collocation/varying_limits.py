@@ -5,8 +5,6 @@ with regular elements and periods that fit better, between two of those. The err
 elements and a far closer fit of the period change at some of the limits.
 """
 
-from __future__ import annotations
-
 from chatter.description.arrays import Array
 from chatter.description.progress import Progress
 from chatter.stability.boundary_continuation import continued_crossings

@@ -6,8 +6,6 @@ smoothly with the ratio of the two: limits are interpolated between the whole nu
 of the true ratio, with an error of second order in what the frequency has been moved by.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from chatter.description.arrays import Array

@@ -4,8 +4,6 @@ The motion that an earlier tooth had is taken from a cubic (Hermite) through dis
 velocity at the starts and middles of the steps.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

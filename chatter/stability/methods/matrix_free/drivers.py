@@ -1,7 +1,5 @@
 """Compiled code that Python calls: dominant multiplier and motion of a point, number of steps."""
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 

@@ -5,8 +5,6 @@ that is graded towards a vanishing chip, force times rate of time is that line; 
 `matrix_free_steps`.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -8,8 +8,6 @@ Control 2. The steps are those of an integration in time, of order four; nothing
 collocation but the couplings of the edge.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from chatter.description.arrays import Array, ComplexArray, IntegerArray

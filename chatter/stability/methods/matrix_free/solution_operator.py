@@ -1,7 +1,5 @@
 """Solution operator: an initial function run through one period."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -4,8 +4,6 @@ The force at the Gauss points of a step follows from the motion there, which is 
 the motion when the earlier teeth passed. Order four in the length of the steps.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

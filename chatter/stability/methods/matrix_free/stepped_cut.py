@@ -1,7 +1,5 @@
 """A cut laid out for steps in time, with the contact of tool and work."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import partial

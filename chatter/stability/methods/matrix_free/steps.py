@@ -10,8 +10,6 @@ is where an edge, on a cone or a corner, enters or leaves nearly all at once: wh
 is like the root of the time.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 
@@ -23,12 +21,7 @@ from chatter.engine.presets import KERNEL
 from chatter.stability.methods.matrix_free.modal_response import POSITIONS
 from chatter.stability.spindle_rotation import angle_at, time_at
 from cutting.edge_segments.coupling import chip_vanishes, part_below
-from cutting.edge_segments.segment_ends import (
-    border_at,
-    is_border,
-    lowest_height,
-    sort_with_marks,
-)
+from cutting.edge_segments.segment_ends import border_at, is_border, lowest_height, sort_with_marks
 
 #: borders closer than this share of the period are the same
 _SAME = 1e-10

@@ -11,8 +11,6 @@ that det A(i w) makes as w runs over one W, since G has no poles there. A verdic
 harmonic alone is the zeroth-order solution; the harmonics kept reach beyond the highest resonance.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

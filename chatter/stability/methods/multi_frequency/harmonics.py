@@ -1,7 +1,5 @@
 """Fourier coefficients of the couplings of a cut over a period of the tool."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Limits over spindle speed by the multi-frequency solution."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from chatter.description.arrays import Array, IntegerArray

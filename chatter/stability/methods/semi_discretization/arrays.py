@@ -1,7 +1,5 @@
 """What the stability kernels see of a case: flat arrays in SI."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

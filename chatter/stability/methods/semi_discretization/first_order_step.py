@@ -3,8 +3,6 @@
 Insperger and Stepan 2004, Int. J. Numer. Meth. Eng. 61, first-order method.
 """
 
-from __future__ import annotations
-
 import math
 
 from numba import njit

@@ -7,8 +7,6 @@ entry and exit of tip and top of the edge, so that no step straddles a jump; whe
 the free motion is one exact step and no delayed motion is stored.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

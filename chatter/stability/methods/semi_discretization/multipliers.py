@@ -5,8 +5,6 @@ of steps left open, every value is extrapolated from two nested resolutions, whi
 order from two to four.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from chatter.description.arrays import Array, ComplexArray, IntegerArray

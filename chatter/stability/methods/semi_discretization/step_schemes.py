@@ -9,8 +9,6 @@ With averaged coefficients every one of them is of second order in the step; the
 size of the error.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

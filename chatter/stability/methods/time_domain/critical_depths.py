@@ -1,7 +1,5 @@
 """Limits of stability in the time domain: growth measured in simulated cuts."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

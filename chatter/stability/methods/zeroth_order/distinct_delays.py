@@ -8,8 +8,6 @@ so that at every speed and frequency each eigenvalue lambda of what stands besid
 w = -1/lambda; it is a limit where it is real and positive.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Critical depth of the zeroth-order frequency solution at given speeds, in compiled code."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

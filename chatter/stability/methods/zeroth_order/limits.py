@@ -1,7 +1,5 @@
 """Zeroth-order limits of a model, for any tool and speed-dependent dynamics."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from chatter.description.arrays import Array, IntegerArray

@@ -10,8 +10,6 @@ Exact where the mean is all there is (many teeth, slotting, a helix at w = k pi 
 low radial immersion adds flip lobes that it does not know.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

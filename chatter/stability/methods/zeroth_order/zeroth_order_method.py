@@ -1,7 +1,5 @@
 """Zeroth-order approximation (ZOA) in the frequency domain."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from chatter.description.arrays import Array, IntegerArray

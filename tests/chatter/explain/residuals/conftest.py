@@ -49,10 +49,7 @@ def milling():
         runs, measured, predicted = [], {}, {}
         for number in range(RUNS):
             speed, feed = rng.uniform(4000, 8000), rng.uniform(0.05, 0.15)
-            overrides = {
-                "cut.spindle_speed": f"{speed} rpm",
-                "cut.feed_per_tooth": f"{feed} mm",
-            }
+            overrides = {"cut.spindle_speed": f"{speed} rpm", "cut.feed_per_tooth": f"{feed} mm"}
             name = f"run{number}"
             time = np.arange(0.0, 12.0 * 60.0 / speed, 1.0 / 12800.0)
             angle = speed * np.pi / 30.0 * time

@@ -59,10 +59,7 @@ def machine():
 def case_of(path, parts=1, **cut):
     cut = {"axial_depth": "4 mm", **cut}
     return cut_case(
-        {"machine": str(path), "settling": 0.2},
-        cut=cut,
-        steps=400 * parts,
-        revolutions=2,
+        {"machine": str(path), "settling": 0.2}, cut=cut, steps=400 * parts, revolutions=2
     )
 
 

@@ -6,10 +6,7 @@ import pytest
 from chatter.compile.machine_parts import assembled_machine
 from chatter.description.errors import InputError
 from chatter.description.machine.machine_file import load_machine
-from chatter.engine.loop_stability import (
-    least_stable_motion,
-    refuse_unstable_control,
-)
+from chatter.engine.loop_stability import least_stable_motion, refuse_unstable_control
 from chatter.simulation.virtual_tests.run import RunInputs, run_machine
 from dynamics.trajectory.set_points import SetPoints
 from tests.places import EXAMPLES

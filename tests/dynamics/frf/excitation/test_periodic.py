@@ -7,11 +7,7 @@ from dynamics.frf.container import MeasurementError
 from dynamics.frf.excitation.chirp import linear_chirp
 from dynamics.frf.excitation.holds import BAND_LIMITED, FIRST_ORDER_HOLD, ZERO_ORDER_HOLD
 from dynamics.frf.excitation.multisine import full_lines, multisine, odd_lines, random_phases
-from dynamics.frf.excitation.periodic import (
-    PeriodicRecord,
-    frf_of_periods,
-    joint_input_output_frf,
-)
+from dynamics.frf.excitation.periodic import PeriodicRecord, frf_of_periods, joint_input_output_frf
 
 STEP = 5e-4
 

@@ -29,12 +29,7 @@ def records(structure, noise, count=3, seed=0, samples=12800):
     rng = np.random.default_rng(seed)
     return [
         made.record_of(
-            rng,
-            structure,
-            [replace(made.random_hit(rng), exponent=2.0)],
-            noise,
-            f"tap{i}",
-            samples,
+            rng, structure, [replace(made.random_hit(rng), exponent=2.0)], noise, f"tap{i}", samples
         )
         for i in range(count)
     ]
