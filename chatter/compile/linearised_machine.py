@@ -65,7 +65,10 @@ class LinearisedMachine:
     @property
     def notes(self) -> tuple[str, ...]:
         """What was assumed."""
-        notes = [f"dynamics of {self.cut.file.name}, linearised, its control loops closed"]
+        notes = [
+            *self.cut.file.notes,
+            f"dynamics of {self.cut.file.name}, linearised, its control loops closed",
+        ]
         if self.cut.machine.frictions:
             amplitude = self.case.structure.friction_amplitude
             others = (

@@ -220,7 +220,7 @@ def _start(cut: MachineCut, speed: float) -> NDArray[np.float64]:
 
 
 def _notes(cut: MachineCut) -> tuple[str, ...]:
-    notes = []
+    notes = list(cut.file.notes)
     if not cut.feeds:
         notes.append("no axis under control feeds the tool: its path is prescribed")
     if cut.spindle is None:
