@@ -73,10 +73,7 @@ class LiveCase:
     def patched(self, given: Any) -> tuple[Case, dict[str, float]]:
         """Case with the values of a page, and the ranges of the diagram by path.
 
-        Raises
-        ------
-        InputError
-            If a value is unknown or out of range, or what comes of them is no cut.
+        InputError if a value is unknown or out of range, or what comes of them is no cut.
         """
         values = checked_values(given, self.by_path)
         view = {one.path: values.get(one.path, one.value) for one in self.view}

@@ -208,10 +208,7 @@ def _rounded(value: float) -> float:
 def checked_values(given: Any, sliders: Mapping[str, Slider]) -> dict[str, float]:
     """Values that a page sent, by path.
 
-    Raises
-    ------
-    InputError
-        If they are no table of known paths and numbers in range; all problems are in it.
+    InputError if they are no table of known paths and numbers in range; all problems are in it.
     """
     if not isinstance(given, dict):
         raise InputError("values: a table of paths and numbers is required")

@@ -31,10 +31,7 @@ def require_readable(path: Path) -> None:
 def read_content(path: Path, size: int = -1) -> bytes:
     """Read a file, or its first bytes.
 
-    Raises
-    ------
-    MeasurementError
-        If it is missing, a folder, empty, too large or unreadable.
+    MeasurementError if it is missing, a folder, empty, too large or unreadable.
     """
     require_readable(path)
     try:
@@ -61,10 +58,7 @@ def decoded(raw: bytes, path: Path) -> str:
 def read_lines(path: Path) -> list[str]:
     """Read the lines of a text file.
 
-    Raises
-    ------
-    MeasurementError
-        If the file is missing, a folder, empty, too large, unreadable or not text.
+    MeasurementError if the file is missing, a folder, empty, too large, unreadable or not text.
     """
     lines = decoded(read_content(path), path).splitlines()
     if not any(line.strip() for line in lines):

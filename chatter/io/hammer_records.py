@@ -31,21 +31,10 @@ class HammerFolder:
 def read_hammer_record(path: str | Path, response: str | None = None) -> HammerRecord:
     """Read one hammer record from a file of any format of signals.
 
-    The columns are told by their units: a time, a force, and a displacement, velocity or
-    acceleration.
-
-    Parameters
-    ----------
-    path : str or Path
-        File such as ``time [s],force [N],acceleration [m/s^2]`` followed by rows of numbers.
-    response : str, optional
-        Name of the response column, where there are several.
-
-    Raises
-    ------
-    MeasurementError
-        If the file is no such table, its samples are not evenly spaced, or the response column
-        cannot be told.
+    The columns, such as ``time [s],force [N],acceleration [m/s^2]``, are told by their units: a
+    time, a force, and a displacement, velocity or acceleration, by its name where there are
+    several. MeasurementError if the file is no such table, its samples are not evenly spaced, or
+    the response column cannot be told.
     """
     path = Path(path)
     table = format_of(path, "signals").read_signals(path)
@@ -77,17 +66,9 @@ def read_hammer_record(path: str | Path, response: str | None = None) -> HammerR
 def read_hammer_folder(path: str | Path) -> HammerFolder:
     """Read every hammer record of a folder.
 
-    Parameters
-    ----------
-    path : str or Path
-        Folder of files as `read_hammer_record` reads them. Files of other extensions are passed
-        over; a file that is no record is named with the reason. Hidden files and folders in it
-        are passed over too.
-
-    Raises
-    ------
-    MeasurementError
-        If `path` is not a folder or holds no record.
+    Files as `read_hammer_record` reads them. Files of other extensions, hidden files and folders
+    are passed over; a file that is no record is named with the reason. MeasurementError if the path
+    is not a folder or holds no record.
     """
     path = Path(path)
     if not path.is_dir():

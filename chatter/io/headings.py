@@ -53,10 +53,7 @@ _UNITLESS = ("", "1", "-")
 def named(path: Path, heading: str) -> tuple[str, float]:
     """Name of a column and the factor of its numbers to SI, of a heading such as "Fx [N]".
 
-    Raises
-    ------
-    InputError
-        If it is no heading, or its unit is unknown or of another dimension than the column.
+    InputError if it is no heading, or its unit is unknown or of another dimension than the column.
     """
     name, unit = _parted(path, heading)
     known = _SPELLINGS.get(_plain(name))

@@ -31,20 +31,9 @@ def imported_structure(
 ) -> LinearStructure:
     """Read matrices and tie points to them.
 
-    Parameters
-    ----------
-    mass, stiffness, damping : path
-        Files as for `read_matrix`; without damping the structure has none.
-    nodes : path or Nodes, optional
-        Table as for `read_nodes`, or the nodes; needed for points.
-    rigid : sequence of RigidSurface
-    interpolated : sequence of InterpolatedPoint
-
-    Raises
-    ------
-    StructureError
-        If a file cannot be used, a matrix is not symmetric, sizes differ, the mass matrix is not
-        positive definite, or a point cannot be tied.
+    Files as for `read_matrix`; without damping the structure has none. Nodes, or their table as for
+    `read_nodes`, are needed for points. StructureError if a file cannot be used, a matrix is not
+    symmetric, sizes differ, the mass matrix is not positive definite, or a point cannot be tied.
     """
     mass_matrix, stiffness_matrix = read_matrix(mass), read_matrix(stiffness)
     size = mass_matrix.shape[0]
@@ -62,22 +51,10 @@ def imported_structure(
 
 
 def read_matrix(path: str | Path) -> Matrix:
-    """Read one symmetric matrix of finite real numbers.
+    """Read one symmetric matrix (n, n) of finite real numbers, full or sparse.
 
-    Parameters
-    ----------
-    path : path
-        Of a format that holds matrices: Matrix Market, or NPZ of `scipy.sparse.save_npz` or with
-        one plain array.
-
-    Returns
-    -------
-    (n, n) array or sparse array of float
-
-    Raises
-    ------
-    StructureError
-        Naming the file and the entry (rows and columns from 1).
+    From a format that holds matrices: Matrix Market, or NPZ of `scipy.sparse.save_npz` or with one
+    plain array. StructureError names the file and the entry (rows and columns from 1).
     """
     path = Path(path)
     try:
@@ -91,21 +68,12 @@ def read_matrix(path: str | Path) -> Matrix:
 
 
 def read_nodes(path: str | Path, size: int) -> Nodes:
-    """Read a table of nodes.
+    """Read a table of nodes of a structure whose matrices have `size` rows.
 
-    Parameters
-    ----------
-    path : path
-        CSV with a header and the columns node, x, y, z (m). If freedoms are not three or six a
-        node one after another, also ux, uy, uz, and rx, ry, rz: the row of the matrices, from 1,
-        of that freedom, or nothing where it is held or there is none.
-    size : int
-        Rows of the matrices.
-
-    Raises
-    ------
-    StructureError
-        Naming the file, line and column.
+    CSV with a header and the columns node, x, y, z (m). If freedoms are not three or six a node one
+    after another, also ux, uy, uz, and rx, ry, rz: the row of the matrices, from 1, of that
+    freedom, or nothing where it is held or there is none. StructureError names the file, line and
+    column.
     """
     path = Path(path)
     try:

@@ -55,10 +55,7 @@ def write_results(
 ) -> list[Path]:
     """Write texts and pictures, file name -> content, into a folder, which is made where missing.
 
-    Returns
-    -------
-    list of Path
-        What was written.
+    Paths of what was written are returned.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)

@@ -33,18 +33,9 @@ _NAMES_OF_CONTENT = {
 def read_signals(path: Path, kind: str = "", direction: str = "") -> Signals:
     """Columns of a file in SI, by name.
 
-    Parameters
-    ----------
-    path : Path
-    kind : str
-        Kind of measurement: what a displacement or a force of a universal file is called there.
-    direction : str
-        Of the FRF that is wanted of a file of several, response first.
-
-    Raises
-    ------
-    InputError
-        If it is missing, of a format that is not read, or holds what is not a number.
+    The kind of measurement tells what a displacement or a force of a universal file is called
+    there; the direction is that of the FRF wanted of a file of several, response first. InputError
+    if it is missing, of a format that is not read, or holds what is not a number.
     """
     try:
         if kind == "frf":

@@ -60,10 +60,7 @@ class Table:
     def numbers(self, index: int) -> Array:
         """Cells of a column as finite numbers.
 
-        Raises
-        ------
-        MeasurementError
-            If a cell is not a finite number; the message names file and line.
+        MeasurementError if a cell is not a finite number; the message names file and line.
         """
         cells = self.columns[index].cells
         try:

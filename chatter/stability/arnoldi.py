@@ -61,28 +61,12 @@ def _apply_operator(operator, vector, out, scratch):  # noqa: ARG001
 
 @njit(**SUMMING_KERNEL)
 def dominant_eigenpair(operator, start, check_at, tolerance, largest):
-    """Eigenvalue of largest magnitude and its vector.
+    """Eigenvalue of largest magnitude (imaginary part >= 0), its vector (d,), and the residual.
 
-    Parameters
-    ----------
-    operator : NamedTuple
-        Of a registered class.
-    start : (d,) array of float
-        Smoothed by one application.
-    check_at : int
-        Dimension of the space at the first check of convergence.
-    tolerance : float
-        Residual of the eigenpair, relative to its magnitude, at which the iteration stops.
-    largest : int
-        Dimension of the largest space.
-
-    Returns
-    -------
-    value : complex
-        Imaginary part >= 0.
-    vector : (d,) array of complex
-    residual : float
-        Norm of the residual of the eigenpair over the magnitude of the value.
+    The operator is of a registered class; the start (d,) is smoothed by one application.
+    Convergence is first checked at a space of `check_at` dimensions, the largest space has
+    `largest`. The iteration stops where the norm of the residual of the eigenpair over the
+    magnitude of the value falls below the tolerance.
     """
     dimension = start.shape[0]
     scratch = scratch_of(operator)

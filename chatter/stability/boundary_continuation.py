@@ -32,27 +32,11 @@ def continued_crossings(
 ) -> list[Array]:
     """Depths of all changes of stability at each speed.
 
-    Parameters
-    ----------
-    speed_count : int
-        Speeds, numbered in the order of their size.
-    depths : (m,) array of float
-        Coarse grid, m, ascending, > 0.
-    growth_rate : callable
-        Logarithm of the spectral radius.
-    tolerance : float
-        Of a limit, relative to its depth.
-    stride : int
-        Every so many speeds make the coarse grid; a power of two.
-    progress : callable, optional
-        Called with (done, total) speeds.
-    refined : callable, optional
-        Growth rate for the refinement of limits; `growth_rate` by default.
-
-    Returns
-    -------
-    list of arrays
-        m, ascending; stability is lost at even indices and regained at odd ones.
+    Speeds are numbered in the order of their size; every `stride`, a power of two, makes the coarse
+    grid, with the depths (m,), m, ascending, > 0. The growth rate is the logarithm of the spectral
+    radius; `refined` is that for the refinement of limits, the same by default. The tolerance of a
+    limit is relative to its depth; progress counts speeds. Returned for each speed are depths, m,
+    ascending; stability is lost at even indices and regained at odd ones.
     """
     values = np.full((speed_count, depths.size), np.nan)
     columns = np.unique(np.append(np.arange(0, speed_count, stride), speed_count - 1))

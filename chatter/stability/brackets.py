@@ -113,17 +113,8 @@ def roots_in(brackets: Brackets, growth_rate: GrowthRate, tolerance: float) -> A
     been evaluated is far closer to the root than that point: it is taken without it when it has
     moved by half a tolerance.
 
-    Parameters
-    ----------
-    brackets : Brackets
-    growth_rate : callable
-    tolerance : float
-        Of a root, relative to its depth.
-
-    Returns
-    -------
-    (n,) array of float
-        m; where growth rate does not change its sign, the end at which it is closer to zero.
+    The tolerance of a root is relative to its depth. Roots (n,) are in m; where the growth rate
+    does not change its sign, the end at which it is closer to zero.
     """
     narrowing = _Narrowing(brackets)
     at_low, at_high = brackets.at_low, brackets.at_high
@@ -163,13 +154,9 @@ def _with_point(
 def _inverse_interpolation(x: Array, y: Array, low: Array) -> Array:
     """Place (n,) at which the polynomial x(y) through up to four points has y = 0.
 
-    Parameters
-    ----------
-    x, y : (4, n) array of float
-        nan where there is no point.
-    low : (n,) array of float
-        Point above which y changes its sign. Beside it and the next, those points are taken
-        towards which y goes on in the same sense: elsewhere x is no function of y.
+    Points (4, n) are nan where there is none. Above the point `low` (n,) y changes its sign. Beside
+    it and the next, those points are taken towards which y goes on in the same sense: elsewhere x
+    is no function of y.
     """
     order = np.argsort(np.where(np.isfinite(x), x, np.inf), axis=0)
     x, y = np.take_along_axis(x, order, axis=0), np.take_along_axis(y, order, axis=0)

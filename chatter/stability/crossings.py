@@ -65,26 +65,12 @@ def find_crossings(
 ) -> list[Array]:
     """Depths of all changes of stability at each speed.
 
-    Parameters
-    ----------
-    grid : (n, m) array of float
-        Growth rate at n speeds and m depths.
-    depths : (m,) array of float
-        m, ascending, > 0. At zero depth the damped structure is stable.
-    growth_rate : callable
-        Where a peak may be hidden, and at the end of a bracket.
-    tolerance : float
-        Of a limit, relative to its depth.
-    evaluated : (n, m) array of bool, optional
-        Where the growth rate of the grid has the right sign alone, it is False; beside changes it
-        is not.
-    refined : callable, optional
-        Growth rate for the refinement of brackets; `growth_rate` by default.
-
-    Returns
-    -------
-    list of n arrays
-        m, ascending; stability is lost at even indices and regained at odd ones.
+    The grid (n, m) holds the growth rate at n speeds and m depths, m, ascending, > 0; at zero depth
+    the damped structure is stable. `growth_rate` is asked where a peak may be hidden and at the end
+    of a bracket, `refined` (the same by default) in the refinement of brackets. `evaluated` (n, m)
+    is False where the growth rate of the grid has the right sign alone; beside changes it is not.
+    The tolerance of a limit is relative to its depth. Returned for each speed are depths, m,
+    ascending; stability is lost at even indices and regained at odd ones.
     """
     edges = np.concatenate([[0.0], depths])
     at_zero = np.full((grid.shape[0], 1), -np.inf)

@@ -71,18 +71,9 @@ class ForcedVibration(NamedTuple):
 def forced_vibration(model: MillingModel, speed: float, depth: float) -> ForcedVibration | None:
     """Steady vibration of a cut and what it does to the chip; None with a uniform pitch.
 
-    Parameters
-    ----------
-    model : MillingModel
-        At a constant spindle speed.
-    speed, depth : float
-        rad/s and m.
-
-    Notes
-    -----
-    Harmonic balance: the Fourier series of the force on a rigid tool times the receptance, the
-    regenerated force of the cut added (the loop of the multi-frequency solution, Budak and Altintas
-    1998, driven at the harmonics of the period).
+    At a constant spindle speed, rad/s, and a depth, m. Harmonic balance: the Fourier series of the
+    force on a rigid tool times the receptance, the regenerated force of the cut added (the loop of
+    the multi-frequency solution, Budak and Altintas 1998, driven at the harmonics of the period).
     """
     if model.case.cut.speed_variation is not None:
         return None

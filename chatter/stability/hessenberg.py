@@ -104,21 +104,10 @@ def _double_step(h, first, last, x, y, w):
 
 @njit(**KERNEL)
 def hessenberg_eigenvalues(h):
-    """Eigenvalues of a real upper Hessenberg matrix by the double-shift QR algorithm.
+    """Eigenvalues (n,) of a real upper Hessenberg matrix by the double-shift QR algorithm.
 
-    Parameters
-    ----------
-    h : (n, n) array of float
-        Overwritten.
-
-    Returns
-    -------
-    (n,) array of complex
-        In no order; nan for any that did not converge.
-
-    Notes
-    -----
-    Francis 1961; the procedure hqr of Martin, Peters and Wilkinson 1970, Numer. Math. 14.
+    The matrix (n, n) is overwritten. Eigenvalues come in no order, nan for any that did not
+    converge. Francis 1961; the procedure hqr of Martin, Peters and Wilkinson 1970, Numer. Math. 14.
     """
     n = h.shape[0]
     values = np.full(n, complex(np.nan, np.nan))

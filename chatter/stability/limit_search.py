@@ -66,19 +66,8 @@ def frequency_of_motion(
     A multiplier mu fixes the frequencies (arg mu + 2 pi l)/T only up to that of the period; the one
     with the largest amplitude of displacement is the chatter frequency.
 
-    Parameters
-    ----------
-    multiplier : complex
-    period : float
-        s.
-    time : (n,) array of float
-        s.
-    motion : (n, r) array of complex
-        Displacement at the times.
-    weight : (n,) array of float
-        Of each time, s.
-    natural_frequency : (k,) array of float
-        rad/s.
+    The period is in s; the motion (n, r) is the displacement at the times (n,), s, each of which
+    has a weight (n,), s; natural frequencies (k,) are in rad/s.
     """
     base = np.log(complex(multiplier) if multiplier != 0.0 else 1e-300) / period
     line = 2.0 * np.pi / period
@@ -92,10 +81,7 @@ def frequency_of_motion(
 class EvaluatedPoints:
     """Points near limits whose chatter frequency has been evaluated, so that it is done once.
 
-    Parameters
-    ----------
-    evaluate : callable
-        Multipliers and chatter frequencies at points.
+    `evaluate` gives multipliers and chatter frequencies at points.
     """
 
     #: a point stands for another at the same speed within this share of its depth

@@ -196,16 +196,8 @@ def _segments_of(cutter: Cutter, laws: tuple[ForceLaw, ...], *cut: object) -> Ed
 def milling_model(case: Case, structure: Structure | None = None) -> MillingModel:
     """Compile a case for the stability methods.
 
-    Parameters
-    ----------
-    case : Case
-    structure : Structure, optional
-        That of the case, where it is known already.
-
-    Raises
-    ------
-    InputError
-        If a section is missing, or the case holds what no stability method can treat.
+    The structure is that of the case, where it is known already. InputError if a section is
+    missing, or the case holds what no stability method can treat.
     """
     case.require("tool", "material", "cut", "structure")
     check_plausible(case)

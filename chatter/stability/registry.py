@@ -37,10 +37,7 @@ def chosen_method(case: Case, name: str | None = None) -> StabilityMethod:
     ``"auto"`` takes collocation, semi-discretization where the case fixes its steps, and the
     matrix-free method where tool and work have a contact, which it alone of the linear ones takes.
 
-    Raises
-    ------
-    InputError
-        If there is no such method.
+    InputError if there is no such method.
     """
     given = name
     name = given or (case.lobes.method if case.lobes else None) or AUTO

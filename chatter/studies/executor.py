@@ -39,11 +39,7 @@ _ADDRESS_IPV6 = re.compile(r"(tcp|tls|ws|wss)://\[[0-9a-fA-F:.]+\](:\d+)")
 class DaskExecutor:
     """Tasks of several items on the workers of a Dask cluster, one thread each.
 
-    Parameters
-    ----------
-    client : distributed.Client
-    task_seconds : float
-        What a task is to take; the number of its items follows from the time that items took.
+    A task is to take `task_seconds`; the number of its items follows from the time that items took.
     """
 
     def __init__(self, client: Client, task_seconds: float = _TASK_SECONDS) -> None:
@@ -152,16 +148,9 @@ def _result_of(future: Any) -> tuple[list, float]:
 def open_executor(cluster: str | Executor | None) -> Iterator[Executor]:
     """Open an executor, and close what was opened.
 
-    Parameters
-    ----------
-    cluster : str or Executor, optional
-        "local" starts worker processes on this machine; "tcp://host:port" is the scheduler of a
-        Dask cluster; None is this process.
-
-    Raises
-    ------
-    InputError
-        If distributed is not installed, or no scheduler or worker answers.
+    "local" starts worker processes on this machine; "tcp://host:port" is the scheduler of a Dask
+    cluster; None is this process. InputError if distributed is not installed, or no scheduler or
+    worker answers.
     """
     if cluster is None:
         yield SerialExecutor()

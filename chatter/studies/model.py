@@ -50,10 +50,7 @@ def machine_of(model: Model) -> MachineFile | None:
 def patched(model: AnyModel, values: Mapping[str, Any]) -> AnyModel:
     """Return a model with some values changed: path -> value as for `Case.patch`.
 
-    Raises
-    ------
-    InputError
-        If a path is unknown, there is no machine for it, or what comes of it is wrong.
+    InputError if a path is unknown, there is no machine for it, or what comes of it is wrong.
     """
     of_machine = {
         path.removeprefix(PREFIX): value

@@ -27,20 +27,9 @@ AxisGiven = str | tuple[str, Sequence[Any]]
 def axis_of(given: AxisGiven, case: Case, option: str, count: int) -> Variation:
     """Axis from what is given, its numbers ascending.
 
-    Parameters
-    ----------
-    given : str or (str, sequence)
-        ``"PATH=FROM..TO[:COUNT]"``, or a path and quantities as text or numbers in SI.
-    case : Case
-    option : str
-        Named in messages.
-    count : int
-        Values of a range that gives no count.
-
-    Raises
-    ------
-    InputError
-        If there is no such path, it takes no quantity, or the range is empty.
+    Given is ``"PATH=FROM..TO[:COUNT]"``, or a path and quantities as text or numbers in SI; `count`
+    is for a range that gives none, and messages name the option. InputError if there is no such
+    path, it takes no quantity, or the range is empty.
     """
     try:
         found = _read(given, case, option, count)

@@ -70,13 +70,8 @@ class _TextDisk(diskcache.Disk):
 class ResultCache:
     """Records by key, on disk where a folder is given, else in memory.
 
-    Parameters
-    ----------
-    folder : path, optional
-        Of the results; the cache is the folder "result-cache" in it.
-    *inputs : str
-        What all records depend on.
-
+    The cache is the folder "result-cache" in that of the results; inputs are what all records
+    depend on.
     """
 
     def __init__(self, folder: str | Path | None, *inputs: str) -> None:
@@ -154,27 +149,11 @@ class ResultCache:
     ) -> list[Any]:
         """Records that a function makes of items, in their order; known ones are not computed.
 
-        Parameters
-        ----------
-        function : callable
-            Of an item; can be pickled, as items can. A record with a "failure" is not kept, so
-            that it is tried again.
-        items : sequence
-        keys : sequence of str
-            Of the record of each item.
-        noun : str
-            What the items are, for messages.
-        **execution
-            As `Execution`; the folder is that of the cache.
-
-        Raises
-        ------
-        TypeError
-            If a keyword is not known.
-        InputError
-            As the function does.
-        RunError
-            If it is interrupted; finished records are in the cache.
+        Function and items can be pickled; a record with a "failure" is not kept, so that it is
+        tried again. Keys are those of the record of each item; the noun is what messages call the
+        items. Execution as `Execution`; the folder is that of the cache. TypeError if a keyword is
+        not known, InputError as the function does, RunError if it is interrupted; finished records
+        are in the cache.
         """
         unknown = execution.keys() - Execution.__annotations__.keys()
         if unknown:

@@ -35,10 +35,7 @@ _ANY_VELOCITY = 1.0
 class CoulombStribeck:
     """Parameters of one dry friction; along a rotation read N m, rad for N, m.
 
-    Raises
-    ------
-    ValueError
-        If a parameter is out of its range; the message names it.
+    ValueError if a parameter is out of its range; the message names it.
     """
 
     coulomb: float  # FC, N; not below 0

@@ -47,10 +47,7 @@ KEYS = (
 class LuGre:
     """Parameters of one LuGre friction; along a rotation read N m, rad for N, m.
 
-    Raises
-    ------
-    ValueError
-        If a parameter is out of its range; the message names it.
+    ValueError if a parameter is out of its range; the message names it.
     """
 
     bristle_stiffness: float  # s0, N/m

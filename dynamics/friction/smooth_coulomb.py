@@ -36,10 +36,7 @@ KEYS = (
 class SmoothCoulomb:
     """Parameters of one smooth friction; about an axis read N m, rad for N, m.
 
-    Raises
-    ------
-    ValueError
-        If a parameter is out of its range; the message names it.
+    ValueError if a parameter is out of its range; the message names it.
     """
 
     coulomb: float  # FC, N; not below 0

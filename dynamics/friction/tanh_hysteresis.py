@@ -54,10 +54,7 @@ KEYS = (
 class TanhHysteresis:
     """Parameters of one friction; along a rotation read N m, rad for N, m.
 
-    Raises
-    ------
-    ValueError
-        If a parameter is out of its range; the message names it.
+    ValueError if a parameter is out of its range; the message names it.
     """
 
     coulomb: float  # fc, N; above 0

@@ -223,10 +223,7 @@ def rigid_motion(offset: ArrayLike) -> NDArray[np.float64]:
 def finite(where: str, what: str, values: ArrayLike, shape: tuple[int, ...]) -> NDArray:
     """Values as an array of finite numbers of a shape.
 
-    Raises
-    ------
-    StructureError
-        If they are not; the message begins with `where` and `what`.
+    StructureError if they are not; the message begins with `where` and `what`.
     """
     try:
         array = np.array(values, dtype=np.float64)

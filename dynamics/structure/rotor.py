@@ -16,10 +16,7 @@ from dynamics.structure.linear_structure import StructureError
 class Rotor:
     """Part with one freedom: its angle about an axis, rad, counted against ground.
 
-    Raises
-    ------
-    StructureError
-        If the moment of inertia is not positive or the axis has no length.
+    StructureError if the moment of inertia is not positive or the axis has no length.
     """
 
     name: str

@@ -49,10 +49,7 @@ def reversed_terms(terms: Sequence[Term]) -> tuple[Term, ...]:
 class Coupling:
     """Spring and damper along the sum of its terms.
 
-    Raises
-    ------
-    StructureError
-        If a number is negative or not finite, or there are no terms.
+    StructureError if a number is negative or not finite, or there are no terms.
     """
 
     name: str

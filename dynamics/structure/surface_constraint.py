@@ -25,10 +25,7 @@ NARROWEST = 1e-6
 class Nodes:
     """Nodes of a finite element model and the matrix rows of their freedoms.
 
-    Raises
-    ------
-    StructureError
-        If numbers repeat, sizes disagree or two freedoms share a row.
+    StructureError if numbers repeat, sizes disagree or two freedoms share a row.
     """
 
     names: NDArray[np.int64]  # (m,), numbers of the nodes

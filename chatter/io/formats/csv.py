@@ -22,16 +22,8 @@ def read_table(path: Path) -> Table:
     is understood. Lines that begin with ``#``, ``%``, ``!`` or ``//`` are comments; the last of
     them may be the heading. Cells may be words.
 
-    Parameters
-    ----------
-    path : Path
-        Text file.
-
-    Raises
-    ------
-    MeasurementError
-        If the file is not text, has no rows of numbers, no heading, or a row with too few or too
-        many cells; the message names file and line.
+    MeasurementError if the file is not text, has no rows of numbers, no heading, or a row with too
+    few or too many cells; the message names file and line.
     """
     lines = read_lines(path)
     first = _first_row(lines)

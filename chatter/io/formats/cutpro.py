@@ -17,27 +17,15 @@ _EXAMPLE = "10.0  1.2e-8  -3.4e-10  Freq  Hz  Real  m/N  Imag"
 
 
 def read_cutpro(path: Path) -> list[Frf]:
-    """Read one FRF from lines of frequency, real and imaginary part.
+    """Read one FRF, to SI units, from lines of frequency, real and imaginary part.
 
-    Words may stand after the numbers of any line (CutPro writes them behind the first one), above
-    the numbers or below them; the unit of the response per force is taken from these words, and
-    the unit of the frequency too (Hz where they name none).
+    Lines are such as ``10.0 1.2e-8 -3.4e-10 Freq Hz Real m/N Imag``. Words may stand after the
+    numbers of any line (CutPro writes them behind the first one), above the numbers or below them;
+    the unit of the response per force is taken from these words, and the unit of the frequency too
+    (Hz where they name none).
 
-    Parameters
-    ----------
-    path : Path
-        File with lines such as ``10.0  1.2e-8  -3.4e-10  Freq  Hz  Real  m/N  Imag``.
-
-    Returns
-    -------
-    list of Frf
-        One FRF in SI units.
-
-    Raises
-    ------
-    MeasurementError
-        If no word names the unit, if words name different units, or if a row is incomplete, out of
-        order or not finite; the message names file and line.
+    MeasurementError if no word names the unit, if words name different units, or if a row is
+    incomplete, out of order or not finite; the message names file and line.
     """
     numbers = array("d")
     words: list[str] = []

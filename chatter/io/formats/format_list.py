@@ -35,16 +35,8 @@ def listed(formats: list[Format]) -> str:
 def format_of(path: Path, content: Content) -> Format:
     """Tell the format of a file by its content where that is possible, else by its extension.
 
-    Parameters
-    ----------
-    path : Path
-    content : {"FRFs", "signals", "matrices"}
-        What is to be read of it.
-
-    Raises
-    ------
-    MeasurementError
-        If the file is missing, a folder, empty, too large, or of no known format.
+    `content` is what is to be read of it. MeasurementError if the file is missing, a folder, empty,
+    too large, or of no known format.
     """
     head = read_content(path, _HEAD_BYTES)
     candidates = formats_of(content)
@@ -63,16 +55,8 @@ def format_of(path: Path, content: Content) -> Format:
 def read_frfs(path: str | Path) -> list[Frf]:
     """Read every FRF of a measured file, whatever its format.
 
-    Returns
-    -------
-    list of Frf
-        At least one, in SI units, in the order of the file.
-
-    Raises
-    ------
-    MeasurementError
-        If the file is missing, a folder, empty, of no known format, or malformed; the message
-        names file, line and reason.
+    At least one, in SI units, in the order of the file. MeasurementError if the file is missing, a
+    folder, empty, of no known format, or malformed; the message names file, line and reason.
     """
     path = Path(path)
     return format_of(path, "FRFs").read_frfs(path)

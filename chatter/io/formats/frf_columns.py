@@ -39,26 +39,15 @@ class _Parts:
 
 
 def frfs_of_table(table: Table) -> list[Frf]:
-    """FRFs of a table whose headings name each column and its unit.
+    """FRFs in SI units of a table whose headings name each column and its unit.
 
-    The first column is the frequency; each FRF is a pair real and imaginary or magnitude and phase
-    (deg or rad), with an optional coherence. A label in the name (``"real xy [m/N]"``, response
-    first, then reference) tells several FRFs apart and gives their directions.
+    Headings are such as ``frequency [Hz]``, ``real [m/N]``, ``imag [m/N]``. The first column is the
+    frequency; each FRF is a pair real and imaginary or magnitude and phase (deg or rad), with an
+    optional coherence. A label in the name (``"real xy [m/N]"``, response first, then reference)
+    tells several FRFs apart and gives their directions. FRFs are in the order of the columns.
 
-    Parameters
-    ----------
-    table : Table
-        With headings such as ``frequency [Hz]``, ``real [m/N]``, ``imag [m/N]``.
-
-    Returns
-    -------
-    list of Frf
-        In SI units, in the order of the columns.
-
-    Raises
-    ------
-    MeasurementError
-        If the columns are not such; the message names file, line or column, and the reason.
+    MeasurementError if the columns are not such; the message names file, line or column, and the
+    reason.
     """
     path = table.path
     if not any(column.unit for column in table.columns):

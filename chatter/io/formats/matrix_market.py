@@ -23,10 +23,7 @@ def require_square(path: Path, shape: tuple[int, ...]) -> None:
 def read_matrix(path: Path) -> Array | scipy.sparse.sparray:
     """Real or integer matrix, general or symmetric.
 
-    Raises
-    ------
-    MeasurementError
-        If it is complex or a pattern, or larger than its file.
+    MeasurementError if it is complex or a pattern, or larger than its file.
     """
     rows, columns, _, layout, kind, symmetry = scipy.io.mminfo(path)
     if kind not in ("real", "integer") or symmetry not in ("general", "symmetric"):

@@ -17,10 +17,7 @@ from dynamics.frf.container import MeasurementError
 def read_columns(path: Path) -> Table:
     """Arrays (n,) of an archive by name; a complex one as its real and imaginary part.
 
-    Raises
-    ------
-    MeasurementError
-        If the file is no archive of arrays, or their lengths differ.
+    MeasurementError if the file is no archive of arrays, or their lengths differ.
     """
     try:
         with np.load(path, allow_pickle=False) as content:

@@ -13,10 +13,8 @@ from dynamics.frf.container import MeasurementError
 def read_channels(path: Path) -> Table:
     """Channels of all groups, with the clock of their waveform where no channel is a time.
 
-    Raises
-    ------
-    MeasurementError
-        If npTDMS is not installed, the file is none that it reads, or channels differ in length.
+    MeasurementError if npTDMS is not installed, the file is none that it reads, or channels differ
+    in length.
     """
     try:
         from nptdms import TdmsFile

@@ -112,30 +112,16 @@ def _functions(path: Path, others: Counter[str]) -> Iterator[_Function]:
 
 
 def read_frfs(path: Path) -> list[Frf]:
-    """Read every FRF between translations of a universal file.
+    """Read every FRF between translations of a universal file, text or binary, to SI units.
 
-    Datasets other than 58 are passed over, save 164 (units). A coherence function between the same
-    points is joined to its FRF. Unit labels of the axes hold where present; else the data type
-    (displacement, velocity, acceleration, force) in the units of dataset 164, SI by default.
+    In the order of the file. Datasets other than 58 are passed over, save 164 (units). A coherence
+    function between the same points is joined to its FRF. Unit labels of the axes hold where
+    present; else the data type (displacement, velocity, acceleration, force) in the units of
+    dataset 164, SI by default.
 
-    Parameters
-    ----------
-    path : Path
-        UFF or UNV file, text or binary.
-
-    Returns
-    -------
-    list of Frf
-        In SI units, in the order of the file.
-
-    Raises
-    ------
-    MeasurementError
-        If the file is cut short, malformed, or holds no FRF; the message says where and why.
-
-    Notes
-    -----
-    Layout: SDRC universal dataset 58, "Function at Nodal DOF", and its binary form 58b by UC-SDRL.
+    MeasurementError if the file is cut short, malformed, or holds no FRF; the message says where
+    and why. Layout: SDRC universal dataset 58, "Function at Nodal DOF", and its binary form 58b by
+    UC-SDRL.
     """
     frfs: list[Frf] = []
     coherences: list[tuple[Heading, Array]] = []
@@ -158,10 +144,8 @@ def read_frfs(path: Path) -> list[Frf]:
 def read_time_records(path: Path) -> Table:
     """Read every time record of a universal file: a column of time, then one a record.
 
-    Raises
-    ------
-    MeasurementError
-        If the file is cut short, malformed, or holds no time record, or records differ in time.
+    MeasurementError if the file is cut short, malformed, or holds no time record, or records differ
+    in time.
     """
     columns: list[Column] = []
     held: Counter[str] = Counter()

@@ -42,23 +42,9 @@ def _content(unit: str, known: Mapping[_Content, str], wanted: str) -> tuple[_Co
 def frf_unit(unit: str) -> tuple[Quantity, float]:
     """Quantity of an FRF in a unit of response per force, and its factor to SI.
 
-    Parameters
-    ----------
-    unit : str
-        As written in a file: ``"um/N"``, ``"(m/s^2)/N"``, ``"g/N"`` (g is the acceleration of
-        gravity here), ``"in/lbf"``, ``"1/kg"``.
-
-    Returns
-    -------
-    quantity : str
-        ``"receptance"``, ``"mobility"`` or ``"accelerance"``.
-    factor : float
-        SI value = factor times the value in `unit`.
-
-    Raises
-    ------
-    MeasurementError
-        If `unit` is not understood or is not a response per force.
+    Units as written in files: ``"um/N"``, ``"(m/s^2)/N"``, ``"g/N"`` (g is the acceleration of
+    gravity here), ``"in/lbf"``, ``"1/kg"``. SI value = factor times the value in `unit`.
+    MeasurementError if `unit` is not understood or is not a response per force.
     """
     wanted = (
         "not a response per force; "
@@ -70,23 +56,9 @@ def frf_unit(unit: str) -> tuple[Quantity, float]:
 def channel_unit(unit: str) -> tuple[Channel, float]:
     """Content of a column of a time record or of a frequency axis, and its factor to SI.
 
-    Parameters
-    ----------
-    unit : str
-        ``"s"``, ``"ms"``, ``"Hz"``, ``"rad/s"``, ``"N"``, ``"lbf"``, ``"m/s^2"``, ``"g"`` ...
-
-    Returns
-    -------
-    channel : str
-        ``"time"``, ``"frequency"``, ``"force"``, ``"displacement"``, ``"velocity"`` or
-        ``"acceleration"``.
-    factor : float
-        SI value (frequencies in Hz) = factor times the value in `unit`.
-
-    Raises
-    ------
-    MeasurementError
-        If `unit` is not understood or is none of these.
+    Units such as ``"s"``, ``"ms"``, ``"Hz"``, ``"rad/s"``, ``"N"``, ``"lbf"``, ``"m/s^2"``,
+    ``"g"``. SI value (frequencies in Hz) = factor times the value in `unit`. MeasurementError if
+    `unit` is not understood or is none of these.
     """
     wanted = "none of a time, frequency, force, displacement, velocity or acceleration"
     return _content(unit, _CHANNELS, wanted)

@@ -50,10 +50,8 @@ def is_universal(head: bytes) -> bool:
 def read_datasets(path: Path) -> Iterator[Dataset]:
     """Yield the datasets of a universal file in order.
 
-    Raises
-    ------
-    MeasurementError
-        If the file cannot be read or a dataset is not closed by a line of -1 (truncated file).
+    MeasurementError if the file cannot be read or a dataset is not closed by a line of -1
+    (truncated file).
     """
     content = read_content(path)
     position, line, order = 0, 1, 1
@@ -93,10 +91,7 @@ def _closing(content: bytes, start: int, *, is_binary: bool) -> re.Match[bytes] 
 def file_units(dataset: Dataset, path: Path) -> FileUnits:
     """Read the factors of length and force of a units dataset (164).
 
-    Raises
-    ------
-    MeasurementError
-        If the factors are missing or not positive numbers.
+    MeasurementError if the factors are missing or not positive numbers.
     """
     lines = dataset.body.decode("latin-1").splitlines()
     words = " ".join(lines[1:]).replace("D", "E").replace("d", "e").split()

@@ -47,11 +47,8 @@ def max_wavelengths(model: MillingModel, speeds: Array, depths: Array) -> float:
 def extreme_models(models: Sequence[MillingModel]) -> list[MillingModel]:
     """Of models of one case with other values, those whose fast modes differ most.
 
-    Returns
-    -------
-    list of MillingModel
-        The one with the fastest mode, and those whose fastest mode takes part most and least: by
-        the share of its response at resonance in that of the liveliest mode.
+    The one with the fastest mode, and those whose fastest mode takes part most and least: by the
+    share of its response at resonance in that of the liveliest mode.
     """
 
     def highest(model: MillingModel) -> float:

@@ -87,18 +87,10 @@ def stable_depths(
 ) -> StableDepths:
     """Stable intervals of depth, by collocation, following the boundary from speed to speed.
 
-    Parameters
-    ----------
-    cut : ElementCut
-        Down to the deepest one at least.
-    speeds : (n,) array of float
-        rad/s, ascending.
-    depths : (m,) array of float
-        Net on which changes of stability are looked for, m, ascending, > 0: a interval that fits
-        between two of its depths is not seen, nor one between two speeds at which all of them are
-        evaluated.
-    progress : callable, optional
-        Called with (done, total) speeds.
+    The cut is laid out down to the deepest depth at least; speeds (n,), rad/s, ascend. On the
+    depths (m,), m, ascending, > 0, changes of stability are looked for: an interval that fits
+    between two of them is not seen, nor one between two speeds at which all of them are evaluated.
+    Progress counts speeds.
     """
     stride = widest_stride(cut, speeds)
     growth_rate = growth_rate_of(cut, speeds)

@@ -197,11 +197,9 @@ class SteadyModel:
     def _wall(self, motion: ComplexArray, slices: EdgeSlices, side: str) -> Array:
         """Location error (n, L) of a wall: mean of the envelope of all passes, m.
 
-        Notes
-        -----
-        An edge that passes with a speed along the wall's normal reaches furthest a little before
-        or after it points there. All its passes do so alike, and what stands is made by that
-        furthest reach, the largest y(theta) + R (cos(theta - theta_0) - 1), and not by y(theta_0).
+        An edge that passes with a speed along the wall's normal reaches furthest a little before or
+        after it points there. All its passes do so alike, and what stands is made by that furthest
+        reach, the largest y(theta) + R (cos(theta - theta_0) - 1), and not by y(theta_0).
         """
         direction, sign = _WALL[side]
         sk, ck = np.sin(slices.immersion), np.cos(slices.immersion)

@@ -21,21 +21,10 @@ def samples(
     seed: int,
     correlation: Array | None = None,
 ) -> Array:
-    """Draw values of all parameters.
+    """Draw values (count, p) of p parameters, SI.
 
-    Parameters
-    ----------
-    parameters : sequence of p UncertainParameter
-    count : int
-    seed : int
-        The same seed gives the same samples, whatever the count.
-    correlation : (p, p) array of float, optional
-        Of the normal distributions; independent by default.
-
-    Returns
-    -------
-    (count, p) array of float
-        SI.
+    The same seed gives the same samples, whatever the count. The correlation (p, p) is that of the
+    normal distributions, which are independent by default.
     """
     from scipy.stats import qmc
 

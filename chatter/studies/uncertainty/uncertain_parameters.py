@@ -59,10 +59,8 @@ def parameters_of(model: Model) -> tuple[UncertainParameter, ...]:
 def correlation_of(case: Case, parameters: Sequence[UncertainParameter]) -> Array | None:
     """Correlation (p, p) of the normal distributions that [uncertainty] gives; None without.
 
-    Raises
-    ------
-    InputError
-        If a path is not that of an uncertain value, or the coefficients contradict one another.
+    InputError if a path is not that of an uncertain value, or the coefficients contradict one
+    another.
     """
     pairs = case.uncertainty.correlation if case.uncertainty else ()
     if not pairs:

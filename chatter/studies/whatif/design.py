@@ -26,10 +26,7 @@ class DesignPoint:
 def chosen_layout(variations: Sequence[Variation], tornado: bool) -> Layout:
     """Picture that suits the variations.
 
-    Raises
-    ------
-    InputError
-        If there are none, a path comes twice, or there are too many for a picture.
+    InputError if there are none, a path comes twice, or there are too many for a picture.
     """
     if not variations:
         raise InputError("nothing varies; give --vary PATH=VALUES or --study NAME")

@@ -301,10 +301,7 @@ MEASURES: dict[str, Measure] = {one.name: one for one in _MEASURES}
 def measure_of(name: str | None, model: Model) -> Measure:
     """Kind of result by its name; lobes of a case and FRFs of a machine by default.
 
-    Raises
-    ------
-    InputError
-        If there is none of that name, or a machine alone cannot have it.
+    InputError if there is none of that name, or a machine alone cannot have it.
     """
     of_case = isinstance(model, Case)
     chosen = (name or ("lobes" if of_case else "frf")).replace("-", " ")

@@ -65,10 +65,7 @@ class Variation:
 def read_variation(text: str, model: Model, count: int | None = None) -> Variation:
     """Read a variation of the command line; a range has `count` values.
 
-    Raises
-    ------
-    InputError
-        If it is none: no path, no values, mixed units.
+    InputError if it is none: no path, no values, mixed units.
     """
     path, equals, given = text.partition("=")
     path = path.strip()
@@ -95,10 +92,7 @@ def read_variation(text: str, model: Model, count: int | None = None) -> Variati
 def variation(path: str, values: list[Any], model: Model) -> Variation:
     """Variation from values of Python: quantities as text, numbers in SI, None takes a key away.
 
-    Raises
-    ------
-    InputError
-        If there are no values, or one is of the wrong kind.
+    InputError if there are no values, or one is of the wrong kind.
     """
     if len(values) == 0:
         raise InputError(f"{path}: there are no values")

@@ -25,11 +25,8 @@ _APART = 0.2
 class DriveRecord:
     """Evenly sampled motion and effort of one axis.
 
-    Raises
-    ------
-    MeasurementError
-        If the signals are too short, of different lengths, not finite, unevenly sampled, or
-        position and velocity do not belong together (units, sign).
+    MeasurementError if the signals are too short, of different lengths, not finite, unevenly
+    sampled, or position and velocity do not belong together (units, sign).
     """
 
     time: NDArray[np.float64]  # (n,), s, ascending, evenly spaced within 5 %

@@ -223,24 +223,10 @@ def _couple(cut, edge, layout, rotation, angle, row, first_source, sources, coup
 def assemble_couplings(cut, rotation, layout, speed, depth):
     """Couplings at the points of all elements of a period, packed.
 
-    Parameters
-    ----------
-    cut : ElementCut
-    rotation : SpindleRotation
-        In mean angle.
-    layout : ElementLayout
-    speed : float
-        `speed_step` of the mean spindle speed, rad/s.
-    depth : float
-        Axial depth, m.
-
-    Returns
-    -------
-    structure : (i,) array of int
-        See `packed_structure`.
-    numbers : (n,) array of float
-        Period, lengths (S,), starts and lengths of the elements in the cut (E,), rad; stiffness
-        (E p, r, r), dashpots (E p, r, r) times the mean speed, blocks of the sources, N/m.
+    The rotation is in mean angle, the speed the `speed_step` of the mean spindle speed, rad/s, the
+    depth axial, m. Returned are the structure (i,) of `packed_structure`, and the numbers (n,):
+    period, lengths (S,), starts and lengths of the elements in the cut (E,), rad; stiffness (E p,
+    r, r), dashpots (E p, r, r) times the mean speed, blocks of the sources, N/m.
     """
     points, segments, rank = cut.points, cut.arrays.segments, cut.arrays.basis.shape[1]
     per_element = points.weight.shape[0]

@@ -111,12 +111,7 @@ def structure_at(assemblies, point):
 
 @njit(**INNER_KERNEL)
 def unpacked_structure(packed):
-    """Unpack the structure of an assembly.
-
-    Returns
-    -------
-    AssemblyStructure
-    """
+    """Unpack the `AssemblyStructure` of an assembly."""
     elements, lengths, count = packed[0], packed[1], packed[3]
     points = packed.shape[0] - _HEADER - 2 * elements - lengths - 2 * count
     a = _HEADER + elements

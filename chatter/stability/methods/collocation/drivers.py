@@ -21,22 +21,9 @@ def element_multipliers(arrays, assemblies, speeds, frequency_wanted):
     Points whose assemblies have the same structure are treated together in a SIMD batch; what comes
     out for a point does not depend on which others it is treated with.
 
-    Parameters
-    ----------
-    arrays : OperatorArrays
-    assemblies : CouplingAssemblies
-        Of the points.
-    speeds : (n,) array of float
-        rad/s.
-    frequency_wanted : (n,) array of bool
-        Points at which the chatter frequency is wanted.
-
-    Returns
-    -------
-    multiplier : (n,) array of complex
-        Imaginary part >= 0.
-    frequency : (n,) array of float
-        Hz, nan where it was not wanted.
+    Speeds (n,) are in rad/s; `frequency_wanted` (n,) marks the points at which the chatter
+    frequency is wanted. Multipliers (n,) have an imaginary part >= 0; frequencies (n,) are in Hz,
+    nan where not wanted.
     """
     n = speeds.shape[0]
     multiplier = np.empty(n, dtype=np.complex128)

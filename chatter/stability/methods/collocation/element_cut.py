@@ -46,17 +46,10 @@ def element_cut(
     points: int = RESOLUTION[0],
     wavelengths: float = RESOLUTION[1],
 ) -> ElementCut:
-    """Lay out the cut of a model.
+    """Lay out the cut of a model, with depths up to `max_depth`, m.
 
-    Parameters
-    ----------
-    model : MillingModel
-    max_depth : float
-        m.
-    points : int
-        Gauss points per element.
-    wavelengths : float
-        Of the fastest chatter, that an element holds at the most; edge segments shrink along.
+    An element has as many Gauss points as given and holds at the most that many wavelengths of the
+    fastest chatter; edge segments shrink along.
     """
     arrays = model.cut(max_depth, wavelengths)
     longest = wavelengths * 2.0 * math.pi / arrays.fastest

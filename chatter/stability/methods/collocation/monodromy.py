@@ -159,14 +159,10 @@ def _in_cut(couple, factors, of_state, of_force, to_state, output, state, own, f
 
 @njit(**LEAF_KERNEL)
 def apply_batch_monodromy(period, vector, out, scratch):
-    """Set out to the image of the vector after one period.
+    """Set out to the image of the vector after one period of a batch.
 
-    Parameters
-    ----------
-    period : BatchMonodromy
-    vector, out : (2n + memory (p + 1) r, 8) array of float
-        State, then the motion at the points of the last elements in the cut, scaled.
-    scratch : BatchScratch
+    Both (2n + memory (p + 1) r, 8): state, then the motion at the points of the last elements in
+    the cut, scaled.
     """
     assembly, motion, state = period.assembly, scratch.motion, scratch.state
     size, width = state.shape[0], motion.shape[1]

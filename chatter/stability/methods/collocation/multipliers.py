@@ -44,20 +44,9 @@ _FEWEST_POINTS, _PARTS = 16, 4
 def multipliers(
     cut: ElementCut, speeds: Array, depths: Array, progress: Progress = no_progress
 ) -> ComplexArray:
-    """Dominant multiplier over one period at every point.
+    """Dominant multiplier (n,) over one period at every point, imaginary part >= 0.
 
-    Parameters
-    ----------
-    cut : ElementCut
-    speeds, depths : (n,) array of float
-        rad/s and m, point by point.
-    progress : callable, optional
-        Called with (done, total).
-
-    Returns
-    -------
-    (n,) array of complex
-        Imaginary part >= 0.
+    Speeds (n,), rad/s, and depths (n,), m, are point by point.
     """
     return _solved(cut, speeds, depths, np.zeros(len(speeds), dtype=np.bool_), progress)[0]
 
@@ -190,20 +179,10 @@ def limit_curve(
 ) -> LimitCurve:
     """Limits of stability at every spindle speed, by boundary continuation.
 
-    Parameters
-    ----------
-    cut : ElementCut
-    speeds : (n,) array of float
-        rad/s, ascending.
-    depths : (m,) array of float
-        Grid on which changes of stability are searched, m.
-    progress : callable, optional
-        Called with (done, total) speeds.
-    tolerance : float
-        Of a limit, relative to its depth.
-    stride : int
-        All depths are evaluated at every so many speeds, a power of two; see
-        `boundary_continuation` for what may be missed between them.
+    Speeds (n,), rad/s, ascend; changes of stability are searched on the depths (m,), m, all of
+    which are evaluated at every `stride` speeds, a power of two; see `boundary_continuation` for
+    what may be missed between them. The tolerance of a limit is relative to its depth; progress
+    counts speeds.
     """
     evaluated = evaluated_points(cut, speeds)
     growth_rate_here = growth_rate_of(cut, speeds)

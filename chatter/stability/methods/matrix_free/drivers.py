@@ -20,16 +20,9 @@ _FIRST_CHECK, _MOST_FUNCTIONS = 6, 320
 def dominant_motion(cut, speed, depth, steps_per_wavelength, refinement):
     """Dominant multiplier over one period and the motion that belongs to it.
 
-    Speed in rad/s, depth in m; see `period_steps` for the others.
-
-    Returns
-    -------
-    multiplier : complex
-        Imaginary part >= 0.
-    motion : (2 N, r) array of complex
-        Displacement of the tool point at the nodes of a period.
-    time : (2 N + 1,) array of float
-        Of the nodes and of the end, s.
+    Speed in rad/s, depth in m; see `period_steps` for the others. The multiplier has an imaginary
+    part >= 0; the motion (2 N, r) is the displacement of the tool point at the nodes of a period,
+    the time (2 N + 1,) that of the nodes and of the end, s.
     """
     assembly = assemble_steps(cut, speed, depth, steps_per_wavelength, refinement)
     modes, rank = assembly.shape.shape

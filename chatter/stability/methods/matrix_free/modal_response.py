@@ -53,15 +53,9 @@ def _ramp(angle, damping, s):
 def mode_response(frequency, damping, length, out):
     """Answer of one mode at the positions of a step.
 
-    Parameters
-    ----------
-    frequency, damping : float
-        rad/s and ratio.
-    length : float
-        Of the step, s.
-    out : (4, 2, 4) array of float
-        For each of `POSITIONS` the coordinate x and x'/omega from x and x'/omega at the start and
-        the accelerations at the two Gauss points. Overwritten.
+    Frequency in rad/s, damping ratio, length of the step in s. Overwritten is `out` (4, 2, 4): for
+    each of `POSITIONS` the coordinate x and x'/omega from x and x'/omega at the start and the
+    accelerations at the two Gauss points.
     """
     angle = frequency * length
     root = math.sqrt(1.0 - damping * damping)
@@ -93,16 +87,9 @@ def _free_motion(frequency, damping, elapsed):
 def graded_response(frequency, damping, rule, graded, out):
     """Answer of one mode at the positions of a step that is graded towards a border.
 
-    Parameters
-    ----------
-    frequency, damping : float
-        rad/s and ratio.
-    rule : pair of (17, 16) arrays of float
-        Places and weights of the Gauss quadratures on [0, 1], a row an order.
-    graded : (span, power, low, high) of float
-        The time beyond the border is span s^power, s, as s goes from `low` to `high`.
-    out : (4, 2, 4) array of float
-        As in `mode_response`. Overwritten.
+    Frequency in rad/s, damping ratio, `out` as in `mode_response`. The rule holds places and
+    weights (17, 16) of the Gauss quadratures on [0, 1], a row an order. `graded` is (span, power,
+    low, high): the time beyond the border is span s^power, s, as s goes from low to high.
     """
     span, power, low, high = graded
     gauss, weight = rule

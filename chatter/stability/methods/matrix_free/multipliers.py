@@ -48,27 +48,11 @@ def multipliers(
     progress: Progress = no_progress,
     refinements: tuple[int, ...] = _EXTRAPOLATED,
 ) -> ComplexArray:
-    """Dominant multiplier over one period at every point.
+    """Dominant multiplier (n,) over one period at every point, imaginary part >= 0.
 
-    Parameters
-    ----------
-    cut : SteppedCut
-    speeds, depths : (n,) array of float
-        rad/s and m, point by point.
-    progress : callable, optional
-        Called with (done, total).
-    refinements : tuple of int
-        Divisions of the steps; from two the error of fourth order is removed (Richardson).
-
-    Returns
-    -------
-    (n,) array of complex
-        Imaginary part >= 0.
-
-    Raises
-    ------
-    RunError
-        If a period holds too many vibrations.
+    Speeds (n,), rad/s, and depths (n,), m, are point by point. Refinements divide the steps; from
+    two the error of fourth order is removed (Richardson). RunError if a period holds too many
+    vibrations.
     """
     if len(speeds) == 0:
         return np.empty(0, dtype=np.complex128)

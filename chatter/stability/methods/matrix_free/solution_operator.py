@@ -32,12 +32,8 @@ def propagation_scratch(assembly):
 def propagate(assembly, function, out, scratch):
     """Run an initial function through one period.
 
-    Parameters
-    ----------
-    assembly : StepAssembly
-    function, out : (2 n + 4 N r,) array of float
-        State, then displacement and velocity at the nodes of the period before.
-    scratch : PropagationScratch
+    It and `out` (2 n + 4 N r,): state, then displacement and velocity at the nodes of the period
+    before.
     """
     motion, force, free = scratch
     steps = assembly.kind.shape[0]

@@ -239,22 +239,10 @@ def _pass_on(sides, need):
 
 @njit(**KERNEL)
 def period_steps(cut, rotation, depth, steps_per_wavelength, refinement):
-    """Cut a period into steps.
+    """Cut a period into `Steps`.
 
-    Parameters
-    ----------
-    cut : SteppedCut
-    rotation : SpindleRotation
-    depth : float
-        Axial depth, m.
-    steps_per_wavelength : float
-        Steps in a period of the fastest vibration.
-    refinement : int
-        Every step that this gives is divided by this.
-
-    Returns
-    -------
-    Steps
+    The axial depth is in m; `steps_per_wavelength` are steps in a period of the fastest vibration,
+    and every step that this gives is divided by `refinement`.
     """
     borders, sides = _border_times(cut.arrays, rotation, depth)
     need = _plain_steps(cut, rotation, depth, borders, steps_per_wavelength)

@@ -102,19 +102,9 @@ def _loop(response, harmonics, speed, base, omega, count, matrix):
 def unstable_roots(response, harmonics, speed, base, count, marks):
     """Number of unstable multipliers.
 
-    Parameters
-    ----------
-    response : FrequencyResponse
-    harmonics : Harmonics
-        Orders up to 2 count + 1.
-    speed : float
-        Spindle speed, rad/s.
-    base : float
-        Frequency of the period, rad/s.
-    count : int
-        Harmonics on either side.
-    marks : (k,) array of float
-        Frequencies that no step goes beyond, rad/s; see `frequency_marks`.
+    The harmonics hold orders up to 2 count + 1, with count harmonics on either side. The spindle
+    speed, the frequency of the period `base` and the frequencies that no step goes beyond, `marks`
+    (k,) of `frequency_marks`, are in rad/s.
     """
     rank = response.receptance.shape[1]
     size = (2 * count + 2) * rank
@@ -146,12 +136,8 @@ def unstable_roots(response, harmonics, speed, base, count, marks):
 def chatter_frequency(response, harmonics, speed, base, count, marks):
     """Frequency of the strongest part of the motion that is nearest to a root, and its position.
 
-    See `unstable_roots` for the parameters.
-
-    Returns
-    -------
-    (float, float)
-        rad/s, and the least frequency of it as a share of `base`, 0 .. 0.5.
+    In rad/s, and the least frequency of it as a share of `base`, 0 .. 0.5. Arguments as of
+    `unstable_roots`.
     """
     rank = response.receptance.shape[1]
     size = (2 * count + 2) * rank

@@ -38,13 +38,8 @@ def multipliers_at(scheme, arrays, speeds, depths, steps, refinement):
 def dominant_motion(scheme, arrays, speed, depth, steps):
     """Dominant multiplier at a point, motion that belongs to it, and durations of the steps.
 
-    Returns
-    -------
-    multiplier : complex
-    motion : (steps + 1, r) array of complex
-        m, of the tool point at the borders of the steps.
-    duration : (steps,) array of float
-        s.
+    The motion (steps + 1, r), m, is that of the tool point at the borders of the steps; durations
+    (steps,) are in s.
     """
     period = build_monodromy(scheme, arrays, speed, depth, steps, np.int64(1), steps)
     value, vector, _ = dominant_eigenpair(

@@ -59,10 +59,7 @@ class Monodromy(NamedTuple):
 def interval_borders(arrays, lag):
     """Angles in one tooth pitch at which an edge enters or leaves, ascending, both ends included.
 
-    Returns
-    -------
-    (k+1,) array of float
-        rad; ``borders[-1] = borders[0] + tooth_pitch``.
+    (k + 1,), rad; ``borders[-1] = borders[0] + tooth_pitch``.
     """
     pitch = arrays.tooth_pitch
     entry, leave = arrays.table.entry, arrays.table.exit
@@ -190,26 +187,12 @@ def _interval_steps(arrays, borders, lag, steps, refinement, free_steps):
 
 @njit(**KERNEL)
 def build_monodromy(scheme, arrays, speed, depth, steps, refinement, free_steps):
-    """Assemble the steps of one tooth period.
+    """Assemble the steps of one tooth period as a `Monodromy`, by a scheme of `step_schemes`.
 
-    Parameters
-    ----------
-    scheme : ZerothOrder, FirstOrder, SecondOrder or FullDiscretization
-    arrays : MillingArrays
-    speed : float
-        Spindle speed, rad/s.
-    depth : float
-        Axial depth, m.
-    steps : int
-        Steps per tooth period; an interval of engagement gets its share, rounded up.
-    refinement : int
-        Every step in the cut is divided by this, for extrapolation on nested steps.
-    free_steps : int
-        The same as `steps` where no tooth cuts; 1 suffices but for a picture of the motion.
-
-    Returns
-    -------
-    Monodromy
+    Spindle speed in rad/s, axial depth in m. Of the steps per tooth period an interval of
+    engagement gets its share, rounded up; every step in the cut is divided by `refinement`, for
+    extrapolation on nested steps. `free_steps` is the same as `steps` where no tooth cuts; 1
+    suffices but for a picture of the motion.
     """
     modes, rank = arrays.shape.shape
     size = 2 * modes

@@ -71,25 +71,11 @@ def multipliers(
     progress: Progress = no_progress,
     scheme: Scheme = FIRST_ORDER,
 ) -> ComplexArray:
-    """Dominant multiplier over one tooth period at every point.
+    """Dominant multiplier (n,) over one tooth period at every point, imaginary part >= 0.
 
-    Parameters
-    ----------
-    arrays : MillingArrays
-    speeds, depths : (n,) array of float
-        rad/s and m, point by point.
-    steps : int, optional
-        Steps per tooth period of plain first-order semi-discretization; by default chosen from
-        the natural frequencies, with extrapolation.
-    progress : callable, optional
-        Called with (done, total).
-    scheme : NamedTuple, optional
-        Of `step_schemes`.
-
-    Returns
-    -------
-    (n,) array of complex
-        Imaginary part >= 0.
+    Speeds (n,), rad/s, and depths (n,), m, are point by point. Steps per tooth period are those of
+    plain first-order semi-discretization; by default chosen from the natural frequencies, with
+    extrapolation. The scheme is one of `step_schemes`.
     """
     count, refinements = _resolution(arrays, speeds, steps)
     return _at_points(arrays, speeds, depths, count, refinements, progress, scheme)

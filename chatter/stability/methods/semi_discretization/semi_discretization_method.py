@@ -18,12 +18,7 @@ if TYPE_CHECKING:
 class DiscretizedDelay(StabilityMethod):
     """Limits by a scheme that discretizes the steps of a tooth period.
 
-    Parameters
-    ----------
-    name, label, help : str
-        As of `StabilityMethod`.
-    scheme : str
-        Name in `step_schemes`.
+    The scheme is a name in `step_schemes`; the rest as of `StabilityMethod`.
     """
 
     takes_any_tool = False

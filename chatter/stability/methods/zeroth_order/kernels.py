@@ -96,21 +96,10 @@ def _no_lobe_between(omega, phase, line, branch, delay):
 def zero_order_limits(omega, inverse, delays):
     """Lowest depth over all lobes and eigenvalues at each delay.
 
-    Parameters
-    ----------
-    omega : (n,) array of float
-        rad/s, ascending.
-    inverse : (n, r) array of complex
-        z = -1/eigenvalue of G(i omega) H0, m; each column one branch, continuous in omega.
-    delays : (k,) array of float
-        Tooth period, s.
-
-    Returns
-    -------
-    depth : (k,) array of float
-        m; infinite where no lobe reaches the speed.
-    frequency : (k,) array of float
-        Chatter frequency, Hz; nan where the depth is infinite.
+    Frequencies omega (n,), rad/s, ascend; `inverse` (n, r) is z = -1/eigenvalue of G(i omega) H0,
+    m, each column one branch, continuous in omega; delays (k,) are tooth periods, s. Returned are
+    the depth (k,), m, infinite where no lobe reaches the speed, and the chatter frequency (k,), Hz,
+    nan there.
     """
     depth = np.full(delays.shape[0], np.inf)
     frequency = np.full(delays.shape[0], np.nan)

@@ -37,18 +37,9 @@ def zero_order_limit(
 ) -> ZeroOrderLimit:
     """Critical depth at every spindle speed.
 
-    Parameters
-    ----------
-    frequency : (m,) array of float
-        Hz, ascending, > 0.
-    receptance : (m, r, r) array of complex
-        Relative receptance of tool and worksegment in the directions of motion, m/N.
-    averaged_directional : (r, r) array of float
-        Mean directional matrix over a revolution, all teeth, N/m^2.
-    teeth : int
-        Uniformly spaced.
-    speeds : (n,) array of float
-        Spindle speeds, rad/s.
+    Frequencies (m,), Hz, ascend, > 0; the receptance (m, r, r), m/N, is the relative one of tool
+    and worksegment in the directions of motion; the mean directional matrix (r, r), N/m^2, is over
+    a revolution, all teeth, which are uniformly spaced; spindle speeds (n,) are in rad/s.
     """
     eigenvalues = _continuous(_eigenvalues(receptance @ averaged_directional))
     with np.errstate(divide="ignore", invalid="ignore"):
