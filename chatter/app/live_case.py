@@ -34,16 +34,8 @@ _STRIDE = 8
 class LiveCase:
     """A case and the sliders that it has.
 
-    Parameters
-    ----------
-    case : Case
-    method : str, optional
-        Of stability, as for `chatter.lobes`.
-
-    Raises
-    ------
-    InputError
-        If the case lacks something, or the method is too slow to follow a slider.
+    The method is one of stability, as for `chatter.lobes`. InputError if the case lacks something,
+    or the method is too slow to follow a slider.
     """
 
     def __init__(self, case: Case, method: str | None) -> None:
@@ -87,16 +79,9 @@ class LiveCase:
         return (self.case.patch(own) if own else self.case), view
 
     def diagram(self, given: Any, stage: str, progress: Progress) -> dict[str, Any]:
-        """Limits over spindle speed, coarse or fine.
+        """Limits over spindle speed for values of sliders, coarse or fine.
 
-        Sliders
-        ----------
-        given : mapping
-            Values of sliders.
-        stage : str
-            Key of STAGES.
-        progress : callable
-            May raise to give up.
+        The stage is a key of STAGES; progress may raise to give up.
         """
         started = time.perf_counter()
         case, view = self.patched(given)

@@ -19,10 +19,7 @@ class SupersededError(Exception):
 class NewestRequest:
     """Runs one computation at a time; those that a newer request supersedes are given up.
 
-    Parameters
-    ----------
-    longest : float
-        A computation is given up after this time, s.
+    So is a computation after the time `longest`, s.
     """
 
     def __init__(self, longest: float) -> None:

@@ -55,13 +55,7 @@ def diagram_sliders(speeds: tuple[float, float], depth: float) -> tuple[Slider, 
 
 
 def case_sliders(case: Case) -> tuple[Slider, ...]:
-    """Sliders for what the case has.
-
-    Parameters
-    ----------
-    case : Case
-        With tool, material, cut and structure.
-    """
+    """Sliders for what the case, of tool, material, cut and structure, has."""
     return (
         *_of_cut(case),
         *_of_tool(case),

@@ -51,25 +51,13 @@ class Parameter:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Result of a fit.
-
-    Parameters
-    ----------
-    parameters : tuple of Parameter
-    values : (p,) array of float
-        SI.
-    covariance : (p, p) array of float
-        SI, from the residuals' own standard deviations and the priors.
-    jacobian : (n, p) array of float
-        At the solution, per size of a parameter.
-    residuals : (n,) array of float
-    """
+    """Result of a fit of p parameters to n residuals."""
 
     parameters: tuple[Parameter, ...]
-    values: Vector
-    covariance: Matrix
-    jacobian: Matrix
-    residuals: Vector
+    values: Vector  # (p,), SI
+    covariance: Matrix  # (p, p), SI, from the residuals' own standard deviations and the priors
+    jacobian: Matrix  # (n, p), at the solution, per size of a parameter
+    residuals: Vector  # (n,)
 
     @property
     def cost(self) -> float:
@@ -175,15 +163,8 @@ def fit(
 ) -> Fit:
     """Fit parameters to residuals that are scaled to a standard deviation of one.
 
-    Parameters
-    ----------
-    parameters : sequence of Parameter
-    residuals : callable
-        (p,) values in SI -> (n,) residuals.
-    start : (p,) array of float
-        SI.
-    jacobian : (n, p) array of float, optional
-        Near the start, per size of a parameter, where it is known.
+    Residuals make (n,) of the values (p,) in SI, as the start is. The Jacobian (n, p), near the
+    start, per size of a parameter, is given where it is known.
     """
     problem = _Scaled(parameters, residuals, jacobian)
     scaled = np.clip(problem.scaled(start), problem.lower, problem.upper)

@@ -22,19 +22,10 @@ _SECTIONS = ("cut", "tool", "material", "axis")
 
 
 def read_measurement(folder: str | Path, case: str | Path | Case | None = None) -> Measurement:
-    """Read a measurement folder.
+    """Read a measurement folder, which holds measurement.toml, or that file.
 
-    Parameters
-    ----------
-    folder : path
-        Holds measurement.toml, or is that file.
-    case : path or Case, optional
-        Instead of the case that it names.
-
-    Raises
-    ------
-    InputError
-        If a file is missing or cannot be read, a key is unknown, or runs lack a channel.
+    The case given stands for the one that it names. InputError if a file is missing or cannot be
+    read, a key is unknown, or runs lack a channel.
     """
     path = Path(folder)
     path = path if path.is_file() else path / "measurement.toml"

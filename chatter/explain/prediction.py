@@ -14,17 +14,8 @@ _MOST_BYTES = 256_000_000
 class Predictions:
     """Predictions of a kind of measurement, kept by the content of the case and the run.
 
-    A verdict asks for the same predictions several times: for errors, noise, residuals and
-    reports. Parts of a run share the prediction of the whole.
-
-    Parameters
-    ----------
-    kind : Kind
-
-    Attributes
-    ----------
-    made : int
-        Predictions that were computed.
+    A verdict asks for the same predictions several times: for errors, noise, residuals and reports.
+    Parts of a run share the prediction of the whole. `made` counts those computed.
     """
 
     def __init__(self, kind: Kind) -> None:

@@ -38,17 +38,10 @@ class WallPiece:
 
 
 class FollowingStock:
-    """Stock that follows the tool, and the walls that it has left behind.
+    """Stock of a cut that follows the tool, and the walls that it has left behind.
 
-    Walls are kept of dexels alone; voxels are too coarse for that.
-
-    Parameters
-    ----------
-    case : Case
-    cut : DiscreteCut
-        Its stock moves.
-    reach : float
-        Distance behind the tool axis that is still needed, m.
+    Walls are kept of dexels alone; voxels are too coarse for that. `reach` is the distance behind
+    the tool axis that is still needed, m; the stock of the cut moves.
     """
 
     def __init__(self, case: Case, cut: DiscreteCut, reach: float) -> None:

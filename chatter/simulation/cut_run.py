@@ -31,25 +31,11 @@ from dynamics.machine.tables import modal_tables
 class CutRun:
     """Steps of a cut from rest; a machine has run in the air before, until it has its feed.
 
-    Parameters
-    ----------
-    setup : Setup
-        For one run: it holds the state.
-    stride : int
-        Steps from one row of the records to the next.
-    steps : int
-        Of the whole run, for the size of its records.
-
-    Attributes
-    ----------
-    done : int
-        Steps done; -1 before the start has been evaluated.
-    rows : (n, 7) array of float
-        Record at the tool point.
-    ports : PortRecord or None
-        Record of the ports of a machine.
-    angle : float
-        Of the spindle where the cut begins, rad; of a machine that turns it.
+    The set-up, which holds the state, serves one run. The stride is from one row of the records to
+    the next; their size follows from the steps of the whole run. `done` counts the steps done, -1
+    before the start has been evaluated; `rows` (n, 7) are the record at the tool point, `ports`
+    that of the ports of a machine, or None; `angle` is that of the spindle where the cut begins,
+    rad, of a machine that turns it.
     """
 
     def __init__(self, setup: Setup, stride: int, steps: int) -> None:

@@ -33,24 +33,12 @@ _MOST_ROWS = 120_000
 
 @dataclass(frozen=True)
 class Resolution:
-    """Steps and slices of a run.
+    """Steps and slices of a run."""
 
-    Parameters
-    ----------
-    steps_per_revolution : int
-        Time steps, and bins of the surface memory.
-    counts : (int, int)
-        Slices of the corner and of the straight edge.
-    revolutions : float
-        Length of the run in revolutions.
-    stride : int
-        Steps from one row of the record to the next.
-    """
-
-    steps_per_revolution: int
-    counts: tuple[int, int]
-    revolutions: float
-    stride: int
+    steps_per_revolution: int  # time steps, and bins of the surface memory
+    counts: tuple[int, int]  # slices of the corner and of the straight edge
+    revolutions: float  # length of the run
+    stride: int  # steps from one row of the record to the next
 
     @property
     def steps(self) -> int:

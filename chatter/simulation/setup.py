@@ -87,16 +87,8 @@ class Setup:
 def set_up(case: Case, modes: tuple[Mode, ...] | None = None) -> Setup:
     """Compile a case for the time domain.
 
-    Parameters
-    ----------
-    case : Case
-    modes : tuple of Mode, optional
-        Of the structure, where they are known already; a machine has its own.
-
-    Raises
-    ------
-    InputError
-        If a section is missing, or the case holds what cannot be simulated.
+    Modes are those of the structure, where they are known already; a machine has its own.
+    InputError if a section is missing, or the case holds what cannot be simulated.
     """
     check_case(case)
     cutter = cutter_of(case)

@@ -31,54 +31,27 @@ class MeasurementError(ValueError):
 
 @dataclass(frozen=True)
 class Point:
-    """A measured degree of freedom: a node of the structure and a direction.
+    """A measured degree of freedom: a node of the structure and a direction."""
 
-    Parameters
-    ----------
-    node : str
-        Name or number of the node; empty where the file gives none.
-    direction : str
-        ``"x"``, ``"y"`` or ``"z"``; empty where the file gives none.
-    sign : int
-        +1 or -1: the sense of the sensor along the direction.
-    """
-
-    node: str = ""
-    direction: str = ""
-    sign: int = 1
+    node: str = ""  # name or number; empty where the file gives none
+    direction: str = ""  # "x", "y" or "z"; empty where the file gives none
+    sign: int = 1  # +1 or -1: the sense of the sensor along the direction
 
 
 @dataclass(frozen=True)
 class Frf:
-    """One frequency response function in SI units.
+    """One frequency response function in SI units."""
 
-    Parameters
-    ----------
-    frequency : (n,) array of float
-        Hz, ascending.
-    values : (n,) array of complex
-        Response per force, in the SI unit of `quantity`.
-    quantity : str
-        ``"receptance"``, ``"mobility"`` or ``"accelerance"``.
-    response, reference : Point
-        Where the motion was measured and where the force acted.
-    coherence : (n,) array of float, optional
-        Ordinary coherence, 0 to 1.
-    source : str
-        File (and record) the function came from.
-    added_decay : float
-        Decay rate that an exponential window added to every pole, rad/s (1/s); 0 without one. The
-        values are then those of the function at i omega + added_decay, and a damping fitted to
-        them is put right by `without_added_decay`.
-    """
-
-    frequency: NDArray[np.float64]
-    values: NDArray[np.complex128]
+    frequency: NDArray[np.float64]  # (n,), Hz, ascending
+    values: NDArray[np.complex128]  # (n,), response per force, in the SI unit of the quantity
     quantity: Quantity = "receptance"
-    response: Point = Point()
-    reference: Point = Point()
-    coherence: NDArray[np.float64] | None = None
-    source: str = ""
+    response: Point = Point()  # where the motion was measured
+    reference: Point = Point()  # where the force acted
+    coherence: NDArray[np.float64] | None = None  # (n,), ordinary coherence, 0 to 1
+    source: str = ""  # file (and record) the function came from
+    # Decay rate that an exponential window added to every pole, rad/s (1/s); 0 without one. The
+    # values are then those of the function at i omega + added_decay, and a damping fitted to them
+    # is put right by `without_added_decay`.
     added_decay: float = 0.0
 
     def __post_init__(self) -> None:
@@ -203,25 +176,11 @@ def without_added_decay(
 ) -> tuple[float, float]:
     """Frequency and damping ratio of a mode, freed of the decay an exponential window added.
 
-    A window exp(-t / tau) moves each pole from -zeta omega_n +- i omega_d to the left by
-    1 / tau: the damped frequency stays (Fladung and Rost, 1997, "Application and correction of the
-    exponential window for frequency response functions").
-
-    Parameters
-    ----------
-    frequency : float
-        Fitted undamped natural frequency, Hz.
-    damping : float
-        Fitted viscous damping ratio, 1.
-    added_decay : float
-        1 / tau, rad/s; see `Frf.added_decay`.
-
-    Returns
-    -------
-    frequency : float
-        Undamped natural frequency of the structure, Hz.
-    damping : float
-        Damping ratio of the structure; negative where the fit fell short of the added decay.
+    From the fitted undamped natural frequency, Hz, the viscous damping ratio and 1 / tau, rad/s
+    (`Frf.added_decay`) to those of the structure; damping is negative where the fit fell short of
+    the added decay. A window exp(-t / tau) moves each pole from -zeta omega_n +- i omega_d to the
+    left by 1 / tau: the damped frequency stays (Fladung and Rost, 1997, "Application and correction
+    of the exponential window for frequency response functions").
     """
     natural = 2.0 * np.pi * frequency
     damped_squared = natural**2 * (1.0 - damping**2)

@@ -50,19 +50,12 @@ class AxisForce:
         begun: float = 0.0,
         motor_acceleration: NDArray[np.float64] | None = None,
     ) -> NDArray[np.float64]:
-        """Force (n,), N, along a motion.
+        """Force (n,), N, along a motion: position, velocity, acceleration (n,), m, m/s, m/s^2.
 
-        Parameters
-        ----------
-        position, velocity, acceleration : (n,) array of float
-            m, m/s, m/s^2.
-        step : float
-            Between samples, s.
-        begun : float
-            Time that the axis had moved before, s, for the warm-up.
-        motor_acceleration : (n,) array of float, optional
-            m/s^2, where the motor's own motion is known: the motion is then that of the slide,
-            and what drives it through the backlash follows from it; else it is the motor's.
+        The step between samples is in s; `begun` is the time that the axis had moved before, s, for
+        the warm-up. The motor's acceleration (n,), m/s^2, is given where its own motion is known:
+        the motion is then that of the slide, and what drives it through the backlash follows from
+        it; else it is the motor's.
         """
         time = begun + step * np.arange(position.size)
         warm = 1.0 + self.warm_up_share * np.exp(-time / self.warm_up_time)

@@ -36,34 +36,15 @@ def no_energy(law, i, motion, h):  # noqa: ARG001
 
 @leaf
 def implicit_force(rest, opposing, stored, law, i, stiffness, dx_free, gx, v_free, g, h):
-    """Force held over the step and motion of the law.
+    """Force held over the step, N, against positive motion, and motion of the law, m.
 
-    Parameters
-    ----------
-    rest, opposing, stored : functions
-        Of the law: `rest(law, i)` force at no motion; `opposing(law, i, sign, way, h)` mean force
-        against a motion by way > 0 (or = 0, the limit) along sign; `stored(law, i, motion, h)`
-        change of the stored energy, J.
-    law : NamedTuple
-        Table of the law.
-    i : int
-        Row.
-    stiffness : float
-        Largest slope of the force over motion, N/m; infinite for dry friction.
-    dx_free, gx : float
-        Displacement increment without friction, m, and its decrease per force, m/N, >= 0.
-    v_free, g : float
-        End velocity without friction, m/s, and its decrease per force, m/(N s). The latter is
-        below 0 if a mode turns by more than half a cycle in a step; the mean form is then kept.
-    h : float
-        Step, s.
-
-    Returns
-    -------
-    force : float
-        N, against positive motion.
-    motion : float
-        By which the law is to be advanced, m.
+    By that motion the law is to be advanced. Functions of the law, with row i of its table:
+    `rest(law, i)` force at no motion; `opposing(law, i, sign, way, h)` mean force against a motion
+    by way > 0 (or = 0, the limit) along sign; `stored(law, i, motion, h)` change of the stored
+    energy, J. The stiffness is the largest slope of the force over motion, N/m; infinite for dry
+    friction. Without friction the displacement increment is dx_free, m, its decrease per force gx,
+    m/N, >= 0; the end velocity v_free, m/s, and its decrease per force g, m/(N s). The latter is
+    below 0 if a mode turns by more than half a cycle in a step h, s; the mean form is then kept.
     """
     force, motion = _solve(rest, opposing, law, i, dx_free, gx, h)
     end = v_free - g * force

@@ -56,35 +56,15 @@ def assembly(
     rotors: Sequence[Part] = (),
     couplings: Sequence[Coupling] = (),
 ) -> Assembly:
-    """Join parts by connectors and couplings into one structure.
+    """Join parts by connectors and couplings (transmissions) into one structure of dense matrices.
 
-    Parameters
-    ----------
-    bodies : sequence of Body
-        Six freedoms each, in order: x, y, z of the centre of gravity and rotations. Imported
-        parts may stand among them.
-    connectors : sequence of Connector
-    points : sequence of Point
-    beams : sequence of MeshedPart
-        Lines of beam elements (`dynamics.beam.shaft.BeamLine`); their freedoms follow the bodies'.
-        Their bearings join the connectors.
-    allowed_rigid_motions : int
-        How many independent motions may be left that no connector resists (6 for a free machine,
-        1 for an axis whose drive is free to turn).
-    rotors : sequence of Part
-        What turns in the drives (`dynamics.structure.rotor.Rotor`); their freedoms come last.
-    couplings : sequence of Coupling
-        Transmissions.
-
-    Returns
-    -------
-    Assembly
-        With dense matrices.
-
-    Raises
-    ------
-    StructureError
-        If names are unknown or twice given, nothing is there to move, or parts move freely.
+    Bodies have six freedoms each, in order: x, y, z of the centre of gravity and rotations;
+    imported parts may stand among them. Lines of beam elements (`dynamics.beam.shaft.BeamLine`)
+    follow with their freedoms, their bearings join the connectors; the freedoms of rotors, which
+    turn in the drives (`dynamics.structure.rotor.Rotor`), come last. `allowed_rigid_motions` is how
+    many independent motions may be left that no connector resists (6 for a free machine, 1 for an
+    axis whose drive is free to turn). StructureError if names are unknown or twice given, nothing
+    is there to move, or parts move freely.
     """
     joints = [*connectors, *(bearing for beam in beams for bearing in beam.connectors)]
     meshed = _with_nodes_where_joined(beams, joints, points, couplings)

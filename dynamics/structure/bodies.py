@@ -64,27 +64,16 @@ class MeshedPart(Part, Protocol):
 class Body:
     """Rigid body: translation of its centre of gravity and small rotations.
 
-    Parameters
-    ----------
-    name : str
-    mass : float
-        kg.
-    inertia : (3,) or (3, 3) array of float
-        Moments of inertia about the centre of gravity, kg m^2: principal ones along x, y, z, or
-        the tensor (products of inertia with a minus sign, as in a tensor).
-    centre : (3,) array of float
-        Centre of gravity, m.
-
-    Raises
-    ------
-    StructureError
-        If the mass or a principal moment of inertia is not positive, or an entry not finite.
+    StructureError if the mass or a principal moment of inertia is not positive, or an entry not
+    finite.
     """
 
     name: str
-    mass: float
+    mass: float  # kg
+    # (3,) or (3, 3), about the centre of gravity, kg m^2: principal moments along x, y, z, or the
+    # tensor (products of inertia with a minus sign, as in a tensor)
     inertia: ArrayLike
-    centre: ArrayLike
+    centre: ArrayLike  # (3,), of gravity, m
 
     def __post_init__(self) -> None:
         where = f'body "{self.name}"'
@@ -139,32 +128,16 @@ class Body:
 class Connector:
     """Six springs and dampers between two parts, or a part and ground, at a position.
 
-    Parameters
-    ----------
-    name : str
-    first, second : str
-        Names of bodies or beams; one may be "ground".
-    at : (3,) array of float
-        Place where both parts are joined, m.
-    stiffness : (6,) array of float
-        Along x, y, z in N/m and about x, y, z in N m/rad, of `axes`.
-    damping : (6,) array of float
-        N s/m and N m s/rad; none by default.
-    axes : (3, 3) array of float
-        Rows are the connector's own x, y, z directions; the machine's by default.
-
-    Raises
-    ------
-    StructureError
-        If a number is negative or not finite, or the axes are not orthonormal.
+    StructureError if a number is negative or not finite, or the axes are not orthonormal.
     """
 
     name: str
-    first: str
-    second: str
-    at: ArrayLike
-    stiffness: ArrayLike
-    damping: ArrayLike = (0.0,) * 6
+    first: str  # name of a body or beam, or "ground"
+    second: str  # as first; not both are "ground"
+    at: ArrayLike  # (3,), place where both parts are joined, m
+    stiffness: ArrayLike  # (6,), along x, y, z in N/m and about x, y, z in N m/rad, of the axes
+    damping: ArrayLike = (0.0,) * 6  # (6,), N s/m and N m s/rad
+    # (3, 3), rows are the connector's own x, y, z directions; the machine's by default
     axes: ArrayLike = field(default_factory=lambda: np.eye(3))
 
     def __post_init__(self) -> None:
@@ -190,20 +163,11 @@ class Connector:
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """Named position on a body or beam, moving with it.
-
-    Parameters
-    ----------
-    name : str
-    body : str
-        Name of the body or beam.
-    at : (3,) array of float
-        m.
-    """
+    """Named position on a body or beam, moving with it."""
 
     name: str
-    body: str
-    at: ArrayLike
+    body: str  # name of the body or beam
+    at: ArrayLike  # (3,), m
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "at", finite(f'point "{self.name}"', "at", self.at, (3,)))

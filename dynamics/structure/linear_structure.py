@@ -23,24 +23,16 @@ class StructureError(ValueError):
 
 @dataclass(frozen=True)
 class LinearStructure:
-    """M x'' + C x' + K x = sum of ports.
+    """M x'' + C x' + K x = sum of ports, with symmetric matrices (n, n), full or sparse."""
 
-    Parameters
-    ----------
-    mass, damping, stiffness : (n, n) array or sparse array of float
-        Symmetric; kg, N s/m, N/m, and their rotational kin.
-    points : mapping of str to (6, n) array of float
-        Motion of each named point, three displacements (m) and three rotations (rad), per degree
-        of freedom. Rows that a point does not have (rotations of a solid) are zero.
-    residual : mapping, optional
-        Compliance that a reduction left out, between ports of points: (name, name) -> (6, 6)
-        array, m/N and kin. Missing pairs have none.
-    """
-
-    mass: Matrix
-    damping: Matrix
-    stiffness: Matrix
+    mass: Matrix  # kg and rotational kin
+    damping: Matrix  # N s/m and rotational kin
+    stiffness: Matrix  # N/m and rotational kin
+    # (6, n) by name: motion, three displacements (m) and three rotations (rad), per degree of
+    # freedom; rows that a point does not have (rotations of a solid) are zero
     points: Mapping[str, NDArray[np.float64]]
+    # (6, 6), m/N and kin, by names of two points: compliance between their ports that a reduction
+    # left out; missing pairs have none
     residual: Mapping[tuple[str, str], NDArray[np.float64]] = field(default_factory=dict)
 
     @property
@@ -51,16 +43,8 @@ class LinearStructure:
     def port(self, point: str, direction: ArrayLike, against: str | None = None) -> NDArray:
         """Row (n,) of the motion of a point along a direction, against another point if named.
 
-        Parameters
-        ----------
-        point, against : str
-        direction : (3,) or (6,) array of float
-            Displacements, or displacements and rotations.
-
-        Raises
-        ------
-        StructureError
-            If there is no such point.
+        The direction (3,) is of displacements, (6,) of displacements and rotations. StructureError
+        if there is no such point.
         """
         along = np.zeros(6)
         given = np.asarray(direction, dtype=np.float64)
@@ -83,14 +67,9 @@ class LinearStructure:
         return frequency[:count]
 
     def receptance(self, frequency: ArrayLike, ports: NDArray[np.float64]) -> NDArray:
-        """Receptance (m, p, p) between ports at frequencies in Hz, without residuals.
+        """Receptance (m, p, p) between ports at frequencies (m,), Hz, without residuals.
 
-        Parameters
-        ----------
-        frequency : (m,) array of float
-            Hz.
-        ports : (p, n) array of float
-            Rows as from `port`.
+        Ports (p, n) are rows as from `port`.
         """
         rows = np.atleast_2d(ports)
         result = np.empty((np.size(frequency), len(rows), len(rows)), dtype=np.complex128)

@@ -50,18 +50,8 @@ class Nodes:
     def in_order(cls, names: ArrayLike, coordinates: ArrayLike, size: int) -> Nodes:
         """Nodes whose freedoms follow one another, three or six each.
 
-        Parameters
-        ----------
-        names : (m,) array of int
-        coordinates : (m, 3) array of float
-            m.
-        size : int
-            Rows of the matrices, 3 m or 6 m.
-
-        Raises
-        ------
-        StructureError
-            If the size is neither.
+        Names (m,), coordinates (m, 3), m. The size counts the rows of the matrices. StructureError
+        if it is neither 3 m nor 6 m.
         """
         names = np.asarray(names, dtype=np.int64)
         count = len(names)
@@ -92,21 +82,11 @@ class Nodes:
 
 @dataclass(frozen=True, eq=False)
 class RigidSurface:
-    """Point that nodes follow as one rigid body; it has six freedoms of its own.
+    """Point that nodes follow as one rigid body; it has six freedoms of its own."""
 
-    Parameters
-    ----------
-    name : str
-        Of the point.
-    at : (3,) array of float
-        m.
-    nodes : sequence of int
-        Their displacements follow, and their rotations if they have them.
-    """
-
-    name: str
-    at: ArrayLike
-    nodes: Sequence[int]
+    name: str  # of the point
+    at: ArrayLike  # (3,), m
+    nodes: Sequence[int]  # their displacements follow, and their rotations if they have them
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,21 +94,12 @@ class InterpolatedPoint:
     """Point that follows nodes: the weighted least-squares rigid motion of their displacements.
 
     A force and moment on the point spread over the nodes with the same resultants.
-
-    Parameters
-    ----------
-    name : str
-    at : (3,) array of float
-        m.
-    nodes : sequence of int
-    weights : sequence of float, optional
-        One a node, above 0; equal by default.
     """
 
     name: str
-    at: ArrayLike
+    at: ArrayLike  # (3,), m
     nodes: Sequence[int]
-    weights: Sequence[float] | None = None
+    weights: Sequence[float] | None = None  # one a node, above 0; equal by default
 
 
 def interpolation(point: InterpolatedPoint, nodes: Nodes, size: int) -> NDArray[np.float64]:

@@ -24,23 +24,12 @@ _HELD = 3
 
 
 class Columns(NamedTuple):
-    """Columns of a kind of measurement that are checked sample by sample.
-
-    Parameters
-    ----------
-    recorded : tuple of str
-    needed : tuple of str
-        Those without which a run is of no use.
-    optional : tuple of str
-        Those without which everything is done.
-    may_rest : tuple of str
-        Those that may be zero from end to end.
-    """
+    """Columns of a kind of measurement that are checked sample by sample."""
 
     recorded: tuple[str, ...]
-    needed: tuple[str, ...] = ()
-    optional: tuple[str, ...] = ()
-    may_rest: tuple[str, ...] = ()
+    needed: tuple[str, ...] = ()  # without which a run is of no use
+    optional: tuple[str, ...] = ()  # without which everything is done
+    may_rest: tuple[str, ...] = ()  # that may be zero from end to end
 
     def of(self, run: Run) -> list[str]:
         """Those that a run has."""

@@ -21,10 +21,7 @@ def _coulomb_of(measurement: Measurement) -> float:
 class AxisValue(Effect):
     """A value of [axis] under the name of the effect, of the size of a share of the typical force.
 
-    Parameters
-    ----------
-    bounds : float
-        Of the value, "lower" and "upper".
+    Bounds of the value are "lower" and "upper".
     """
 
     kinds = ("axis",)

@@ -115,10 +115,7 @@ class ModeShift(Effect):
 class Contact(Effect):
     """Spring and damper between tool and workpiece, in proportion to the engaged depth.
 
-    Parameters
-    ----------
-    full_engagement_share : float
-        Share of the depth engaged from which on the contact is whole.
+    From `full_engagement_share`, of the depth engaged, on, the contact is whole.
     """
 
     name = "contact"

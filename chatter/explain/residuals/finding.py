@@ -72,25 +72,13 @@ Panel = Bars | Curves | Map | Points
 
 @dataclass(frozen=True, eq=False)
 class Finding:
-    """Result of one diagnostic of a residual.
+    """Result of one diagnostic of a residual."""
 
-    Parameters
-    ----------
-    name : str
-        Of the diagnostic.
-    description : str
-        One sentence with numbers; the variable alone where no dependence is significant.
-    significant : bool
-        Whether it shows more than chance does.
-    numbers : mapping
-        As JSON knows them.
-    panel : Panel, optional
-    """
-
-    name: str
+    name: str  # of the diagnostic
+    # one sentence with numbers; the variable alone where no dependence is significant
     description: str
-    significant: bool
-    numbers: Mapping[str, Any] = field(default_factory=dict)
+    significant: bool  # whether it shows more than chance does
+    numbers: Mapping[str, Any] = field(default_factory=dict)  # as JSON knows them
     panel: Panel | None = None
 
     def summary(self) -> dict[str, Any]:

@@ -21,21 +21,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Residual:
-    """Residual of a measurement by a case.
-
-    Parameters
-    ----------
-    measurement : Measurement
-    kind : Kind
-    case : Case
-    parts : tuple of ChannelResidual
-        Run by run, channel by channel.
-    """
+    """Residual of a measurement by a case."""
 
     measurement: Measurement
     kind: Kind
     case: Case
-    parts: tuple[ChannelResidual, ...]
+    parts: tuple[ChannelResidual, ...]  # run by run, channel by channel
 
     @property
     def channels(self) -> tuple[str, ...]:

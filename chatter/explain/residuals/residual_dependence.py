@@ -62,11 +62,7 @@ class _Trial(NamedTuple):
 def residual_dependence(residual: Residual, findings: Sequence[Finding]) -> ResidualDependence:
     """Describe a residual as a function of the one or two variables it depends on most.
 
-    Parameters
-    ----------
-    residual : Residual
-    findings : sequence of Finding
-        Of its diagnostics, for kinds that know no variables sample by sample.
+    Findings of its diagnostics serve kinds that know no variables sample by sample.
     """
     kind, above = residual.kind, residual.above_noise
     if not kind.variables:

@@ -15,22 +15,11 @@ from chatter.explain.measurement import Measurement
 def discriminating_test(
     measurement: Measurement, kind: Kind, noise: Noise, one: Case, other: Case
 ) -> dict[str, Any] | None:
-    """Trial in which two cases that fit alike differ most; None where they differ in none.
+    """Trial in which two cases that fit a measurement alike differ most; None if in none.
 
-    Parameters
-    ----------
-    measurement : Measurement
-        That both cases fit.
-    kind : Kind
-    noise : mapping
-        Run -> channel -> standard deviation.
-    one, other : Case
-
-    Returns
-    -------
-    dict
-        "description": what to measure; "channel"; "over_noise": by how many standard deviations of
-        the noise the predictions differ there (rms).
+    Noise is by run and channel, a standard deviation each. Of the trial are told "description":
+    what to measure; "channel"; "over_noise": by how many standard deviations of the noise the
+    predictions differ there (rms).
     """
     best: dict[str, Any] | None = None
     for trial in kind.trials(measurement, noise):

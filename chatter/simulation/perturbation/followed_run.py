@@ -32,13 +32,8 @@ def force_share(done: NDArray[np.float64]) -> NDArray[np.float64]:
 class FollowedRun:
     """Run with the delayed chip that goes on by a revolution of the mean speed at a time.
 
-    Parameters
-    ----------
-    case : Case
-    modes : tuple of Mode
-        Of its structure.
-    ramp : int
-        Revolutions of the force ramp; 0 for none.
+    The modes are those of the structure of the case; the force ramp takes `ramp` revolutions, 0 for
+    none.
     """
 
     def __init__(self, case: Case, modes: tuple[Mode, ...], ramp: int) -> None:

@@ -67,21 +67,9 @@ def default_frfs(file: MachineFile) -> dict[str, FrfSection]:
 def frfs(
     file: MachineFile, sections: dict[str, FrfSection], progress: Progress = no_progress
 ) -> FrfResult:
-    """FRFs of a machine, one a section.
+    """FRFs of a machine, one a section, all shown as the quantity of the first.
 
-    Parameters
-    ----------
-    file : MachineFile
-    sections : mapping of str to FrfSection
-        By name; all are shown as the quantity of the first.
-    progress : callable, optional
-
-    Raises
-    ------
-    InputError
-        If a section does not fit the machine.
-    RunError
-        If the machine runs away in a test.
+    InputError if a section does not fit the machine, RunError if the machine runs away in a test.
     """
     quantity = next(iter(sections.values())).kind
     curves = []

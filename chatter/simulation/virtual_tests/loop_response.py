@@ -49,30 +49,18 @@ def loop_response(
 ) -> LoopResponse:
     """Closed loops of an axis in closed form; the other axes stay under their control.
 
-    Parameters
-    ----------
-    machine : Machine
-    step : float
-        On which the controllers are sampled, s.
-    axis : str
-        Under control; several drives of an axis get the same set point, their mean answers.
-    frequency : (m,) array_like of float
-        Hz, above 0, not a half multiple of a loop's sampling frequency.
-    frictions : mapping of str to callable, optional
-        How each friction is linearised, by its name; those not named are left out. See
-        `chatter.simulation.virtual_tests.frf.linearised_frictions`.
+    The controllers are sampled on the step, s. Several drives of an axis get the same set point,
+    their mean answers. Frequencies (m,) are in Hz, above 0, not a half multiple of a loop's
+    sampling frequency. Frictions are linearised as told by name (see
+    `chatter.simulation.virtual_tests.frf.linearised_frictions`); those not named are left out.
 
-    Raises
-    ------
-    InputError
-        If the axis is not under control, a frequency not above 0, or a sample time does not fit.
-
-    Notes
-    -----
     The set point turns into torque by the sampled cascade (`dynamics.control.response`), and torque
     into motion by the receptance of the machine with its loops closed
     (`dynamics.machine.harmonic`). Velocity and acceleration set points are the derivatives of the
     position set point, as a trajectory gives them.
+
+    InputError if the axis is not under control, a frequency not above 0, or a sample time does not
+    fit.
     """
     lines = np.atleast_1d(np.asarray(frequency, dtype=np.float64))
     if not (np.all(np.isfinite(lines)) and np.all(lines > 0.0)):
@@ -138,30 +126,12 @@ class LoopSweep(NamedTuple):
 def loop_by_sweep(
     machine: Machine, step: float, axis: str, sweep: LoopSweep
 ) -> tuple[NDArray[np.float64], Response]:
-    """Response of a closed loop by a sweep in time.
+    """Frequencies (m,), Hz, and response (m,) of a closed loop by a sweep in time.
 
-    Parameters
-    ----------
-    machine : Machine
-    step : float
-        s.
-    axis : str
-    sweep : LoopSweep
-        Where the axis travels, its amplitude should not turn the motion round.
-
-    Returns
-    -------
-    frequency : (m,) array of float
-        Lines of the period within the band, Hz.
-    response : (m,) array of complex
-        As in `LoopResponse`.
-
-    Raises
-    ------
-    InputError
-        If the axis is not under control or the sweep makes no sense.
-    RunError
-        If the machine runs away.
+    Frequencies are the lines of the period within the band. The response is as in `LoopResponse`,
+    the step in s. Where the axis travels, the amplitude of the sweep should not turn the motion
+    round. InputError if the axis is not under control or the sweep makes no sense, RunError if the
+    machine runs away.
     """
     tested = velocity_controlled(machine, axis) if sweep.loop == "velocity" else machine
     drives = _drives_of(tested, axis)

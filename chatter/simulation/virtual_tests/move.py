@@ -121,25 +121,10 @@ def move_axes(
 ) -> MoveResult:
     """Move the axes of a machine along a trajectory.
 
-    Parameters
-    ----------
-    name : str
-        Of the machine.
-    machine : Machine
-    step : float
-        s.
-    plan : MovePlan
-    tool : (3, n) array of float, optional
-        Rows of the tool's displacement against the workpiece, x, y, z.
-    progress : callable, optional
-
-    Raises
-    ------
-    InputError
-        If an axis is unknown or not under control, a loop is unstable, or the interpolation cycle
-        does not fit the step.
-    RunError
-        If the machine runs away.
+    The name is that of the machine, the step in s; `tool` (3, n) holds the rows of the tool's
+    displacement against the workpiece, x, y, z. InputError if an axis is unknown or not under
+    control, a loop is unstable, or the interpolation cycle does not fit the step; RunError if the
+    machine runs away.
     """
     refuse_unstable_control(machine, step)
     motions = [rigid_motion(machine, {axis: 1.0}) for axis in plan.axes]

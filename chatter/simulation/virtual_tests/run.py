@@ -26,23 +26,17 @@ _FURTHEST = 1e5
 
 @dataclass(frozen=True, eq=False)
 class MachineRun:
-    """Signals of a run, from the first recorded step on.
+    """Signals (n,) of a run, from the first recorded step on.
 
-    Parameters
-    ----------
-    time : (n,) array of float
-        s.
-    displacement, velocity, force : mapping of str to (n,) array of float
-        Of every port recorded: m, m/s, N (rad, rad/s, N m): drives ("drive Y": angle and torque
-        of the motor), scales ("scale Y"), frictions ("friction guide": force with which it
-        acts on its motion), loads and outputs by their own names.
-    interrupted : bool
+    Of every port recorded: drives ("drive Y": angle and torque of the motor), scales ("scale Y"),
+    frictions ("friction guide": force with which it acts on its motion), loads and outputs by their
+    own names.
     """
 
-    time: NDArray[np.float64]
-    displacement: Mapping[str, NDArray[np.float64]]
-    velocity: Mapping[str, NDArray[np.float64]]
-    force: Mapping[str, NDArray[np.float64]]
+    time: NDArray[np.float64]  # s
+    displacement: Mapping[str, NDArray[np.float64]]  # m or rad
+    velocity: Mapping[str, NDArray[np.float64]]  # m/s or rad/s
+    force: Mapping[str, NDArray[np.float64]]  # N or N m
     interrupted: bool = False
 
 
@@ -65,27 +59,10 @@ class RunInputs:
 def run_machine(
     machine: Machine, step: float, inputs: RunInputs, progress: Progress = no_progress
 ) -> MachineRun:
-    """Run a machine from rest.
+    """Run a machine from rest, by steps in s.
 
-    Parameters
-    ----------
-    machine : Machine
-    step : float
-        s.
-    inputs : RunInputs
-    progress : callable, optional
-        Called with (done, total) steps.
-
-    Raises
-    ------
-    InputError
-        If names, lengths or sample times do not fit.
-    RunError
-        If the machine runs away.
-
-    Notes
-    -----
-    An interruption (Ctrl-C) ends the run, not the program: what was run is returned.
+    An interruption (Ctrl-C) ends the run, not the program: what was run is returned. InputError if
+    names, lengths or sample times do not fit, RunError if the machine runs away.
     """
     total = round(inputs.duration / step)
     if total < 1:

@@ -60,28 +60,10 @@ def angle_triggered_pulses(
 ) -> PulseTrain:
     """Return a pulse of torque each time a spindle comes to an angle.
 
-    Parameters
-    ----------
-    angle : (n,) array of float
-        As for `passages`, rad.
-    at : float
-        rad.
-    pulse : (m,) array of float
-        N m; from `dynamics.frf.excitation.hammer`. A passage too late for a whole pulse gets none.
-    step : float
-        s.
-    revolutions : int
-        From a pulse to the next, so that the vibration dies away between them.
-
-    Returns
-    -------
-    PulseTrain
-        Over the n samples of the angle.
-
-    Raises
-    ------
-    ExcitationError
-        If no pulse finds its place or pulses overlap.
+    Over the n samples of the angles, rad, as for `passages`; the pulse (m,), N m, is from
+    `dynamics.frf.excitation.hammer`; the step is in s. A passage too late for a whole pulse gets
+    none. From a pulse to the next go several revolutions, so that the vibration dies away between
+    them. ExcitationError if no pulse finds its place or pulses overlap.
     """
     if revolutions < 1:
         raise ExcitationError(f"angle-triggered pulses: every {revolutions} revolutions; 1 or more")

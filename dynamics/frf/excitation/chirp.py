@@ -24,29 +24,14 @@ def linear_chirp(
     step: float,
     taper: float = TAPER,
 ) -> PeriodicSignal:
-    """Return a chirp whose frequency grows evenly with time.
+    """Return a chirp whose frequency, Hz, grows evenly with time; amplitude in N or N m.
 
     Its power is nearly flat over the band. It begins and ends at zero, so that it can stand alone
-    with rest before and behind it, or be repeated.
-
-    Parameters
-    ----------
-    lowest, highest : float
-        Hz.
-    period : float
-        s, a whole number of steps.
-    amplitude : float
-        N or N m.
-    step : float
-        s.
-    taper : float
-        Share of the period over which the amplitude rises from zero along half a cosine, and over
-        which it falls again, 0 to 0.5. The ends of the band get less power by it.
-
-    Raises
-    ------
-    ExcitationError
-        If the band does not lie below half the sampling frequency, or a value makes no sense.
+    with rest before and behind it, or be repeated. The period, s, is a whole number of steps, s.
+    The taper is the share of the period, 0 to 0.5, over which the amplitude rises from zero along
+    half a cosine, and over which it falls again; the ends of the band get less power by it.
+    ExcitationError if the band does not lie below half the sampling frequency, or a value makes no
+    sense.
     """
     require_band("chirp", lowest, highest, step)
     require_positive("chirp", "amplitude", amplitude)

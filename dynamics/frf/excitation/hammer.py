@@ -15,29 +15,12 @@ from dynamics.frf.excitation.signal import (
 
 
 def half_sine_blow(width: float, peak: float, step: float) -> NDArray[np.float64]:
-    """Return a blow of half a sine, from its zero to its zero or one sample beyond.
+    """Return a blow (n,), N, of half a sine, from its zero to its zero or one sample beyond.
 
-    Its spectrum falls to its first zero at 1.5 / width, Hz.
-
-    Parameters
-    ----------
-    width : float
-        Time of contact, s; at least two steps.
-    peak : float
-        N; with the sign of the blow. Reached between two samples where width is no even number
-        of steps.
-    step : float
-        s.
-
-    Returns
-    -------
-    (n,) array of float
-        N.
-
-    Raises
-    ------
-    ExcitationError
-        If the width is shorter than two steps or a value is not finite.
+    Its spectrum falls to its first zero at 1.5 / width, Hz. The width is the time of contact, s, at
+    least two steps, s; the peak, N, has the sign of the blow and is reached between two samples
+    where the width is no even number of steps. ExcitationError if the width is shorter than two
+    steps or a value is not finite.
     """
     require_positive("half-sine blow", "step", step)
     require_positive("half-sine blow", "width", width)
@@ -63,26 +46,11 @@ def several_blows(
 ) -> PulseTrain:
     """Return blows of half a sine at even spacing, each a little different as by hand.
 
-    Parameters
-    ----------
-    width, peak, step : float
-        As for `half_sine_blow`; s, N, s.
-    count : int
-    spacing : float
-        From the start of one blow to that of the next, and from that of the last to the end, s.
-        The response must have died away within it.
-    scatter : float
-        Standard deviation of peak and of width over their values, 1; drawn apart from each other,
-        cut at three times itself.
-    seed : int
-        Of the scatter.
-    rest : float
-        Before the first blow, s.
-
-    Raises
-    ------
-    ExcitationError
-        If a time is not a whole number of steps or a blow does not end before the next.
+    Width, peak and step as for `half_sine_blow`. The spacing, s, is from the start of one blow to
+    that of the next, and from that of the last to the end; the response must have died away within
+    it. Rest, s, is before the first blow. The scatter is the standard deviation of peak and of
+    width over their values, drawn apart from each other with the seed, cut at three times itself.
+    ExcitationError if a time is not a whole number of steps or a blow does not end before the next.
     """
     if count < 1:
         raise ExcitationError(f"several blows: count is {count}; 1 at least")

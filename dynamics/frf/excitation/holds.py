@@ -60,23 +60,15 @@ def without_images(frf: Frf, hold: Hold, step: float, inverse_mass: float) -> Fr
     """Return an FRF, freed of the hold already, freed of the folded images too.
 
     At the images the structure is taken to answer by its inertia, receptance inverse_mass / s^2,
-    which holds where its modes lie well below half the sampling frequency. Of receptances the
-    images are a small part: at a tenth of the sampling frequency 0.02 % of the inertia line with
-    forces joined by lines and 0.07 % with forces held, at a quarter 1.5 % and 3 %. Of accelerances
-    they are far larger, 3.4 % at a tenth: record displacements of a simulation, and let
-    `Frf.as_quantity` differentiate.
+    which holds where its modes lie well below half the sampling frequency. The inverse mass is the
+    accelerance far above all modes, response row . M^-1 . force column, 1/kg; 0 where response and
+    force act on different masses. The hold is that of the input, the step in s; nothing is to do
+    for `BAND_LIMITED`.
 
-    Parameters
-    ----------
-    frf : Frf
-        As from the estimators of this package.
-    hold : Hold
-        Of the input; nothing is to do for `BAND_LIMITED`.
-    step : float
-        s.
-    inverse_mass : float
-        Accelerance far above all modes, response row . M^-1 . force column, 1/kg; 0 where response
-        and force act on different masses.
+    Of receptances, as from the estimators of this package, the images are a small part: at a tenth
+    of the sampling frequency 0.02 % of the inertia line with forces joined by lines and 0.07 % with
+    forces held, at a quarter 1.5 % and 3 %. Of accelerances they are far larger, 3.4 % at a tenth:
+    record displacements of a simulation, and let `Frf.as_quantity` differentiate.
     """
     if hold.power == 0:
         return frf
@@ -91,17 +83,9 @@ def image_share(s: ArrayLike, step: float, power: int) -> NDArray[np.complex128]
     """Return the sum over m != 0 of (x / (x + m))^power with x = s T / (2 pi i).
 
     That of the images to the line itself, for a hold and an inertia line that fall together as
-    s^-power. Source: derivatives of the partial fractions of pi cot(pi x).
-
-    Parameters
-    ----------
-    s : array of complex
-        rad/s, 0 < |Im s| T < 2 pi, or 0.
-    step : float
-        s.
-    power : int
-        1 to 4. Of power 1 the sum is that of m and -m together: a response that jumps is then
-        sampled in the middle of its jump.
+    s^-power, power 1 to 4; s in rad/s, 0 < |Im s| T < 2 pi, or 0, and the step T in s. Of power 1
+    the sum is that of m and -m together: a response that jumps is then sampled in the middle of its
+    jump. Source: derivatives of the partial fractions of pi cot(pi x).
     """
     turn = np.asarray(s, dtype=np.complex128) * step / 2j
     safe = np.where(turn == 0.0, 0.5, turn)

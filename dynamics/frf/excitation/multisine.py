@@ -50,23 +50,9 @@ def multisine(
 ) -> PeriodicSignal:
     """Return a multisine; `PeriodicSignal.with_peak` scales it to a peak instead of an rms.
 
-    Parameters
-    ----------
-    lines : (l,) array of int
-        Harmonics, from `full_lines` or `odd_lines`.
-    phases : (l,) array of float
-        Of the cosines, rad, from `random_phases` or `schroeder_phases`.
-    period : float
-        s, a whole number of steps.
-    rms : float
-        N or N m.
-    step : float
-        s.
-
-    Raises
-    ------
-    ExcitationError
-        If a line does not lie between zero and half the sampling frequency.
+    Harmonics (l,) from `full_lines` or `odd_lines`; phases (l,) of the cosines, rad, from
+    `random_phases` or `schroeder_phases`; the period, s, is a whole number of steps; rms in N or N
+    m. ExcitationError if a line does not lie between zero and half the sampling frequency.
     """
     samples = whole_steps("multisine", "period", period, step)
     require_positive("multisine", "rms", rms)

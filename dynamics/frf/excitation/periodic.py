@@ -121,22 +121,10 @@ def frf_of_periods(records: Sequence[PeriodicRecord], hold: Hold) -> PeriodicFrf
 
     The transforms of force and response are averaged over the periods of a realisation, in step
     with the excitation, before their ratio is taken; noise then averages out even where a loop
-    feeds it back into the force. The ratios are averaged over realisations.
+    feeds it back into the force. The ratios are averaged over realisations, which have other phases
+    but the same step, period, lines and quantity. The hold is what lay between the samples of the
+    force. MeasurementError if the records are not of one kind or a line holds no force.
 
-    Parameters
-    ----------
-    records : sequence of PeriodicRecord
-        Realisations, of other phases but the same step, period, lines and quantity.
-    hold : Hold
-        What lay between the samples of the force.
-
-    Raises
-    ------
-    MeasurementError
-        If the records are not of one kind or a line holds no force.
-
-    Notes
-    -----
     Source: R. Pintelon and J. Schoukens, 2012, System Identification: A Frequency Domain Approach,
     2nd ed., chapter 4, the robust method for the best linear approximation.
     """
@@ -211,30 +199,15 @@ def _ratio_variance(
 def joint_input_output_frf(records: Sequence[PeriodicRecord], hold: Hold) -> Frf:
     """Estimate the FRF as the ratio of the answers of response and force to the reference.
 
-    G = (S_yr / S_rr) / (S_ur / S_rr). Noise that goes round the loop knows nothing of the
-    reference and averages out of both, whereas it stays in the product of response and force.
+    G = (S_yr / S_rr) / (S_ur / S_rr). Noise that goes round the loop knows nothing of the reference
+    and averages out of both, whereas it stays in the product of response and force. Records are
+    realisations of the same step, period, lines and quantity; the coherence, of response and
+    reference, is there where there are several periods. The hold is what lay between the samples of
+    the force. MeasurementError if a record has no reference, the records are not of one kind, or a
+    line is not excited.
 
-    Parameters
-    ----------
-    records : sequence of PeriodicRecord
-        Each with its reference; realisations of the same step, period, lines and quantity.
-    hold : Hold
-        What lay between the samples of the force.
-
-    Returns
-    -------
-    Frf
-        Its coherence, of response and reference, is there where there are several periods.
-
-    Raises
-    ------
-    MeasurementError
-        If a record has no reference, the records are not of one kind, or a line is not excited.
-
-    Notes
-    -----
-    Source: P. E. Wellstead, 1981, "Non-parametric methods of system identification", Automatica
-    17; R. Pintelon and J. Schoukens, 2012, System Identification, 2nd ed., chapter 2.
+    Source: P. E. Wellstead, 1981, "Non-parametric methods of system identification", Automatica 17;
+    R. Pintelon and J. Schoukens, 2012, System Identification, 2nd ed., chapter 2.
     """
     require_one_excitation(records)
     first = records[0]

@@ -67,37 +67,20 @@ def frf_of_transients(
 ) -> Frf:
     """Estimate the FRF of transients that begin at rest and die away within their records.
 
-    Nothing is windowed, so that nothing is changed. Records with the noise and faults of a test
-    by hand are for `dynamics.frf.hammer`.
+    Nothing is windowed, so that nothing is changed. Records with the noise and faults of a test by
+    hand are for `dynamics.frf.hammer`. Force and response are sampled together, a force that is
+    held at the beginning of the step over which it acts; records are cut to the shortest, and the
+    level of the response before the force sets in is taken off. The hold is what lay between the
+    samples of the force. Kept are lines of the band, Hz, those with force; estimators are
+    `dynamics.frf.hammer.h1` and `h2`. The coherence over the records is there where there are
+    several.
 
-    Parameters
-    ----------
-    records : sequence of HammerRecord
-        Force and response sampled together, a force that is held at the beginning of the step
-        over which it acts. Cut to the shortest; the level of the response
-        before the force sets in is taken off.
-    hold : Hold
-        What lay between the samples of the force.
-    band : (float, float)
-        Lines to keep, Hz: those with force.
-    estimator : callable
-        `dynamics.frf.hammer.h1` or `h2`.
-    added_decay : float
-        Decay rate of an exponential weight on both channels, 1/s, for records too short; told in
-        `Frf.added_decay`, by which fitted damping is put right.
-    left_at_end : float
-        Share of the peak of the (weighted) response that may be left at the end of the record.
+    For records too short the added decay, 1/s, is that of an exponential weight on both channels;
+    told in `Frf.added_decay`, by which fitted damping is put right. `left_at_end` is the share of
+    the peak of the (weighted) response that may be left at the end of the record.
 
-    Returns
-    -------
-    Frf
-        With the coherence over the records where there are several.
-
-    Raises
-    ------
-    MeasurementError
-        If the records are not of one kind, a response has not died away, the added decay is
-        negative, or a line of the band holds no force.
+    MeasurementError if the records are not of one kind, a response has not died away, the added
+    decay is negative, or a line of the band holds no force.
     """
     require_one_kind(records)
     if not 0.0 <= added_decay < np.inf:

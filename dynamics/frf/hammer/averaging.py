@@ -13,33 +13,18 @@ from dynamics.frf.hammer.windows import choose_windows
 
 @dataclass(frozen=True)
 class HammerTest:
-    """FRF of a set of hammer records.
+    """FRF of a set of hammer records."""
 
-    Parameters
-    ----------
-    frf : Frf
-        Average over the records used, from 0 Hz to half the sampling rate.
-    record_frfs : tuple of Frf
-        FRF of each record used, alone, with the same windows and lines; for a fit across all.
-    usable_band : (float, float)
-        Hz; where force and coherence suffice.
-    used : tuple of str
-        Names of the records averaged.
-    excluded : tuple of Finding
-        Faults for which records were left out; a record may have several.
-    kept : tuple of Finding
-        Faults of records averaged all the same, because they were asked to be kept.
-    remarks : tuple of Finding
-        What the examination could not decide.
-    """
-
-    frf: Frf
+    frf: Frf  # average over the records used, from 0 Hz to half the sampling rate
+    # of each record used, alone, with the same windows and lines; for a fit across all
     record_frfs: tuple[Frf, ...]
-    usable_band: tuple[float, float]
-    used: tuple[str, ...]
+    usable_band: tuple[float, float]  # Hz; where force and coherence suffice
+    used: tuple[str, ...]  # names of the records averaged
+    # faults for which records were left out; a record may have several
     excluded: tuple[Finding, ...]
+    # faults of records averaged all the same, because they were asked to be kept
     kept: tuple[Finding, ...]
-    remarks: tuple[Finding, ...]
+    remarks: tuple[Finding, ...]  # what the examination could not decide
 
     @property
     def frf_in_band(self) -> Frf:
@@ -60,22 +45,11 @@ def hammer_test(
 ) -> HammerTest:
     """Examine hammer records, leave out the faulty ones and average the rest.
 
-    Parameters
-    ----------
-    records : sequence of HammerRecord
-        Of one sampling rate and quantity.
-    keep : collection of str
-        Names of records to average whatever the examination finds.
-    estimator : callable
-        `dynamics.frf.hammer.spectra.h1` or `h2`.
-    unreadable : sequence of (str, str)
-        Name and reason of files of the set that could not be read.
-
-    Raises
-    ------
-    MeasurementError
-        If no good record is left, a name in `keep` is unknown, or a
-        record that is unreadable or without any hit is to be kept.
+    Records are of one sampling rate and quantity; those named in `keep` are averaged whatever the
+    examination finds. Estimators are `dynamics.frf.hammer.spectra.h1` and `h2`. Unreadable are
+    files of the set that could not be read, by name and reason. MeasurementError if no good record
+    is left, a name in `keep` is unknown, or a record that is unreadable or without any hit is to be
+    kept.
     """
     findings = [Finding(name, "unreadable", reason) for name, reason in unreadable]
     findings += examine_records(records)

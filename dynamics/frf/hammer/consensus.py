@@ -188,13 +188,10 @@ def common_function(aligned: AlignedSet, members: NDArray[np.bool_]) -> CommonFu
 def predicted(
     aligned: AlignedSet, function: CommonFunction, row: int
 ) -> tuple[NDArray[np.float64], float]:
-    """Response of one record to its own blow by the common function.
+    """Response (m,) of one record to its own blow by the common function, and its noise.
 
-    Returns
-    -------
-    response : (m,) array of float
-    noise : float
-        Standard deviation of `response` while it rings, from the noise of the common function.
+    That is the standard deviation of the response while it rings, from the noise of the common
+    function.
     """
     force = aligned.force_spectra[row]
     response = np.fft.irfft(function.values * force, aligned.transform_length)

@@ -19,23 +19,9 @@ def examine_records(records: Sequence[HammerRecord]) -> list[Finding]:
     Each record alone: no hit, a second blow, clipping, dropouts, stuck samples and drift of either
     channel, a response that does not answer. Then the records without such faults predict each
     other's response: a wrong gain or polarity, a trigger skew, a late bump without force, a
-    response that does not follow the force. Limits come from the noise of each record and from
-    the scatter of those that agree.
-
-    Parameters
-    ----------
-    records : sequence of HammerRecord
-        Of one sampling rate and quantity.
-
-    Returns
-    -------
-    list of Finding
-        In the order of the records; empty where all are good.
-
-    Raises
-    ------
-    MeasurementError
-        If sampling rates or quantities differ, or two records have one name.
+    response that does not follow the force. Limits come from the noise of each record and from the
+    scatter of those that agree. Findings are in the order of the records. MeasurementError if
+    sampling rates or quantities differ, or two records have one name.
     """
     require_one_kind(records)
     findings: list[Finding] = []

@@ -16,37 +16,18 @@ FEWEST_SAMPLES = 32
 
 @dataclass(frozen=True)
 class HammerRecord:
-    """One hit: force and response sampled together, SI units.
+    """One hit: force and response sampled together, SI units."""
 
-    Parameters
-    ----------
-    name : str
-        File name, as findings quote it.
-    sampling_rate : float
-        Hz.
-    force : (n,) array of float
-        N.
-    response : (n,) array of float
-        m, m/s or m/s^2.
-    quantity : str
-        Quantity of the FRF the pair gives: ``"accelerance"`` for an acceleration.
-    start_time : float
-        Time of the first sample, s.
-    response_point, reference_point : Point
-        Directions, where the column names give them.
-    source : str
-        Path of the file.
-    """
-
-    name: str
-    sampling_rate: float
-    force: NDArray[np.float64]
-    response: NDArray[np.float64]
-    quantity: Quantity = "accelerance"
-    start_time: float = 0.0
+    name: str  # of the file, as findings quote it
+    sampling_rate: float  # Hz
+    force: NDArray[np.float64]  # (n,), N
+    response: NDArray[np.float64]  # (n,), m, m/s or m/s^2
+    quantity: Quantity = "accelerance"  # of the FRF the pair gives: accelerance for an acceleration
+    start_time: float = 0.0  # of the first sample, s
+    # directions of both points, where the column names give them
     response_point: Point = field(default_factory=Point)
     reference_point: Point = field(default_factory=Point)
-    source: str = ""
+    source: str = ""  # path of the file
 
     def __post_init__(self) -> None:
         """Check shapes and finiteness; raise MeasurementError naming the record."""
@@ -101,22 +82,11 @@ Fault = Literal[
 
 @dataclass(frozen=True)
 class Finding:
-    """One fault of one record.
+    """One fault of one record."""
 
-    Parameters
-    ----------
-    record : str
-        Name of the record.
-    fault : str
-        Kind of fault.
-    reason : str
-        A sentence with the evidence: where, how large, against what.
-    is_decisive : bool
-        True where the record must not be averaged; False for a remark, where the evidence does
-        not say which record is at fault.
-    """
-
-    record: str
+    record: str  # its name
     fault: Fault
-    reason: str
+    reason: str  # a sentence with the evidence: where, how large, against what
+    # The record must not be averaged; else a remark: the evidence does not say which record is at
+    # fault.
     is_decisive: bool = True

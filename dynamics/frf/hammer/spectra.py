@@ -136,31 +136,15 @@ def windowed(record: HammerRecord, hit: Hit, windows: Windows) -> NDArray[np.flo
 def frf_from_records(
     records: Sequence[HammerRecord], estimator: Estimator = h1, transform_length: int | None = None
 ) -> Frf:
-    """Estimate the FRF of hammer records averaged together.
+    """Estimate the FRF of hammer records averaged together, from 0 Hz to half the sampling rate.
 
     The blow is windowed off the noise of the force, the response is let down to zero once nothing
-    but noise is left, and an exponential window is used only where the ringing outlasts the
-    record; `Frf.added_decay` then tells by how much.
-
-    Parameters
-    ----------
-    records : sequence of HammerRecord
-        Good ones; see `dynamics.frf.hammer.examine.examine_records`.
-    estimator : callable
-        `h1` or `h2`.
-    transform_length : int, optional
-        Samples; see `averaged_spectra`.
-
-    Returns
-    -------
-    Frf
-        From 0 Hz to half the sampling rate, with the coherence where there are several records;
-        `usable_band` tells where it holds.
-
-    Raises
-    ------
-    MeasurementError
-        If the records are not of one kind or one holds no hit.
+    but noise is left, and an exponential window is used only where the ringing outlasts the record;
+    `Frf.added_decay` then tells by how much. Records are good ones
+    (`dynamics.frf.hammer.examine.examine_records`), estimators `h1` and `h2`; for the transform
+    length, samples, see `averaged_spectra`. The coherence is there where there are several records;
+    `usable_band` tells where the FRF holds. MeasurementError if the records are not of one kind or
+    one holds no hit.
     """
     spectra = averaged_spectra(records, transform_length=transform_length)
     return frf_of(spectra, estimator, ", ".join(record.name for record in records))

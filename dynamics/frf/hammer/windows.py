@@ -88,12 +88,7 @@ def force_window(hit: Hit, first: int, windows: Windows) -> NDArray[np.float64]:
 
 
 def response_window(windows: Windows) -> NDArray[np.float64]:
-    """One over the ringing, then a cosine down to zero over a quarter as long.
-
-    Returns
-    -------
-    (windows.length,) array of float
-    """
+    """One over the ringing, then a cosine to zero over a quarter as long; (windows.length,)."""
     progress = (np.arange(windows.length) - windows.ringing) / _fall(windows.ringing)
     return 0.5 * (1.0 + np.cos(np.pi * np.clip(progress, 0.0, 1.0)))
 

@@ -39,21 +39,10 @@ def _runner(kind: type) -> Callable[..., None]:
 def friction_along(
     law: FrictionLaw, position: NDArray[np.float64], sample_time: float
 ) -> NDArray[np.float64]:
-    """Friction along a measured motion that starts with a law at rest.
+    """Friction (n,) along a measured motion that starts with a law at rest.
 
-    Parameters
-    ----------
-    law : LuGre, TanhHysteresis or CoulombStribeck
-    position : (n,) array of float
-        m or rad, every `sample_time` seconds.
-    sample_time : float
-        s.
-
-    Returns
-    -------
-    (n,) array of float
-        N or N m, positive against positive motion; at a sample the mean of the two intervals
-        beside it.
+    Positions (n,), m or rad, are every `sample_time`, s. Friction, N or N m, is positive against
+    positive motion; at a sample the mean of the two intervals beside it.
     """
     if type(law) not in BY_SPEC:
         raise TypeError(
@@ -69,20 +58,11 @@ def friction_along(
 
 @dataclass(frozen=True)
 class AxisModel:
-    """An axis as a drive feels it: inertia, friction and a constant load.
-
-    Parameters
-    ----------
-    law : LuGre, TanhHysteresis or CoulombStribeck
-    inertia : float
-        kg or kg m^2.
-    offset : float
-        Constant effort such as weight, N or N m.
-    """
+    """An axis as a drive feels it: inertia, friction and a constant load."""
 
     law: FrictionLaw
-    inertia: float
-    offset: float = 0.0
+    inertia: float  # kg or kg m^2
+    offset: float = 0.0  # constant effort such as weight, N or N m
 
     def effort(self, record: DriveRecord, low_pass: LowPass) -> NDArray[np.float64]:
         """Effort (n,) that the measured motion of a record needs, N or N m.
@@ -120,30 +100,14 @@ def fit_axis(
 ) -> AxisFit:
     """Fit parameters of a friction law, inertia and offset to drive records.
 
-    Parameters
-    ----------
-    records : sequence of DriveRecord
-        In the same units; each starts with the law unbent, at rest.
-    guess : AxisModel
-        First values; what is not free stays as it is here.
-    free : sequence of str
-        Parameters of the law by name, ``"inertia"``, ``"offset"``.
-    low_pass : LowPass
-        Acts alike on measured effort, acceleration and predicted friction.
-    minimum_speed : float
-        Slower samples, m/s or rad/s, are not judged; needed for a law without presliding.
-    settling : float
-        Time at the start of each record that is not judged, s: where the axis was at rest under
-        load, or already moving, the law's state is not known at first.
-    starts, seed : int
-        Starts of the search and the seed of those after the first.
-
-    Raises
-    ------
-    MeasurementError
-        If too few samples are judged.
-    ValueError
-        If a parameter is unknown or its guess is out of range.
+    Records are in the same units; each starts with the law unbent, at rest. Free are parameters of
+    the law by name, ``"inertia"``, ``"offset"``; what is not free stays as in the guess. The
+    low-pass acts alike on measured effort, acceleration and predicted friction. Samples slower than
+    the minimum speed, m/s or rad/s, are not judged; needed for a law without presliding. Nor is the
+    settling time, s, at the start of each record: where the axis was at rest under load, or already
+    moving, the law's state is not known at first. The seed is that of the starts of the search
+    after the first. MeasurementError if too few samples are judged, ValueError if a parameter is
+    unknown or its guess is out of range.
     """
     if not records:
         raise MeasurementError("drive records: none given")
@@ -207,18 +171,9 @@ def friction_over_position(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Position and friction of a record: low-passed effort less the force of acceleration.
 
-    Parameters
-    ----------
-    record : DriveRecord
-    inertia : float
-        kg or kg m^2.
-    low_pass : LowPass
-
-    Returns
-    -------
-    position, friction : (n,) arrays of float
-        N over m or N m over rad: friction curves of sine moves, as the modelling of the test
-        machine with drive control and friction draws them (section 2.3, Figure 4).
+    Inertia in kg or kg m^2. N over m or N m over rad: friction curves of sine moves, as the
+    modelling of the test machine with drive control and friction draws them (section 2.3, Figure
+    4).
     """
     effort, acceleration, _ = _prepare(record, low_pass, 0.0, 0.0)
     return record.position, effort - inertia * acceleration

@@ -19,21 +19,11 @@ from dynamics.frf.container import MeasurementError
 class LowPass:
     """Zero-phase Butterworth low-pass: run forward and backward.
 
-    Parameters
-    ----------
-    cutoff : float
-        Frequency where one pass has -3 dB (both have -6 dB), Hz; above 0.
-    order : int
-        Of one pass; from 1 to 8.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is out of its range.
+    ValueError if a parameter is out of its range.
     """
 
-    cutoff: float
-    order: int = 4
+    cutoff: float  # frequency where one pass has -3 dB (both have -6 dB), Hz; above 0
+    order: int = 4  # of one pass; from 1 to 8
 
     def __post_init__(self) -> None:
         if not 0.0 < self.cutoff < math.inf:

@@ -41,13 +41,8 @@ def reversal_distance(record: DriveRecord, linear: LinearFriction, low_pass: Low
 def guess_lugre(linear: LinearFriction, distance: float, speed: float) -> LuGre:
     """LuGre friction with the sliding force of a linear fit.
 
-    Parameters
-    ----------
-    linear : LinearFriction
-    distance : float
-        Of `reversal_distance`: a Dahl curve crosses zero at g ln 2.
-    speed : float
-        Order of magnitude of the Stribeck velocity, m/s or rad/s.
+    The distance is of `reversal_distance`: a Dahl curve crosses zero at g ln 2. The speed is the
+    order of magnitude of the Stribeck velocity, m/s or rad/s.
     """
     coulomb = _coulomb(linear)
     stiffness = coulomb * math.log(2.0) / distance

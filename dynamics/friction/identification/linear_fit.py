@@ -80,29 +80,14 @@ def fit_linear(
     minimum_speed: float,
     fixed: Mapping[str, float] | None = None,
 ) -> LinearFriction:
-    """Fit the terms of eq. 1 to drive records.
+    """Fit the terms of eq. 1 to drive records, in the same units.
 
-    Parameters
-    ----------
-    records : sequence of DriveRecord
-        In the same units.
-    terms : sequence of str
-        To be found, of `TERMS`; a law of its own for each direction is asked for by
-        ``coulomb_forward``, ``coulomb_backward`` and the like.
-    low_pass : LowPass
-        Acts alike on the effort and on every column.
-    minimum_speed : float
-        Slower samples, m/s or rad/s, and those the filter mixes with them are left out: presliding
-        and Stribeck effects are not in the model.
-    fixed : mapping of str to float, optional
-        Terms that are known, e.g. a weighed mass.
-
-    Raises
-    ------
-    MeasurementError
-        If too few samples move fast enough, or the motion cannot tell terms apart.
-    ValueError
-        If a term is unknown or both wanted and given.
+    Terms to be found are of `TERMS`; a law of its own for each direction is asked for by
+    ``coulomb_forward``, ``coulomb_backward`` and the like. Fixed are terms that are known, e.g. a
+    weighed mass. The low-pass acts alike on the effort and on every column. Samples slower than the
+    minimum speed, m/s or rad/s, and those the filter mixes with them are left out: presliding and
+    Stribeck effects are not in the model. MeasurementError if too few samples move fast enough, or
+    the motion cannot tell terms apart; ValueError if a term is unknown or both wanted and given.
     """
     fixed = dict(fixed or {})
     _check_terms(terms, fixed)

@@ -128,36 +128,15 @@ def record_from_current(
 ) -> DriveRecord:
     """Return a record whose effort comes from the motor current.
 
-    Parameters
-    ----------
-    time, position, velocity, current : (n,) array_like
-        s; motion in the unit of the result; A, as the torque-producing component.
-    torque_constant : float
-        N m/A; above 0.
-    transmission : float
-        Turn of the motor for a unit of `position`: 2 pi / pitch in rad/m for the force at a slide
-        behind a screw, 1 for the torque about the motor shaft itself; negative where the motor
-        turns backward.
-    name : str
-        Of the record.
+    Signals (n,): time, s, motion in the unit of the result, and the torque-producing component of
+    the current, A. Effort, N or N m, = torque constant, N m/A, above 0, x current x transmission:
+    the turn of the motor for a unit of position, 2 pi / pitch in rad/m for the force at a slide
+    behind a screw, 1 for the torque about the motor shaft itself; negative where the motor turns
+    backward. MeasurementError if the signals do not make a record, ValueError if a constant is out
+    of its range.
 
-    Returns
-    -------
-    DriveRecord
-        Effort = torque constant x current x transmission (N or N m).
-
-    Raises
-    ------
-    MeasurementError
-        If the signals do not make a record.
-    ValueError
-        If a constant is out of its range.
-
-    Notes
-    -----
-    As the modelling of the test machine with drive control and friction does, section 2.3: drive
-    current times torque constant and transmission. Losses of the transmission stay in the friction
-    found.
+    As the modelling of the test machine with drive control and friction does, section 2.3. Losses
+    of the transmission stay in the friction found.
     """
     if not 0.0 < torque_constant < math.inf:
         raise ValueError(f"{name}: torque_constant must be above 0 N m/A, not {torque_constant}")

@@ -29,19 +29,10 @@ def share_of(law: FrictionLaw, share: float) -> FrictionLaw:
 
 
 def referred_to_slide(law: FrictionLaw, lead: float) -> FrictionLaw:
-    """Law along the slide that is felt about the shaft as the given one.
+    """Law along the slide, N, m, that is felt about the shaft, N m, rad, as the given one.
 
-    Parameters
-    ----------
-    law : LuGre, TanhHysteresis or CoulombStribeck
-        About the shaft: N m, rad.
-    lead : float
-        Motion of the slide for a turn of the shaft, m/rad (pitch / 2 pi); above 0.
-
-    Returns
-    -------
-    The same kind of law
-        N, m. Torque = lead x force, motion = lead x angle.
+    Of the same kind. Torque = lead x force, motion = lead x angle, with the lead the motion of the
+    slide for a turn of the shaft, m/rad (pitch / 2 pi); above 0.
     """
     if not 0.0 < lead < math.inf:
         raise ValueError(f"friction: lead must be above 0 m/rad, not {lead}")
@@ -53,25 +44,12 @@ def split_about_shaft(
 ) -> tuple[FrictionLaw, FrictionLaw]:
     """Split friction found about the motor shaft into a rotational and a translational law.
 
-    Parameters
-    ----------
-    law : LuGre, TanhHysteresis or CoulombStribeck
-        All friction, about the shaft: N m, rad.
-    lead : float
-        Motion of the slide for a turn of the shaft, m/rad; above 0.
-    rotational_share : float
-        Share of the torque from screw and bearings, between 0 and 1. The motor's torque alone
-        cannot tell it; an equal share is the assumption of the source.
-
-    Returns
-    -------
-    rotational : law about the shaft, N m, rad
-    translational : law along the slide, N, m
-
-    Notes
-    -----
-    "Time domain coupled simulation of machine tool dynamics and cutting forces considering the
-    influences of nonlinear friction characteristics and process damping", section 3.
+    The law found and the rotational one are about the shaft, N m, rad, the translational one along
+    the slide, N, m. The lead is the motion of the slide for a turn of the shaft, m/rad; above 0.
+    The share of the torque from screw and bearings, between 0 and 1, the motor's torque alone
+    cannot tell; an equal share is the assumption of the source: "Time domain coupled simulation of
+    machine tool dynamics and cutting forces considering the influences of nonlinear friction
+    characteristics and process damping", section 3.
     """
     if not 0.0 < rotational_share < 1.0:
         raise ValueError(

@@ -41,32 +41,14 @@ def constant_speed_points(
     minimum_speed: float,
     tolerance: float = 0.05,
 ) -> list[SteadyPoint]:
-    """Find the segments at constant speed and average their effort.
+    """Find the segments at constant speed, in order of time, and average their effort.
 
-    Parameters
-    ----------
-    record : DriveRecord
-    low_pass : LowPass
-        For the velocity that is judged; the effort is averaged as it is.
-    minimum_duration : float
-        Of a segment after settling, s.
-    settling : float
-        Start of each segment that is left out, s: presliding after a reversal and the ringing of
-        the controller.
-    minimum_speed : float
-        Slower segments are rest, m/s or rad/s.
-    tolerance : float
-        Largest deviation of the low-passed speed within a segment, of the segment's first speed.
-
-    Returns
-    -------
-    list of SteadyPoint
-        In order of time.
-
-    Raises
-    ------
-    MeasurementError
-        If the record has no such segment.
+    The low-pass is for the velocity that is judged; the effort is averaged as it is. A segment
+    lasts the minimum duration, s, after the settling time, s, that is left out of its start:
+    presliding after a reversal and the ringing of the controller. Segments slower than the minimum
+    speed, m/s or rad/s, are rest. The tolerance is the largest deviation of the low-passed speed
+    within a segment, of the segment's first speed. MeasurementError if the record has no such
+    segment.
     """
     velocity = low_pass.apply(record.velocity, record.sample_time)
     settled = round(settling / record.sample_time)
@@ -130,23 +112,11 @@ def fit_steady_state(
 ) -> SteadyFit:
     """Fit the sliding part of a friction law to mean efforts at constant speeds.
 
-    Parameters
-    ----------
-    points : sequence of SteadyPoint
-        More than there are parameters; each counts alike.
-    guess : LuGre, TanhHysteresis or CoulombStribeck
-        First values; parameters that are not free, presliding above all, stay as they are here.
-    free : sequence of str
-        Parameters of the law, and ``"offset"``, which needs moves in both directions.
-    starts, seed : int
-        Starts of the search and the seed of those after the first.
-
-    Raises
-    ------
-    MeasurementError
-        If there are too few points, or only one direction for an offset.
-    ValueError
-        If a parameter is unknown or its guess is out of range.
+    Points are more than there are parameters; each counts alike. Free are parameters of the law,
+    and ``"offset"``, which needs moves in both directions; those that are not, presliding above
+    all, stay as in the guess. The seed is that of the starts of the search after the first.
+    MeasurementError if there are too few points, or only one direction for an offset; ValueError if
+    a parameter is unknown or its guess is out of range.
     """
     of_law = [name for name in free if name != "offset"]
     first = law_parameters(guess, of_law)
