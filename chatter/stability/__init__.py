@@ -7,7 +7,9 @@ model                  a case compiled for all methods: structure, cutter, laws,
 cut_arrays             the flat arrays of a cut of any tool
 averaged_coefficients  directional coefficients averaged over a revolution
 spindle_rotation       rotation at a constant or varying speed
-method, registry       what a method is; the list of methods and the choice among them
+stability_method       what a method is
+registry               the list of methods and the choice among them
+case_schema            JSON schema of the case file with these methods
 methods/               a package per method
 reference_speeds       speed-dependent dynamics: one structure per reference speed
 limit_search           from multipliers at points to limits over spindle speed

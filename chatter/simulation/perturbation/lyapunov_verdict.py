@@ -1,17 +1,10 @@
 """Whether small perturbations of the forced motion of a cut die out: a verdict without a period.
 
-Under a varying spindle speed no turn is like the next one, so that turns cannot be compared. What
-tells chatter from forced vibration is how a small perturbation of the forced motion goes on. Full
-chatter must not be asked for it: its cycle attracts too, and forgets a perturbation as a stable cut
-does.
-
-So the cut takes hold of the structure slowly, and the tool keeps to the forced motion until that
-becomes unstable. Beside it goes a run that is perturbed a little; the difference of both is brought
-back to its first size after every turn, and the factors are kept (Benettin, Galgani, Giorgilli and
-Strelcyn 1980, Meccanica 15: largest characteristic exponent). As long as the tool has not left the
-forced motion, growth over whole periods of the variation is growth of chatter, whatever follows
-when it is full. A third run starts from rest in the full cut, to see whether it comes to the same
-motion.
+For a varying spindle speed, under which revolutions cannot be compared; docs/time-domain.md tells
+how the cut is run and why full chatter must not be asked. Largest characteristic exponent of a run
+perturbed a little, its difference brought back to its first size after every revolution (Benettin,
+Galgani, Giorgilli and Strelcyn 1980, Meccanica 15). As long as the tool has not left the forced
+motion, growth over whole periods of the variation is growth of chatter, whatever follows.
 """
 
 import math

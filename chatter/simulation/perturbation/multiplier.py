@@ -1,13 +1,9 @@
 """Growth of small vibration from period to period, measured in a simulated cut.
 
 The cut takes hold of the structure slowly, so that the tool comes close to its periodic motion
-without being thrown out of the chip; what is left of the start then dies out or grows. Its
-multiplier follows from how the differences between successive periods follow each other: they are
-free of the periodic motion.
-
-Full chatter has multipliers of its own, of 1 or less, and where teeth differ it may repeat from
-turn to turn as forced vibration does. So a motion large enough for teeth to leave the cut is not
-taken for stable by them alone: small perturbations tell how vibration grew before.
+without being thrown out of the chip. The multiplier follows from how the differences between
+successive periods, free of the periodic motion, follow each other. Full chatter has multipliers of
+1 or less of its own: docs/time-domain.md tells where small perturbations are asked instead.
 """
 
 import math
