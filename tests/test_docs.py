@@ -38,3 +38,40 @@ def test_links_lead_to_files(path):
 
 def test_the_readme_is_short():
     assert len((ROOT / "README.md").read_text(encoding="utf-8").split()) <= 700
+
+
+def places_named(page):
+    """Modules and packages of the project that a page names in backquotes or by their path."""
+    found = set(
+        re.findall(r"\b(?:chatter|cutting|dynamics|tests|benchmarks)/[\w/]+(?:\.py)?", page)
+    )
+    # commands of a shell may name folders that a study writes
+    return {one.rstrip("/") for one in found}
+
+
+@pytest.mark.parametrize("path", PAGES, ids=lambda path: path.name)
+def test_modules_that_pages_name_are_there(path):
+    for one in places_named(path.read_text(encoding="utf-8")):
+        place = ROOT / one
+        assert any(place.with_suffix(end).exists() for end in ("", ".py", ".md")), one
+
+
+PACKAGES = [
+    path
+    for folder in ("chatter", "cutting", "dynamics")
+    for path in sorted((ROOT / folder).rglob("__init__.py"))
+]
+
+
+@pytest.mark.parametrize("path", PACKAGES, ids=lambda path: str(path.parent.relative_to(ROOT)))
+def test_tables_of_packages_name_what_is_in_them(path):
+    rule = re.compile(r"^=+ =+$")
+    lines = path.read_text(encoding="utf-8").splitlines()
+    rules = [index for index, line in enumerate(lines) if rule.match(line)]
+    if not rules:
+        return
+    width = lines[rules[0]].index(" ")
+    for line in lines[rules[1] + 1 : rules[2]]:
+        for name in re.findall(r"[\w.]+", line[:width]):
+            entry = path.parent / name
+            assert entry.exists() or entry.with_suffix(".py").exists(), name
