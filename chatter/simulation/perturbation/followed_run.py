@@ -70,12 +70,16 @@ class FollowedRun:
 
 
 def _arrays(held: object) -> list[NDArray]:
-    """Arrays within nested tuples that a run may change, in their order, each once."""
+    """Arrays within nested tuples that a run may change, in their order, each once.
+
+    An array that is the beginning of an earlier one, as the motion of a tool point on modes is that
+    of the first ports, is the same memory.
+    """
     found: dict[int, NDArray] = {}
 
     def collect(part: object) -> None:
         if isinstance(part, np.ndarray) and part.flags.writeable:
-            found.setdefault(id(part), part)
+            found.setdefault(part.ctypes.data, part)
         elif isinstance(part, tuple):
             for inner in part:
                 collect(inner)
