@@ -102,7 +102,7 @@ def draw_run(
 ) -> None:
     """Draw the whole run: the band between the least and the largest value of a revolution."""
     turns = result.spindle_angle / _TURN
-    whole = math.floor(result.revolutions)
+    whole = result.whole_revolutions
     banded = whole >= _LEAST_BANDS
     bounds = np.linspace(0, whole, min(max(whole, 1), _MOST_BANDS) + 1)
     rows = np.searchsorted(turns, bounds[:-1] - 1e-9)
@@ -246,7 +246,7 @@ def draw_poincare_section(axes: Axes, result: SimulationResult) -> None:
 
 def _once_a_turn(result: SimulationResult) -> Array:
     """Points (turns, 2), µm."""
-    turns = np.arange(1, math.floor(result.revolutions + 1e-9) + 1)
+    turns = np.arange(1, result.whole_revolutions + 1)
     if len(turns) == 0 or len(result.rows) < 4:
         return np.zeros((0, 2))
     motion = CubicSpline(result.spindle_angle, result.displacement[:, :2], axis=0)

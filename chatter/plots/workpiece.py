@@ -25,7 +25,7 @@ _CELLS = 700
 
 
 def draw_workpiece(axes: Axes, result: SimulationResult, layer: int) -> None:
-    """Draw what is left of a layer of a dexel or voxel workpiece, and the path of the tool."""
+    """Draw a layer of a carved dexel or voxel workpiece, and the path of the tool."""
     stock = result.setup.groups[0].stock
     low, high, material = plan_view(stock, layer)
     axes.imshow(

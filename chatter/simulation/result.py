@@ -106,6 +106,12 @@ class SimulationResult:
         """Revolutions that were simulated."""
         return float(self.spindle_angle[-1]) / (2.0 * math.pi)
 
+    @property
+    def whole_revolutions(self) -> int:
+        """Revolutions that were finished."""
+        # the last bit of an angle must not cost one
+        return math.floor(self.revolutions + 1e-9)
+
     @cached_property
     def finish(self) -> Finish:
         """Surface that the cut leaves behind."""
@@ -114,8 +120,7 @@ class SimulationResult:
     @cached_property
     def settled(self) -> slice:
         """Rows of the last whole turns, after the start has died out."""
-        # the last bit of an angle must not cost a revolution
-        turns = math.floor(self.revolutions + 1e-9)
+        turns = self.whole_revolutions
         if turns < 1:
             return slice(0, len(self.rows))
         kept = max(1, math.floor(turns * _SETTLED_SHARE))

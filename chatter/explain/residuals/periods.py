@@ -31,7 +31,7 @@ class Period(NamedTuple):
     length: float  # SI unit of the variable
     #: of the sum of squares over the noise; the period of a run is read from the others
     share: float
-    significant: bool  # runs agree on it beyond chance
+    significant: bool  # runs agree on it by more than scatter
     lengths: Array  # (m,)
     shares: Array  # (m,), over the period
 

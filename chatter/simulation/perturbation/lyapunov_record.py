@@ -156,7 +156,7 @@ class LyapunovRecord:
         """Half the range that the motion would have in the full cut by that of small motion, m.
 
         Up to half a range `small`, m, forced vibration grows with the force alone. Largest of all
-        turns while the cut takes hold; nan where none is small.
+        revolutions of the force ramp; nan where none is small.
         """
         turns = min(self.hold, len(self.swing))
         share = force_share((np.arange(turns) + 1.0) / max(self.hold, 1))

@@ -25,7 +25,7 @@ _GROWN = 3.0
 _SUSTAINED = 0.004
 #: a cycle that chatter has settled in is nearly neutral: growth before it and this rate are chatter
 _NEUTRAL = 0.02
-#: turns in which the cut takes hold, and that are watched after that, at the least; time constants
+#: revolutions of the force ramp, and those watched after it, at the least; time constants
 #: of the slowest mode and periods of the variation in them
 _LEAST_TURNS = (40, 40)
 _TIME_CONSTANTS = (12.0, 6.0)
@@ -102,7 +102,7 @@ def lyapunov_verdict(case: Case, modes: tuple[Mode, ...]) -> LyapunovVerdict:
 
 
 def _lengths(case: Case, modes: tuple[Mode, ...]) -> tuple[int, int, float]:
-    """Turns in which the cut takes hold and that are watched, and turns of a period."""
+    """Revolutions of the force ramp, those that are watched, and those of a period."""
     setup = set_up_on_modes(case, modes)
     bins = setup.resolution.steps_per_revolution
     a_second = setup.spindle.speed / (2.0 * math.pi)

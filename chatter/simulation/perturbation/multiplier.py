@@ -23,7 +23,7 @@ from chatter.simulation.setup import Setup, set_up_on_modes
 from cutting.edge_segments.segments import period_angle
 from dynamics.modal.modes import Mode
 
-#: periods in which the cut takes hold, and periods that are watched after that, at the least
+#: periods of the force ramp, and periods that are watched after that, at the least
 _RAMP_PERIODS = 40
 _WATCHED_PERIODS = 120
 #: time constants of the slowest mode in both together, and the most periods
@@ -112,7 +112,7 @@ def simulated_multiplier(case: Case, modes: tuple[Mode, ...]) -> SimulatedMultip
 
 
 def _periods(setup: Setup, ramp: int, count: int) -> NDArray[np.float64]:
-    """Motion (k, n, 3), m, over `count` periods; in the first of them the cut takes hold.
+    """Motion (k, n, 3), m, over `count` periods; the first of them is the force ramp.
 
     There are fewer where the tool leaves the range of the model.
     """
@@ -154,7 +154,7 @@ def motion_of(
 ) -> tuple[NDArray[np.float64], int]:
     """Displacement (steps + 1, 3) of the tool, m, and the steps that were done.
 
-    Of a set-up with a delayed chip, for one run. The cut takes hold within `ramp` steps; every mode
+    Of a set-up with a delayed chip, for one run. The force ramp takes `ramp` steps; every mode
     is displaced by the perturbation, m, at the start.
     """
     displace_modes(setup, perturbation)

@@ -45,7 +45,7 @@ def follow(
 ) -> LyapunovRecord:
     """Follow a cut through its force ramp and on, a perturbed run and one from rest beside it.
 
-    The cut takes hold within `hold` turns and is watched for `watch` after that; the period is that
+    The force ramp takes `hold` revolutions, `watch` more are watched; the period is that
     of the variation, turns.
     """
     leader, perturbed, rest = (FollowedRun(case, modes, turns) for turns in (hold, hold, 0))

@@ -81,7 +81,7 @@ class AxisFit:
 
     model: AxisModel  # with the fitted values
     estimates: dict[str, Estimate]  # fitted parameters with 95 % intervals
-    #: rms of what is left of the judged low-passed effort, over its deviation
+    #: rms of the residual of the judged low-passed effort, over its deviation
     relative_residual: float
     unsupported: tuple[str, ...]  # parameters that the records do not decide
     agreeing_starts: int  # starts of the search that ended at this optimum

@@ -46,7 +46,7 @@ class LinearFriction:
     #: fitted terms: inertia (kg or kg m^2), viscous (N s/m or N m s), coulomb, offset (N, N m)
     estimates: dict[str, Estimate]
     fixed: dict[str, float]  # terms that were given
-    residual: float  # rms of what is left of the low-passed effort, N or N m
+    residual: float  # rms of the residual of the low-passed effort, N or N m
     relative_residual: float  # over the standard deviation of the low-passed effort
     #: share of noise in the variance of the derived acceleration: about the fraction by which the
     #: inertia comes out too small; 0 where acceleration was measured
