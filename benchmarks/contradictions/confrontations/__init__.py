@@ -1,0 +1,1 @@
+"""One module for each pair of ways to a number."""

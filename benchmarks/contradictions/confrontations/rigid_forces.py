@@ -1,0 +1,88 @@
+"""Forces of a rigid tool: the time loop against quadrature along the edge."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from benchmarks.contradictions.confrontation import Comparison, Confrontation, Document, relative
+from benchmarks.contradictions.drawing.cut import any_cut
+from benchmarks.contradictions.drawing.material import any_material
+from benchmarks.contradictions.drawing.tool import any_tool
+from benchmarks.contradictions.edge_quadrature import RigidCut
+from chatter.description.case import Case
+from chatter.simulation.simulate import simulate
+
+_COMPONENTS = ("Fx, N", "Fy, N", "Fz, N", "torque, N m")
+#: shares of the mean resultant and of the peak resultant; torque of its own mean and peak
+_MEAN, _PEAK = 0.005, 0.01
+#: angles at which whole courses are compared, besides those of the peaks
+_ANGLES = 160
+
+
+def draw_rigid(rng: np.random.Generator) -> Document:
+    """Any rigid tool in any cut, with the delayed chip."""
+    tool = any_tool(rng)
+    return {
+        "tool": tool,
+        "material": any_material(rng),
+        "cut": any_cut(rng, tool),
+        "simulation": {"revolutions": 2},
+    }
+
+
+def compare_forces(document: Document) -> list[Comparison]:
+    """Mean and peak forces and torque of the simulation against the quadrature."""
+    case = Case.from_dict(document)
+    result = simulate(case)
+    settled = result.settled
+    simulated = np.column_stack([result.force, result.torque])[settled].T
+    angles = result.spindle_angle[settled]
+    rigid = RigidCut(case)
+    mean = rigid.mean()
+    scale = [float(np.linalg.norm(mean[:3]))] * 3 + [float(mean[3])]
+    found = [
+        relative(f"mean {name}", simulated[k].mean(), mean[k], _MEAN, scale[k])
+        for k, name in enumerate(_COMPONENTS)
+    ]
+    # angles of the peaks, their neighbours, and others spread over the revolution
+    peaks = np.argmax(np.abs(simulated), axis=1)
+    spread = np.linspace(0, angles.size - 1, _ANGLES).astype(int)
+    near = (peaks[:, None] + np.arange(-2, 3)).ravel()
+    at = np.unique(np.mod(np.concatenate([near, spread]), angles.size))
+    course = rigid.at(angles[at])
+    highest = np.linalg.norm(course[:3], axis=0).max()
+    scale = [highest, highest, highest, float(np.abs(course[3]).max())]
+    for k, name in enumerate(_COMPONENTS):
+        found.append(_peak(name, simulated[k], course[k], scale[k], rigid.jumps))
+    if not rigid.jumps:
+        for k, name in enumerate(_COMPONENTS):
+            worst = int(np.argmax(np.abs(simulated[k][at] - course[k])))
+            found.append(
+                relative(
+                    f"course of {name}", simulated[k][at[worst]], course[k][worst], _PEAK, scale[k]
+                )
+            )
+    return found
+
+
+def _peak(
+    name: str, simulated: np.ndarray, course: np.ndarray, scale: float, jumps: bool
+) -> Comparison:
+    """Largest magnitudes; within a jump the simulation has the mean over a step."""
+    one, other = float(np.abs(simulated).max()), float(np.abs(course).max())
+    allowed = _PEAK * scale
+    if jumps:
+        # between the last sample within the arc and the jump itself
+        allowed += float(np.abs(np.diff(course)).min(initial=0.0)) + 0.015 * scale
+    return Comparison(f"peak {name}", one, other, allowed)
+
+
+RIGID_FORCES = Confrontation(
+    name="rigid forces",
+    ways="time loop with the delayed chip; quadrature along the edge from the definitions",
+    stated="0.5 % of the mean and 1 % of the peak resultant: what the slices are chosen for; "
+    "an edge that enters all at once is sampled once a step, 1.5 % more of the peak",
+    weight=4.0,
+    draw=draw_rigid,
+    compare=compare_forces,
+)
