@@ -209,6 +209,9 @@ def _clear(point):
     for axis in range(3):
         point.force[axis] = 0.0
         point.sample[axis] = 0.0
+        point.blur[axis] = 0.0
+        point.jump[0, axis] = 0.0
+        point.jump[1, axis] = 0.0
     point.torque[0] = 0.0
     point.contact[0] = 0.0
 

@@ -9,8 +9,13 @@ from numpy.typing import NDArray
 from cutting.chip.tool_point import ToolPoint
 from cutting.compiled import INLINED
 
-#: columns of the record of a cut
-COLUMNS = ("Fx", "Fy", "Fz", "x", "y", "z", "torque")
+#: columns of the record of a cut; mean force and largest size of each force are those since the
+#: row before
+COLUMNS = (
+    *("Fx", "Fy", "Fz", "x", "y", "z", "torque"),
+    *("mean Fx", "mean Fy", "mean Fz", "largest Fx", "largest Fy", "largest Fz"),
+)
+_MEAN, _LARGEST = 7, 10
 
 
 class CutRecord(NamedTuple):
@@ -20,6 +25,15 @@ class CutRecord(NamedTuple):
     first: int  # step at whose beginning the first row stands
     point: ToolPoint
     rows: NDArray[np.float64]  # see COLUMNS, (rows, columns)
+    since: NDArray[np.float64]  # sum of mean forces and largest force since the last row, N, (2, 3)
+    samples: NDArray[np.float64]  # force at the last three steps, the newest first, N, (3, 3)
+
+
+def cut_record(point: ToolPoint, rows: int, stride: int, first: int) -> CutRecord:
+    """Return an empty record at a tool point."""
+    return CutRecord(
+        stride, first, point, np.zeros((rows, len(COLUMNS))), np.zeros((2, 3)), np.zeros((3, 3))
+    )
 
 
 class PortRecord(NamedTuple):
@@ -48,14 +62,50 @@ def _row(group, clock):
 
 
 @register_jitable(**INLINED)
+def _between_steps(oldest, older, old, new):
+    """Extreme of a signal with a kink between the middle two of four steps; else the third.
+
+    The lines through the first two and through the last two meet at the kink.
+    """
+    rise, fall = older - oldest, new - old
+    if rise * fall >= 0.0:
+        return old
+    share = (old - older - fall) / (rise - fall)
+    return older + share * rise if 0.0 < share < 1.0 else old
+
+
+@register_jitable(**INLINED)
+def _follow_force(group):
+    """Take mean and largest force of the step into account."""
+    point, samples = group.point, group.samples
+    for axis in range(3):
+        now = point.sample[axis]
+        group.since[0, axis] += now + point.blur[axis]
+        kink = _between_steps(samples[2, axis], samples[1, axis], samples[0, axis], now)
+        before, after = now + point.jump[0, axis], now + point.jump[1, axis]
+        largest = max(max(abs(now), abs(kink)), max(abs(before), abs(after)))
+        group.since[1, axis] = max(group.since[1, axis], largest)
+        samples[2, axis] = samples[1, axis]
+        samples[1, axis] = samples[0, axis]
+        samples[0, axis] = now
+
+
+@register_jitable(**INLINED)
 def cut_record_commit(group, bus, clock):  # noqa: ARG001
     """Write the tool point at the end of the step."""
+    if clock.step + 1 < group.first:
+        return
+    _follow_force(group)
     row = _row(group, clock)
     if row < 0:
         return
     for axis in range(3):
         group.rows[row, axis] = group.point.sample[axis]
         group.rows[row, 3 + axis] = group.point.displacement[axis]
+        group.rows[row, _MEAN + axis] = group.since[0, axis] / group.stride
+        group.rows[row, _LARGEST + axis] = group.since[1, axis]
+        group.since[0, axis] = 0.0
+        group.since[1, axis] = 0.0
     group.rows[row, 6] = group.point.torque[0]
 
 

@@ -18,7 +18,7 @@ from chatter.engine.cut import (
 )
 from chatter.engine.interruption import interruptions_deferred
 from chatter.engine.loop import Laws, run
-from chatter.engine.record import COLUMNS, CutRecord, PortRecord, port_record
+from chatter.engine.record import PortRecord, cut_record, port_record
 from chatter.simulation.carved_workpiece import FollowingStock
 from chatter.simulation.setup import Setup
 from chatter.simulation.spindle import bins_at, counted_bins, prescribed_path, prescribed_spindle
@@ -58,9 +58,10 @@ class CutRun:
 
     def record(self, stride: int, first: int, steps: int) -> None:
         """Begin a record of the tool point, from a step on over so many."""
-        self.rows = np.zeros((steps // stride + 1, len(COLUMNS)))
+        record = cut_record(self.point, steps // stride + 1, stride, first)
+        self.rows = record.rows
         ports = () if self.ports is None else (self.ports,)
-        self._observers = (CutRecord(stride, first, self.point, self.rows), *ports)
+        self._observers = (record, *ports)
 
     def _run_in_the_air(self) -> None:
         """Let a machine come to its feed."""

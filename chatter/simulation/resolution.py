@@ -5,11 +5,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from cutting.engagement.immersion import slice_engagement
-from cutting.tool.cutter import Cutter, slice_counts
+from cutting.tool.cutter import Cutter
+from cutting.tool.slice_bounds import SliceLimits, slice_bounds
 from dynamics.modal.modes import Mode
 
 #: steps within a period of the highest mode: where it leaves the chip, the moment counts
@@ -25,18 +27,23 @@ _MOST_SLICES = 5000
 _LEAST_TURNS = 40.0
 _MOST_TURNS = 400.0
 _TIME_CONSTANTS = 12.0
-#: lag within a slice, rad, by the kind of chip: layers of a carved workpiece are cut as a whole
-LARGEST_LAG = {"delay": 0.05, "dexel": 0.01, "voxel": 0.01}
+#: what may change within a slice, by the kind of chip: layers of a carved workpiece are cut as a
+#: whole
+_LIMITS = {
+    "delay": SliceLimits(lag=0.05, tilt=math.radians(5.0), arc=1.0 / 16.0),
+    "dexel": SliceLimits(lag=0.01, tilt=math.radians(5.0), arc=1.0 / 64.0),
+    "voxel": SliceLimits(lag=0.01, tilt=math.radians(5.0), arc=1.0 / 64.0),
+}
 #: rows of the record, at the most
 _MOST_ROWS = 120_000
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Resolution:
     """Steps and slices of a run."""
 
     steps_per_revolution: int  # time steps, and bins of the surface memory
-    counts: tuple[int, int]  # slices of the corner and of the straight edge
+    bounds: NDArray[np.float64]  # heights between which the slices of the edge lie, m, (L + 1,)
     revolutions: float  # length of the run
     stride: int  # steps from one row of the record to the next
 
@@ -73,17 +80,29 @@ def resolution_of(case: Case, cutter: Cutter, modes: Sequence[Mode]) -> Resoluti
     if section is None or not section.steps:
         steps = _evenly_recorded(steps, turns, whole)
     steps = _divisible(steps, whole)
+    total = max(1, round(turns * steps))
+    return Resolution(steps, bounds_of(case, cutter), turns, _stride(steps, total))
+
+
+def bounds_of(case: Case, cutter: Cutter) -> NDArray[np.float64]:
+    """Heights (L + 1,) between which the slices of the edge lie, m.
+
+    They are graded over what of the edge is in the cut of [cut]; a stock may be anywhere.
+    """
+    section = case.simulation
     chip = section.chip if section else "delay"
-    corner, straight = slice_counts(cutter, case.cut.axial_depth, LARGEST_LAG[chip])
-    if section and section.slices and straight:
-        straight = section.slices
-    if corner + straight > _MOST_SLICES:
+    wall = None
+    if case.cut.mode != "slot" and case.stock is None:
+        wall = cutter.radius - case.width_of_cut
+    bounds = slice_bounds(
+        cutter, case.cut.axial_depth, wall, _LIMITS[chip], section.slices if section else None
+    )
+    if bounds.size - 1 > _MOST_SLICES:
         raise InputError(
-            f"{case.name}: tool: {corner + straight:.3g} slices would be needed for the lag of the "
+            f"{case.name}: tool: {bounds.size - 1:.3g} slices would be needed for the lag of the "
             f"helix or the waves of the edge; at most {_MOST_SLICES} are allowed"
         )
-    total = max(1, round(turns * steps))
-    return Resolution(steps, (corner, straight), turns, _stride(steps, total))
+    return bounds
 
 
 def steps_per_revolution(

@@ -37,9 +37,10 @@ class SimulationResult:
     ----------
     setup : Setup
         Case, tool, slices and resolution of the run; its groups hold the final state.
-    rows : (n, 7) array of float
+    rows : (n, 13) array of float
         Record: force on the tool (x, y, z), N; displacement of the tool against the workpiece
-        (x, y, z), m; torque on the spindle, N m.
+        (x, y, z), m; torque on the spindle, N m; mean force and largest size of each force since
+        the row before, N.
     energy : dict
         Work of the cutting force on the structure, energy dissipated in it and stored at the end,
         J.
@@ -85,6 +86,21 @@ class SimulationResult:
     def force(self) -> NDArray[np.float64]:
         """Force (n, 3) on the tool, N."""
         return self.rows[:, 0:3]
+
+    @cached_property
+    def mean_force(self) -> NDArray[np.float64]:
+        """Mean force (3,) on the tool over the settled part of the run, N, between rows as well."""
+        settled = self.settled
+        if self.case.dynamometer is not None or len(self.rows) < 2:
+            return self.force[settled].mean(axis=0)
+        return self.rows[settled.start + 1 : settled.stop + 1, 7:10].mean(axis=0)
+
+    @cached_property
+    def peak_force(self) -> NDArray[np.float64]:
+        """Largest size (3,) of each force on the tool, N, between rows as well."""
+        if self.case.dynamometer is not None:
+            return np.abs(self.force).max(axis=0)
+        return self.rows[:, 10:13].max(axis=0)
 
     @property
     def displacement(self) -> NDArray[np.float64]:
@@ -140,12 +156,8 @@ class SimulationResult:
             **self._verdict(),
             "spindle_speed_rpm": rpm(cut.spindle_speed),
             "axial_depth_mm": cut.axial_depth * 1e3,
-            "peak_force_N": {
-                name: float(np.abs(self.force[:, axis]).max()) for axis, name in enumerate(names)
-            },
-            "mean_force_N": {
-                name: float(self.force[settled, axis].mean()) for axis, name in enumerate(names)
-            },
+            "peak_force_N": dict(zip(names, map(float, self.peak_force), strict=True)),
+            "mean_force_N": dict(zip(names, map(float, self.mean_force), strict=True)),
             "peak_resultant_N": float(np.linalg.norm(self.force, axis=1).max()),
             "peak_displacement_um": float(np.linalg.norm(self.displacement, axis=1).max() * 1e6),
             "power": {
@@ -159,7 +171,7 @@ class SimulationResult:
             "resolution": {
                 "chip": self.case.simulation.chip if self.case.simulation else "delay",
                 "steps_per_revolution": self.setup.resolution.steps_per_revolution,
-                "slices": int(sum(self.setup.resolution.counts)),
+                "slices": len(self.setup.slices.height),
                 "time_step_us": self.setup.step * 1e6,
             },
             **self._carving(),

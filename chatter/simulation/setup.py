@@ -23,9 +23,9 @@ from chatter.simulation.workpiece import REVOLUTIONS_BEFORE, discrete_cut
 from cutting.chip.delayed_chip import DelayedCut
 from cutting.chip.discrete_chip import DiscreteCut
 from cutting.chip.regeneration import delayed_cut
-from cutting.engagement.immersion import slice_engagement
+from cutting.engagement.immersion import slice_arcs, slice_engagement
 from cutting.process_damping.contact import ToolContact
-from cutting.tool.cutter import Cutter, EdgeSlices, edge_slices
+from cutting.tool.cutter import Cutter, EdgeSlices, slices_between
 from dynamics.modal.modes import Mode
 
 #: the model of the chip holds while the tool moves by less than this share of its radius
@@ -124,7 +124,7 @@ def check_case(case: Case) -> None:
 def _compiled(case: Case, cutter: Cutter, structure: StructureInTime) -> Setup:
     """Compile tool, chip and contact on a structure."""
     resolution = structure.resolution
-    slices = edge_slices(cutter, case.cut.axial_depth, resolution.counts)
+    slices = slices_between(cutter, resolution.bounds)
     _refuse_crossing_flutes(case, slices)
     _refuse_out_of_reach(case, slices)
     spindle, path = spindle_of(case), path_of(case)
@@ -223,7 +223,12 @@ def _delayed(
     bins = resolution.steps_per_revolution
     return delayed_cut(
         slices,
-        slice_engagement(case.cut.mode, case.width_of_cut, cutter.radius, slices.radius),
+        slice_arcs(
+            case.cut.mode,
+            case.width_of_cut,
+            cutter.radius,
+            np.stack([slices.lower_radius, slices.upper_radius], axis=1),
+        ),
         edge_law(case),
         flank_table(case, slices.radius, 2.0 * math.pi / bins),
         bins,

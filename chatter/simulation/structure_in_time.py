@@ -13,14 +13,14 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.engine.loop_stability import refuse_unstable_control
 from chatter.simulation.resolution import (
-    LARGEST_LAG,
     Resolution,
+    bounds_of,
     resolution_of,
     revolutions_of,
     shortest_arc,
 )
 from chatter.simulation.spindle import path_of
-from cutting.tool.cutter import Cutter, slice_counts
+from cutting.tool.cutter import Cutter
 from dynamics.control.sampling import ControlError
 from dynamics.machine.tables import StructureTables, machine_tables, modal_tables
 from dynamics.modal.modes import Mode
@@ -160,14 +160,9 @@ def _resolution(case: Case, cutter: Cutter, modes: tuple, step: float) -> Resolu
     a_turn = 2.0 * math.pi / case.cut.spindle_speed
     by = math.lcm(4, case.tool.teeth)
     bins = math.ceil(a_turn / step / by) * by
-    section = case.simulation
-    chip = section.chip if section else "delay"
-    corner, straight = slice_counts(cutter, case.cut.axial_depth, LARGEST_LAG[chip])
-    if section and section.slices and straight:
-        straight = section.slices
     turns = revolutions_of(case, modes)
     steps = turns * a_turn / step
-    return Resolution(bins, (corner, straight), turns, max(1, math.ceil(steps / _MOST_ROWS)))
+    return Resolution(bins, bounds_of(case, cutter), turns, max(1, math.ceil(steps / _MOST_ROWS)))
 
 
 def _set_points(

@@ -1,7 +1,7 @@
 """Chip thickness from the true positions of the edge against what every earlier tooth left.
 
 The motion of the tool is kept over the last turn, at every bin of the spindle angle. An edge at a
-place meets what each tooth left there within the turn before it, at the moment when that tooth
+position meets what each tooth left there within the turn before it, at the moment when that tooth
 passed; the outermost of them bounds the chip, so that a tooth that stayed in the air leaves the
 work of the earlier ones. What lies more than a turn back is forgotten. The memory does not grow
 with the length of the run, nor with the number of slices. Edges that are partly in the cut are
@@ -9,29 +9,19 @@ taken in part, and each slice is integrated by two Gauss points, so that forces 
 converge with the fourth power of the slice height and vary smoothly in time.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from cutting.chip.delayed_edge import at_jump, chip_at, part_of_slice, straight_mean, whole_slice
 from cutting.compiled import INLINED, by_table
-from cutting.force.laws import edge_force
 from cutting.process_damping.flank import BARE, LEAVES, end_contact, flank_force, store_surface
-from cutting.tool.edge_table import (
-    GAUSS_POINT,
-    EdgeTable,
-    direction,
-    force_on_tool,
-    signed_bin,
-    spindle_bin,
-)
+from cutting.tool.edge_table import EdgeTable, direction, force_on_tool, signed_bin, spindle_bin
 
 #: an edge that is this many bins outside the arc has left the cut
 _MARGIN = 2.0
-#: half a span, as a share of the distance between its Gauss points
-_HALF_SPAN = 0.5 / GAUSS_POINT
 #: a straight edge is looked at this many bins late, so that it is on one side of a jump
 _NUDGE = 1e-6
 
@@ -42,14 +32,17 @@ class DelayedCut(NamedTuple):
     edges: EdgeTable
     law: NamedTuple
     flank: NamedTuple
-    entry: NDArray[np.float64]  # of each slice, bins, (L,)
+    entry: NDArray[np.float64]  # of the middle of each slice, bins, (L,)
     exit: NDArray[np.float64]  # bins, (L,)
+    entry_rise: NDArray[np.float64]  # from the middle to the upper end, bins, (L,)
+    exit_rise: NDArray[np.float64]  # bins, (L,)
     arc: NDArray[np.float64]  # first entry and last exit of all slices, bins, (2,)
     reach: NDArray[np.float64]  # of an edge behind and before its first slice, bins, (N, 2)
     helices: int  # 1 where all flutes have one helix, else the number of slices
     earlier: NDArray[np.int64]  # tooth of the k-th pass back, (N, L, N)
     delay: NDArray[np.float64]  # turn of the spindle since that pass, bins, (N, helices, N)
-    radial_offset: NDArray[np.float64]  # of the edge behind that of the pass, m, (N, L, N)
+    radial_offset: NDArray[np.float64]  # of the edge behind that of the pass in the middle of the
+    # slice, and its change up to the upper end, m, (N, L, N, 2)
     history: NDArray[np.float64]  # x, y, z of the tool against the work at each bin of the last
     # turn, path and vibration, m, and its change to the next bin by its slope, m, (2, bins, 3)
     since: NDArray[np.float64]  # scratch: motion since each pass, m, (N, 3)
@@ -89,144 +82,6 @@ def _motion_since(cut, tooth, piece, rotation, now):
 
 
 @register_jitable(**INLINED)
-def _chip(cut, tooth, piece, sine, cosine):
-    """Chip thickness of an edge at an angle, m; negative in the air."""
-    sk, ck = cut.edges.sine_immersion[piece], cut.edges.cosine_immersion[piece]
-    across, along = sk * sine, sk * cosine
-    since, radial_offset = cut.since, cut.radial_offset
-    thinnest = math.inf
-    for k in range(since.shape[0]):
-        chip = since[k, 0] * across + since[k, 1] * along - since[k, 2] * ck
-        chip -= radial_offset[tooth, piece, k]
-        if chip < thinnest:
-            thinnest = chip
-    return thinnest
-
-
-@register_jitable(**INLINED)
-def _add_edge_force(cut, tooth, piece, sine, cosine, chip, length, total):
-    """Add the force and torque of a length of edge to a total (x, y, z, torque, length)."""
-    ft, fr, fa = edge_force(cut.law, tooth, chip)
-    fx, fy, fz = force_on_tool(cut.edges, piece, sine, cosine, ft, fr, fa)
-    return (
-        total[0] + length * fx,
-        total[1] + length * fy,
-        total[2] + length * fz,
-        total[3] + length * ft * cut.edges.radius[piece],
-        total[4] + length,
-    )
-
-
-@register_jitable(**INLINED)
-def _at_ends(first, last):
-    """Chip at the ends of a span whose Gauss points are known, as if it varied linearly."""
-    middle, rise = 0.5 * (first + last), _HALF_SPAN * (last - first)
-    return middle - rise, middle + rise
-
-
-@register_jitable(**INLINED)
-def _chip_since(cut, tooth, piece, sine, cosine, k):
-    """Chip thickness against what the k-th pass back left, m."""
-    sk, ck = cut.edges.sine_immersion[piece], cut.edges.cosine_immersion[piece]
-    since = cut.since
-    chip = since[k, 0] * (sk * sine) + since[k, 1] * (sk * cosine) - since[k, 2] * ck
-    return chip - cut.radial_offset[tooth, piece, k]
-
-
-@register_jitable(**INLINED)
-def _whole_slice(cut, tooth, piece, rotation):
-    """Force of a slice that is wholly inside the arc; second value: none of it in the air."""
-    total = (0.0, 0.0, 0.0, 0.0, 0.0)
-    half = 0.5 * cut.edges.edge_length[piece]
-    s1, c1 = direction(cut.edges, tooth, piece, 1, rotation)
-    s2, c2 = direction(cut.edges, tooth, piece, 2, rotation)
-    sk, ck = cut.edges.sine_immersion[piece], cut.edges.cosine_immersion[piece]
-    chip1 = chip2 = at_low = at_high = best = math.inf
-    # a loop without branches: most of all the time goes here
-    for k in range(cut.since.shape[0]):
-        x, y = sk * cut.since[k, 0], sk * cut.since[k, 1]
-        beside = cut.since[k, 2] * ck + cut.radial_offset[tooth, piece, k]
-        first, last = x * s1 + y * c1 - beside, x * s2 + y * c2 - beside
-        low, high = _at_ends(first, last)
-        chip1, chip2 = min(chip1, first), min(chip2, last)
-        at_low, at_high = min(at_low, low), min(at_high, high)
-        best = min(best, max(low, high))
-    if best <= 0.0:
-        return total, True
-    if at_low > 0.0 and at_high > 0.0:
-        total = _add_edge_force(cut, tooth, piece, s1, c1, chip1, half, total)
-        total = _add_edge_force(cut, tooth, piece, s2, c2, chip2, half, total)
-        return total, True
-    return total, False
-
-
-@register_jitable(**INLINED)
-def _clear_of_air(cut, tooth, piece, low, high):
-    """Part of a span of places in which the chip is positive against every earlier pass.
-
-    Against each of them it varies nearly linearly; the thinnest of all has kinks, often where it
-    vanishes.
-    """
-    middle, half = 0.5 * (low + high), 0.5 * (high - low)
-    angle = 2.0 * math.pi / cut.edges.bins
-    first, last = middle - GAUSS_POINT * half, middle + GAUSS_POINT * half
-    s1, c1 = math.sin(first * angle), math.cos(first * angle)
-    s2, c2 = math.sin(last * angle), math.cos(last * angle)
-    begin, end = low, high
-    for k in range(cut.since.shape[0]):
-        at_low, at_high = _at_ends(
-            _chip_since(cut, tooth, piece, s1, c1, k), _chip_since(cut, tooth, piece, s2, c2, k)
-        )
-        if at_low <= 0.0 and at_high <= 0.0:
-            return low, low
-        if at_low > 0.0 and at_high > 0.0:
-            continue
-        root = low + at_low / (at_low - at_high) * (high - low)
-        if at_high > 0.0:
-            begin = max(begin, root)
-        else:
-            end = min(end, root)
-    if end < begin:
-        return low, low
-    return begin, end
-
-
-@register_jitable(**INLINED)
-def _part_of_slice(cut, tooth, piece, low, high, width):
-    """Force of the part of a slice between two places, of a whole that is `width` bins wide."""
-    total = (0.0, 0.0, 0.0, 0.0, 0.0)
-    if high < low:
-        return total
-    clear_low, clear_high = _clear_of_air(cut, tooth, piece, low, high)
-    share = 1.0
-    if width > 0.0:
-        share = (clear_high - clear_low) / width
-    elif clear_high < clear_low:
-        return total
-    if share <= 0.0:
-        return total
-    angle = 2.0 * math.pi / cut.edges.bins
-    middle, half = 0.5 * (clear_low + clear_high), 0.5 * (clear_high - clear_low)
-    length = 0.5 * share * cut.edges.edge_length[piece]
-    for side in range(2):
-        position = middle + (2.0 * side - 1.0) * GAUSS_POINT * half
-        sine, cosine = math.sin(position * angle), math.cos(position * angle)
-        chip = _chip(cut, tooth, piece, sine, cosine)
-        if chip > 0.0:
-            total = _add_edge_force(cut, tooth, piece, sine, cosine, chip, length, total)
-    return total
-
-
-@register_jitable(**INLINED)
-def _straight_mean(cut, tooth, piece, position, rotation):
-    """Force of a straight edge over the turn of a step, so that a jump keeps its impulse."""
-    half = 0.5 * rotation.advance
-    low = max(position - half, cut.entry[piece])
-    high = min(position + half, cut.exit[piece])
-    return _part_of_slice(cut, tooth, piece, low, high, rotation.advance)
-
-
-@register_jitable(**INLINED)
 def _outward(cut, tooth, piece, sine, cosine, point):
     """Place of the edge along its outward normal, m, from its nominal path."""
     sk, ck = cut.edges.sine_immersion[piece], cut.edges.cosine_immersion[piece]
@@ -247,7 +102,7 @@ def _on_flank(flank, cut, tooth, piece, rotation, point, total):
     own = _outward(cut, tooth, piece, sine, cosine, point)
     speed = rotation.speed * cut.edges.radius[cut.edges.radius.shape[0] - 1]
     ft, fr = flank_force(flank, tooth, piece, own, rate, speed)
-    fx, fy, fz = force_on_tool(cut.edges, piece, sine, cosine, ft, fr, 0.0)
+    fx, fy, fz = force_on_tool(sk, ck, sine, cosine, ft, fr, 0.0)
     return (
         total[0] + length * fx,
         total[1] + length * fy,
@@ -286,6 +141,7 @@ def delayed_forces(group, rotation, point):
     cut, edges = group, group.edges
     now = _place_now(rotation, point)
     teeth, pieces = edges.whole.shape
+    advance = rotation.advance
     sx = sy = sz = mx = my = mz = torque = contact = 0.0
     for tooth in range(teeth):
         if _all_in_air(cut, tooth, rotation):
@@ -294,29 +150,37 @@ def delayed_forces(group, rotation, point):
         for piece in range(pieces):
             whole, part = spindle_bin(edges, tooth, piece, rotation.whole, rotation.part)
             position = signed_bin(edges, whole, part)
-            half = edges.half_width[tooth, piece]
             entry, leave = cut.entry[piece], cut.exit[piece]
-            straight = half < 0.5 * rotation.advance
-            blur = 0.5 * rotation.advance if straight else half
-            if position + blur < entry or position - blur > leave:
+            at_entry = abs(edges.half_lag[tooth, piece] + cut.entry_rise[piece])
+            at_exit = abs(edges.half_lag[tooth, piece] + cut.exit_rise[piece])
+            steep_in, steep_out = at_entry < 0.5 * advance, at_exit < 0.5 * advance
+            # half the turn of the spindle in which a slice enters or leaves; a jump is seen late
+            entering = advance if steep_in else at_entry
+            leaving = advance if steep_out else at_exit
+            if position + entering < entry or position - leaving > leave:
                 continue
             if cut.helices > 1 or not looked_back:
                 _motion_since(cut, tooth, piece if cut.helices > 1 else 0, rotation, now)
                 looked_back = True
             settled = False
             force = (0.0, 0.0, 0.0, 0.0, 0.0)
-            if position - blur >= entry and position + blur <= leave:
-                force, settled = _whole_slice(cut, tooth, piece, rotation)
+            inside, ahead = position - entering >= entry, position + leaving <= leave
+            if inside and ahead:
+                force, settled = whole_slice(cut, tooth, piece, rotation)
             if not settled:
                 # at a jump the limit from the right: one tooth leaves as another one enters
-                seen = position + _NUDGE if straight else position
-                low, high = max(seen - half, entry), min(seen + half, leave)
-                force = _part_of_slice(cut, tooth, piece, low, high, 2.0 * half)
+                seen = position + _NUDGE if steep_in or steep_out else position
+                force = part_of_slice(cut, tooth, piece, seen)
             force = _add_flank_force(cut.flank, cut, tooth, piece, rotation, point, force)
             mean = force
-            if straight and not settled:
-                mean = _straight_mean(cut, tooth, piece, position, rotation)
-                mean = _add_flank_force(cut.flank, cut, tooth, piece, rotation, point, mean)
+            if not settled and (steep_in or steep_out):
+                if (steep_in or inside) and (steep_out or ahead):
+                    mean = straight_mean(cut, tooth, piece, position, rotation)
+                    mean = _add_flank_force(cut.flank, cut, tooth, piece, rotation, point, mean)
+                if steep_in and position - advance < entry <= position + _NUDGE:
+                    _note_jump(point, 0, at_jump(cut, tooth, piece, entry), force)
+                if steep_out and position - advance < leave <= position + _NUDGE:
+                    _note_jump(point, 1, at_jump(cut, tooth, piece, leave), force)
             sx += force[0]
             sy += force[1]
             sz += force[2]
@@ -331,8 +195,22 @@ def delayed_forces(group, rotation, point):
     point.force[0] += mx
     point.force[1] += my
     point.force[2] += mz
+    point.blur[0] += mx - sx
+    point.blur[1] += my - sy
+    point.blur[2] += mz - sz
     point.torque[0] += torque
     point.contact[0] += contact
+
+
+@register_jitable(**INLINED)
+def _note_jump(point, side, at, force):
+    """Keep what the force is before (0) and after (1) the jumps of a step, less that at its end.
+
+    An edge that enters (side 0) is not there before, one that leaves (side 1) not after.
+    """
+    for axis in range(3):
+        point.jump[1 - side, axis] += at[axis] - force[axis]
+        point.jump[side, axis] -= force[axis]
 
 
 @register_jitable(**INLINED)
@@ -349,7 +227,7 @@ def _vibration(point, axis, share, step):
 
 @register_jitable(**INLINED)
 def _store_motion(cut, rotation, point):
-    """Keep the place of the tool at the bins that the spindle has passed in the step."""
+    """Keep the position of the tool at the bins that the spindle has passed in the step."""
     bins = cut.edges.bins
     crossed = int(rotation.part_before + rotation.advance)
     for k in range(1, crossed + 1):
@@ -377,8 +255,10 @@ def _store_surface(cut, tooth, piece, position, rotation, point):
         return
     sine, cosine = direction(cut.edges, tooth, piece, 0, rotation)
     own = _outward(cut, tooth, piece, sine, cosine, point)
+    sk, ck = cut.edges.sine_immersion[piece], cut.edges.cosine_immersion[piece]
+    chip = chip_at(cut, tooth, piece, (sk, ck, 0.0, sine, cosine), 0.0)
     # where the edge is in the air the old surface stays, further out than the edge
-    store_surface(cut.flank, tooth, piece, own - min(_chip(cut, tooth, piece, sine, cosine), 0.0))
+    store_surface(cut.flank, tooth, piece, own - min(chip, 0.0))
 
 
 @register_jitable(**INLINED)

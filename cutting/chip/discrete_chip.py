@@ -104,7 +104,7 @@ def discrete_forces(group, rotation, point):
             own = _outward(edges, tooth, piece, sine, cosine, point)
             ft, fr, fa = edge_force(cut.law, tooth, chip)
             pt, pr = flank_force(cut.flank, tooth, piece, own, rate, speed)
-            force = force_on_tool(edges, piece, sine, cosine, ft + pt, fr + pr, fa)
+            force = force_on_tool(sk, ck, sine, cosine, ft + pt, fr + pr, fa)
             length = edges.edge_length[piece]
             for axis in range(3):
                 point.force[axis] += length * force[axis]

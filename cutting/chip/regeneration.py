@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutting.chip.delayed_chip import DelayedCut
-from cutting.tool.cutter import EdgeSlices
+from cutting.tool.cutter import GAUSS_POINT, EdgeSlices
 from cutting.tool.edge_table import edge_table
 from cutting.tool.tooth_passes import earlier_passes
 
@@ -27,8 +27,9 @@ def delayed_cut(
     Parameters
     ----------
     slices : EdgeSlices
-    arc : pair of (L,) arrays of float
-        Entry and exit angle of each slice, rad; entry above exit where a slice cuts nothing.
+    arc : pair of (L, 2) arrays of float
+        Entry and exit angle of each slice at its lower and upper Gauss point, rad; entry above
+        exit where a slice cuts nothing.
     law, flank
         Tables of the force laws.
     bins : int
@@ -46,15 +47,19 @@ def delayed_cut(
     near = np.round(delay)
     delay = np.where(np.abs(delay - near) < 1e-9 * bins, near, delay)
     alike = np.all(np.abs(delay - delay[:, :1]) < 1e-9 * bins)
-    offset = edges.normal_offset
+    # of the middle of each slice, and its change up to the upper end
+    offset = np.stack([slices.normal_offset, 0.5 * slices.offset_rise], axis=-1)
     pieces = np.arange(offset.shape[1])[None, :, None]
     entry, leave = (angle * bins / _TURN for angle in arc)
+    cutting = np.isfinite(entry[:, 0])
     return DelayedCut(
         edges=edges,
         law=law,
         flank=flank,
-        entry=entry,
-        exit=leave,
+        entry=_middle(entry, cutting),
+        exit=_middle(leave, cutting),
+        entry_rise=_rise(entry, cutting),
+        exit_rise=_rise(leave, cutting),
         arc=np.array([entry.min(), leave.max()]),
         reach=_reach(slices, bins),
         helices=1 if alike else offset.shape[1],
@@ -64,6 +69,21 @@ def delayed_cut(
         history=_history(path),
         since=np.zeros((len(offset), 3)),
     )
+
+
+def _middle(points: NDArray[np.float64], cutting: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Mean (L,) of values at the Gauss points of slices (L, 2); of no cut the value itself."""
+    return np.where(cutting, 0.5 * points[:, 0] + 0.5 * points[:, 1], points[:, 0])
+
+
+def _rise(points: NDArray[np.float64], cutting: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Change (L,) from the middle of slices to their upper ends, of values at Gauss points (L, 2).
+
+    A line through both points keeps the mean of a square, which an arc that grows as a root has.
+    """
+    rise = np.zeros(len(points))
+    rise[cutting] = 0.5 * np.diff(points[cutting], axis=1)[:, 0] / GAUSS_POINT
+    return rise
 
 
 def _history(path: NDArray[np.float64]) -> NDArray[np.float64]:

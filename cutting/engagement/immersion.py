@@ -65,12 +65,44 @@ def slice_engagement(
     """
     if mode == "slot":
         return np.zeros(slice_radius.size), np.full(slice_radius.size, math.pi)
-    cosine = (tool_radius - radial_depth) / slice_radius
+    # a ball has no radius at its tip
+    cosine = (tool_radius - radial_depth) / np.maximum(slice_radius, 1e-300)
     arc = np.arccos(np.clip(cosine, -1.0, 1.0))
     none = cosine >= 1.0
     if mode == "up":
         return np.where(none, np.inf, 0.0), np.where(none, -np.inf, arc)
     return np.where(none, np.inf, math.pi - arc), np.where(none, -np.inf, math.pi)
+
+
+def slice_arcs(
+    mode: MillingMode, radial_depth: float, tool_radius: float, points: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Entry and exit angle at two points of each slice of a tool whose radius varies.
+
+    Parameters
+    ----------
+    mode : {"up", "down", "slot"}
+    radial_depth, tool_radius : float
+        m; the radial depth is not used for a slot.
+    points : (L, 2) array of float
+        Radius at both points, m, alike far from the middle.
+
+    Returns
+    -------
+    pair of (L, 2) arrays of float
+        rad; entry above exit where a slice does not reach the stock with its middle.
+    """
+    entry, leave = (
+        angle.reshape(points.shape)
+        for angle in slice_engagement(mode, radial_depth, tool_radius, points.ravel())
+    )
+    # a point that just does not reach the stock has an arc of no width
+    touch = np.pi if mode == "down" else 0.0
+    entry, leave = (np.where(np.isfinite(angle), angle, touch) for angle in (entry, leave))
+    if mode != "slot":
+        outside = points.mean(axis=1) <= tool_radius - radial_depth
+        entry[outside], leave[outside] = np.inf, -np.inf
+    return entry, leave
 
 
 def cutting_speed(diameter: float, spindle_speed: float) -> float:

@@ -188,8 +188,17 @@ def _slices(cutter: Cutter, depth: float) -> EdgeSlices:
     return edge_slices(cutter, depth, (corner, straight))
 
 
-_OF_SLICE = ("height", "thickness", "radius", "immersion", "edge_length")
-_OF_TOOTH = ("angle", "lag", "normal_offset")
+_OF_SLICE = (
+    "height",
+    "thickness",
+    "radius",
+    "immersion",
+    "edge_length",
+    "tilt",
+    "lower_radius",
+    "upper_radius",
+)
+_OF_TOOTH = ("angle", "lag", "normal_offset", "offset_rise")
 
 
 def slices_at(slices: EdgeSlices, indices: NDArray[np.int64]) -> EdgeSlices:

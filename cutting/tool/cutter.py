@@ -10,8 +10,12 @@ from numpy.typing import NDArray
 _LARGEST_SLICE_LAG = 0.1
 #: a curved profile turns by at most this within a slice, rad
 _LARGEST_SLICE_TURN = math.radians(5.0)
+#: Gauss points of order 2 lie at this share of half the height of a slice
+GAUSS_POINT = 1.0 / math.sqrt(3.0)
 #: slices within one wave of a serrated edge
 _SLICES_A_WAVE = 16
+#: heights within this share of the depth are one
+_SAME_HEIGHT = 1e-9
 
 
 @dataclass(frozen=True)
@@ -113,32 +117,44 @@ class EdgeSlices:
     lag: NDArray[np.float64]  # (N, L), by which the upper end trails the lower one, rad
     #: (N, L), deviation of the edge from its nominal place along its normal, outwards, m
     normal_offset: NDArray[np.float64]
+    #: (N, L), by which it grows up to the upper end as the normal tilts, m
+    offset_rise: NDArray[np.float64]
+    #: (L,), by which the normal tilts from the lower end of the slice to the upper one, rad
+    tilt: NDArray[np.float64]
+    lower_radius: NDArray[np.float64]  # (L,), of the nominal edge at the lower Gauss point, m
+    upper_radius: NDArray[np.float64]  # (L,), at the upper Gauss point, m
 
 
 Part = tuple[NDArray[np.float64], ...]
 
 
-def _corner(cutter: Cutter, top: float, count: int) -> Part:
-    """Slices of equal length along the corner arc from the tip to the height `top`."""
+def _corner(cutter: Cutter, bounds: NDArray[np.float64]) -> Part:
+    """Slices of the corner arc between axial immersion angles, rad."""
     corner = cutter.corner_radius
-    bounds = np.linspace(0.0, math.acos(1.0 - top / corner), count + 1)
     middle = 0.5 * (bounds[1:] + bounds[:-1])
     height = corner * (1.0 - np.cos(middle))
     thickness = corner * -np.diff(np.cos(bounds))
-    radius = cutter.radius - corner + corner * np.sin(middle)
-    return height, thickness, radius, middle, corner * np.diff(bounds)
+    start = cutter.radius - corner
+    radius = start + corner * np.sin(middle)
+    tilt = np.diff(bounds)
+    lower, upper = (
+        start + corner * np.sin(middle + side * 0.5 * tilt) for side in (-GAUSS_POINT, GAUSS_POINT)
+    )
+    return height, thickness, radius, middle, corner * tilt, tilt, lower, upper
 
 
-def _straight(cutter: Cutter, bottom: float, top: float, count: int) -> Part:
-    """Slices of equal height of the straight part of the edge."""
-    bounds = np.linspace(bottom, top, count + 1)
+def _straight(cutter: Cutter, bounds: NDArray[np.float64]) -> Part:
+    """Slices of the straight part of the edge between heights, m."""
     middle = 0.5 * (bounds[1:] + bounds[:-1])
     thickness = np.diff(bounds)
     slope = 1.0 / math.tan(cutter.edge_angle) if cutter.edge_angle < 0.5 * math.pi else 0.0
     start = cutter.radius - cutter.corner_radius * (1.0 - math.sin(cutter.edge_angle))
-    radius = start + slope * (middle - bottom)
-    immersion = np.full(count, cutter.edge_angle)
-    return middle, thickness, radius, immersion, thickness / math.sin(cutter.edge_angle)
+    radius = start + slope * (middle - corner_height(cutter))
+    rise = 0.5 * GAUSS_POINT * slope * thickness
+    immersion = np.full(middle.size, cutter.edge_angle)
+    length = thickness / math.sin(cutter.edge_angle)
+    tilt = np.zeros(middle.size)
+    return middle, thickness, radius, immersion, length, tilt, radius - rise, radius + rise
 
 
 def corner_height(cutter: Cutter) -> float:
@@ -179,13 +195,50 @@ def edge_slices(cutter: Cutter, depth: float, counts: tuple[int, int]) -> EdgeSl
     arc_top = min(depth, corner_height(cutter))
     parts: list[Part] = []
     if corner:
-        parts.append(_corner(cutter, arc_top, corner))
+        last = math.acos(1.0 - arc_top / cutter.corner_radius)
+        parts.append(_corner(cutter, np.linspace(0.0, last, corner + 1)))
     if straight:
-        parts.append(_straight(cutter, arc_top, depth, straight))
-    height, thickness, radius, immersion, length = (
+        parts.append(_straight(cutter, np.linspace(arc_top, depth, straight + 1)))
+    return _of_parts(cutter, parts)
+
+
+def slices_between(cutter: Cutter, bounds: NDArray[np.float64]) -> EdgeSlices:
+    """Cut the edges of a tool into slices between heights.
+
+    Parameters
+    ----------
+    cutter : Cutter
+    bounds : (L + 1,) array of float
+        Heights above the tip in rising order, m; that at which a corner runs into the straight
+        edge is one of them where it lies between the first and the last.
+
+    Returns
+    -------
+    EdgeSlices
+    """
+    top = corner_height(cutter)
+    near = _SAME_HEIGHT * bounds[-1]
+    parts: list[Part] = []
+    corner, straight = bounds[bounds <= top + near], bounds[bounds >= top - near]
+    if corner.size > 1:
+        cosine = 1.0 - np.minimum(corner, top) / cutter.corner_radius
+        parts.append(_corner(cutter, np.arccos(cosine)))
+    if straight.size > 1:
+        parts.append(_straight(cutter, straight))
+    return _of_parts(cutter, parts)
+
+
+def _of_parts(cutter: Cutter, parts: list[Part]) -> EdgeSlices:
+    """Slices of all teeth from those of corner and straight edge."""
+    height, thickness, radius, immersion, length, tilt, lower, upper = (
         np.concatenate(column) for column in zip(*parts, strict=True)
     )
     lag_per_height = np.tan(np.asarray(cutter.helix)) / cutter.radius
+    # the wave of a serrated edge stays that of the middle: teeth then share the chip exactly
+    below, above = (
+        _normal_offset(cutter, height, immersion + side * GAUSS_POINT * tilt)
+        for side in (-0.5, 0.5)
+    )
     return EdgeSlices(
         height=height,
         thickness=thickness,
@@ -195,6 +248,10 @@ def edge_slices(cutter: Cutter, depth: float, counts: tuple[int, int]) -> EdgeSl
         angle=cutter.tooth_angles[:, None] - np.outer(lag_per_height, height),
         lag=np.outer(lag_per_height, thickness),
         normal_offset=_normal_offset(cutter, height, immersion),
+        offset_rise=(above - below) / GAUSS_POINT,
+        tilt=tilt,
+        lower_radius=lower,
+        upper_radius=upper,
     )
 
 

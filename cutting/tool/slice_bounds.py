@@ -1,0 +1,153 @@
+"""Heights between which an edge is cut into slices, graded over what of it is engaged.
+
+Within a slice the lag, the normal of the edge and the angles of entry and exit are taken as linear,
+so a slice is as high as each of them allows.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cutting.tool.cutter import Cutter, corner_height
+
+#: slices within one wave of a serrated edge
+_SLICES_A_WAVE = 16
+#: points at which a part of the edge is looked at
+_POINTS = 600
+#: an edge that is engaged over less than this share of the depth is not
+_LEAST_SHARE = 1e-9
+
+
+@dataclass(frozen=True)
+class SliceLimits:
+    """What may change within a slice.
+
+    Parameters
+    ----------
+    lag : float
+        Of the upper end behind the lower one, rad.
+    tilt : float
+        Of the normal of the edge, rad.
+    arc : float
+        Of the angle in the cut, as a share of the largest one.
+    """
+
+    lag: float
+    tilt: float
+    arc: float
+
+
+def slice_bounds(
+    cutter: Cutter, depth: float, wall: float | None, limits: SliceLimits, count: int | None = None
+) -> NDArray[np.float64]:
+    """Heights between which the slices of an edge lie.
+
+    Parameters
+    ----------
+    cutter : Cutter
+    depth : float
+        Axial depth, m.
+    wall : float or None
+        Distance from the tool axis beyond which the stock of a partial immersion lies, R - a_e,
+        m; None for a slot, or where nothing is known of it.
+    limits : SliceLimits
+    count : int, optional
+        Slices of what is engaged; by default the limits tell.
+
+    Returns
+    -------
+    (L + 1,) array of float
+        Rising from 0 to the depth, m; what lies lower than the engaged part is one slice.
+    """
+    knots = _knots(cutter, depth, wall)
+    parts = [_Part(cutter, low, high, wall, limits) for low, high in itertools.pairwise(knots)]
+    total = sum(part.slices for part in parts)
+    bounds = [np.zeros(1)]
+    for part in parts:
+        wanted = part.slices if count is None or total == 0.0 else part.slices * count / total
+        bounds.append(part.bounds(max(1, math.ceil(wanted - 1e-9)))[1:])
+    return np.concatenate(bounds)
+
+
+def _knots(cutter: Cutter, depth: float, wall: float | None) -> list[float]:
+    """Heights at which something about the edge changes its kind, m."""
+    knots = [0.0, depth]
+    top = corner_height(cutter)
+    between = [top]
+    if wall is not None:
+        between.append(_height_of(cutter, abs(wall)))
+    near = _LEAST_SHARE * depth
+    for height in sorted(between):
+        if all(abs(height - knot) > near for knot in knots) and 0.0 < height < depth:
+            knots.append(height)
+    return sorted(knots)
+
+
+def _height_of(cutter: Cutter, radius: float) -> float:
+    """Height at which the edge has a radius, m; below zero where it is wider everywhere."""
+    corner, angle = cutter.corner_radius, cutter.edge_angle
+    start = cutter.radius - corner
+    if radius <= start:
+        return -1.0
+    if radius <= start + corner * math.sin(angle):
+        sine = (radius - start) / corner
+        return corner * (1.0 - math.sqrt(1.0 - sine * sine))
+    if angle >= 0.5 * math.pi - 1e-9:
+        return math.inf
+    beyond = radius - start - corner * math.sin(angle)
+    return corner_height(cutter) + beyond * math.tan(angle)
+
+
+class _Part:
+    """Part of an edge of one kind, from a height to another, and the slices it needs."""
+
+    def __init__(
+        self, cutter: Cutter, low: float, high: float, wall: float | None, limits: SliceLimits
+    ) -> None:
+        self._low, self._high = low, high
+        on_corner = high <= corner_height(cutter) * (1.0 + _LEAST_SHARE)
+        # close at the lower end, where the arc of an edge that just touches grows as a root
+        share = np.linspace(0.0, 1.0, _POINTS + 1) ** 2
+        if on_corner:
+            corner = cutter.corner_radius
+            ends = [math.acos(1.0 - height / corner) for height in (low, min(high, corner))]
+            tilted = ends[0] + share * (ends[1] - ends[0])
+            self._height = corner * (1.0 - np.cos(tilted))
+            radius = cutter.radius - corner + corner * np.sin(tilted)
+        else:
+            tilted = np.zeros_like(share)
+            self._height = low + share * (high - low)
+            start = cutter.radius - cutter.corner_radius * (1.0 - math.sin(cutter.edge_angle))
+            radius = start + (self._height - corner_height(cutter)) / math.tan(cutter.edge_angle)
+        lag = max(abs(math.tan(helix)) for helix in cutter.helix) / cutter.radius
+        needed = [np.diff(self._height) * lag / limits.lag, np.diff(tilted) / limits.tilt]
+        if wall is not None:
+            arc = np.arccos(np.clip(wall / np.maximum(radius, 1e-300), -1.0, 1.0))
+            if arc.max() <= 0.0:
+                # never in the cut
+                needed = []
+            else:
+                needed.append(np.abs(np.diff(arc)) / (limits.arc * arc.max()))
+        if cutter.serration is not None:
+            needed.append(np.diff(self._height) / cutter.serration.wavelength * _SLICES_A_WAVE)
+        every = np.max(needed, axis=0) if needed else np.zeros(_POINTS)
+        self._needed = np.concatenate([[0.0], np.cumsum(every)])
+
+    @property
+    def slices(self) -> float:
+        """Slices that are needed, also in part."""
+        return float(self._needed[-1])
+
+    def bounds(self, count: int) -> NDArray[np.float64]:
+        """Heights (count + 1,) that share the slices that are needed evenly, m."""
+        if self.slices == 0.0:
+            return np.linspace(self._low, self._high, count + 1)
+        at = np.linspace(0.0, self.slices, count + 1)
+        heights = np.interp(at, self._needed, self._height)
+        heights[0], heights[-1] = self._low, self._high
+        return heights
