@@ -10,6 +10,7 @@ structure_in_time modes or machine behind the ports, with its step
 resolution        steps, slices and length of a run, chosen where the case is silent
 spindle           rotation of the spindle and path of the tool over the steps
 workpiece         workpiece of dexels or voxels
+start_in_stock    stock that the tool stands in at the start is cleared
 cut_run           steps of a run in chunks, between which the stock follows the tool
 result            signals, verdict, surface; files
 verdict           chatter detection of a simulated cut

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.simulation.reconstruction import WALLS, WallProfiles
-from chatter.simulation.setup import Setup, set_up
+from chatter.simulation.setup import Setup, set_up_in_stock, with_start_cleared
 from chatter.simulation.workpiece import DISCRETE_CHIPS
 from cutting.chip.discrete_chip import DiscreteCut
 from cutting.dexel.carving import dexel_flush
@@ -157,10 +157,10 @@ def set_up_on(case: Case, before: SimulationResult) -> Setup:
     _refuse_other_workpiece(case, before.case, carved)
     size = carved.stock.spacing
     stock = before.case.stock.model_dump(mode="json", exclude_unset=True)
-    setup = set_up(case.patch({"stock": stock, "simulation.resolution": size}))
+    setup = set_up_in_stock(case.patch({"stock": stock, "simulation.resolution": size}))
     _refuse_other_layers(case, setup.slices, before.setup.slices)
     cut = _carved_before(setup.groups[0], carved.stock)
-    return replace(setup, groups=(cut, *setup.groups[1:]))
+    return with_start_cleared(replace(setup, groups=(cut, *setup.groups[1:])))
 
 
 def _refuse_other_workpiece(case: Case, before: Case, carved: object) -> None:

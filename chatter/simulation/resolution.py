@@ -94,8 +94,14 @@ def bounds_of(case: Case, cutter: Cutter) -> NDArray[np.float64]:
     wall = None
     if case.cut.mode != "slot" and case.stock is None:
         wall = cutter.radius - case.width_of_cut
+    boxes = () if case.stock is None else case.stock.box
     bounds = slice_bounds(
-        cutter, case.cut.axial_depth, wall, _LIMITS[chip], section.slices if section else None
+        cutter,
+        case.cut.axial_depth,
+        wall,
+        _LIMITS[chip],
+        section.slices if section else None,
+        [height for box in boxes for height in box.z],
     )
     if bounds.size - 1 > _MOST_SLICES:
         raise InputError(

@@ -1,7 +1,7 @@
 """A case compiled to law groups, modes and record."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from chatter.simulation.spindle import (
     path_of_last_revolution,
     spindle_of,
 )
+from chatter.simulation.start_in_stock import clear_start
 from chatter.simulation.structure_in_time import StructureInTime, modes_in_time, structure_in_time
 from chatter.simulation.workpiece import REVOLUTIONS_BEFORE, discrete_cut
 from cutting.chip.delayed_chip import DelayedCut
@@ -90,9 +91,23 @@ def set_up(case: Case, modes: tuple[Mode, ...] | None = None) -> Setup:
     Modes are those of the structure, where they are known already; a machine has its own.
     InputError if a section is missing, or the case holds what cannot be simulated.
     """
+    return with_start_cleared(set_up_in_stock(case, modes))
+
+
+def set_up_in_stock(case: Case, modes: tuple[Mode, ...] | None = None) -> Setup:
+    """Compile a case as `set_up` does, but leave the stock whole where the tool begins."""
     check_case(case)
     cutter = cutter_of(case)
     return _compiled(case, cutter, structure_in_time(case, cutter, modes))
+
+
+def with_start_cleared(setup: Setup) -> Setup:
+    """Setup without what of its stock lies within the tool at the start, and a note of that."""
+    cut = setup.groups[0]
+    if not isinstance(cut, DiscreteCut) or setup.case.stock is None:
+        return setup
+    notes = clear_start(setup.case, cut, setup.slices, setup.path)
+    return replace(setup, notes=(*setup.notes, *notes))
 
 
 def set_up_on_modes(case: Case, modes: tuple[Mode, ...]) -> Setup:

@@ -20,6 +20,7 @@ from cutting.chip.discrete_chip import DiscreteCut
 from cutting.dexel.stock import (
     DexelStock,
     dexel_advanced,
+    dexel_remaining_area,
     dexel_remove_path,
     dexel_stock,
     dexel_wall_profile,
@@ -30,6 +31,7 @@ from cutting.voxel.stock import (
     CELLS_A_WORD,
     VoxelStock,
     voxel_advanced,
+    voxel_remaining_area,
     voxel_remove_path,
     voxel_stock,
     voxel_wall_profile,
@@ -67,6 +69,7 @@ class DiscreteChip:
 
     build: Callable[..., DexelStock | VoxelStock]  # of the module of the workpiece
     remove_path: Callable[..., None]  # of the module of the workpiece
+    remaining_area: Callable[..., float]  # of the module of the workpiece
     wall_profile: Callable[..., NDArray[np.float64]]  # of the module of the workpiece
     #: spacing (m) for a case, where it gives none
     resolution: Callable[[Case, tuple[Mode, ...]], float]
@@ -105,6 +108,7 @@ DISCRETE_CHIPS: dict[str, DiscreteChip] = {
     "dexel": DiscreteChip(
         dexel_stock,
         dexel_remove_path,
+        dexel_remaining_area,
         dexel_wall_profile,
         _dexel_spacing,
         _dexel_memory,
@@ -114,6 +118,7 @@ DISCRETE_CHIPS: dict[str, DiscreteChip] = {
     "voxel": DiscreteChip(
         voxel_stock,
         voxel_remove_path,
+        voxel_remaining_area,
         voxel_wall_profile,
         _voxel_size,
         _voxel_memory,

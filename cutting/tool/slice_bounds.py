@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +20,8 @@ from cutting.tool.cutter import Cutter, corner_height
 _SLICES_A_WAVE = 16
 #: points at which a part of the edge is looked at
 _POINTS = 600
+#: slices that only rounding asks for
+_ROUNDING = 1e-9
 #: an edge that is engaged over less than this share of the depth is not
 _LEAST_SHARE = 1e-9
 
@@ -43,7 +46,12 @@ class SliceLimits:
 
 
 def slice_bounds(
-    cutter: Cutter, depth: float, wall: float | None, limits: SliceLimits, count: int | None = None
+    cutter: Cutter,
+    depth: float,
+    wall: float | None,
+    limits: SliceLimits,
+    count: int | None = None,
+    borders: Sequence[float] = (),
 ) -> NDArray[np.float64]:
     """Heights between which the slices of an edge lie.
 
@@ -57,28 +65,35 @@ def slice_bounds(
         m; None for a slot, or where nothing is known of it.
     limits : SliceLimits
     count : int, optional
-        Slices of what is engaged; by default the limits tell.
+        Slices of what is engaged; by default they follow from the limits.
+    borders : sequence of float
+        Heights that no slice reaches across, m.
 
     Returns
     -------
     (L + 1,) array of float
         Rising from 0 to the depth, m; what lies lower than the engaged part is one slice.
     """
-    knots = _knots(cutter, depth, wall)
+    knots = _knots(cutter, depth, wall, borders)
     parts = [_Part(cutter, low, high, wall, limits) for low, high in itertools.pairwise(knots)]
-    total = sum(part.slices for part in parts)
+    needed = np.array([part.slices for part in parts])
+    if count is not None:
+        # what needs none at all is shared by its height
+        share = needed if needed.any() else np.diff(knots)
+        needed = share * count / share.sum()
     bounds = [np.zeros(1)]
-    for part in parts:
-        wanted = part.slices if count is None or total == 0.0 else part.slices * count / total
-        bounds.append(part.bounds(max(1, math.ceil(wanted - 1e-9)))[1:])
+    for part, slices in zip(parts, needed, strict=True):
+        bounds.append(part.bounds(max(1, math.ceil(slices - _ROUNDING)))[1:])
     return np.concatenate(bounds)
 
 
-def _knots(cutter: Cutter, depth: float, wall: float | None) -> list[float]:
+def _knots(
+    cutter: Cutter, depth: float, wall: float | None, borders: Sequence[float]
+) -> list[float]:
     """Heights at which something about the edge changes its kind, m."""
     knots = [0.0, depth]
     top = corner_height(cutter)
-    between = [top]
+    between = [top, *borders]
     if wall is not None:
         between.append(_height_of(cutter, abs(wall)))
     near = _LEAST_SHARE * depth
