@@ -101,7 +101,7 @@ def bounds_of(case: Case, cutter: Cutter) -> NDArray[np.float64]:
         wall,
         _LIMITS[chip],
         section.slices if section else None,
-        [height for box in boxes for height in box.z],
+        [height for box in boxes for height in (box.z[0], box.z[1])],
     )
     if bounds.size - 1 > _MOST_SLICES:
         raise InputError(
