@@ -1,5 +1,7 @@
 """How far cutting tests are from the stability limit of a case."""
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -7,7 +9,8 @@ from chatter.compile.structure import depends_on_speed
 from chatter.description.case import Case
 from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.methods.collocation.multipliers import multipliers
-from chatter.stability.model import milling_model
+from chatter.stability.model import MillingModel, milling_model
+from chatter.stability.steady_flank import about_steady_motion, follows_steady_motion
 
 #: share of the depth over which the growth rate is evaluated
 _STEP = 0.04
@@ -24,11 +27,8 @@ def stability_margins(
     in the logarithm of the depth.
     """
     rate, slope = np.empty(speeds.size), np.empty(speeds.size)
-    groups = np.unique(speeds) if depends_on_speed(case) else [None]
-    for speed in groups:
-        chosen = slice(None) if speed is None else speeds == speed
-        own = case if speed is None else case.patch({"cut.spindle_speed": float(speed)})
-        cut = element_cut(milling_model(own), (1.0 + _STEP) * float(depths[chosen].max()))
+    for chosen, model in _models(case, speeds, depths):
+        cut = element_cut(model, (1.0 + _STEP) * float(depths[chosen].max()))
         at = multipliers(cut, speeds[chosen], depths[chosen])
         above = multipliers(cut, speeds[chosen], depths[chosen] * (1.0 + _STEP))
         rate[chosen] = np.log(np.maximum(np.abs(at), 1e-12))
@@ -36,3 +36,21 @@ def stability_margins(
     # where rate does not rise with depth, its size tells no more than the side
     rising = np.maximum(slope, 0.3 * np.abs(rate) + 1e-3)
     return np.clip(-rate / rising, -_FAR, _FAR)
+
+
+def _models(
+    case: Case, speeds: NDArray[np.float64], depths: NDArray[np.float64]
+) -> Iterator[tuple[NDArray[np.bool_], MillingModel]]:
+    """Tests that share a model, and the model."""
+    model = milling_model(case)
+    if not depends_on_speed(case) and not follows_steady_motion(model):
+        yield np.ones(speeds.size, dtype=bool), model
+        return
+    for speed in np.unique(speeds):
+        own = model.at_speed(float(speed)) if depends_on_speed(case) else model
+        at_speed = speeds == speed
+        if not follows_steady_motion(model):
+            yield at_speed, own
+            continue
+        for depth in np.unique(depths[at_speed]):
+            yield at_speed & (depths == depth), about_steady_motion(own, float(speed), float(depth))

@@ -22,6 +22,7 @@ from chatter.stability.registry import (
 )
 from chatter.stability.search_range import depths_at_one_speed
 from chatter.stability.stability_method import Multiplier
+from chatter.stability.steady_flank import about_steady_motion
 
 
 @dataclass(frozen=True)
@@ -128,19 +129,21 @@ def check(case: Case, method: str | None = None) -> StabilityCheck:
     model = milling_model(case)
     chosen.check(model)
     steps = fixed_steps(case)
-    multiplier = with_multiplier(chosen).multiplier(model, steps)
-    frequency = np.nan
-    if abs(multiplier.value) >= 1.0:
-        frequency = with_chatter_frequency(chosen).chatter_frequency(model)
     speeds = np.array([case.cut.spindle_speed])
     zero_order = zero_order_of(model, speeds)
     depths = depths_at_one_speed(case, zero_order)
+    limit = chosen.limits(model, speeds, depths, steps, no_progress)
+    beside = about_steady_motion(model, *model.operating_point, float(limit.chatter_frequency[0]))
+    multiplier = with_multiplier(chosen).multiplier(beside, steps)
+    frequency = np.nan
+    if abs(multiplier.value) >= 1.0:
+        frequency = with_chatter_frequency(chosen).chatter_frequency(beside)
     return StabilityCheck(
         case=case,
         method=chosen.name,
         multiplier=multiplier,
         chatter_frequency=frequency,
-        limit=chosen.limits(model, speeds, depths, steps, no_progress),
+        limit=limit,
         max_depth=float(depths[-1]),
         zero_order_depth=float(zero_order.critical_depth[0]),
         notes=(*model.notes, *notes_on_steady_cut(model, chosen)),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -30,6 +31,7 @@ from cutting.force.directional_coefficients import (
 )
 from cutting.force.law import ForceLaw
 from cutting.process_damping.flank import ProcessDampingLaw
+from cutting.process_damping.linear_flank import LinearFlank
 from cutting.process_damping.viscous import ViscousProcessDamping
 from cutting.tool.cutter import Cutter
 
@@ -37,8 +39,23 @@ from cutting.tool.cutter import Cutter
 _RANK_TOLERANCE = 1e-9
 #: cuts whose edge segments are kept
 _KEPT_SEGMENTS = 64
+#: heights over which a table of a straight edge takes the mean of its flank
+_HEIGHTS = 12
 #: largest estimated error of critical depths, relative, where the case gives none
 LIMIT_ERROR = 1e-3
+
+
+class SteadyPath(NamedTuple):
+    """Steady motion that a flank ploughs along, and what it presses beside it."""
+
+    path: Array  # m/rad over a period (M, 3)
+    period: float  # rad
+    pressed: Array  # describing dA/dq over the slope, m^2 (S,)
+    steepest: float  # slope at the end of that table
+    slope: float  # steepest of the motion
+    depth: float  # that it is of, m
+    stiffening: float  # stiffness of the vibrating flank over its dashpot, 1/rad
+    speed: float  # of the spindle, rad/s
 
 
 @dataclass(frozen=True)
@@ -52,6 +69,7 @@ class MillingModel:
     laws: tuple[ForceLaw, ...]  # one for each tooth
     flank: ProcessDampingLaw | None
     notes: tuple[str, ...]  # assumptions and limits that the user should know of
+    steady_path: SteadyPath | None = None  # where the flank ploughs beside a steady motion
 
     @property
     def teeth(self) -> int:
@@ -95,8 +113,43 @@ class MillingModel:
         case = self.case
         arc = engagement(case.cut.mode, case.width_of_cut, case.tool.diameter)
         return directional_table(
-            arc, self.laws[0], case.cut.feed_per_tooth, self.basis, self.dashpot
+            arc, self.laws[0], case.cut.feed_per_tooth, self.basis, self.dashpot,
+            None if self.steady_path is None else self._pressed_over_angle,
+        )  # fmt: skip
+
+    def _pressed_over_angle(self, angle: Array) -> Array:
+        """Dashpot of the flank at immersion angles (n,) over that of a still tool.
+
+        A straight cylindrical edge; the mean over its height, which the table does not know.
+        """
+        steady, radius = self.steady_path, self.cutter.radius
+        lag = self.lag_per_depth * steady.depth * (np.arange(_HEIGHTS) + 0.5) / _HEIGHTS
+        at = np.mod(angle[:, None] + lag, steady.period)
+        places = steady.period * np.arange(len(steady.path) + 1) / len(steady.path)
+        x, y = (np.interp(at, places, np.append(column, column[0])) for column in steady.path.T[:2])
+        slope = (np.sin(angle)[:, None] * x + np.cos(angle)[:, None] * y) / radius
+        flank = self._linear_flank
+        return flank.at_slope(slope).mean(axis=1) * flank.radial / self.dashpot.coefficient
+
+    @property
+    def _linear_flank(self) -> LinearFlank:
+        flank = self.flank.linear(self.cutter.radius)
+        steady = self.steady_path
+        if steady is None:
+            return flank
+        return flank._replace(
+            pressed=steady.pressed,
+            steepest=steady.steepest,
+            path=np.ascontiguousarray(steady.path),
+            period=steady.period,
+            stiffening=steady.stiffening,
         )
+
+    @property
+    def flank_stiffening(self) -> float:
+        """Stiffness of a flank that vibrates in the wave it ploughs over its dashpot, 1/s."""
+        steady = self.steady_path
+        return 0.0 if steady is None else steady.stiffening * steady.speed
 
     @cached_property
     def averaged_coefficients(self) -> AveragedCoefficients:
@@ -168,6 +221,8 @@ class MillingModel:
             self.flank,
             relative_length,
         )
+        if self.steady_path is not None:
+            segments = segments._replace(flank=self._linear_flank)
         varied = case.cut.speed_variation
         variation = CONSTANT_SPEED
         if varied is not None:
@@ -212,8 +267,9 @@ def milling_model(case: Case, structure: Structure | None = None) -> MillingMode
         notes.append("the zeroth-order solution leaves out process damping")
     if flank is not None and flank is not flank.small_vibration:
         notes.append(
-            "ploughing is linearised as a dashpot for small vibration; chatter simulate includes "
-            "it in full"
+            "ploughing is linearised as a dashpot: by check and lobes beside the steady forced "
+            "vibration of each cut, in studies of pitch and optimum about a still tool; chatter "
+            "simulate includes it in full"
         )
     if case.contact is not None:
         notes.append(

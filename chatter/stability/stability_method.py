@@ -13,7 +13,7 @@ import numpy as np
 
 from chatter.description.arrays import Array, IntegerArray
 from chatter.description.errors import InputError
-from chatter.description.progress import Progress
+from chatter.description.progress import Progress, no_progress
 from chatter.stability.limit_curve import LimitCurve, joined_limits
 
 if TYPE_CHECKING:
@@ -118,7 +118,16 @@ class StabilityMethod:
         def limits(own: MillingModel, index: IntegerArray, report: Progress) -> LimitCurve:
             return self.limits_of(Sweep(own, speeds[index], depths, steps, report))
 
-        return joined_limits(speeds, over_reference_speeds(model, speeds, limits, progress))
+        if not self.follows_flank(model):
+            return joined_limits(speeds, over_reference_speeds(model, speeds, limits, progress))
+        from chatter.stability.steady_flank import limits_about_steady_motion
+
+        still = joined_limits(speeds, over_reference_speeds(model, speeds, limits, no_progress))
+
+        def at(own: MillingModel, speed: float, wanted: Array) -> LimitCurve:
+            return self.limits_of(Sweep(own, np.array([speed]), wanted, steps, no_progress))
+
+        return limits_about_steady_motion(model, still, depths, at, progress)
 
     def radius(
         self,
@@ -132,6 +141,13 @@ class StabilityMethod:
         from chatter.stability.reference_speeds import over_reference_speeds
 
         self.check(model)
+        if self.follows_flank(model):
+            from chatter.stability.steady_flank import radius_about_steady_motion
+
+            def at(own: MillingModel, speed: Array, depth: Array) -> Array:
+                return self.radius_of(Sweep(own, speed, depth, steps, no_progress))
+
+            return radius_about_steady_motion(model, speeds, depths, at, progress)
 
         def radius(own: MillingModel, index: IntegerArray, report: Progress) -> Array:
             return self.radius_of(Sweep(own, speeds[index], depths[index], steps, report))
@@ -140,6 +156,12 @@ class StabilityMethod:
         for index, values in over_reference_speeds(model, speeds, radius, progress):
             found[index] = values
         return found
+
+    def follows_flank(self, model: MillingModel) -> bool:
+        """Tell whether a flank that ploughs is taken beside the steady motion of each cut."""
+        from chatter.stability.steady_flank import follows_steady_motion
+
+        return self.is_linear and self.takes_process_damping and follows_steady_motion(model)
 
     def check(self, model: MillingModel) -> None:
         """Raise InputError where the method does not take a case."""

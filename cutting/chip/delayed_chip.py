@@ -101,7 +101,8 @@ def _on_flank(flank, cut, tooth, piece, rotation, point, total):
     rate = sk * (v[0] * sine + v[1] * cosine) - ck * v[2]
     own = _outward(cut, tooth, piece, sine, cosine, point)
     speed = rotation.speed * cut.edges.radius[cut.edges.radius.shape[0] - 1]
-    ft, fr = flank_force(flank, tooth, piece, own, rate, speed)
+    turning = sk * (point.displacement[0] * cosine - point.displacement[1] * sine)
+    ft, fr = flank_force(flank, tooth, piece, own, turning, rate, speed)
     fx, fy, fz = force_on_tool(sk, ck, sine, cosine, ft, fr, 0.0)
     return (
         total[0] + length * fx,

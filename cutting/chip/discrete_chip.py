@@ -91,7 +91,7 @@ def discrete_forces(group, rotation, point):
     """Add the cutting force on the tool at the motion of the tool point."""
     cut, edges = group, group.edges
     teeth, pieces = edges.whole.shape
-    v = point.velocity
+    u, v = point.displacement, point.velocity
     speed = rotation.speed * edges.radius[pieces - 1]
     for tooth in range(teeth):
         for piece in range(pieces):
@@ -103,7 +103,8 @@ def discrete_forces(group, rotation, point):
             rate = sk * (v[0] * sine + v[1] * cosine) - ck * v[2]
             own = _outward(edges, tooth, piece, sine, cosine, point)
             ft, fr, fa = edge_force(cut.law, tooth, chip)
-            pt, pr = flank_force(cut.flank, tooth, piece, own, rate, speed)
+            turning = sk * (u[0] * cosine - u[1] * sine)
+            pt, pr = flank_force(cut.flank, tooth, piece, own, turning, rate, speed)
             force = force_on_tool(sk, ck, sine, cosine, ft + pt, fr + pr, fa)
             length = edges.edge_length[piece]
             for axis in range(3):

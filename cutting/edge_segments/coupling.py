@@ -8,6 +8,7 @@ import math
 from numba.extending import register_jitable
 
 from cutting.compiled import INLINED
+from cutting.process_damping.linear_flank import pressed_over_radius
 
 _REVOLUTION = 2.0 * math.pi
 #: Newton steps to the position at which an edge on a corner crosses the border of its arc
@@ -179,9 +180,9 @@ def coupling_at(
     """Add the coupling of a point of the edge to displacement and velocity.
 
     The point is at a part of the segment and stands for a length of edge, its weight, m, at a
-    spindle angle, rad; the speed factor is one over the cutting speed, s/m, 0 to leave the dashpot
-    alone. With the directions of motion (3, r), stiffness and dashpot (r, r), N/m and N s/m, which
-    are overwritten, make the force on the tool -stiffness u - dashpot u'.
+    spindle angle, rad; the speed factor is `inverse_radius` over the spindle speed, s/m, 0 to leave
+    the dashpot alone. With the directions of motion (3, r), stiffness and dashpot (r, r), N/m and
+    N s/m, which are overwritten, make the force on the tool -stiffness u - dashpot u'.
     """
     turned = segments.angle[segment, 1] - segments.angle[segment, 0]
     height = share_of_height(segments, segment, position)
@@ -206,8 +207,14 @@ def coupling_at(
         if coupling == 1:
             if speed_factor == 0.0:
                 break
+            flank = segments.flank
             size = weight * speed_factor
-            kt, kr, ka = segments.damping[0], segments.damping[1], 0.0
+            if flank.pressed.shape[0] > 0:
+                low, high = segments.radius[segment, 0], segments.radius[segment, 1]
+                size *= pressed_over_radius(
+                    flank, low + height * (high - low), spindle, s, c, sk, ck
+                )
+            kt, kr, ka = flank.tangential, flank.radial, 0.0
         plane = ka * ck - kr * sk
         fx, fy, fz = plane * s - kt * c, plane * c + kt * s, kr * ck + ka * sk
         out = stiffness if coupling == 0 else dashpot

@@ -26,6 +26,7 @@ from cutting.edge_segments.engagement_arcs import (
 from cutting.engagement.immersion import MillingMode
 from cutting.force.law import ForceLaw, SlopePower
 from cutting.process_damping.flank import ProcessDampingLaw
+from cutting.process_damping.linear_flank import LinearFlank, bare_flank
 from cutting.tool.cutter import Cutter
 
 _REVOLUTION = 2.0 * math.pi
@@ -62,9 +63,7 @@ class EdgeSegments(NamedTuple):
     turning: NDArray[np.int64]  # 1 where an edge first meets or last leaves the stock within (P, 2)
     outline: NDArray[np.float64]  # radius at the tip's cylinder, corner radius, edge angle (3,)
     first_of_group: NDArray[np.int64]  # first segment of each group, then their number (C + 1,)
-    damping: NDArray[
-        np.float64
-    ]  # force per edge length, rate and 1/V: tangential, radial, N/m (2,)
+    flank: LinearFlank
 
 
 def edge_segments(
@@ -88,7 +87,7 @@ def edge_segments(
     radial_depth, feed_per_revolution, max_depth : float
         m.
     flank : ProcessDampingLaw, optional
-        Ploughing is taken for small vibration; see `ProcessDampingLaw.small_vibration`.
+        Ploughing is taken about a still tool; see `ProcessDampingLaw.linear`.
     relative_length : float
         Factor on how much an edge turns, trails or widens within a segment.
     """
@@ -139,10 +138,6 @@ def _as_arrays(
         if not near:
             distinct.append(value)
         delay_index[position] = near[0] if near else len(distinct) - 1
-    damping = np.zeros(2)
-    if flank is not None:
-        dashpot = flank.small_vibration
-        damping = dashpot.coefficient * np.array([dashpot.friction, 1.0])
     return EdgeSegments(
         bottom=table.bottom, thickness=table.thickness, length=table.length, angle=table.angle,
         entry=table.entry, exit=table.exit, delay=delay, immersion=table.immersion,
@@ -150,7 +145,8 @@ def _as_arrays(
         cutting=table.cutting, feed=feed, radial_offset=table.radial_offset,
         axial_offset=table.axial_offset, corner=table.corner,
         vanishing=np.asarray(table.vanishing, dtype=np.int64), exponent=power.exponent,
-        reference=power.reference, damping=damping, turning=turning,
+        reference=power.reference, turning=turning,
+        flank=bare_flank() if flank is None else flank.linear(cutter.radius),
         first_of_group=first_of_group,
         outline=np.array([cutter.radius, cutter.corner_radius, cutter.edge_angle]),
     )  # fmt: skip

@@ -68,13 +68,14 @@ def directional_table(
     feed_per_tooth: float,
     directions: NDArray[np.float64],
     damping: ViscousProcessDamping | None = None,
+    share: Slope | None = None,
     intervals: int = 1024,
 ) -> DirectionalTable:
     """Tabulate the directional matrix and its integrals over the engaged arc.
 
     The slope of the law is taken at the static chip thickness f_t sin(phi), feed in m; directions
     (3, r) are orthonormal columns that span the motion of the tool point; damping adds the coupling
-    to velocity.
+    to velocity, of which a share acts at each angle, all by default.
     """
 
     def cutting_coupling(angle: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -84,7 +85,8 @@ def directional_table(
 
     def damping_coupling(angle: NDArray[np.float64]) -> NDArray[np.float64]:
         constants = np.asarray(damping.force_per_radial_velocity)
-        return _projected(angle, np.outer(constants, np.ones_like(angle)), directions)
+        acting = np.ones_like(angle) if share is None else share(angle)
+        return _projected(angle, np.outer(constants, acting), directions)
 
     couplings = [cutting_coupling] + ([damping_coupling] if damping is not None else [])
     cosine = np.cos(np.pi * np.arange(intervals + 1) / intervals)

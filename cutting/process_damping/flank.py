@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from cutting.compiled import INLINED, by_table
 from cutting.process_damping.leaves import FlankLeaves
+from cutting.process_damping.linear_flank import LinearFlank
 from cutting.process_damping.ploughing import PLOUGHING
 from cutting.process_damping.viscous import VISCOUS, ViscousProcessDamping, no_clear, no_store
 
@@ -21,7 +22,10 @@ class ProcessDampingLaw(Protocol):
 
     @property
     def small_vibration(self) -> ViscousProcessDamping:
-        """Dashpot that the flank is for small vibration, for the linear analysis."""
+        """Dashpot that the flank is for small vibration about a still tool."""
+
+    def linear(self, radius: float) -> LinearFlank:
+        """The same for compiled linear analysis, of a tool of this radius, m."""
 
     def table(self, radius: NDArray[np.float64], teeth: int, step_angle: float) -> NamedTuple:
         """Table for the kernels.
@@ -37,7 +41,7 @@ class BareFlank(NamedTuple):
 
 
 @register_jitable(**INLINED)
-def bare_force(flank, tooth, segment, position, rate, speed):  # noqa: ARG001
+def bare_force(flank, tooth, segment, position, turning, rate, speed):  # noqa: ARG001
     """No force."""
     return 0.0, 0.0
 

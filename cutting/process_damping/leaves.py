@@ -9,8 +9,8 @@ class FlankLeaves:
     """Leaves of the force on the flank, by the type of their table."""
 
     table: type  # NamedTuple
-    #: table, tooth, segment, position, rate and cutting speed -> tangential and radial force per
-    #: length of edge, N/m
+    #: table, tooth, segment, position, what the position changes by as the edge turns, m/rad, rate
+    #: and cutting speed -> tangential and radial force per length of edge, N/m
     force: Callable
     #: takes in the surface that the edge has left in this step, m along its outward normal
     store: Callable

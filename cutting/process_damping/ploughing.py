@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +19,8 @@ from numpy.typing import NDArray
 
 from cutting.compiled import INLINED
 from cutting.process_damping.leaves import FlankLeaves
+from cutting.process_damping.linear_flank import LEAST_RADIUS, LinearFlank, bare_flank
+from cutting.process_damping.pressed_flank import PressingOverSlope, pressing_over_slope
 from cutting.process_damping.viscous import ViscousProcessDamping
 
 #: material parts at this angle before the lowest point of a rounded edge (Basuray et al. 1977)
@@ -57,11 +60,16 @@ class Ploughing:
 
     @property
     def contact_length(self) -> float:
-        """Length of contact of a still tool, m: rounded edge and worn land."""
+        """Length of contact of a still tool, m: rounded edge, worn land and flank behind it.
+
+        It ends where the flank comes out of the line of the new surface (`profile` is zero).
+        """
         arc = self.edge_radius * math.sin(_SEPARATION_ANGLE)
-        recovery = self.edge_radius * (1.0 - math.cos(_SEPARATION_ANGLE))
-        behind = min(arc, recovery / math.tan(self.clearance_angle))
-        return arc + self.flank_wear + behind
+        if self.clearance_angle >= _SEPARATION_ANGLE:
+            return 2.0 * arc + self.flank_wear
+        still_below = math.cos(self.clearance_angle) - math.cos(_SEPARATION_ANGLE)
+        behind = math.sin(self.clearance_angle) + still_below / math.tan(self.clearance_angle)
+        return arc + self.flank_wear + self.edge_radius * behind
 
     def profile(self, distance: NDArray[np.float64]) -> NDArray[np.float64]:
         """Depth of the flank below the line of the new surface, m, behind the parting point.
@@ -81,14 +89,32 @@ class Ploughing:
 
     @property
     def small_vibration(self) -> ViscousProcessDamping:
-        """Dashpot that the flank is for small vibration: C = K l^2/2.
+        """Dashpot that the flank is for small vibration about a still tool.
 
-        The land in contact, of length l, is pressed into the wave behind the edge: at a distance s
-        the wave lies r(t) - r(t - s/V) = s r'/V lower, and the displaced volume a width is the sum
-        of that.
+        At a distance s the wave lies r(t) - r(t - s/V) = s r'/V lower, and the displaced volume a
+        width is the sum of that. A rounded edge is pressed at rest and gives C = K L^2/2 over the
+        length of contact L. A flat land touches without pressure: it acts on the way in alone, so
+        that half of the energy is taken, C = K l^2/4 (Ahmadi and Ismail 2012, Int. J. Mach. Tools
+        Manuf. 54, 46).
         """
-        coefficient = 0.5 * self.indentation_force * self.contact_length**2
+        pressing = 0.5 if self.edge_radius > 0.0 else 0.25
+        coefficient = pressing * self.indentation_force * self.contact_length**2
         return ViscousProcessDamping(coefficient, self.friction)
+
+    def linear(self, radius: float) -> LinearFlank:
+        """Dashpot about a still tool, for compiled linear analysis, of a tool of this radius, m."""
+        small = self.small_vibration.coefficient / self.indentation_force
+        return bare_flank()._replace(
+            tangential=self.indentation_force * self.friction,
+            radial=self.indentation_force,
+            pressed=np.full(2, small),
+            least_radius=LEAST_RADIUS * radius,
+        )
+
+    @cached_property
+    def over_slope(self) -> PressingOverSlope:
+        """Area that the flank presses over the slope of the motion into the work."""
+        return pressing_over_slope(self.profile, self.contact_length, self.clearance_angle)
 
     def table(self, radius: NDArray[np.float64], teeth: int, step_angle: float) -> PloughingFlank:
         """Table for the kernels, with the samples of the wave for every tooth and slice.
@@ -103,7 +129,7 @@ class Ploughing:
                 contact + (length - contact) * np.linspace(0.0, 1.0, _NODES_BEHIND + 1)[1:] ** 2,
             ]
         )
-        arc = np.maximum(radius, 1e-3 * radius.max()) * step_angle
+        arc = np.maximum(radius, LEAST_RADIUS * radius.max()) * step_angle
         stride = max(1, math.ceil(length / (_MOST_SAMPLES - 2) / arc.max()))
         samples = min(_MOST_SAMPLES, math.ceil(length / (stride * arc.max())) + 2)
         shape = (teeth, radius.size)
@@ -112,6 +138,7 @@ class Ploughing:
             friction=self.friction,
             distance=nodes,
             depth=self.profile(nodes),
+            inverse_radius=step_angle / arc,
             spacing=stride * arc,
             stride=stride,
             surface=np.zeros((*shape, samples)),
@@ -128,6 +155,7 @@ class PloughingFlank(NamedTuple):
     friction: float
     distance: NDArray[np.float64]  # of the nodes of the flank behind the parting point, m, (J,)
     depth: NDArray[np.float64]  # of the flank below the new surface there, m, (J,)
+    inverse_radius: NDArray[np.float64]  # of the edge slices, 1/m (L,)
     spacing: NDArray[np.float64]  # of the samples along the cut, m, (L,)
     stride: int  # steps between samples
     surface: NDArray[np.float64]  # surface left at the last samples, outwards, m, (N, L, K)
@@ -149,11 +177,13 @@ def _area_above(left, right, width):
 
 
 @register_jitable(**INLINED)
-def ploughing_force(flank, tooth, segment, position, rate, speed):  # noqa: ARG001
+def ploughing_force(flank, tooth, segment, position, turning, rate, speed):  # noqa: ARG001
     """Tangential and radial force per length of edge, N/m.
 
-    The position of the edge along its outward normal is in the frame of the samples, m. Rate and
-    speed are not used: the wave itself says how fast the edge moves.
+    The position of the edge along its outward normal is in the frame of the samples, m. The normal
+    turns with the edge: `turning`, m/rad, takes the displacement of the tool back to the normal at
+    a place that the edge has left, so that a tool that is displaced but still ploughs nothing.
+    Rate and speed are not used: the wave itself says how fast the edge moves.
     """
     count = flank.filled[tooth, segment]
     samples = flank.surface.shape[2]
@@ -161,6 +191,7 @@ def ploughing_force(flank, tooth, segment, position, rate, speed):  # noqa: ARG0
     # the newest sample was taken `age` steps before the last one, the others a stride earlier each
     further = spacing * (flank.age[tooth, segment] + 1) / flank.stride
     nearer, near_wave = 0.0, position
+    drift = turning * flank.inverse_radius[segment]
     column, seen = flank.newest[tooth, segment], 1
     area = 0.0
     if count == 0:
@@ -178,7 +209,7 @@ def ploughing_force(flank, tooth, segment, position, rate, speed):  # noqa: ARG0
             break
         share = (distance - nearer) / (further - nearer)
         depth = flank.depth[node]
-        right = position - (near_wave + share * (far_wave - near_wave)) + depth
+        right = position - drift * distance - (near_wave + share * (far_wave - near_wave)) + depth
         width = distance - flank.distance[node - 1]
         # what a still tool displaces belongs to the edge coefficients
         area += _area_above(left, right, width) - _area_above(at_rest, depth, width)

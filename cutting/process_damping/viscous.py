@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from cutting.compiled import INLINED
 from cutting.process_damping.leaves import FlankLeaves
+from cutting.process_damping.linear_flank import LinearFlank, bare_flank
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,11 @@ class ViscousProcessDamping:
     def small_vibration(self) -> ViscousProcessDamping:
         """The dashpot itself."""
         return self
+
+    def linear(self, radius: float) -> LinearFlank:  # noqa: ARG002
+        """The dashpot for compiled linear analysis."""
+        tangential, radial, _ = self.force_per_radial_velocity
+        return bare_flank()._replace(tangential=tangential, radial=radial)
 
     def table(
         self,
@@ -53,7 +59,7 @@ class ViscousFlank(NamedTuple):
 
 
 @register_jitable(**INLINED)
-def viscous_force(flank, tooth, segment, position, rate, speed):  # noqa: ARG001
+def viscous_force(flank, tooth, segment, position, turning, rate, speed):  # noqa: ARG001
     """Tangential and radial force per length of edge, N/m.
 
     By the velocity of the edge along its outward normal, and the cutting speed, m/s; all edges are

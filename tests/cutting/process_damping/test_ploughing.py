@@ -75,7 +75,7 @@ class Edge:
         """Radial and tangential force (n, 2) along the places of the edge, m outwards."""
         forces = []
         for here in place:
-            tangential, radial = ploughing_force(self.flank, 0, 0, here, 0.0, 1.0)
+            tangential, radial = ploughing_force(self.flank, 0, 0, here, 0.0, 0.0, 1.0)
             forces.append((radial, tangential))
             store_surface_history(self.flank, 0, 0, here)
         return np.array(forces)
@@ -185,3 +185,20 @@ def test_an_edge_that_left_the_cut_starts_anew():
     edge.run(wave(2e-6, 1e-3)[1][:200])
     clear_surface_history(edge.flank, 0, 0)
     assert edge.run(np.array([5e-6]))[0, 0] == 0.0
+
+
+@pytest.mark.parametrize("law", [worn(), honed(), worn(30e-6, edge_radius=25e-6)])
+def test_a_tool_displaced_but_still_ploughs_nothing(law):
+    """The circle of its edge is shifted, and so is the surface that it has left."""
+    radius, displacement = 10e-3, (30e-6, -20e-6)
+    edge = Edge(law)
+    forces = []
+    for angle in np.arange(0.0, 1.0, SPEED_STEP / radius):
+        sine, cosine = math.sin(angle), math.cos(angle)
+        place = displacement[0] * sine + displacement[1] * cosine
+        turning = displacement[0] * cosine - displacement[1] * sine
+        forces.append(ploughing_force(edge.flank, 0, 0, place, turning, 0.0, 1.0)[1])
+        store_surface_history(edge.flank, 0, 0, place)
+    # a vibration of a hundredth of this displacement at 800 Hz and 100 m/min
+    pressed = law.small_vibration.coefficient * 0.3e-6 * 5000.0 / 1.7
+    assert np.abs(forces).max() < 0.01 * pressed

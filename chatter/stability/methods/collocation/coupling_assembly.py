@@ -45,6 +45,7 @@ from cutting.edge_segments.engaged_intervals import (
     reach_of_segment,
     revolutions_of_group,
 )
+from cutting.process_damping.linear_flank import inverse_radius
 
 #: points closer than this share of an element are the same
 _SAME_POINT = 1e-7
@@ -158,7 +159,7 @@ def _couple(cut, edge, layout, rotation, angle, row, first_source, sources, coup
     stiffness, dashpot, of_delay = couplings.stiffness, couplings.dashpot, couplings.of_delay
     part, part_dashpot = couplings.part, couplings.part_dashpot
     rank = basis.shape[1]
-    used = of_delay.shape[0] - 1
+    used, held = of_delay.shape[0] - 1, segments.flank.stiffening
     for delay in range(used):
         for i in range(rank):
             for j in range(rank):
@@ -195,7 +196,7 @@ def _couple(cut, edge, layout, rotation, angle, row, first_source, sources, coup
                     into = delay if delay >= 0 else used
                     for i in range(rank):
                         for j in range(rank):
-                            stiffness[row, i, j] += part[i, j]
+                            stiffness[row, i, j] += part[i, j] + held * part_dashpot[i, j]
                             dashpot[row, i, j] += part_dashpot[i, j]
                             of_delay[into, i, j] = part[i, j] + (
                                 of_delay[into, i, j] if delay >= 0 else 0.0
@@ -249,10 +250,9 @@ def assemble_couplings(cut, rotation, layout, speed, depth):
         np.empty((segments.distinct_delay.shape[0] + 1, rank, rank)),
         np.empty((rank, rank)), np.zeros((rank, rank)),
     )  # fmt: skip
-    damped = segments.damping[1] > 0.0
     edge = _Edge(
         tops, reach, 1.0 / (speed * cut.longest),
-        1.0 / radius_at(segments, depth) if damped else 0.0,
+        inverse_radius(segments.flank, radius_at(segments, depth)),
     )  # fmt: skip
     first_source = np.zeros(rows + 1, dtype=np.int64)
     for row in range(rows):

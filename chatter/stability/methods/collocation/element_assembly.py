@@ -55,7 +55,7 @@ def operator_arrays(cut: ElementCut) -> OperatorArrays:
         Structure(arrays.natural_frequency, arrays.damping, arrays.shape, arrays.force_gain),
         cut.points,
         cut.response,
-        bool(arrays.segments.damping[1] > 0.0),
+        bool(arrays.segments.flank.radial > 0.0),
         cut.residual,
     )
 

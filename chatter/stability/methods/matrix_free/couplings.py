@@ -248,6 +248,7 @@ def _couple_interval(cut, now, speed_factor, sources, count, present, interval, 
     """Enter the couplings along an engaged interval; returns the number of sources."""
     segments = cut.segments
     segment, final, low, high, change = interval
+    held = segments.flank.stiffening * speed_at(now.rotation, now.time)
     order, ends = points_along(segments, segment, final, low, high, change, spindle)
     length = length_of_interval(segments, segment, final, low, high)
     at, start = segment, -low * segments.length[segment]
@@ -261,6 +262,7 @@ def _couple_interval(cut, now, speed_factor, sources, count, present, interval, 
         _add(1.0, present.part, present.stiffness)
         if speed_factor > 0.0:
             _add(1.0, present.part_dashpot, present.dashpot)
+            _add(held, present.part_dashpot, present.stiffness)
         number = segments.delay_index[at]
         if number >= 0:
             present.used[number] = 1

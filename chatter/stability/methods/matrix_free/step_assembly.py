@@ -29,6 +29,7 @@ from chatter.stability.methods.matrix_free.modal_response import (
 from chatter.stability.methods.matrix_free.steps import period_steps, step_time
 from chatter.stability.spindle_rotation import speed_at, spindle_rotation_at
 from cutting.edge_segments.coupling import radius_at
+from cutting.process_damping.linear_flank import inverse_radius
 
 #: step lengths closer than this share are the same
 _SAME_LENGTH = 1e-9
@@ -160,7 +161,7 @@ def assemble_steps(stepped, speed, depth, steps_per_wavelength, refinement):
     present = nothing_present(rank, groups)
     reach, reach_rate = np.empty((2 * rank, 2 * rank)), np.empty((2 * rank, 2 * rank))
     system = np.empty((2 * rank, 2 * rank))
-    radius = radius_at(cut.segments, depth) if cut.segments.damping[1] > 0.0 else np.inf
+    inverse = inverse_radius(cut.segments.flank, radius_at(cut.segments, depth))
     held = stepped.contact.stiffness > 0.0 or stepped.contact.damping > 0.0
     for k in range(count):
         clear(system)
@@ -172,7 +173,7 @@ def assemble_steps(stepped, speed, depth, steps_per_wavelength, refinement):
             sources = with_room(sources, at, edge.most)
             time = step_time(steps, k, POSITIONS[p])
             now = Instant(rotation, steps.node, rate, k, time)
-            speed_factor = 1.0 / (speed_at(rotation, time) * radius)
+            speed_factor = inverse / speed_at(rotation, time)
             height, first_source[2 * k + p + 1] = couple(
                 cut, edge, now, speed_factor, sources, at, present
             )

@@ -66,7 +66,7 @@ def _loop(response, harmonics, speed, base, omega, count, matrix):
     orders = (harmonics.dashpot.shape[0] - 1) // 2
     receptance = np.empty((rank, rank), dtype=np.complex128)
     coupling = np.empty((rank, rank), dtype=np.complex128)
-    size = 2 * count + 2
+    size, held = 2 * count + 2, harmonics.stiffening
     factor = np.empty(harmonics.delay.shape[0], dtype=np.complex128)
     for m in range(size):
         w = omega + (m - count - 1) * base
@@ -76,7 +76,7 @@ def _loop(response, harmonics, speed, base, omega, count, matrix):
             k = l - m + orders
             for i in range(rank):
                 for j in range(rank):
-                    coupling[i, j] = harmonics.dashpot[k, i, j] * (1j * w / speed)
+                    coupling[i, j] = harmonics.dashpot[k, i, j] * (held + 1j * w / speed)
             for g in range(factor.shape[0]):
                 for i in range(rank):
                     for j in range(rank):

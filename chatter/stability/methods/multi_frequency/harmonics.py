@@ -9,6 +9,7 @@ from numba import njit
 from chatter.description.arrays import Array, ComplexArray
 from chatter.engine.presets import DRIVER, KERNEL
 from cutting.edge_segments.coupling import arc_at, coupling_at, delay_at, part_below, radius_at
+from cutting.process_damping.linear_flank import inverse_radius
 
 #: delays vary by no more than this along a part of a segment, and differ by more to be two, rad
 _SAME_DELAY, _ONE_DELAY = 4e-3, 1e-9
@@ -23,6 +24,7 @@ class Harmonics(NamedTuple):
     delay: Array  # rad (g,)
     stiffness: ComplexArray  # N/m (g, 2K + 1, r, r)
     dashpot: ComplexArray  # N s/m times the spindle speed (2K + 1, r, r)
+    stiffening: float  # stiffness without delay over the dashpot, 1/rad
 
 
 @njit(**KERNEL)
@@ -158,7 +160,8 @@ def harmonics_at(cut, depth, orders):
     delays = _distinct_delays(segments, depth, highest)
     stiffness = np.zeros((delays.size, 2 * orders + 1, rank, rank), dtype=np.complex128)
     dashpot = np.zeros((2 * orders + 1, rank, rank), dtype=np.complex128)
-    speed_factor = 1.0 / radius_at(segments, depth) if segments.damping[1] > 0.0 else 0.0
+    speed_factor = inverse_radius(segments.flank, radius_at(segments, depth))
+    exactly = segments.exponent == 0.0 and segments.flank.path.shape[0] == 0
     for segment in range(segments.bottom.shape[0]):
         top = part_below(segments, segment, depth)
         if top <= 0.0:
@@ -171,7 +174,7 @@ def harmonics_at(cut, depth, orders):
             for along in range(points):
                 position = top * (share + cut.edge_position[points, along]) / parts
                 length = segments.length[segment] * top / parts * cut.edge_weight[points, along]
-                if segments.exponent == 0.0:
+                if exactly:
                     _add_exactly(
                         cut,
                         segment,
@@ -186,4 +189,4 @@ def harmonics_at(cut, depth, orders):
                 _add_by_quadrature(
                     cut, segment, position, length, speed_factor, orders, stiffness[own], dashpot
                 )
-    return Harmonics(delays, stiffness, dashpot)
+    return Harmonics(delays, stiffness, dashpot, segments.flank.stiffening)

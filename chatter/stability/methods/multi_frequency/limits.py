@@ -132,4 +132,5 @@ def _up_to(harmonics: Harmonics, orders: int) -> Harmonics:
         harmonics.delay,
         np.ascontiguousarray(harmonics.stiffness[:, kept]),
         np.ascontiguousarray(harmonics.dashpot[kept]),
+        harmonics.stiffening,
     )

@@ -24,6 +24,7 @@ class MillingArrays(NamedTuple):
     tooth_pitch: float  # rad
     lag_per_depth: float  # tan(helix)/R, rad/m
     radius: float  # m, for the cutting speed
+    stiffening: float  # stiffness of a flank that ploughs over its dashpot, 1/s
 
 
 def milling_arrays(model: MillingModel) -> MillingArrays:
@@ -38,4 +39,5 @@ def milling_arrays(model: MillingModel) -> MillingArrays:
         tooth_pitch=2.0 * np.pi / model.teeth,
         lag_per_depth=model.lag_per_depth,
         radius=model.cutter.radius,
+        stiffening=model.flank_stiffening,
     )

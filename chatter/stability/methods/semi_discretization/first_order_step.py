@@ -27,7 +27,8 @@ def _multiply_generator(arrays, stiffness, dashpot, x, motion, force, out):
         for k in range(rank):
             force[k] = 0.0
             for m in range(rank):
-                force[k] -= stiffness[k, m] * motion[0, m] + dashpot[k, m] * motion[1, m]
+                present = stiffness[k, m] + arrays.stiffening * dashpot[k, m]
+                force[k] -= present * motion[0, m] + dashpot[k, m] * motion[1, m]
         for i in range(modes):
             w = arrays.natural_frequency[i]
             out[2 * i, j] = w * x[2 * i + 1, j]
@@ -52,7 +53,7 @@ def _generator_norm(arrays, stiffness, dashpot):
     size_0, size_1 = 0.0, 0.0
     for k in range(rank):
         for m in range(rank):
-            size_0 += stiffness[k, m] ** 2
+            size_0 += (stiffness[k, m] + arrays.stiffening * dashpot[k, m]) ** 2
             size_1 += dashpot[k, m] ** 2
     return free + math.sqrt(reach * size_0 * gain_0) + math.sqrt(reach * size_1 * gain_1)
 

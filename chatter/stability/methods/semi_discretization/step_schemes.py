@@ -64,7 +64,8 @@ def _generator(arrays, stiffness, dashpot, generator, gain):
                 for m in range(rank):
                     push = arrays.force_gain[i, k]
                     reach = arrays.shape[j, m] / arrays.natural_frequency[j]
-                    generator[2 * i + 1, 2 * j] -= push * stiffness[k, m] * reach
+                    present = stiffness[k, m] + arrays.stiffening * dashpot[k, m]
+                    generator[2 * i + 1, 2 * j] -= push * present * reach
                     generator[2 * i + 1, 2 * j + 1] -= push * dashpot[k, m] * arrays.shape[j, m]
 
 
@@ -125,7 +126,8 @@ def fully_discretized(arrays, stiffness, dashpot, duration):
         for k in range(rank):
             for m in range(rank):
                 reach = arrays.shape[j, m]
-                feedback[k, 2 * j] += stiffness[k, m] * reach / arrays.natural_frequency[j]
+                present = stiffness[k, m] + arrays.stiffening * dashpot[k, m]
+                feedback[k, 2 * j] += present * reach / arrays.natural_frequency[j]
                 feedback[k, 2 * j + 1] += dashpot[k, m] * reach
     implicit = np.linalg.inv(np.eye(size) + ramp @ feedback)
     transition = implicit @ (free - (constant - ramp) @ feedback)
