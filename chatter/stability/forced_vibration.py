@@ -105,16 +105,16 @@ def _notes_on_flank(model: MillingModel, speed: float, depth: float) -> tuple[st
 
 
 def _vibration_of(steady: SteadyMotion, model: MillingModel) -> ForcedVibration:
-    points, turn, spindle = steady.points, steady.turn, steady.spindle
-    driven = np.where(turn[:, None] == 0.0, 0.0, steady.harmonics)
-    wave = np.exp(1j * np.outer(spindle, turn))
+    points, order, spindle = steady.points, steady.order, steady.spindle
+    driven = np.where(order[:, None] == 0.0, 0.0, steady.harmonics)
+    wave = np.exp(1j * np.outer(spindle, order))
     motion = (wave @ driven).real
     cut, loss_of_contact, largest, change = 0.0, 0.0, 0.0, 0.0
     for p in range(points.angle.size):
         inside, phi, chip = in_cut(points, p, spindle)
         if not inside.size:
             continue
-        earlier = (wave[inside] @ (np.exp(-1j * turn * points.delay[p])[:, None] * driven)).real
+        earlier = (wave[inside] @ (np.exp(-1j * order * points.delay[p])[:, None] * driven)).real
         _, chip_of = directions(points, p, phi, model.basis)
         vibrating = np.einsum("ni,ni->n", chip_of, motion[inside] - earlier)
         cut += points.length[p] * chip.size

@@ -18,7 +18,7 @@ from chatter.engine.parallel import each, one_thread
 from chatter.stability.limit_curve import LimitCurve, joined_limits
 from chatter.stability.model import MillingModel, SteadyPath
 from chatter.stability.steady_motion import steady_motion
-from cutting.process_damping.linear_flank import land_in_wave
+from cutting.process_damping.linear_flank import vibrating_land
 from cutting.process_damping.ploughing import Ploughing
 
 #: of a model, at a speed (rad/s), on a grid of depths (m)
@@ -72,7 +72,7 @@ def about_steady_motion(
     if not frequency > 0.0:
         reach = np.linalg.norm(shape, axis=1) * np.linalg.norm(gain, axis=1)
         frequency = float(natural[np.argmax(reach / (damping * natural**2))])
-    land = land_in_wave(flank.contact_length, frequency, speed, model.cutter.radius)
+    land = vibrating_land(flank.contact_length, frequency, speed, model.cutter.radius)
     count, pressing = motion.spindle.size, flank.over_slope
     path = motion.path(motion.period * np.arange(count) / count) @ model.basis.T
     return replace(

@@ -61,9 +61,9 @@ class RigidCut(NamedTuple):
 
 
 class SteadyMotion(NamedTuple):
-    """Steady motion u(theta) = sum of harmonics exp(i turn theta) over the spindle angle."""
+    """Steady motion u(theta) = sum of harmonics exp(i order theta) over the spindle angle."""
 
-    turn: Array  # orders, per radian of the spindle (k,)
+    order: Array  # orders, per radian of the spindle (k,)
     harmonics: ComplexArray  # m (k, r)
     period: float  # rad
     spindle: Array  # samples of a period, rad (N,)
@@ -73,7 +73,7 @@ class SteadyMotion(NamedTuple):
 
     def path(self, angle: Array) -> Array:
         """Change of the motion over the angle turned, m/rad (n, r), at spindle angles (n,)."""
-        wave = np.exp(1j * np.outer(angle, self.turn)) * (1j * self.turn)
+        wave = np.exp(1j * np.outer(angle, self.order)) * (1j * self.order)
         return (wave @ self.harmonics).real
 
 
@@ -91,18 +91,18 @@ def steady_motion(model: MillingModel, speed: float, depth: float) -> SteadyMoti
         np.clip(_SAMPLES_PER_WAVELENGTH * orders / _REACH, _FEWEST_SAMPLES, _MOST_SAMPLES)
     )
     orders = min(orders, samples // 2 - 1)
-    turn = np.arange(-orders, orders + 1) * _REVOLUTION / period
+    order = np.arange(-orders, orders + 1) * _REVOLUTION / period
     spindle = period * (np.arange(samples) + 0.5) / samples
-    receptance = _receptance(model, turn * speed)
+    receptance = _receptance(model, order * speed)
     edge = np.array(getattr(model.laws[0], "edge", (0.0, 0.0, 0.0)))
-    rigid = _rigid_cut(points, cut.segments, spindle, edge, model.basis, _PHASE / turn[-1])
-    loop = np.eye(turn.size * model.basis.shape[1], dtype=np.complex128)
+    rigid = _rigid_cut(points, cut.segments, spindle, edge, model.basis, _PHASE / order[-1])
+    loop = np.eye(order.size * model.basis.shape[1], dtype=np.complex128)
     if np.any(np.abs(points.delay - period) > _SAME_DELAY):
         # with a uniform pitch every tooth meets the wave of the last in phase
-        loop += _regeneration(receptance, rigid, turn)
-    wave = np.exp(-1j * np.outer(turn, spindle)) / samples
+        loop += _regeneration(receptance, rigid, order)
+    wave = np.exp(-1j * np.outer(order, spindle)) / samples
     driven = np.einsum("kij,kj->ki", receptance, wave @ rigid.force)
-    motion = SteadyMotion(turn, driven, period, spindle, points, 0.0, 0.0)
+    motion = SteadyMotion(order, driven, period, spindle, points, 0.0, 0.0)
     if not isinstance(model.flank, Ploughing):
         return motion._replace(harmonics=_solved(loop, driven))
     return _with_ploughing(motion, model.flank, model, receptance, wave, loop)
@@ -134,7 +134,7 @@ def _with_ploughing(
         )
         beside = force - np.einsum("nij,nj->ni", damping, path)
         pushed = driven + np.einsum("kij,kj->ki", receptance, wave @ beside)
-        matrix = loop - _convolved(receptance, damping, 1j * motion.turn)
+        matrix = loop - _convolved(receptance, damping, 1j * motion.order)
         wanted = _solved(matrix, pushed)
         last, change = change, np.abs(wanted - harmonics).max() / np.abs(wanted).max()
         if change > 0.7 * last:
@@ -254,10 +254,10 @@ def _convolved(receptance: ComplexArray, coupling: Array, factor: ComplexArray) 
     return np.einsum("kij,kmjl->kiml", receptance, blocks).reshape(count * rank, count * rank)
 
 
-def _regeneration(receptance: ComplexArray, rigid: RigidCut, turn: Array) -> ComplexArray:
+def _regeneration(receptance: ComplexArray, rigid: RigidCut, order: Array) -> ComplexArray:
     """Loop of the regenerated force -K (u - u delayed)."""
     parts = zip(rigid.coupling, rigid.delay, strict=True)
-    return sum(_convolved(receptance, part, 1.0 - np.exp(-1j * turn * d)) for part, d in parts)
+    return sum(_convolved(receptance, part, 1.0 - np.exp(-1j * order * d)) for part, d in parts)
 
 
 @njit(**DRIVER)

@@ -42,14 +42,14 @@ class LinearFlank(NamedTuple):
         return np.interp(slope, given, self.pressed)
 
 
-class LandInWave(NamedTuple):
+class VibratingLand(NamedTuple):
     """What the length of a pressed land against the wave that chatter leaves changes."""
 
     dashpot: float  # factor on K l^2/2
     stiffness: float  # over the dashpot, times the cutting speed over the radius, 1/rad
 
 
-def land_in_wave(length: float, frequency: float, speed: float, radius: float) -> LandInWave:
+def vibrating_land(length: float, frequency: float, speed: float, radius: float) -> VibratingLand:
     """Dashpot and stiffness of a pressed land that vibrates at one frequency.
 
     The wave lies r(t) - r(t - s/V) lower at the distance s; summed over a land of x = w l/V,
@@ -71,9 +71,9 @@ def land_in_wave(length: float, frequency: float, speed: float, radius: float) -
     """
     x = frequency * length / (speed * radius)
     if x < 1e-3:
-        return LandInWave(1.0, x * x / 3.0 * radius / length)
+        return VibratingLand(1.0, x * x / 3.0 * radius / length)
     dashpot = 2.0 * (1.0 - math.cos(x)) / x**2
-    return LandInWave(dashpot, 2.0 * (1.0 - math.sin(x) / x) / dashpot * radius / length)
+    return VibratingLand(dashpot, 2.0 * (1.0 - math.sin(x) / x) / dashpot * radius / length)
 
 
 def bare_flank() -> LinearFlank:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from cutting.process_damping.linear_flank import land_in_wave
+from cutting.process_damping.linear_flank import vibrating_land
 from cutting.process_damping.ploughing import Ploughing
 
 CLEARANCE = math.radians(7.0)
@@ -72,7 +72,7 @@ def test_land_in_a_wave(waves):
     frequency = 2.0 * math.pi * waves * velocity / LAND
     s = LAND * (np.arange(20000) + 0.5) / 20000
     force = np.mean(1.0 - np.exp(-1j * frequency * s / velocity)) * LAND
-    found = land_in_wave(LAND, frequency, speed, radius)
+    found = vibrating_land(LAND, frequency, speed, radius)
     dashpot = 0.5 * LAND**2 * found.dashpot
     assert dashpot * frequency / velocity == pytest.approx(force.imag, rel=1e-6)
     assert found.stiffness * dashpot / radius == pytest.approx(force.real, rel=1e-6)
