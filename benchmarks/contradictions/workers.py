@@ -12,6 +12,8 @@ from benchmarks.contradictions.one_case import Judged, judged
 
 #: confrontation, seed and number
 Task = tuple[str, int, int]
+#: until a confrontation has answered once its kernels may have to be compiled, s
+_COMPILING = 1200.0
 
 
 def serve(connection: Connection) -> None:
@@ -23,8 +25,7 @@ def serve(connection: Connection) -> None:
 class Worker:
     """A process with the task that it works on; one that is too slow is ended."""
 
-    def __init__(self, time_limit: float) -> None:
-        self.time_limit = time_limit
+    def __init__(self) -> None:
         self.task: Task | None = None
         self._start()
 
@@ -35,9 +36,9 @@ class Worker:
         self.process.start()
         far.close()
 
-    def take(self, task: Task) -> None:
-        """Begin a task."""
-        self.task, self.since = task, time.monotonic()
+    def take(self, task: Task, time_limit: float) -> None:
+        """Begin a task, which may take so long, s."""
+        self.task, self.since, self.time_limit = task, time.monotonic(), time_limit
         self.connection.send(task)
 
     def answer(self) -> Judged:
@@ -74,13 +75,15 @@ class Worker:
 def all_judged(tasks: Iterable[Task], workers: int, time_limit: float) -> Iterator[Judged]:
     """Judge tasks in some processes, each task within a limit, s; results as they come."""
     coming = iter(tasks)
-    idle = [Worker(time_limit) for _ in range(workers)]
+    idle = [Worker() for _ in range(workers)]
     busy: list[Worker] = []
+    compiled: set[str] = set()
     try:
         while True:
             while idle and (task := next(coming, None)) is not None:
                 worker = idle.pop()
-                worker.take(task)
+                limit = time_limit if task[0] in compiled else max(time_limit, _COMPILING)
+                worker.take(task, limit)
                 busy.append(worker)
             if not busy:
                 return
@@ -91,7 +94,9 @@ def all_judged(tasks: Iterable[Task], workers: int, time_limit: float) -> Iterat
                     continue
                 busy.remove(worker)
                 idle.append(worker)
-                yield worker.answer() if worker.connection in ready else worker.given_up()
+                found = worker.answer() if worker.connection in ready else worker.given_up()
+                compiled.add(found.confrontation)
+                yield found
     finally:
         for worker in (*idle, *busy):
             worker.end()
