@@ -212,6 +212,7 @@ def _clear(point):
         point.blur[axis] = 0.0
         point.jump[0, axis] = 0.0
         point.jump[1, axis] = 0.0
+    point.blur[3] = 0.0
     point.torque[0] = 0.0
     point.contact[0] = 0.0
 

@@ -9,13 +9,14 @@ from numpy.typing import NDArray
 from cutting.chip.tool_point import ToolPoint
 from cutting.compiled import INLINED
 
-#: columns of the record of a cut; mean force and largest size of each force are those since the
-#: row before
+#: columns of the record of a cut; means and the largest size of each force are those since the row
+#: before
 COLUMNS = (
     *("Fx", "Fy", "Fz", "x", "y", "z", "torque"),
     *("mean Fx", "mean Fy", "mean Fz", "largest Fx", "largest Fy", "largest Fz"),
+    "mean torque",
 )
-_MEAN, _LARGEST = 7, 10
+_MEAN, _LARGEST, _MEAN_TORQUE = 7, 10, 13
 
 
 class CutRecord(NamedTuple):
@@ -25,14 +26,15 @@ class CutRecord(NamedTuple):
     first: int  # step at whose beginning the first row stands
     point: ToolPoint
     rows: NDArray[np.float64]  # see COLUMNS, (rows, columns)
-    since: NDArray[np.float64]  # sum of mean forces and largest force since the last row, N, (2, 3)
+    #: sum of mean forces, N, and torques, N m, and largest force since the last row, N, (2, 4)
+    since: NDArray[np.float64]
     samples: NDArray[np.float64]  # force at the last three steps, the newest first, N, (3, 3)
 
 
 def cut_record(point: ToolPoint, rows: int, stride: int, first: int) -> CutRecord:
     """Return an empty record at a tool point."""
     return CutRecord(
-        stride, first, point, np.zeros((rows, len(COLUMNS))), np.zeros((2, 3)), np.zeros((3, 3))
+        stride, first, point, np.zeros((rows, len(COLUMNS))), np.zeros((2, 4)), np.zeros((3, 3))
     )
 
 
@@ -88,6 +90,7 @@ def _follow_force(group):
         samples[2, axis] = samples[1, axis]
         samples[1, axis] = samples[0, axis]
         samples[0, axis] = now
+    group.since[0, 3] += point.torque[0] + point.blur[3]
 
 
 @register_jitable(**INLINED)
@@ -107,6 +110,8 @@ def cut_record_commit(group, bus, clock):  # noqa: ARG001
         group.since[0, axis] = 0.0
         group.since[1, axis] = 0.0
     group.rows[row, 6] = group.point.torque[0]
+    group.rows[row, _MEAN_TORQUE] = group.since[0, 3] / group.stride
+    group.since[0, 3] = 0.0
 
 
 @register_jitable(**INLINED)

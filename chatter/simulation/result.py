@@ -37,10 +37,10 @@ class SimulationResult:
     ----------
     setup : Setup
         Case, tool, slices and resolution of the run; its groups hold the final state.
-    rows : (n, 13) array of float
+    rows : (n, 14) array of float
         Record: force on the tool (x, y, z), N; displacement of the tool against the workpiece
         (x, y, z), m; torque on the spindle, N m; mean force and largest size of each force since
-        the row before, N.
+        the row before, N; mean torque since then, N m.
     energy : dict
         Work of the cutting force on the structure, energy dissipated in it and stored at the end,
         J.
@@ -91,9 +91,9 @@ class SimulationResult:
     def mean_force(self) -> NDArray[np.float64]:
         """Mean force (3,) on the tool over the settled part of the run, N, between rows as well."""
         settled = self.settled
-        if self.case.dynamometer is not None or len(self.rows) < 2:
+        if self.case.dynamometer is not None:
             return self.force[settled].mean(axis=0)
-        return self.rows[settled.start + 1 : settled.stop + 1, 7:10].mean(axis=0)
+        return self._since_row_before(self.rows[:, 7:10], self.force).mean(axis=0)
 
     @cached_property
     def peak_force(self) -> NDArray[np.float64]:
@@ -111,6 +111,25 @@ class SimulationResult:
     def torque(self) -> NDArray[np.float64]:
         """Torque (n,) of the cut on the spindle, N m."""
         return self.rows[:, 6]
+
+    @cached_property
+    def mean_torque(self) -> float:
+        """Mean torque over the settled part of the run, N m, between rows as well."""
+        return float(self._since_row_before(self.rows[:, 13], self.torque).mean())
+
+    @cached_property
+    def mean_power(self) -> float:
+        """Mean cutting power over the settled part of the run, W, between rows as well."""
+        turning = self.rows[:, 13] * self.spindle_speed
+        return float(self._since_row_before(turning, self.power).mean())
+
+    def _since_row_before(
+        self, means: NDArray[np.float64], samples: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Rows of means within the settled part; a run of one row has but its sample."""
+        if len(self.rows) < 2:
+            return samples[self.settled]
+        return means[self.settled.start + 1 : self.settled.stop + 1]
 
     @property
     def power(self) -> NDArray[np.float64]:
@@ -148,7 +167,6 @@ class SimulationResult:
 
     def summary(self) -> dict:
         """Return the content of summary.json."""
-        settled = self.settled
         cut = self.case.cut
         names = ("Fx", "Fy", "Fz")
         return {
@@ -161,9 +179,9 @@ class SimulationResult:
             "peak_resultant_N": float(np.linalg.norm(self.force, axis=1).max()),
             "peak_displacement_um": float(np.linalg.norm(self.displacement, axis=1).max() * 1e6),
             "power": {
-                "mean_W": float(self.power[settled].mean()),
+                "mean_W": self.mean_power,
                 "peak_W": float(self.power.max()),
-                "mean_torque_Nm": float(self.torque[settled].mean()),
+                "mean_torque_Nm": self.mean_torque,
             },
             **self.finish.summary(),
             "energy_J": self.energy,

@@ -143,7 +143,7 @@ def delayed_forces(group, rotation, point):
     now = _place_now(rotation, point)
     teeth, pieces = edges.whole.shape
     advance = rotation.advance
-    sx = sy = sz = mx = my = mz = torque = contact = 0.0
+    sx = sy = sz = mx = my = mz = torque = mean_torque = contact = 0.0
     for tooth in range(teeth):
         if _all_in_air(cut, tooth, rotation):
             continue
@@ -190,6 +190,7 @@ def delayed_forces(group, rotation, point):
             mx += mean[0]
             my += mean[1]
             mz += mean[2]
+            mean_torque += mean[3]
     point.sample[0] += sx
     point.sample[1] += sy
     point.sample[2] += sz
@@ -199,6 +200,7 @@ def delayed_forces(group, rotation, point):
     point.blur[0] += mx - sx
     point.blur[1] += my - sy
     point.blur[2] += mz - sz
+    point.blur[3] += mean_torque - torque
     point.torque[0] += torque
     point.contact[0] += contact
 

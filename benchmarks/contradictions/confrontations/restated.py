@@ -36,20 +36,16 @@ def draw_short(rng: np.random.Generator) -> Document:
 
 
 def restated(document: Document) -> Document:
-    """Other units, modes split and in another order, names replaced by what they stand for."""
+    """Other units, modes in another order, names replaced by what they stand for."""
+    widens = document["tool"]["kind"] in ("taper", "inserted")
     document = {**document, "tool": _tool(document), "material": _material(document)}
-    if document["cut"]["mode"] == "slot":
+    # a cone is wider than its tip, so that a slot of it is more than the diameter
+    if document["cut"]["mode"] == "slot" and not widens:
         width = document["tool"]["diameter"]
         document["cut"] = {**document["cut"], "mode": "up", "radial_depth": width}
-    modes = [_half(mode) for mode in document["structure"]["mode"]]
-    document["structure"] = {"mode": [*modes[::-1], *map(_seen_from_the_other_side, modes)]}
+    modes = [_seen_from_the_other_side(mode) for mode in document["structure"]["mode"]]
+    document["structure"] = {"mode": modes[::-1]}
     return _in_other_units(document)
-
-
-def _half(mode: Document) -> Document:
-    """A mode of twice the stiffness: two of them are the mode."""
-    value, unit = mode["stiffness"].split()
-    return {**mode, "stiffness": f"{2.0 * float(value)!r} {unit}"}
 
 
 def _seen_from_the_other_side(mode: Document) -> Document:
@@ -120,7 +116,6 @@ def compare_restated(document: Document) -> list[Comparison]:
     radius, error = spectral_radius(case)
     own, its_error = spectral_radius(other)
     allowed = error + its_error + _ROUNDING * max(1.0, radius)
-    # the elements of a period follow the modes, so that halves may have others
     found.append(Comparison("spectral radius", radius, own, allowed))
     means = (milling_model(each).averaged_directional for each in (case, other))
     one, two = (float(np.linalg.norm(mean)) for mean in means)
@@ -130,8 +125,8 @@ def compare_restated(document: Document) -> list[Comparison]:
 
 RESTATED = Confrontation(
     name="the same case in other words",
-    ways="a case; the same in other units, modes permuted, split, seen from the other side, "
-    "names and kinds replaced by what they stand for",
+    ways="a case; the same in other units, modes permuted and seen from the other side, names "
+    "and kinds replaced by what they stand for",
     stated="the same but for rounding, 1e-6, and the stated errors of the radius",
     weight=4.0,
     draw=draw_short,

@@ -195,8 +195,8 @@ def _measured(result: SimulationResult) -> dict[str, float]:
     settled = result.settled
     walls = [wall.largest_location_error for wall in result.finish.walls]
     return {
-        "power": float(result.power[settled].mean()),
-        "torque": float(result.torque[settled].mean()),
+        "power": result.mean_power,
+        "torque": result.mean_torque,
         "deflection": float(np.linalg.norm(result.displacement[settled], axis=1).max()),
         "surface_error": max(walls, key=abs) if walls else math.nan,
     }

@@ -313,3 +313,27 @@ def test_slices_of_a_helical_edge_converge_with_the_fourth_power():
         errors.append(np.sqrt(np.mean((run.force - wanted) ** 2)))
     order = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
     assert np.all(np.abs(order - 4.0) < 0.4)
+
+
+@pytest.mark.parametrize(("mode", "depth_share"), [("up", 0.028), ("down", 0.025), ("up", 0.06)])
+@pytest.mark.parametrize("revolutions", [2, 300])
+def test_a_straight_edge_has_its_mean_torque_and_power_in_short_and_long_records(
+    mode, depth_share, revolutions
+):
+    # it enters between two steps, and a long record keeps one step of several
+    width = depth_share * RADIUS
+    given = case(mode, teeth=1, helix=0.0, revolutions=revolutions).patch(
+        {"cut.radial_depth": width, "simulation.revolutions": revolutions}
+    )
+    result = simulate(given)
+    assert (result.setup.resolution.stride > 1) == (revolutions > 2)
+    arc = math.acos(1.0 - depth_share)
+    low, high = (0.0, arc) if mode == "up" else (math.pi - arc, math.pi)
+    expected = 5e-3 * (antiderivatives(high) - antiderivatives(low)) / (2.0 * math.pi)
+    told = result.summary()
+    scale = np.abs(expected[:2]).max()
+    found = [told["mean_force_N"][axis] for axis in ("Fx", "Fy", "Fz")]
+    np.testing.assert_allclose(found, expected[:3], atol=1e-3 * scale)
+    torque = told["power"]["mean_torque_Nm"]
+    assert torque == pytest.approx(expected[3] * RADIUS, rel=1e-3)
+    assert told["power"]["mean_W"] == pytest.approx(torque * 200.0 * math.pi, rel=1e-6)
