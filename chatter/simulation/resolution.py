@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,11 @@ _LIMITS = {
     "dexel": SliceLimits(lag=0.01, tilt=math.radians(5.0), arc=1.0 / 64.0),
     "voxel": SliceLimits(lag=0.01, tilt=math.radians(5.0), arc=1.0 / 64.0),
 }
+#: depth of the waves of an edge in feeds per tooth below which no tooth loses a part of its edge;
+#: parts of a wave within a slice of shallow and deep waves: the mean force of 36 random serrated
+#: tools is within 0.7 % then, where 16 slices a wave leave up to 6 %
+_SHALLOW = 0.7
+_SHALLOW_WAVE, _DEEP_WAVE, _LEAST_WAVE = 1.0 / 16.0, 1.0 / 48.0, 1.0 / 192.0
 #: rows of the record, at the most
 _MOST_ROWS = 120_000
 
@@ -99,7 +104,7 @@ def bounds_of(case: Case, cutter: Cutter) -> NDArray[np.float64]:
         cutter,
         case.cut.axial_depth,
         wall,
-        _LIMITS[chip],
+        replace(_LIMITS[chip], wave=_part_of_a_wave(case)),
         section.slices if section else None,
         [height for box in boxes for height in (box.z[0], box.z[1])],
     )
@@ -109,6 +114,19 @@ def bounds_of(case: Case, cutter: Cutter) -> NDArray[np.float64]:
             f"helix or the waves of the edge; at most {_MOST_SLICES} are allowed"
         )
     return bounds
+
+
+def _part_of_a_wave(case: Case) -> float:
+    """Part of the wave of a serrated edge within a slice.
+
+    Waves deeper than the feed leave every tooth but parts of the edge, whose ends the slices place.
+    """
+    if case.tool.serration is None:
+        return _SHALLOW_WAVE
+    depth = case.tool.serration.depth / case.cut.feed_per_tooth
+    if depth < _SHALLOW:
+        return _SHALLOW_WAVE
+    return max(_DEEP_WAVE / math.sqrt(max(1.0, depth / 4.0)), _LEAST_WAVE)
 
 
 def steps_per_revolution(

@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 
 from cutting.tool.cutter import Cutter, corner_height
 
-#: slices within one wave of a serrated edge
-_SLICES_A_WAVE = 16
 #: points at which a part of the edge is looked at
 _POINTS = 600
 #: slices that only rounding asks for
@@ -38,11 +36,14 @@ class SliceLimits:
         Of the normal of the edge, rad.
     arc : float
         Of the angle in the cut, as a share of the largest one.
+    wave : float
+        Of the wave of a serrated edge, as a share of it.
     """
 
     lag: float
     tilt: float
     arc: float
+    wave: float = 1.0 / 16.0
 
 
 def slice_bounds(
@@ -149,7 +150,7 @@ class _Part:
             else:
                 needed.append(np.abs(np.diff(arc)) / (limits.arc * arc.max()))
         if cutter.serration is not None:
-            needed.append(np.diff(self._height) / cutter.serration.wavelength * _SLICES_A_WAVE)
+            needed.append(np.diff(self._height) / cutter.serration.wavelength / limits.wave)
         every = np.max(needed, axis=0) if needed else np.zeros(_POINTS)
         self._needed = np.concatenate([[0.0], np.cumsum(every)])
 

@@ -53,21 +53,21 @@ def compare_forces(document: Document) -> list[Comparison]:
     near = (peaks[:, None] + np.arange(-2, 3)).ravel()
     at = np.unique(np.mod(np.concatenate([near, spread]), angles.size))
     course = rigid.at(angles[at])
+    shifted = rigid.at(angles[at] + 0.37 * (angles[1] - angles[0]))
     highest = np.linalg.norm(course[:3], axis=0).max()
     scale = [highest, highest, highest, float(np.abs(course[3]).max())]
     highest = np.append(result.peak_force, np.abs(result.torque).max())
     for k, name in enumerate(_COMPONENTS):
         jumps = _SAMPLING * scale[k] if rigid.jumps else 0.0
-        one, other = float(highest[k]), float(np.abs(course[k]).max())
+        one, aligned = float(highest[k]), float(np.abs(course[k]).max())
+        # an extreme shorter than a step is met by samples at its very angle alone
+        beside = float(np.abs(shifted[k]).max())
+        other = float(np.clip(one, *sorted((aligned, beside))))
         found.append(Comparison(f"peak {name}", one, other, _PEAK * scale[k] + jumps))
     if not rigid.jumps:
         for k, name in enumerate(_COMPONENTS):
-            worst = int(np.argmax(np.abs(simulated[k][at] - course[k])))
-            found.append(
-                relative(
-                    f"course of {name}", simulated[k][at[worst]], course[k][worst], _PEAK, scale[k]
-                )
-            )
+            off = float(np.sqrt(np.mean((simulated[k][at] - course[k]) ** 2)))
+            found.append(relative(f"rms difference of {name}", off, 0.0, _PEAK, scale[k]))
     return found
 
 

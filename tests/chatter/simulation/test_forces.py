@@ -337,3 +337,14 @@ def test_a_straight_edge_has_its_mean_torque_and_power_in_short_and_long_records
     torque = told["power"]["mean_torque_Nm"]
     assert torque == pytest.approx(expected[3] * RADIUS, rel=1e-3)
     assert told["power"]["mean_W"] == pytest.approx(torque * 200.0 * math.pi, rel=1e-6)
+
+
+def test_deep_waves_of_an_edge_get_slices_enough():
+    # the hunt's case: waves ten feeds deep, a depth of cut of an eighth of a wave
+    wave = {"depth": "0.060452 mm", "wavelength": "2.33244 mm"}
+    given = case("slot", 6, math.radians(26.6369), 0.3e-3, {"serration": wave}, revolutions=2)
+    given = given.patch({"cut.feed_per_tooth": 6.1e-6, "simulation.revolutions": 2})
+    coarse = simulate(given).mean_force
+    # a wave in 2000 parts
+    fine = simulate(given.patch({"simulation.slices": 257})).mean_force
+    np.testing.assert_allclose(coarse, fine, atol=0.005 * np.linalg.norm(fine))
