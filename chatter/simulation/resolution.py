@@ -104,7 +104,7 @@ def bounds_of(case: Case, cutter: Cutter) -> NDArray[np.float64]:
         cutter,
         case.cut.axial_depth,
         wall,
-        replace(_LIMITS[chip], wave=_part_of_a_wave(case)),
+        replace(_LIMITS[chip], wavelength=_part_of_a_wave(case)),
         section.slices if section else None,
         [height for box in boxes for height in (box.z[0], box.z[1])],
     )

@@ -36,14 +36,14 @@ class SliceLimits:
         Of the normal of the edge, rad.
     arc : float
         Of the angle in the cut, as a share of the largest one.
-    wave : float
-        Of the wave of a serrated edge, as a share of it.
+    wavelength : float
+        Of the waves of a serrated edge, as a share of theirs.
     """
 
     lag: float
     tilt: float
     arc: float
-    wave: float = 1.0 / 16.0
+    wavelength: float = 1.0 / 16.0
 
 
 def slice_bounds(
@@ -150,7 +150,7 @@ class _Part:
             else:
                 needed.append(np.abs(np.diff(arc)) / (limits.arc * arc.max()))
         if cutter.serration is not None:
-            needed.append(np.diff(self._height) / cutter.serration.wavelength / limits.wave)
+            needed.append(np.diff(self._height) / cutter.serration.wavelength / limits.wavelength)
         every = np.max(needed, axis=0) if needed else np.zeros(_POINTS)
         self._needed = np.concatenate([[0.0], np.cumsum(every)])
 
