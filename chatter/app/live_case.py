@@ -21,6 +21,7 @@ from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.registry import chosen_method, fixed_steps
 from chatter.stability.search_range import maximum_depth, spindle_speeds
+from dynamics.modal.modes import inside_band
 
 #: stage -> speeds, depths of the grid
 STAGES = {"coarse": (120, 24), "fine": (200, 50)}
@@ -108,7 +109,9 @@ class LiveCase:
             "crossings_mm": [_numbers(found * 1e3) for found in curve.crossings],
             "chatter_frequency_Hz": _numbers(curve.chatter_frequency),
             "bifurcation": list(curve.bifurcation),
-            "natural_frequencies_Hz": [mode.frequency for mode in model.structure.modes],
+            "natural_frequencies_Hz": [
+                mode.frequency for mode in inside_band(model.structure.modes)
+            ],
             "max_axial_depth_mm": max_depth * 1e3,
             "lowest": {
                 "depth_mm": _number(float(curve.critical_depth[lowest]) * 1e3),

@@ -53,11 +53,11 @@ def _print_errors(summaries: dict) -> None:
                 f"{errors['motor_error_um']:.4g}",
                 f"{errors['tracking_error_um']:.4g}",
                 f"{errors['tool_error_um']:.4g}" if "tool_error_um" in errors else "",
-                f"{errors['effort']:.4g}",
+                f"{errors['effort']:.4g} {errors['effort_unit'].replace('*', ' ')}",
             ]
             for axis, errors in summary["axes"].items()
         ]
-        titles = ["axis", "motor [um]", "scale [um]", "tool [um]", "effort [N m or N]"]
+        titles = ["axis", "motor [um]", "scale [um]", "tool [um]", "effort"]
         print_table(f"{name}: largest set less actual", titles, rows)
         if summary["contour_error_um"] is not None:
             typer.echo(f"largest contour error {summary['contour_error_um']:.4g} um")

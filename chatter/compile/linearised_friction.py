@@ -11,7 +11,7 @@ from dynamics.machine.harmonic import Linearised, at_amplitude, at_rest, at_velo
 from dynamics.reduction.modal_truncation import undamped_modes
 
 #: velocity of a friction, m/s or rad/s, below which it rests
-_RESTING = 1e-12
+RESTING = 1e-12
 
 
 def linearised_frf(
@@ -64,7 +64,7 @@ def linearised_frictions(
     moving = rigid_motion(machine, velocity) if velocity else np.zeros(machine.structure.size)
     return {
         one.name: at_velocity(float(one.row @ moving))
-        if abs(one.row @ moving) > _RESTING
+        if abs(one.row @ moving) > RESTING
         else _resting(one.name, amplitude)
         for one in machine.frictions
     }

@@ -1,13 +1,15 @@
 """The machine of a case as the stability methods see it: FRFs at the tool point, linearised."""
 
+from __future__ import annotations
+
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.compile.linearised_friction import linearised_frictions
+from chatter.compile.linearised_friction import RESTING, linearised_frictions, rigid_motion
 from chatter.compile.machine_cut import MachineCut, machine_cut
 from chatter.compile.real_modes import largest_misfit, lines_around, real_modes
 from chatter.description.case import Case
@@ -33,10 +35,32 @@ class LinearisedMachine:
     ----------
     case : Case
     cut : MachineCut
+    excluded : tuple of str
+        Names of frictions that are excluded.
     """
 
     case: Case
     cut: MachineCut
+    excluded: tuple[str, ...] = ()
+
+    @property
+    def sticking(self) -> tuple[str, ...]:
+        """Names of the frictions that hold as springs: none moves, and no amplitude is stated."""
+        if self.case.structure.friction_amplitude is not None:
+            return ()
+        moving = _moving(self.case, self.cut)
+        motion = rigid_motion(self.cut.machine, moving) if moving else None
+        return tuple(
+            one.name
+            for one in self.cut.machine.frictions
+            if one.name not in self.excluded
+            and (motion is None or abs(one.row @ motion) <= RESTING)
+            and np.real(one.law.stiffness_at_rest(np.array([_LOWEST])))[0] > 0.0
+        )
+
+    def without_sticking(self) -> LinearisedMachine:
+        """The same machine with nothing in place of the frictions that stick."""
+        return replace(self, excluded=(*self.excluded, *self.sticking))
 
     @cached_property
     def _guess(self) -> tuple[Mode, ...]:
@@ -53,7 +77,7 @@ class LinearisedMachine:
     def _fitted(self) -> tuple[tuple[Mode, ...], float]:
         highest = _ABOVE * max(mode.frequency for mode in self._guess)
         lines = lines_around(self._guess, _LOWEST, highest)
-        values = tool_receptance(self.case, self.cut, lines)
+        values = tool_receptance(self.case, self.cut, lines, self.excluded)
         modes = real_modes(lines, values, self._guess)
         return modes, largest_misfit(modes, lines, values)
 
@@ -96,7 +120,7 @@ class LinearisedMachine:
         lines = np.union1d(
             np.linspace(_LOWEST, highest, _LINES), lines_around(self._guess, _LOWEST, highest)
         )
-        return lines, tool_receptance(self.case, self.cut, lines)
+        return lines, tool_receptance(self.case, self.cut, lines, self.excluded)
 
 
 def machine_structure(case: Case) -> LinearisedMachine:
@@ -114,7 +138,7 @@ def machine_structure(case: Case) -> LinearisedMachine:
 
 
 def tool_receptance(
-    case: Case, cut: MachineCut, frequency: NDArray[np.float64]
+    case: Case, cut: MachineCut, frequency: NDArray[np.float64], excluded: tuple[str, ...] = ()
 ) -> NDArray[np.complex128]:
     """Receptance (m, 3, 3) of the tool against the workpiece in the directions of the cut, m/N.
 
@@ -124,9 +148,12 @@ def tool_receptance(
     cut : MachineCut
     frequency : (m,) array of float
         Hz, above 0.
+    excluded : tuple of str, optional
+        Names of frictions that are excluded.
     """
     moving = _moving(case, cut)
     frictions = linearised_frictions(cut.machine, moving, _amplitudes(case, cut))
+    frictions = {name: how for name, how in frictions.items() if name not in excluded}
     return receptance(cut.machine, frequency, cut.tool, cut.file.step, frictions)
 
 

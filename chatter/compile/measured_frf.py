@@ -59,8 +59,16 @@ class MeasuredSide:
 
     @cached_property
     def modes(self) -> tuple[Mode, ...]:
-        """Real modes at the tool point; magnitudes where the FRFs are not passive (see notes)."""
-        return tuple(replace(mode, side=self.side) for mode in self.fit.modes)
+        """Real modes at the tool point, those for what lies beyond the band included.
+
+        Magnitudes where the FRFs are not passive (see notes).
+        """
+        both = (*self.fit.modes, *self.fit.beyond.modes)
+        return tuple(replace(mode, side=self.side) for mode in both)
+
+    def notes_on_modes(self) -> tuple[str, ...]:
+        """What the modes say of the structure beyond the band; the FRFs are fitted for it."""
+        return notes_on_band(self.fit, self.side)
 
     def notes(self) -> tuple[str, ...]:
         """Warnings about FRFs that no drive point can have."""
@@ -95,6 +103,35 @@ class MeasuredSide:
             if not np.any(total[:, j, i]):
                 total[:, j, i] = value
         return frequency, total
+
+
+#: compliance beyond the band, over that of the modes in it, and misfit that are worth a note
+_NOTED_COMPLIANCE, _NOTED_MISFIT = 0.002, 0.01
+
+
+def notes_on_band(fit: ModalFit, side: Side) -> tuple[str, ...]:
+    """Say which modes stand for what lies beyond the band of a fit, and what they miss."""
+    ends = f"the band {fit.band.lowest:.4g} to {fit.band.highest:.4g} Hz of the FRFs of the {side}"
+    notes = []
+    for mode in fit.beyond.modes:
+        compliance = 1.0 / mode.stiffness
+        inside = sum(
+            np.dot(one.direction, mode.direction) ** 2 / one.stiffness for one in fit.modes
+        )
+        if compliance < _NOTED_COMPLIANCE * inside:
+            continue
+        along = ", ".join(f"{part:.2g}" for part in mode.direction)
+        notes.append(
+            f"{mode.band} {ends}, a mode at {mode.frequency:.4g} Hz with damping "
+            f"{mode.damping:.2g} along [{along}] stands for the fitted residual: static compliance "
+            f"{compliance:.3g} m/N, {compliance / inside:.2g} of that of the modes in the band"
+        )
+    if fit.beyond.misfit > _NOTED_MISFIT:
+        notes.append(
+            f"the modes for what lies beyond {ends} miss the fit by up to "
+            f"{fit.beyond.misfit:.1%} of its largest receptance"
+        )
+    return tuple(notes)
 
 
 def measured_sides(

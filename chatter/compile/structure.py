@@ -68,8 +68,13 @@ class MeasuredStructure:
 
     @property
     def modes(self) -> tuple[Mode, ...]:
-        """Fitted real modes in the directions of the case."""
+        """Fitted real modes in the directions of the case, those beyond the band included."""
         return tuple(mode for side in self.sides for mode in side.modes)
+
+    @property
+    def notes_on_modes(self) -> tuple[str, ...]:
+        """What was assumed by who takes the modes instead of the measured lines."""
+        return tuple(note for side in self.sides for note in side.notes_on_modes())
 
     def receptance(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
         """Usable lines (m,) in Hz and relative receptance (m, 3, 3) as measured, without a fit."""

@@ -13,6 +13,7 @@ from pydantic import PrivateAttr, ValidationError
 
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
+from chatter.description.magnitudes import long_lists
 from chatter.description.path import (
     Step,
     field_at,
@@ -123,6 +124,11 @@ class Description(Section):
         if not isinstance(data, Mapping):
             raise InputError(f"{name}: {formatted(data)} is given, a table of sections is required")
         try:
+            if long := long_lists(data):
+                raise InputError([f"{name}: {text}" for text in long])
+        except RecursionError:
+            raise InputError(f"{name}: is too deeply nested") from None
+        try:
             document = tomlkit.item(plain(data, noun=cls.NOUN))
         except InputError as error:
             raise InputError(f"{name}: {error}") from None
@@ -158,7 +164,10 @@ class Description(Section):
     @classmethod
     def _of_document(cls, document: Any, name: str, folder: Path) -> Self:
         notes = rename(document, cls.RENAMED)
-        made = cls._validated(document.unwrap(), name, folder)
+        plain_data = document.unwrap()
+        if long := long_lists(plain_data):
+            raise InputError([f"{name}: {text}" for text in long])
+        made = cls._validated(plain_data, name, folder)
         made._document = document
         made._notes = tuple(f"{name}: {note}" for note in notes)
         return made

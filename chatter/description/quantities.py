@@ -12,6 +12,7 @@ from pydantic import BeforeValidator, WithJsonSchema
 
 from chatter.description import units
 from chatter.description.formatting import formatted
+from chatter.description.magnitudes import is_plausible, words_of_range
 
 #: what an editor can check: a number, perhaps a deviation, and a unit unless it is zero
 _TEXT_PATTERN = (
@@ -33,6 +34,12 @@ class QuantityField:
     def read(self, given: Any) -> float:
         """Read a quantity and check its range; raise ValueError with a sentence for people."""
         value = units.parse(given, self.dimension).value
+        if not is_plausible(value, self.dimension):
+            raise ValueError(
+                f"{formatted(given)}{self._bare_unit(given)} is out of any plausible range; "
+                f"{self.noun} is {words_of_range(self.dimension)} "
+                f"{units.DIMENSIONS[self.dimension].unit}".rstrip()
+            )
         checks = (
             (self.above, value > (self.above or 0.0), "greater than"),
             (self.at_least, value >= (self.at_least or 0.0), "at least"),

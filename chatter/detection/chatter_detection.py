@@ -21,6 +21,7 @@ from chatter.detection.poincare_sections import (
     cut_into_periods,
     once_per_revolution,
     once_per_tooth,
+    without_drift,
 )
 
 #: deviation per relative variation of the speed that may be its doing
@@ -28,6 +29,9 @@ _BY_SPEED = 60.0
 #: deviations below this share are rounding; a small one counts when it has grown so many e-folds
 _ROUNDING = 1e-7
 _GROWN = 2.0
+#: share of the feed per tooth below which what does not repeat changes no chip, and the e-folds by
+#: which it has to grow over the record to be the beginning of chatter all the same
+_MATTERS, _GROWN_OF_SMALL = 1e-3, 0.3
 #: logarithm of the decay per revolution below which a motion counts as sustained
 _SUSTAINED = -0.004
 #: standard errors by which a decay has to be certain
@@ -95,6 +99,7 @@ class _Trend(NamedTuple):
     whole: float  # logarithm a period from the first to the last quarter
     slowest: float  # logarithm a period of the multiplier that decays least
     misfit: float  # share of the deviations that multipliers do not predict
+    spread: float  # rms of the signal, in units of the scale of the periods
 
 
 class _Motion(NamedTuple):
@@ -129,6 +134,23 @@ def detect_chatter(record: CutRecord) -> Detection:
     deviations = deviations_of(periods.values)
     trend = _trend_of(deviations, periods, record.negligible)
     verdict, confidence, reason = _decide(trend, periods)
+    if verdict == "chatter" and _is_drift(record, periods, trend):
+        periods = without_drift(periods, record.lowest_frequency)
+        deviations = deviations_of(periods.values)
+        trend = _trend_of(deviations, periods, record.negligible)
+        verdict, confidence, reason = _decide(trend, periods)
+        if verdict == "chatter" and _is_drift(record, periods, trend):
+            verdict, confidence = "stable", 0.6
+        reason += (
+            f"; a drift below {record.lowest_frequency:.3g} Hz, where the structure has no "
+            "resonance, is taken off"
+        )
+    if verdict == "chatter" and _is_too_small(record, periods, trend):
+        verdict, confidence = "stable", 0.6
+        reason = (
+            f"what does not repeat, {_size_of(periods, trend) * 1e6:.2g} um, is less than "
+            f"{_MATTERS:.1%} of the feed per tooth and does not grow"
+        )
     motion = _Motion("none", 1, math.nan, math.nan, per_revolution)
     if verdict == "stable" and _may_hide_doubling(record):
         doubling = doubling_within_revolution(record)
@@ -159,6 +181,27 @@ def detect_chatter(record: CutRecord) -> Detection:
         once_per_tooth=once_per_tooth(record),
         metrics=_metrics(record, periods, deviations, trend, motion.share),
     )
+
+
+def _is_drift(record: CutRecord, periods: Periods, trend: _Trend) -> bool:
+    """Whether what does not repeat moves more slowly than the structure can chatter."""
+    if record.lowest_frequency <= 0.0:
+        return False
+    line = strongest_line(periods.values[len(periods.values) // 2 :], max(trend.slope, 0.0))
+    return line.cycles / periods.period < record.lowest_frequency
+
+
+def _is_too_small(record: CutRecord, periods: Periods, trend: _Trend) -> bool:
+    """Whether what does not repeat changes no chip, and does not grow either."""
+    if record.displacements is None:
+        return False
+    small = _size_of(periods, trend) < _MATTERS * record.feed_per_tooth
+    return small and not _grows(trend, len(periods.values), _GROWN_OF_SMALL)
+
+
+def _size_of(periods: Periods, trend: _Trend) -> float:
+    """Rms of the deviation in the last quarter, m."""
+    return trend.level * trend.spread * periods.scale
 
 
 def _motion(periods: Periods, noise: float, growth_rate: float) -> _Motion:
@@ -201,18 +244,18 @@ def _trend_of(deviations: Deviations, periods: Periods, negligible: float) -> _T
     quarter = max(len(sizes) // 4, 2)
     level = float(np.sqrt(np.mean(sizes[-quarter:] ** 2))) / spread
     if deviations.rank == 0:
-        return _Trend(0.0, floor, -math.inf, 0.0, -math.inf, -math.inf, 0.0)
+        return _Trend(0.0, floor, -math.inf, 0.0, -math.inf, -math.inf, 0.0, spread)
     slope, error = growth_rate_of(sizes[len(sizes) // 2 :])
     first = float(np.sqrt(np.mean(sizes[:quarter] ** 2))) / spread
     whole = math.log(max(level, 1e-300) / max(first, 1e-300)) / (len(sizes) - quarter)
     slowest, misfit = slowest_growth_rate(deviations.rows[len(sizes) // 2 :])
-    return _Trend(level, floor, slope, error, whole, slowest, misfit)
+    return _Trend(level, floor, slope, error, whole, slowest, misfit, spread)
 
 
 def _decide(trend: _Trend, periods: Periods) -> tuple[str, float, str]:
     growth_rate, error = trend.slope * periods.per_revolution, trend.error * periods.per_revolution
     of_what = _unit(periods.per_revolution)
-    if trend.level < trend.floor and _grows(trend, len(periods.values)):
+    if trend.level < trend.floor and _grows(trend, len(periods.values), _GROWN):
         return (
             "chatter", 0.7,
             f"the deviation from {of_what} to {of_what} is but {trend.level:.2%} of the rms of the "
@@ -240,10 +283,10 @@ def _decide(trend: _Trend, periods: Periods) -> tuple[str, float, str]:
     )  # fmt: skip
 
 
-def _grows(trend: _Trend, count: int) -> bool:
-    """Whether a small deviation grows steadily over the record, far above rounding."""
+def _grows(trend: _Trend, count: int, e_folds: float) -> bool:
+    """Whether a small deviation grows steadily, by e-folds over the record, above rounding."""
     steady = trend.slope > _CERTAIN * trend.error and trend.whole > _SHARE_OF_RATE * trend.slope
-    return trend.level > _ROUNDING and steady and trend.whole * count > _GROWN
+    return trend.level > _ROUNDING and steady and trend.whole * count > e_folds
 
 
 def _decays(trend: _Trend, per_revolution: int) -> bool:

@@ -42,6 +42,9 @@ class CutRecord:
     negligible : float
         Deviation from period to period, as a share of the rms of the motion, that is none: what
         the record itself does not repeat any better.
+    lowest_frequency : float
+        Hz, below which the structure has no resonance and its drives no loop: slower motion is no
+        chatter. 0 where it is not known.
 
     Raises
     ------
@@ -57,6 +60,7 @@ class CutRecord:
     forces: NDArray[np.float64] | None = None
     runout: NDArray[np.float64] | None = None
     negligible: float = 0.005
+    lowest_frequency: float = 0.0
 
     def __post_init__(self) -> None:
         for name in ("time", "spindle_angle", "tooth_angles", "runout"):

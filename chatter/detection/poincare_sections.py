@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
@@ -19,6 +20,8 @@ _CONSTANT = 1e-6
 _STEEPEST = 100.0
 #: periods after which a change of the speed is still felt
 _LAGS = 3
+#: further terms of a drift, which seldom is a sine, and periods for each of its terms
+_CURVED, _PERIODS_A_TERM = 3, 4
 
 
 class Periods(NamedTuple):
@@ -95,6 +98,23 @@ def _without_speed_variation(
     size = float(np.sqrt(np.mean(slaved**2)))
     allowed = min(1.0, _STEEPEST * spread * rms / max(size, 1e-300))
     return (matrix - allowed * slaved).reshape(values.shape)
+
+
+def without_drift(periods: Periods, lowest_frequency: float) -> Periods:
+    """Take off what moves more slowly than a frequency, Hz: creep of axes, a drift of the mean.
+
+    A polynomial over the means of the periods, of so few terms that it follows nothing faster, nor
+    anything that changes within a few periods.
+    """
+    count, points, _ = periods.values.shape
+    cycles = 2.0 * lowest_frequency * periods.period * count
+    degree = max(min(math.ceil(cycles) + _CURVED, count // _PERIODS_A_TERM), 1)
+    centre = 2.0 * (np.arange(count) + 0.5) / count - 1.0
+    place = 2.0 * (np.arange(count * points) + 0.5) / (count * points) - 1.0
+    means = periods.values.mean(axis=1)
+    terms, *_ = np.linalg.lstsq(legvander(centre, degree), means, rcond=None)
+    drift = (legvander(place, degree) @ terms).reshape(periods.values.shape)
+    return periods._replace(values=periods.values - drift)
 
 
 def _averaged(record: CutRecord) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -32,11 +32,13 @@ def plot_move(result: MoveResult) -> Figure:
         if result.tool is not None:
             at_tool = (result.wanted - result.tool)[:, index] * 1e6
             axes[1, 0].plot(time, at_tool, color=colour, lw=1.0, ls=":", label=f"{axis} tool")
-        axes[1, 1].plot(time, result.effort[:, index], color=colour, lw=0.8, label=axis)
+        unit = result.effort_unit(index).replace("*", " ")
+        label = f"{axis} [{unit}]"
+        axes[1, 1].plot(time, result.effort[:, index], color=colour, lw=0.8, label=label)
     _label(axes[0, 0], "position set [mm]")
     _label(axes[0, 1], "velocity [m/s]")
     _label(axes[1, 0], "set less actual [µm]")
-    _label(axes[1, 1], "effort of the motors [N m or N]")
+    _label(axes[1, 1], "effort of the motors")
     if plane:
         _draw_path(axes[0, 2], result)
         axes[1, 2].plot(time, result.contour * 1e6, color=style.BLUE, lw=1.0)

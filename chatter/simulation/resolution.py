@@ -16,6 +16,8 @@ from dynamics.modal.modes import Mode
 
 #: steps within a period of the highest mode: where it leaves the chip, the moment counts
 _STEPS_A_PERIOD = 120
+#: of a mode above the band of a measurement, which stands for a compliance
+_STEPS_BEYOND = 30
 #: steps of a turn, and of the time that a tooth is in the cut, at the least
 _LEAST_STEPS_A_TURN = 1440
 _STEPS_A_CUT = 60
@@ -134,14 +136,19 @@ def steps_per_revolution(
 ) -> int:
     """Steps a revolution that resolve the highest mode and the time of a tooth in the cut."""
     stiff = case.contact.stiffness if case.contact else 0.0
-    highest = max(
-        (math.sqrt((mode.stiffness + stiff) / mode.mass) / (2.0 * math.pi) for mode in modes),
+    needed = max(
+        (
+            math.sqrt((mode.stiffness + stiff) / mode.mass)
+            / (2.0 * math.pi)
+            * (_STEPS_BEYOND if mode.band == "above" else _STEPS_A_PERIOD)
+            for mode in modes
+        ),
         default=0.0,
     )
     a_turn = 2.0 * math.pi / case.cut.spindle_speed
     return max(
         _LEAST_STEPS_A_TURN,
-        math.ceil(_STEPS_A_PERIOD * highest * a_turn),
+        math.ceil(needed * a_turn),
         math.ceil(_STEPS_A_CUT * 2.0 * math.pi / shortest_arc),
         math.ceil(_STEPS_A_PITCH * 2.0 * math.pi / min(pitch)),
     )

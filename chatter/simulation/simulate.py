@@ -220,12 +220,14 @@ class MachineResult(SimulationResult):
         """Return the content of summary.json."""
         summary = super().summary()
         machine = self.setup.on_machine.machine
+        axes = self.setup.on_machine.file.axis
         summary["machine"] = {
             "file": self.setup.on_machine.file.name,
             "drives": {
                 drive.name: {
                     "peak_effort": float(np.abs(self.torque_of(drive.name)).max(initial=0.0)),
                     "mean_effort": float(self.torque_of(drive.name)[self.settled].mean()),
+                    "effort_unit": "N" if axes[drive.axis].drive.motor_is_linear else "N*m",
                 }
                 for drive in machine.drives
             },

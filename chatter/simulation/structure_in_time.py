@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from chatter.compile.linearised_friction import rigid_motion
 from chatter.compile.machine_cut import MachineCut, machine_cut
-from chatter.compile.structure import structure_of
+from chatter.compile.structure import MeasuredStructure, structure_of
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.engine.loop_stability import refuse_unstable_control
@@ -78,7 +78,8 @@ def modes_of(case: Case) -> tuple[tuple[Mode, ...], tuple[str, ...]]:
     if case.structure is None:
         return (), ("no [structure]: tool and workpiece are rigid",)
     structure = structure_of(case)
-    return structure.modes, tuple(structure.notes)
+    further = structure.notes_on_modes if isinstance(structure, MeasuredStructure) else ()
+    return structure.modes, (*structure.notes, *further)
 
 
 def modes_in_time(

@@ -16,12 +16,15 @@ from chatter.simulation.perturbation.lyapunov_verdict import (
 )
 from chatter.simulation.result import SimulationResult
 from cutting.chip.discrete_chip import DiscreteCut
+from dynamics.modal.modes import inside_band
 
 #: a record of fewer revolutions, or of fewer cycles of the lowest mode, is not judged
 _LEAST_REVOLUTIONS = 8.0
 _LEAST_CYCLES = 12.0
 #: deviations from period to period that are none: a carved wall repeats less well
 _DELAYED, _CARVED = 0.005, 0.03
+#: share of the lowest resonance or loop corner below which motion is no chatter
+_WELL_BELOW = 0.25
 #: helix angles within this, rad, are the same
 _SAME_HELIX = 1e-12
 
@@ -44,7 +47,7 @@ def _detected(result: SimulationResult) -> tuple[Detection | None, str]:
         return None, "the tool is rigid"
     if result.revolutions < _LEAST_REVOLUTIONS:
         return None, f"fewer than {_LEAST_REVOLUTIONS:g} revolutions were simulated"
-    slowest = min(mode.frequency for mode in result.setup.modes)
+    slowest = min(mode.frequency for mode in inside_band(result.setup.modes))
     if result.time[-1] * slowest < _LEAST_CYCLES:
         return (
             None,
@@ -93,8 +96,21 @@ def _cut_record(result: SimulationResult) -> CutRecord:
         feed_per_tooth=result.case.cut.feed_per_tooth,
         forces=result.force,
         runout=slices.normal_offset[:, widest] if known else None,
+        lowest_frequency=_lowest_frequency(result),
         negligible=_CARVED if isinstance(result.setup.groups[0], DiscreteCut) else _DELAYED,
     )
+
+
+def _lowest_frequency(result: SimulationResult) -> float:
+    """Frequency, Hz, well below every resonance of the structure and every loop of its drives."""
+    lowest = min(mode.frequency for mode in result.setup.modes)
+    on_machine = result.setup.on_machine
+    if on_machine is not None:
+        gains = [drive.controller.position.gain for drive in on_machine.machine.drives]
+        # the corner of a position loop
+        corners = (gain / (2.0 * math.pi) for gain in gains if gain > 0.0)
+        lowest = min(lowest, *corners)
+    return _WELL_BELOW * lowest
 
 
 def _by_perturbation(perturbed: LyapunovVerdict, found: Detection, speed: float) -> Detection:

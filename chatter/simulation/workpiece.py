@@ -36,7 +36,7 @@ from cutting.voxel.stock import (
     voxel_stock,
     voxel_wall_profile,
 )
-from dynamics.modal.modes import Mode
+from dynamics.modal.modes import Mode, inside_band
 
 #: stock left behind the wall and ahead of the last place of the tool, in radii
 _MARGIN = 0.15
@@ -81,7 +81,7 @@ class DiscreteChip:
 
 def _dexel_spacing(case: Case, modes: tuple[Mode, ...]) -> float:
     """Fine enough for the shortest wave, and for the radius."""
-    highest = max((mode.frequency for mode in modes), default=0.0)
+    highest = max((mode.frequency for mode in inside_band(modes)), default=0.0)
     speed = 0.5 * case.tool.diameter * case.cut.spindle_speed
     wave = speed / highest if highest else math.inf
     chip = case.cut.feed_per_tooth / _DEXELS_A_CHIP

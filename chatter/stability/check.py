@@ -20,6 +20,7 @@ from chatter.stability.registry import (
     with_chatter_frequency,
     with_multiplier,
 )
+from chatter.stability.resting_friction import notes_on_resting_friction
 from chatter.stability.search_range import depths_at_one_speed
 from chatter.stability.stability_method import Multiplier
 from chatter.stability.steady_flank import about_steady_motion
@@ -146,5 +147,9 @@ def check(case: Case, method: str | None = None) -> StabilityCheck:
         limit=limit,
         max_depth=float(depths[-1]),
         zero_order_depth=float(zero_order.critical_depth[0]),
-        notes=(*model.notes, *notes_on_steady_cut(model, chosen)),
+        notes=(
+            *model.notes,
+            *notes_on_resting_friction(model),
+            *notes_on_steady_cut(model, chosen),
+        ),
     )

@@ -16,6 +16,7 @@ from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.pockets import find_pockets
 from chatter.stability.reference_speeds import natural_frequencies
 from chatter.stability.registry import chosen_method, fixed_steps, with_radius
+from chatter.stability.resting_friction import notes_on_resting_friction
 from chatter.stability.search_range import axial_depths, maximum_depth, spindle_speeds
 from chatter.stability.stability_method import StabilityMethod
 
@@ -65,7 +66,8 @@ def lobes(
         limits=limits,
         max_depth=np.full(len(speeds), max_depth),
         notes=(
-            *model.notes, *notes_on_steady_cut(model, chosen), *notes_on_tolerance(model, limits)
+            *model.notes, *notes_on_resting_friction(model), *notes_on_steady_cut(model, chosen),
+            *notes_on_tolerance(model, limits),
         ),
         zero_order=zero_order,
         pockets=find_pockets(speeds, limits.critical_depth, max_depth, removal_area),

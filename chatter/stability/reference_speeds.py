@@ -14,6 +14,7 @@ from chatter.description.arrays import Array, IntegerArray
 from chatter.description.progress import Progress, no_progress
 from chatter.engine.parallel import each, one_thread, worker_count
 from chatter.stability.model import MillingModel
+from dynamics.modal.modes import inside_band
 
 Result = TypeVar("Result")
 #: called with the model of a group, the indices of its speeds, and its progress
@@ -55,5 +56,5 @@ def natural_frequencies(model: MillingModel, speeds: Array) -> Array:
     given = model.case.structure.mode
     if given and model.depends_on_speed:
         return np.array([[mode.frequency_at(float(speed)) for speed in speeds] for mode in given])
-    own = np.array([mode.frequency for mode in model.structure.modes])
+    own = np.array([mode.frequency for mode in inside_band(model.structure.modes)])
     return np.repeat(own[:, None], len(speeds), axis=1)

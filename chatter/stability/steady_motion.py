@@ -19,6 +19,7 @@ from cutting.edge_segments.coupling import arc_at, delay_at, part_below, share_o
 from cutting.edge_segments.segments import EdgeSegments
 from cutting.process_damping.linear_flank import LEAST_RADIUS
 from cutting.process_damping.ploughing import Ploughing
+from dynamics.modal.modes import inside_band
 
 _REVOLUTION = 2.0 * math.pi
 #: delays and the period that differ by less are the same, rad
@@ -83,8 +84,9 @@ def steady_motion(model: MillingModel, speed: float, depth: float) -> SteadyMoti
     points = _edge_points(cut.segments, depth)
     if not points.angle.size:
         return None
-    period, natural = cut.period_angle, cut.natural_frequency
-    highest = natural.max() / speed
+    period = cut.period_angle
+    modes = inside_band(model.structure.modes)
+    highest = max(mode.natural_frequency for mode in modes) / speed
     orders = max(8, math.ceil(_REACH * highest * period / _REVOLUTION))
     orders = min(orders, (_MOST_UNKNOWNS // model.basis.shape[1] - 1) // 2)
     samples = int(

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from dynamics.frf.container import Frf, MeasurementError
 from dynamics.identification.band import Band, widened
+from dynamics.identification.beyond_band import modes_beyond
 from dynamics.identification.mode_quality import LEAST_MISFIT
 from dynamics.identification.polynomial import polyreference_poles
 from dynamics.identification.prepare import (
@@ -28,6 +29,7 @@ from dynamics.identification.report import (
 )
 from dynamics.identification.residues import ALL_TERMS, CURVATURE_TERMS, Records
 from dynamics.identification.result import (
+    BeyondBand,
     FrfModel,
     IdentifiedMode,
     ModalFit,
@@ -197,6 +199,7 @@ def _assemble(measurement: Measurement, band: Band, fits: Sequence[_SetFit]) -> 
     identified: list[IdentifiedMode] = []
     notes: list[str] = []
     reasons: list[str] = []
+    beyond: list[BeyondBand] = []
     for fit in fits:
         senses = measurement.senses[list(fit.frf_set.members)]
         for k, i in enumerate(fit.frf_set.members):
@@ -213,6 +216,7 @@ def _assemble(measurement: Measurement, band: Band, fits: Sequence[_SetFit]) -> 
                 )
             found = identified_real_modes(fit.tool.tool, fit.tool.model, fit.complex_model)
             notes += _delay_note(fit.tool)
+            beyond.append(modes_beyond(fit.tool.tool, fit.tool.model))
         else:
             reasons.append(fit.frf_set.reason if fit.tool is None else fit.tool.reason)
         identified += [_spread(mode, fit.frf_set, senses, count) for mode in found]
@@ -239,6 +243,10 @@ def _assemble(measurement: Measurement, band: Band, fits: Sequence[_SetFit]) -> 
         mode_errors=_errors(inside, ready, noise, FrfModel.values_of_modes),
         diagrams=tuple(fit.diagram for fit in fits),
         notes=tuple(dict.fromkeys(notes)),
+        beyond=BeyondBand(
+            tuple(mode for one in beyond for mode in one.modes),
+            max((one.misfit for one in beyond), default=0.0),
+        ),
     )
 
 

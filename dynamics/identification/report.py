@@ -129,7 +129,7 @@ def _identified(
 def identified_complex_modes(records: Records, model: ModalModel) -> list[IdentifiedMode]:
     """Report of modes without mass."""
     found = []
-    for one in _resonances(records, model, model.synthesis(records), _covariance(model.normal)):
+    for one in _resonances(records, model, model.synthesis(records), covariance_of(model.normal)):
         r = one.mode
         residues = model.coefficients[r] + 1j * model.coefficients[model.count + r]
         weight, phase = peak_share(records, model, r), _phase_deviation(residues, 0.0)
@@ -142,7 +142,7 @@ def identified_real_modes(
     tool: ToolPointRecords, model: RealModel, complex_model: ModalModel
 ) -> list[IdentifiedMode]:
     """Report of real modes with mass and direction at the tool point."""
-    covariance = _covariance(model.normal)
+    covariance = covariance_of(model.normal)
     residues = model.residues(tool.pairs).astype(np.complex128)
     axes = len(tool.axes)
     found = []
@@ -161,7 +161,7 @@ def identified_real_modes(
         felt = mass_std < UNFELT_STD * mass
         if not felt:
             warning = "; ".join(part for part in (UNFELT, warning) if part)
-        at_tool = (mass, float(mass_std), _direction(tool.axes, vector)) if felt else None
+        at_tool = (mass, float(mass_std), direction_of(tool.axes, vector)) if felt else None
         found.append(_identified(one, residues[r], weight, phase, warning, at_tool))
     return found
 
@@ -174,7 +174,7 @@ def mode_of(mode: IdentifiedMode) -> Mode:
     return Mode(mode.frequency, mode.damping, mode.mass, mode.direction)
 
 
-def _direction(axes: tuple[str, ...], vector: NDArray[np.float64]) -> tuple[float, float, float]:
+def direction_of(axes: tuple[str, ...], vector: NDArray[np.float64]) -> tuple[float, float, float]:
     """Unit vector of a mode; the largest component is positive. An axis without name is x."""
     total = np.zeros(3)
     for name, value in zip(axes, vector, strict=True):
@@ -184,7 +184,7 @@ def _direction(axes: tuple[str, ...], vector: NDArray[np.float64]) -> tuple[floa
     return (float(total[0]), float(total[1]), float(total[2]))
 
 
-def _covariance(normal: NDArray[np.float64]) -> NDArray[np.float64]:
+def covariance_of(normal: NDArray[np.float64]) -> NDArray[np.float64]:
     """Inverse of the Gauss-Newton matrix, for unit variance of the weighted residuals.
 
     Real and imaginary part of a line share the variance of its noise.

@@ -1,6 +1,7 @@
 """What a modal identification found, and how well it describes the measurement."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +14,15 @@ from dynamics.modal.modes import Mode
 
 #: noise over peak above which an FRF, such as a cross term of nothing, says little
 MOSTLY_NOISE = 0.1
+
+
+class BeyondBand(NamedTuple):
+    """Modes for what lies beyond the band, and what is lost by them."""
+
+    modes: tuple[Mode, ...] = ()
+    #: largest deviation in the band of all modes together from the fit, delay and quadrature apart,
+    #: over its largest receptance
+    misfit: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -141,6 +151,8 @@ class ModalFit:
         One for each set of FRFs with poles of its own.
     notes : tuple of str
         What a person should know: sign reversed, delay, modes refused.
+    beyond : BeyondBand
+        Modes that stand for what lies below and above the band, where there is a drive point.
     """
 
     frfs: tuple[Frf, ...]
@@ -155,6 +167,7 @@ class ModalFit:
     mode_errors: tuple[SynthesisError, ...]
     diagrams: tuple[StabilisationDiagram, ...]
     notes: tuple[str, ...]
+    beyond: BeyondBand
 
     def synthesis(self, frequency: ArrayLike) -> NDArray[np.complex128]:
         """Fitted functions in the quantity of `frfs`.

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Side = Literal["tool", "workpiece"]
+Band = Literal["inside", "below", "above"]
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,9 @@ class Mode:
         Unit vector of the motion of the tool point (x feed, y normal, z tool axis).
     side : str
         ``"tool"`` or ``"workpiece"``: which side of the contact moves.
+    band : str
+        ``"inside"``, or ``"below"`` or ``"above"`` for a mode that stands for what lies beyond the
+        band of a measurement: its compliance counts, its resonance was not measured.
     """
 
     frequency: float
@@ -33,6 +37,7 @@ class Mode:
     mass: float
     direction: tuple[float, float, float] = (1.0, 0.0, 0.0)
     side: Side = "tool"
+    band: Band = "inside"
 
     @property
     def natural_frequency(self) -> float:
@@ -43,6 +48,11 @@ class Mode:
     def stiffness(self) -> float:
         """Modal stiffness, N/m."""
         return self.mass * self.natural_frequency**2
+
+
+def inside_band(modes: Sequence[Mode]) -> tuple[Mode, ...]:
+    """Modes whose resonance was measured; all where none was."""
+    return tuple(mode for mode in modes if mode.band == "inside") or tuple(modes)
 
 
 def receptance_matrix(modes: Sequence[Mode], frequency: ArrayLike) -> NDArray[np.complex128]:

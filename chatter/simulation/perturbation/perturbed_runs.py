@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from chatter.description.case import Case
 from chatter.simulation.perturbation.followed_run import FollowedRun
 from chatter.simulation.perturbation.lyapunov_record import LyapunovRecord
-from dynamics.modal.modes import Mode
+from dynamics.modal.modes import Mode, inside_band
 
 Array = NDArray[np.float64]
 
@@ -52,7 +52,7 @@ def follow(
     rubs = leader.setup.structure.rubs
     perturbation = (_RUBBING_PERTURBATION if rubs else _PERTURBATION) * case.cut.feed_per_tooth
     gone = (_GONE if rubs else _ROUNDING) * perturbation
-    frequencies = [mode.frequency for mode in leader.setup.modes]
+    frequencies = [mode.frequency for mode in inside_band(leader.setup.modes)]
     a_second = leader.setup.spindle.speed / (2.0 * math.pi)
     stride = _stride(leader.bins, a_second / max(frequencies))
     least = 2.0 * math.pi * min(frequencies) * leader.setup.step * _STILL

@@ -166,15 +166,17 @@ def _one_frf(
         in_words(section),
         harmonic,
         tested,
-        "torque" if _turns(section.excite) else "force",
-        "rotation" if _turns(section.read or section.excite) else "displacement",
+        "torque" if _turns(file, section.excite) else "force",
+        "rotation" if _turns(file, section.read or section.excite) else "displacement",
     )
 
 
-def _turns(text: str) -> bool:
-    """Whether a place of a test is a motor, or a rotation."""
+def _turns(file: MachineFile, text: str) -> bool:
+    """Whether a place of a test is a motor that turns, or a rotation."""
     place = parse_tested_point(text)
-    return place.motor is not None or place.direction.startswith("r")
+    if place.motor is not None:
+        return not file.axis[place.motor].drive.motor_is_linear
+    return place.direction.startswith("r")
 
 
 def in_words(section: FrfSection) -> str:
@@ -217,7 +219,9 @@ def file_move(
         )
     title = file.title or file.name
     with _told_with(where, file.name):
-        return move_axes(f"{title}: {name}", machine, file.step, plan, tool, progress)
+        result = move_axes(f"{title}: {name}", machine, file.step, plan, tool, progress)
+    units = ("N" if file.axis[one].drive.motor_is_linear else "N*m" for one in section.axes)
+    return replace(result, effort_units=tuple(units))
 
 
 @contextmanager

@@ -57,6 +57,12 @@ class MoveResult:
     contour: NDArray[np.float64] | None
     friction: dict[str, NDArray[np.float64]]  # (n,), forces of the frictions, N
     interrupted: bool
+    #: of each axis, "N" of linear motors and "N*m" of others; none where motors are not known
+    effort_units: tuple[str, ...] = ()
+
+    def effort_unit(self, column: int) -> str:
+        """Unit of the effort of an axis."""
+        return self.effort_units[column] if self.effort_units else "N or N*m"
 
     @property
     def tracking_error(self) -> NDArray[np.float64]:
@@ -71,6 +77,7 @@ class MoveResult:
                 "tracking_error_um": _largest(self.tracking_error[:, column], 1e6),
                 "motor_error_um": _largest((self.wanted - self.motor)[:, column], 1e6),
                 "effort": _largest(self.effort[:, column], 1.0),
+                "effort_unit": self.effort_unit(column),
             }
             if self.tool is not None:
                 error = (self.wanted - self.tool)[:, column]
@@ -101,7 +108,7 @@ class MoveResult:
             if self.tool is not None:
                 names.append(f"{axis} tool [m]")
                 columns.append(self.tool[:, index])
-            names += [f"{axis} velocity [m/s]", f"{axis} effort [N or N*m]"]
+            names += [f"{axis} velocity [m/s]", f"{axis} effort [{self.effort_unit(index)}]"]
             columns += [self.velocity[:, index], self.effort[:, index]]
         if self.contour is not None:
             names.append("contour error [m]")

@@ -8,6 +8,7 @@ from chatter.description.arrays import Array
 from chatter.stability.methods.collocation.element_cut import RESOLUTION, element_cut
 from chatter.stability.methods.collocation.multipliers import growth_rate_at
 from chatter.stability.model import MillingModel
+from dynamics.modal.modes import inside_band
 
 #: chatter wavelengths in an element that are tried, the most first
 _TRIED = (6.0, 4.0, 3.0, 2.0, 1.4)
@@ -52,7 +53,7 @@ def extreme_models(models: Sequence[MillingModel]) -> list[MillingModel]:
     """
 
     def highest(model: MillingModel) -> float:
-        return max((mode.frequency for mode in model.structure.modes), default=0.0)
+        return max((mode.frequency for mode in inside_band(model.structure.modes)), default=0.0)
 
     def share(model: MillingModel) -> float:
         modes = model.structure.modes

@@ -23,7 +23,7 @@ from cutting.edge_segments.segments import period_angle
 from cutting.engagement.immersion import slice_engagement
 from cutting.force.force_spectrum import ForceSpectrum, RigidCut, slices_at
 from cutting.tool.cutter import EdgeSlices, corner_height, edge_slices
-from dynamics.modal.modes import receptance_matrix
+from dynamics.modal.modes import inside_band, receptance_matrix
 
 _REVOLUTION = 2.0 * math.pi
 #: harmonics reach to this multiple of the highest mode, and over so many of the period at least
@@ -67,7 +67,7 @@ class SteadyModel:
         self.modes = model.structure.modes
         #: harmonics of the turn from one that can be there to the next
         self.stride = round(_REVOLUTION / period_angle(model.cutter))
-        highest = max(mode.frequency for mode in self.modes)
+        highest = max(mode.frequency for mode in inside_band(self.modes))
         wanted = math.ceil(_HIGHEST * highest * _REVOLUTION / slowest / self.stride)
         count = min(max(wanted, _LEAST_HARMONICS), _MOST_HARMONICS)
         self.harmonic = self.stride * np.arange(count + 1)
@@ -125,7 +125,7 @@ class SteadyModel:
 
     def _coupled_counts(self, speeds: Array) -> IntegerArray:
         """Harmonics (n,) that act on each other, in few steps of about a factor of 1.4."""
-        highest = max(mode.frequency for mode in self.modes)
+        highest = max(mode.frequency for mode in inside_band(self.modes))
         wanted = _HIGHEST_COUPLED * highest * _REVOLUTION / speeds / self.stride
         steps = np.ceil(2.0 * np.log2(np.maximum(wanted, _LEAST_HARMONICS)))
         most = min(self.harmonic.size, _MOST_COUPLED + 1)
