@@ -239,6 +239,8 @@ def move(stored: StoredCase) -> Readings:
     found = {"duration": Reading(float(summary["duration_s"]), "s")}
     for axis, errors in summary["axes"].items():
         for name, value in errors.items():
+            if name == "effort_unit":
+                continue
             unit = "N or N m" if name == "effort" else "um"
             found[f"{axis} {name.removesuffix('_um').replace('_', ' ')}"] = Reading(
                 float(value), unit, rtol
