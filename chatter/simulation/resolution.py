@@ -29,6 +29,8 @@ _MOST_SLICES = 5000
 _LEAST_TURNS = 40.0
 _MOST_TURNS = 400.0
 _TIME_CONSTANTS = 12.0
+#: relative error of mean forces at which the limits below stand; see docs/time-domain.md
+_FORCE_TOLERANCE = 0.005
 #: what may change within a slice, by the kind of chip: layers of a carved workpiece are cut as a
 #: whole
 _LIMITS = {
@@ -69,12 +71,31 @@ def shortest_arc(case: Case, cutter: Cutter) -> float:
     return max(float(leave[0] - entry[0]) + lag, 1e-3)
 
 
+def resolved_arc(case: Case, cutter: Cutter) -> float:
+    """Angle over which the steps of a cut are counted, rad.
+
+    That of the shortest arc, less for a smaller tolerance of the forces.
+    """
+    return shortest_arc(case, cutter) * min(1.0, _refinement(case))
+
+
+def _refinement(case: Case) -> float:
+    """What may change within a slice, as a share of what may by default.
+
+    Errors fall with the square of the slices where a slice is partly in the cut.
+    """
+    section = case.simulation
+    if section is None:
+        return 1.0
+    return math.sqrt(section.force_tolerance / _FORCE_TOLERANCE)
+
+
 def resolution_of(case: Case, cutter: Cutter, modes: Sequence[Mode]) -> Resolution:
     """Choose steps, slices and length of a run."""
     section = case.simulation
     steps = section.steps if section and section.steps else None
     if steps is None:
-        steps = steps_per_revolution(case, modes, shortest_arc(case, cutter), cutter.pitch)
+        steps = steps_per_revolution(case, modes, resolved_arc(case, cutter), cutter.pitch)
     if steps > _MOST_STEPS_A_TURN:
         raise InputError(
             f"{case.name}: simulation.steps: {steps:.3g} steps a revolution would be needed for "
@@ -106,7 +127,7 @@ def bounds_of(case: Case, cutter: Cutter) -> NDArray[np.float64]:
         cutter,
         case.cut.axial_depth,
         wall,
-        replace(_LIMITS[chip], wavelength=_part_of_a_wave(case)),
+        replace(_LIMITS[chip], wavelength=_part_of_a_wave(case)).refined(_refinement(case)),
         section.slices if section else None,
         [height for box in boxes for height in (box.z[0], box.z[1])],
     )

@@ -20,7 +20,7 @@ from chatter.simulation.spindle import (
 )
 from chatter.simulation.start_in_stock import clear_start
 from chatter.simulation.structure_in_time import StructureInTime, modes_in_time, structure_in_time
-from chatter.simulation.workpiece import REVOLUTIONS_BEFORE, discrete_cut
+from chatter.simulation.workpiece import REVOLUTIONS_BEFORE, discrete_cut, reading_notes
 from cutting.chip.delayed_chip import DelayedCut
 from cutting.chip.discrete_chip import DiscreteCut
 from cutting.chip.regeneration import delayed_cut
@@ -155,6 +155,8 @@ def _compiled(case: Case, cutter: Cutter, structure: StructureInTime) -> Setup:
         notes += ("the engagement changes along the path; the verdict is that of the whole record",)
     chip = case.simulation.chip if case.simulation else "delay"
     groups: tuple = (CHIPS[chip](case, cutter, slices, structure.modes, resolution, spindle, path),)
+    if isinstance(groups[0], DiscreteCut):
+        notes += reading_notes(case, cutter, groups[0])
     if case.contact is not None:
         contact = case.contact
         groups += (ToolContact(contact.stiffness, contact.damping, contact.full_engagement_share),)

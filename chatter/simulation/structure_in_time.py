@@ -16,8 +16,8 @@ from chatter.simulation.resolution import (
     Resolution,
     bounds_of,
     resolution_of,
+    resolved_arc,
     revolutions_of,
-    shortest_arc,
 )
 from chatter.simulation.spindle import path_of
 from cutting.tool.cutter import Cutter
@@ -150,7 +150,7 @@ def _step(case: Case, cut: MachineCut, cutter: Cutter) -> float:
     wanted = section.steps if section and section.steps else None
     if wanted is None:
         wanted = max(
-            _STEPS_A_CUT * 2.0 * math.pi / shortest_arc(case, cutter),
+            _STEPS_A_CUT * 2.0 * math.pi / resolved_arc(case, cutter),
             _STEPS_A_PITCH * 2.0 * math.pi / min(cutter.pitch),
         )
     parts = max(1, math.ceil(cut.file.step * wanted / a_turn - 1e-9))

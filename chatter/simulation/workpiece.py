@@ -47,6 +47,9 @@ _COARSEST_DEXEL = 2.5e-5
 _DEXELS_A_CHIP = 4
 #: voxels within the thickest chip
 _VOXELS_A_CHIP = 12
+#: error of mean forces that are read from voxels, and its part that falls with the square of the
+#: cells in the thickest chip
+_VOXEL_ERROR, _VOXEL_ERROR_OF_CELLS = 0.01, 0.6
 #: coarsest resolution that is taken, as a share of the diameter
 _COARSEST_SHARE = 0.02
 #: the stock may take this much memory, bytes
@@ -91,6 +94,24 @@ def _dexel_spacing(case: Case, modes: tuple[Mode, ...]) -> float:
 def _voxel_size(case: Case, modes: tuple[Mode, ...]) -> float:
     """Fine enough for the chip, and for the shortest wave."""
     return min(case.cut.feed_per_tooth / _VOXELS_A_CHIP, _dexel_spacing(case, modes))
+
+
+def reading_notes(case: Case, cutter: Cutter, cut: DiscreteCut) -> tuple[str, ...]:
+    """How well forces are read from a stock; dexels keep to simulation.force_tolerance.
+
+    The error of voxels was measured on rigid cuts over the cells in their thickest chip.
+    """
+    if not isinstance(cut.stock, VoxelStock):
+        return ()
+    arc = 0.5 * math.pi
+    if case.stock is None and case.cut.mode != "slot":
+        arc = min(arc, math.acos(max(1.0 - case.width_of_cut / cutter.radius, 0.0)))
+    cells = case.cut.feed_per_tooth * math.sin(arc) / cut.stock.spacing
+    error = _VOXEL_ERROR + _VOXEL_ERROR_OF_CELLS / cells**2
+    return (
+        f"voxel: the thickest chip is {cells:.2g} cells thick; mean forces are read to about "
+        f"{100.0 * error:.2g} %",
+    )
 
 
 def _dexel_memory(box: Rectangle, layers: int, spacing: float) -> float:

@@ -45,6 +45,13 @@ class SliceLimits:
     arc: float
     wavelength: float = 1.0 / 16.0
 
+    def refined(self, factor: float) -> SliceLimits:
+        """Limits times a factor."""
+        lag, tilt, arc, wavelength = (
+            factor * one for one in (self.lag, self.tilt, self.arc, self.wavelength)
+        )
+        return SliceLimits(lag, tilt, arc, wavelength)
+
 
 def slice_bounds(
     cutter: Cutter,

@@ -167,7 +167,11 @@ class Simulation(Section):
         None, description="steps a revolution; by default they are chosen"
     )
     slices: whole_number(1, 5_000, "slices of the edge") | None = Field(
-        None, description="slices of the straight edge; by default they are chosen"
+        None, description="slices of what of the edge is in the cut; by default they are chosen"
+    )
+    force_tolerance: quantity("number", at_least=1e-5, at_most=0.05) = Field(
+        0.005,
+        description="relative error of mean forces that slices and steps aim at; twice it of peaks",
     )
     path: tuple[PlanePoint, ...] | None = Field(
         None, description="corners of the tool path, [x, y] each; dexel and voxel chips follow it"
