@@ -41,8 +41,8 @@ class DelayedCut(NamedTuple):
     helices: int  # 1 where all flutes have one helix, else the number of slices
     earlier: NDArray[np.int64]  # tooth of the k-th pass back, (N, L, N)
     delay: NDArray[np.float64]  # turn of the spindle since that pass, bins, (N, helices, N)
-    radial_offset: NDArray[np.float64]  # of the edge behind that of the pass in the middle of the
-    # slice, and its change up to the upper end, m, (N, L, N, 2)
+    radial_offset: NDArray[np.float64]  # of the edge behind that of the pass, at the Gauss points
+    # above and below the middle, m, (N, L, N, 2)
     history: NDArray[np.float64]  # x, y, z of the tool against the work at each bin of the last
     # turn, path and vibration, m, and its change to the next bin by its slope, m, (2, bins, 3)
     since: NDArray[np.float64]  # scratch: motion since each pass, m, (N, 3)

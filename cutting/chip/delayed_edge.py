@@ -29,17 +29,27 @@ class Span(NamedTuple):
 
 
 @register_jitable(**INLINED)
+def _offset_at(cut, tooth, segment, k, t):
+    """Offset of an edge behind a pass at a t of its slice, m; linear between the Gauss points."""
+    upper, lower = (
+        cut.radial_offset[tooth, segment, k, 0],
+        cut.radial_offset[tooth, segment, k, 1],
+    )
+    return 0.5 * (upper + lower) + _HALF_SPAN * t * (upper - lower)
+
+
+@register_jitable(**INLINED)
 def chip_at(cut, tooth, segment, at, t):
     """Chip thickness of an edge, m, at a t of its slice; negative in the air.
 
     `at` holds the immersion (sine, cosine), radius and angle (sine, cosine) there.
     """
-    since, radial_offset = cut.since, cut.radial_offset
+    since = cut.since
     across, along, ck = at[0] * at[3], at[0] * at[4], at[1]
     thinnest = math.inf
     for k in range(since.shape[0]):
         chip = since[k, 0] * across + since[k, 1] * along - since[k, 2] * ck
-        chip -= radial_offset[tooth, segment, k, 0] + t * radial_offset[tooth, segment, k, 1]
+        chip -= _offset_at(cut, tooth, segment, k, t)
         if chip < thinnest:
             thinnest = chip
     return thinnest
@@ -88,10 +98,8 @@ def whole_slice(cut, tooth, segment, rotation):
     # a loop without branches: most of all the time goes here
     for k in range(cut.since.shape[0]):
         x, y, z = cut.since[k, 0], cut.since[k, 1], cut.since[k, 2]
-        beside = cut.radial_offset[tooth, segment, k, 0]
-        rise = GAUSS_POINT * cut.radial_offset[tooth, segment, k, 1]
-        first = x * x1 + y * y1 - z * z1 - (beside + rise)
-        last = x * x2 + y * y2 - z * z2 - (beside - rise)
+        first = x * x1 + y * y1 - z * z1 - cut.radial_offset[tooth, segment, k, 0]
+        last = x * x2 + y * y2 - z * z2 - cut.radial_offset[tooth, segment, k, 1]
         low, high = _at_ends(first, last)
         chip1, chip2 = min(chip1, first), min(chip2, last)
         at_low, at_high = min(at_low, low), min(at_high, high)
@@ -133,11 +141,9 @@ def _clear_of_air(cut, tooth, segment, span, low, high):
     begin, end = low, high
     for k in range(cut.since.shape[0]):
         x, y, z = cut.since[k, 0], cut.since[k, 1], cut.since[k, 2]
-        beside = cut.radial_offset[tooth, segment, k, 0]
-        rise = span.along * cut.radial_offset[tooth, segment, k, 1]
         at_low, at_high = _at_ends(
-            x * x1 + y * y1 - z * z1 - (beside + t1 * rise),
-            x * x2 + y * y2 - z * z2 - (beside + t2 * rise),
+            x * x1 + y * y1 - z * z1 - _offset_at(cut, tooth, segment, k, t1 * span.along),
+            x * x2 + y * y2 - z * z2 - _offset_at(cut, tooth, segment, k, t2 * span.along),
         )
         if at_low <= 0.0 and at_high <= 0.0:
             return low, low

@@ -47,8 +47,9 @@ def delayed_cut(
     near = np.round(delay)
     delay = np.where(np.abs(delay - near) < 1e-9 * bins, near, delay)
     alike = np.all(np.abs(delay - delay[:, :1]) < 1e-9 * bins)
-    # of the middle of each slice, and its change up to the upper end
-    offset = np.stack([slices.normal_offset, 0.5 * slices.offset_rise], axis=-1)
+    # at the Gauss points above and below the middle of each slice
+    rise = 0.5 * GAUSS_POINT * slices.offset_rise
+    offset = np.stack([slices.normal_offset + rise, slices.normal_offset - rise], axis=-1)
     pieces = np.arange(offset.shape[1])[None, :, None]
     entry, leave = (angle * bins / _TURN for angle in arc)
     cutting = np.isfinite(entry[:, 0])

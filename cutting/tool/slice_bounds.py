@@ -18,6 +18,8 @@ from cutting.tool.cutter import Cutter, corner_height
 
 #: points at which a part of the edge is looked at
 _POINTS = 600
+#: arc of an edge that only rounding brings into the cut, rad
+_LEAST_ARC = 1e-6
 #: slices that only rounding asks for
 _ROUNDING = 1e-9
 #: an edge that is engaged over less than this share of the depth is not
@@ -151,8 +153,8 @@ class _Part:
         needed = [np.diff(self._height) * lag / limits.lag, np.diff(tilted) / limits.tilt]
         if wall is not None:
             arc = np.arccos(np.clip(wall / np.maximum(radius, 1e-300), -1.0, 1.0))
-            if arc.max() <= 0.0:
-                # never in the cut
+            if arc.max() <= _LEAST_ARC:
+                # never in the cut but for rounding
                 needed = []
             else:
                 needed.append(np.abs(np.diff(arc)) / (limits.arc * arc.max()))
