@@ -70,6 +70,7 @@ class MillingModel:
     flank: ProcessDampingLaw | None
     notes: tuple[str, ...]  # assumptions and limits that the user should know of
     steady_path: SteadyPath | None = None  # where the flank ploughs beside a steady motion
+    limit_tolerance: float | None = None  # of critical depths, where it is not that of the case
 
     @property
     def teeth(self) -> int:
@@ -190,6 +191,8 @@ class MillingModel:
     @property
     def tolerance(self) -> float:
         """Largest estimated error of critical depths that the case allows, relative."""
+        if self.limit_tolerance is not None:
+            return self.limit_tolerance
         return self.case.lobes.tolerance if self.case.lobes else LIMIT_ERROR
 
     @cached_property

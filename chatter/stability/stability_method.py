@@ -127,7 +127,11 @@ class StabilityMethod:
         def at(own: MillingModel, speed: float, wanted: Array) -> LimitCurve:
             return self.limits_of(Sweep(own, np.array([speed]), wanted, steps, no_progress))
 
-        return limits_about_steady_motion(model, still, depths, at, progress)
+        def radius(own: MillingModel, speed: Array, depth: Array) -> Array:
+            return self.radius_of(Sweep(own, speed, depth, steps, no_progress))
+
+        of_points = radius if self.gives_radius else None
+        return limits_about_steady_motion(model, still, depths, at, of_points, progress)
 
     def radius(
         self,

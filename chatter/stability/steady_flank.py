@@ -34,6 +34,11 @@ _SWING = 0.1
 _SAME_DEPTH, _MOST_MOVES = 3e-3, 6
 #: depths around the last limit on which the next one is searched first
 _AROUND, _DEPTHS_AROUND = (0.6, 1.6), 6
+#: rise of the depth over which the slope of the growth rate is taken; the largest step, as a
+#: logarithm of the depth; and the tolerance of the limit that confirms the last one
+_RISE, _LARGEST_MOVE, _LOOSE = 0.04, 0.5, 3e-3
+#: depths at which a cut that is stable about a still tool is looked at beside its own motion
+_LOOKED_AT = 8
 #: points of a map share the steady motion of a depth within this factor
 _SHARED_DEPTH = 1.5
 #: up to this many points each has its own
@@ -91,7 +96,12 @@ def about_steady_motion(
 
 
 def limits_about_steady_motion(
-    model: MillingModel, still: LimitCurve, depths: Array, limits: LimitsAt, progress: Progress
+    model: MillingModel,
+    still: LimitCurve,
+    depths: Array,
+    limits: LimitsAt,
+    radius: RadiusAt | None,
+    progress: Progress,
 ) -> LimitCurve:
     """Limits whose flank is that beside the steady motion at the limit itself.
 
@@ -103,20 +113,77 @@ def limits_about_steady_motion(
     depths : (m,) array of float
         m, ascending.
     limits : callable
+    radius : callable, optional
+        Spectral radius, of a method that gives it: limits move with the motion by Newton steps.
     progress : callable
         Called with (done, total) speeds.
     """
     speeds = still.spindle_speed
+
+    def still_at(i: int) -> LimitCurve:
+        parts = (column[i : i + 1] for column in still[:-1])
+        return LimitCurve(*parts, error=0.0)
 
     def at(i: int) -> LimitCurve:
         speed = float(speeds[i])
         own = model.at_speed(speed) if model.depends_on_speed else model
         with one_thread():
             start = float(still.critical_depth[i]), float(still.chatter_frequency[i])
+            crossings = len(still.crossings[i])
+            if radius is not None and crossings == 0 and _is_stable(own, speed, depths, radius):
+                return still_at(i)
+            if radius is not None and crossings == 1:
+                found = _moved_limit(own, speed, start, depths, limits, radius)
+                if found is not None:
+                    return found
             return _limit_at(own, speed, start, depths, limits)
 
     curves = each(at, len(speeds), progress)
     return joined_limits(speeds, [(np.array([i]), curve) for i, curve in enumerate(curves)])
+
+
+def _moved_limit(
+    model: MillingModel,
+    speed: float,
+    start: tuple[float, float],
+    depths: Array,
+    limits: LimitsAt,
+    radius: RadiusAt,
+) -> LimitCurve | None:
+    """Limit at a speed by Newton steps from another, m, and its frequency, Hz; None without end.
+
+    Every step moves along the growth rate at the flank of the last depth.
+    """
+    depth, frequency = start
+    for _ in range(_MOST_MOVES):
+        beside = about_steady_motion(model, speed, depth, frequency)
+        at = depth * np.array([1.0, 1.0 + _RISE])
+        rate, above = np.log(np.maximum(radius(beside, np.full(2, speed), at), 1e-30))
+        slope = (above - rate) / np.log1p(_RISE)
+        if not slope > 0.0 or abs(rate) > _LARGEST_MOVE * slope:
+            return None
+        depth *= float(np.exp(-rate / slope))
+        if abs(rate) < _SAME_DEPTH * slope:
+            break
+    else:
+        return None
+    near = depth * np.linspace(*_AROUND, _DEPTHS_AROUND)
+    near = near[near < depths[-1]]
+    if depth >= depths[-1] or not near.size:
+        return None
+    beside = about_steady_motion(model, speed, depth, frequency)
+    found = limits(replace(beside, limit_tolerance=_LOOSE), speed, np.append(near, depths[-1]))
+    moved = float(found.critical_depth[0])
+    return found if abs(moved - depth) < 3.0 * _LOOSE * depth else None
+
+
+def _is_stable(model: MillingModel, speed: float, depths: Array, radius: RadiusAt) -> bool:
+    """Whether a speed is stable at depths from the least to the largest, each in its own motion."""
+    for depth in np.geomspace(depths[0], depths[-1], _LOOKED_AT):
+        beside = about_steady_motion(model, speed, float(depth))
+        if radius(beside, np.array([speed]), np.array([depth]))[0] >= 1.0:
+            return False
+    return True
 
 
 def _limit_at(

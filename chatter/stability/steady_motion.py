@@ -35,7 +35,7 @@ _MOST_UNKNOWNS = 700
 #: delays are taken together within this phase of the highest harmonic, rad
 _PHASE = 0.2
 #: Newton steps along a flank that ploughs, and the change of the path at which they end, relative
-_NEWTON_STEPS, _CONVERGED = 25, 1e-4
+_NEWTON_STEPS, _CONVERGED = 12, 1e-3
 
 
 class EdgePoints(NamedTuple):
