@@ -121,8 +121,11 @@ def limits_about_steady_motion(
     speeds = still.spindle_speed
 
     def still_at(i: int) -> LimitCurve:
-        parts = (column[i : i + 1] for column in still[:-1])
-        return LimitCurve(*parts, error=0.0)
+        one = slice(i, i + 1)
+        return LimitCurve(
+            speeds[one], still.critical_depth[one], still.chatter_frequency[one],
+            still.bifurcation[one], still.crossings[one], still.steps[one], 0.0,
+        )  # fmt: skip
 
     def at(i: int) -> LimitCurve:
         speed = float(speeds[i])
