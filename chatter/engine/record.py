@@ -17,6 +17,10 @@ COLUMNS = (
     "mean torque",
 )
 _MEAN, _LARGEST, _MEAN_TORQUE = 7, 10, 13
+#: lines beside a kink change their slope by less than this share from step to step
+_STRAIGHT = 0.25
+#: most that a round signal gains between two steps
+_ROUND = 1.01
 
 
 class CutRecord(NamedTuple):
@@ -28,13 +32,13 @@ class CutRecord(NamedTuple):
     rows: NDArray[np.float64]  # see COLUMNS, (rows, columns)
     #: sum of mean forces, N, and torques, N m, and largest force since the last row, N, (2, 4)
     since: NDArray[np.float64]
-    samples: NDArray[np.float64]  # force at the last three steps, the newest first, N, (3, 3)
+    samples: NDArray[np.float64]  # force at the last five steps, the newest first, N, (5, 3)
 
 
 def cut_record(point: ToolPoint, rows: int, stride: int, first: int) -> CutRecord:
     """Return an empty record at a tool point."""
     return CutRecord(
-        stride, first, point, np.zeros((rows, len(COLUMNS))), np.zeros((2, 4)), np.zeros((3, 3))
+        stride, first, point, np.zeros((rows, len(COLUMNS))), np.zeros((2, 4)), np.zeros((5, 3))
     )
 
 
@@ -64,16 +68,24 @@ def _row(group, clock):
 
 
 @register_jitable(**INLINED)
-def _between_steps(oldest, older, old, new):
-    """Extreme of a signal with a kink between the middle two of four steps; else the third.
+def _between_steps(samples, axis, new):
+    """Extreme of a signal with a kink between the middle two of six steps; else the fourth.
 
-    The lines through the first two and through the last two meet at the kink.
+    The lines through the two before and the two after it meet at the kink. A signal that bends
+    beside it as well is round and has no kink.
     """
-    rise, fall = older - oldest, new - old
+    older, old = samples[2, axis], samples[1, axis]
+    rise, fall = older - samples[3, axis], samples[0, axis] - old
     if rise * fall >= 0.0:
         return old
     share = (old - older - fall) / (rise - fall)
-    return older + share * rise if 0.0 < share < 1.0 else old
+    if not 0.0 < share < 1.0:
+        return old
+    kink, most = older + share * rise, _ROUND * max(abs(older), abs(old))
+    bent = abs(rise - (samples[3, axis] - samples[4, axis])) > _STRAIGHT * abs(rise)
+    if bent or abs(new - samples[0, axis] - fall) > _STRAIGHT * abs(fall):
+        return min(max(kink, -most), most)
+    return kink
 
 
 @register_jitable(**INLINED)
@@ -83,12 +95,12 @@ def _follow_force(group):
     for axis in range(3):
         now = point.sample[axis]
         group.since[0, axis] += now + point.blur[axis]
-        kink = _between_steps(samples[2, axis], samples[1, axis], samples[0, axis], now)
+        kink = _between_steps(samples, axis, now)
         before, after = now + point.jump[0, axis], now + point.jump[1, axis]
         largest = max(max(abs(now), abs(kink)), max(abs(before), abs(after)))
         group.since[1, axis] = max(group.since[1, axis], largest)
-        samples[2, axis] = samples[1, axis]
-        samples[1, axis] = samples[0, axis]
+        for k in range(4, 0, -1):
+            samples[k, axis] = samples[k - 1, axis]
         samples[0, axis] = now
     group.since[0, 3] += point.torque[0] + point.blur[3]
 

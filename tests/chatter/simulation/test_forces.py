@@ -348,3 +348,14 @@ def test_deep_waves_of_an_edge_get_slices_enough():
     # a wave in 2000 parts
     fine = simulate(given.patch({"simulation.slices": 257})).mean_force
     np.testing.assert_allclose(coarse, fine, atol=0.005 * np.linalg.norm(fine))
+
+
+def test_a_round_peak_of_few_steps_is_no_kink():
+    # a steep ball end mill, whose force peaks within a few steps; steps ten times finer show it
+    ball = {"kind": "ball", "diameter": "18.2117 mm"}
+    given = case("up", 2, math.radians(49.0749), 0.627689e-3, ball, revolutions=1).patch(
+        {"cut.mode": "down", "cut.radial_depth": "8.33987 mm", "cut.feed_per_tooth": 5.13511e-6}
+    )
+    fine = simulate(given.patch({"simulation.steps": 14400}))
+    peak = np.abs(fine.force).max(axis=0)
+    np.testing.assert_allclose(simulate(given).peak_force, peak, atol=0.01 * peak.max())
