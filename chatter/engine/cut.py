@@ -209,10 +209,14 @@ def _clear(point):
     for axis in range(3):
         point.force[axis] = 0.0
         point.sample[axis] = 0.0
-        point.blur[axis] = 0.0
-        point.jump[0, axis] = 0.0
-        point.jump[1, axis] = 0.0
-    point.blur[3] = 0.0
+    # most steps have no jump
+    if point.jumped[0] != 0:
+        point.jumped[0] = 0
+        for axis in range(3):
+            point.blur[axis] = 0.0
+            point.jump[0, axis] = 0.0
+            point.jump[1, axis] = 0.0
+        point.blur[3] = 0.0
     point.torque[0] = 0.0
     point.contact[0] = 0.0
 

@@ -3,20 +3,23 @@
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from chatter.engine.presets import KERNEL
 from cutting.chip.tool_point import ToolPoint
 from cutting.compiled import INLINED
 
-#: columns of the record of a cut; means and the largest size of each force are those since the row
-#: before
-COLUMNS = (
-    *("Fx", "Fy", "Fz", "x", "y", "z", "torque"),
-    *("mean Fx", "mean Fy", "mean Fz", "largest Fx", "largest Fy", "largest Fz"),
-    "mean torque",
+#: columns of the record of a cut
+COLUMNS = ("Fx", "Fy", "Fz", "x", "y", "z", "torque")
+#: columns of what happens between its rows: means since the row before, less the values at the row,
+#: and the largest size of each force since then; zero where the rows tell all
+BETWEEN = (
+    *("mean Fx", "mean Fy", "mean Fz", "mean torque"),
+    *("largest Fx", "largest Fy", "largest Fz"),
 )
-_MEAN, _LARGEST, _MEAN_TORQUE = 7, 10, 13
+_LARGEST = 4
 #: lines beside a kink change their slope by less than this share from step to step
 _STRAIGHT = 0.25
 #: most that a round signal gains between two steps
@@ -30,6 +33,7 @@ class CutRecord(NamedTuple):
     first: int  # step at whose beginning the first row stands
     point: ToolPoint
     rows: NDArray[np.float64]  # see COLUMNS, (rows, columns)
+    between: NDArray[np.float64]  # see BETWEEN, (rows, columns)
     #: sum of mean forces, N, and torques, N m, and largest force since the last row, N, (2, 4)
     since: NDArray[np.float64]
     samples: NDArray[np.float64]  # force at the last five steps, the newest first, N, (5, 3)
@@ -37,9 +41,8 @@ class CutRecord(NamedTuple):
 
 def cut_record(point: ToolPoint, rows: int, stride: int, first: int) -> CutRecord:
     """Return an empty record at a tool point."""
-    return CutRecord(
-        stride, first, point, np.zeros((rows, len(COLUMNS))), np.zeros((2, 4)), np.zeros((5, 3))
-    )
+    kept, between = np.zeros((rows, len(COLUMNS))), np.zeros((rows, len(BETWEEN)))
+    return CutRecord(stride, first, point, kept, between, np.zeros((2, 4)), np.zeros((5, 3)))
 
 
 class PortRecord(NamedTuple):
@@ -88,16 +91,37 @@ def _between_steps(samples, axis, new):
     return kink
 
 
+@njit(**KERNEL)
+def largest_between_steps(force):
+    """Largest size (k,) of forces (n, k) at every step, N, kinks between the steps as well."""
+    steps, count = force.shape
+    largest = np.zeros(count)
+    for axis in range(count):
+        for i in range(steps):
+            largest[axis] = max(largest[axis], abs(force[i, axis]))
+        for i in range(5, steps):
+            kink = _between_steps(force[i - 5 : i][::-1], axis, force[i, axis])
+            largest[axis] = max(largest[axis], abs(kink))
+    return largest
+
+
+@register_jitable(**INLINED)
+def _largest(point, axis):
+    """Largest size of a force at the end of a step and at both sides of its jumps."""
+    now = point.sample[axis]
+    before, after = now + point.jump[0, axis], now + point.jump[1, axis]
+    return max(abs(now), max(abs(before), abs(after)))
+
+
 @register_jitable(**INLINED)
 def _follow_force(group):
-    """Take mean and largest force of the step into account."""
+    """Take mean and largest force of a step between rows into account."""
     point, samples = group.point, group.samples
     for axis in range(3):
         now = point.sample[axis]
         group.since[0, axis] += now + point.blur[axis]
         kink = _between_steps(samples, axis, now)
-        before, after = now + point.jump[0, axis], now + point.jump[1, axis]
-        largest = max(max(abs(now), abs(kink)), max(abs(before), abs(after)))
+        largest = max(abs(kink), _largest(point, axis))
         group.since[1, axis] = max(group.since[1, axis], largest)
         for k in range(4, 0, -1):
             samples[k, axis] = samples[k - 1, axis]
@@ -106,24 +130,45 @@ def _follow_force(group):
 
 
 @register_jitable(**INLINED)
+def _write_step(group, row):
+    """Write what a step has between its ends, where every step has its row."""
+    point = group.point
+    for axis in range(3):
+        group.between[row, axis] = point.blur[axis]
+        group.between[row, _LARGEST + axis] = _largest(point, axis)
+    group.between[row, 3] = point.blur[3]
+
+
+@register_jitable(**INLINED)
+def _write_steps(group, row):
+    """Write what the steps since the row before have, and begin anew."""
+    point, since = group.point, group.since
+    for axis in range(3):
+        group.between[row, axis] = since[0, axis] / group.stride - point.sample[axis]
+        group.between[row, _LARGEST + axis] = since[1, axis]
+        since[0, axis] = 0.0
+        since[1, axis] = 0.0
+    group.between[row, 3] = since[0, 3] / group.stride - point.torque[0]
+    since[0, 3] = 0.0
+
+
+@register_jitable(**INLINED)
 def cut_record_commit(group, bus, clock):  # noqa: ARG001
     """Write the tool point at the end of the step."""
-    if clock.step + 1 < group.first:
-        return
-    _follow_force(group)
+    # most runs keep every step: kinks are then found in the rows
+    if group.stride > 1 and clock.step + 1 >= group.first:
+        _follow_force(group)
     row = _row(group, clock)
     if row < 0:
         return
     for axis in range(3):
         group.rows[row, axis] = group.point.sample[axis]
         group.rows[row, 3 + axis] = group.point.displacement[axis]
-        group.rows[row, _MEAN + axis] = group.since[0, axis] / group.stride
-        group.rows[row, _LARGEST + axis] = group.since[1, axis]
-        group.since[0, axis] = 0.0
-        group.since[1, axis] = 0.0
     group.rows[row, 6] = group.point.torque[0]
-    group.rows[row, _MEAN_TORQUE] = group.since[0, 3] / group.stride
-    group.since[0, 3] = 0.0
+    if group.stride > 1:
+        _write_steps(group, row)
+    elif group.point.jumped[0] != 0:
+        _write_step(group, row)
 
 
 @register_jitable(**INLINED)

@@ -33,9 +33,9 @@ class CutRun:
 
     The set-up, which holds the state, serves one run. The stride is from one row of the records to
     the next; their size follows from the steps of the whole run. `done` counts the steps done, -1
-    before the start has been evaluated; `rows` (n, 7) are the record at the tool point, `ports`
-    that of the ports of a machine, or None; `angle` is that of the spindle where the cut begins,
-    rad, of a machine that turns it.
+    before the start has been evaluated; `rows` (n, 7) are the record at the tool point, `between`
+    (n, 7) what happens between them, `ports` the record of the ports of a machine, or None; `angle`
+    is that of the spindle where the cut begins, rad, of a machine that turns it.
     """
 
     def __init__(self, setup: Setup, stride: int, steps: int) -> None:
@@ -59,7 +59,7 @@ class CutRun:
     def record(self, stride: int, first: int, steps: int) -> None:
         """Begin a record of the tool point, from a step on over so many."""
         record = cut_record(self.point, steps // stride + 1, stride, first)
-        self.rows = record.rows
+        self.rows, self.between = record.rows, record.between
         ports = () if self.ports is None else (self.ports,)
         self._observers = (record, *ports)
 

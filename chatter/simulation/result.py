@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from chatter.description.units import rpm
 from chatter.detection.chatter_detection import Detection
+from chatter.engine.record import largest_between_steps
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, write_results
 from chatter.simulation.carved_workpiece import carving_notes
@@ -37,10 +38,13 @@ class SimulationResult:
     ----------
     setup : Setup
         Case, tool, slices and resolution of the run; its groups hold the final state.
-    rows : (n, 14) array of float
+    rows : (n, 7) array of float
         Record: force on the tool (x, y, z), N; displacement of the tool against the workpiece
-        (x, y, z), m; torque on the spindle, N m; mean force and largest size of each force since
-        the row before, N; mean torque since then, N m.
+        (x, y, z), m; torque on the spindle, N m.
+    between : (n, 7) array of float
+        What happens between the rows: mean force (x, y, z), N, and torque, N m, since the row
+        before, less those at the row; largest size of each force since then, N. Zero where the
+        rows tell all.
     energy : dict
         Work of the cutting force on the structure, energy dissipated in it and stored at the end,
         J.
@@ -56,6 +60,7 @@ class SimulationResult:
 
     setup: Setup
     rows: NDArray[np.float64]
+    between: NDArray[np.float64]
     energy: dict[str, float]
     complete: bool = True
     interrupted: bool = False
@@ -90,17 +95,19 @@ class SimulationResult:
     @cached_property
     def mean_force(self) -> NDArray[np.float64]:
         """Mean force (3,) on the tool over the settled part of the run, N, between rows as well."""
-        settled = self.settled
         if self.case.dynamometer is not None:
-            return self.force[settled].mean(axis=0)
-        return self._since_row_before(self.rows[:, 7:10], self.force).mean(axis=0)
+            return self.force[self.settled].mean(axis=0)
+        return self._since_row_before(self.between[:, 0:3], self.force).mean(axis=0)
 
     @cached_property
     def peak_force(self) -> NDArray[np.float64]:
         """Largest size (3,) of each force on the tool, N, between rows as well."""
         if self.case.dynamometer is not None:
             return np.abs(self.force).max(axis=0)
-        return self.rows[:, 10:13].max(axis=0)
+        largest = self.between[:, 4:7].max(axis=0)
+        if self.setup.resolution.stride > 1:
+            return largest
+        return np.maximum(largest, largest_between_steps(self.force))
 
     @property
     def displacement(self) -> NDArray[np.float64]:
@@ -115,21 +122,23 @@ class SimulationResult:
     @cached_property
     def mean_torque(self) -> float:
         """Mean torque over the settled part of the run, N m, between rows as well."""
-        return float(self._since_row_before(self.rows[:, 13], self.torque).mean())
+        return float(self._since_row_before(self.between[:, 3], self.torque).mean())
 
     @cached_property
     def mean_power(self) -> float:
         """Mean cutting power over the settled part of the run, W, between rows as well."""
-        turning = self.rows[:, 13] * self.spindle_speed
-        return float(self._since_row_before(turning, self.power).mean())
+        between = self.between[:, 3] * self.spindle_speed
+        return float(self._since_row_before(between, self.power).mean())
 
     def _since_row_before(
-        self, means: NDArray[np.float64], samples: NDArray[np.float64]
+        self, between: NDArray[np.float64], samples: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Rows of means within the settled part; a run of one row has but its sample."""
+        """Means from row to row within the settled part; a run of one row has but its sample."""
         if len(self.rows) < 2:
             return samples[self.settled]
-        return means[self.settled.start + 1 : self.settled.stop + 1]
+        # a row ends what lies between it and the one before
+        ends = slice(self.settled.start + 1, self.settled.stop + 1)
+        return samples[ends] + between[ends]
 
     @property
     def power(self) -> NDArray[np.float64]:

@@ -99,6 +99,7 @@ def run_setup(setup: Setup, progress: Progress = no_progress) -> tuple[Simulatio
     signals = {
         "setup": setup if cut.stock is None else after_run(setup, cut.stock),
         "rows": as_measured(setup.case, cut.rows[:rows], stride * setup.step),
+        "between": cut.between[:rows],
         "energy": _energy(cut),
         "complete": done == steps,
         "interrupted": cut.interrupted,

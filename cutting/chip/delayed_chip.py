@@ -143,7 +143,7 @@ def delayed_forces(group, rotation, point):
     now = _place_now(rotation, point)
     teeth, pieces = edges.whole.shape
     advance = rotation.advance
-    sx = sy = sz = mx = my = mz = torque = mean_torque = contact = 0.0
+    sx = sy = sz = mx = my = mz = torque = contact = 0.0
     for tooth in range(teeth):
         if _all_in_air(cut, tooth, rotation):
             continue
@@ -178,6 +178,7 @@ def delayed_forces(group, rotation, point):
                 if (steep_in or inside) and (steep_out or ahead):
                     mean = straight_mean(cut, tooth, piece, position, rotation)
                     mean = _add_flank_force(cut.flank, cut, tooth, piece, rotation, point, mean)
+                    _note_blur(point, mean, force)
                 if steep_in and position - advance < entry <= position + _NUDGE:
                     _note_jump(point, 0, at_jump(cut, tooth, piece, entry), force)
                 if steep_out and position - advance < leave <= position + _NUDGE:
@@ -190,19 +191,22 @@ def delayed_forces(group, rotation, point):
             mx += mean[0]
             my += mean[1]
             mz += mean[2]
-            mean_torque += mean[3]
     point.sample[0] += sx
     point.sample[1] += sy
     point.sample[2] += sz
     point.force[0] += mx
     point.force[1] += my
     point.force[2] += mz
-    point.blur[0] += mx - sx
-    point.blur[1] += my - sy
-    point.blur[2] += mz - sz
-    point.blur[3] += mean_torque - torque
     point.torque[0] += torque
     point.contact[0] += contact
+
+
+@register_jitable(**INLINED)
+def _note_blur(point, mean, force):
+    """Keep the mean force and torque over the turn of a step, less those at its end."""
+    point.jumped[0] = 1
+    for k in range(4):
+        point.blur[k] += mean[k] - force[k]
 
 
 @register_jitable(**INLINED)
@@ -211,6 +215,7 @@ def _note_jump(point, side, at, force):
 
     An edge that enters (side 0) is not there before, one that leaves (side 1) not after.
     """
+    point.jumped[0] = 1
     for axis in range(3):
         point.jump[1 - side, axis] += at[axis] - force[axis]
         point.jump[side, axis] -= force[axis]

@@ -15,9 +15,9 @@ class ToolPoint(NamedTuple):
     velocity_before: NDArray[np.float64]  # m/s, (3,)
     force: NDArray[np.float64]  # that moves the structure, N, (3,)
     sample: NDArray[np.float64]  # force at the very instant, N, (3,)
-    blur: NDArray[
-        np.float64
-    ]  # mean force and torque over the turn of a step, less the sample, (4,)
+    jumped: NDArray[np.int64]  # 1 where blur and jump of the step are not all zero, (1,)
+    blur: NDArray[np.float64]  # mean force, N, and torque, N m, over the turn of a step, less the
+    # sample, (4,)
     jump: NDArray[np.float64]  # force before and after the jumps of the step, less the sample, N,
     # (2, 3)
     torque: NDArray[np.float64]  # on the spindle, against its turning, N m, (1,)
@@ -52,6 +52,7 @@ def tool_point() -> ToolPoint:
     """Return a tool point at rest."""
     return ToolPoint(
         displacement=np.zeros(3), velocity=np.zeros(3), displacement_before=np.zeros(3),
-        velocity_before=np.zeros(3), force=np.zeros(3), sample=np.zeros(3), blur=np.zeros(4),
-        jump=np.zeros((2, 3)), torque=np.zeros(1), contact=np.zeros(1),
+        velocity_before=np.zeros(3), force=np.zeros(3), sample=np.zeros(3),
+        jumped=np.zeros(1, dtype=np.int64), blur=np.zeros(4), jump=np.zeros((2, 3)),
+        torque=np.zeros(1), contact=np.zeros(1),
     )  # fmt: skip
