@@ -12,6 +12,7 @@ confrontation_list all of them, one line each
 confrontations     one module for each pair of ways
 drawing            random sections of case files
 edge_quadrature    forces of a rigid tool from the definitions, without the packages
+trochoid_cut       the same along the true paths of the edges
 numbers            numbers of a case by the product
 one_case           a drawn case, judged
 workers            processes with a time limit for each case

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from chatter.description.case import Case
+
 #: sections of a case file: keys to quantities with their units
 Document = dict[str, Any]
 
@@ -70,6 +72,8 @@ class Confrontation:
     compare : callable
         Sections of a case -> numbers by both ways; `PremiseFailsError` where the product says that
         one of them does not hold.
+    reads : callable, optional
+        Sections -> the product's own description of them, by default as a case.
     """
 
     name: str
@@ -78,6 +82,7 @@ class Confrontation:
     weight: float
     draw: Callable[[np.random.Generator], Document]
     compare: Callable[[Document], Sequence[Comparison]]
+    reads: Callable[[Document], object] = Case.from_dict
 
 
 def relative(

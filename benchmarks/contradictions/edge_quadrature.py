@@ -88,6 +88,19 @@ class RigidCut:
             out += np.outer(tool.axial_error, np.cos(nodes.immersion))
         return out
 
+    def _chip(self, tooth: int, node: NDArray[np.intp], phi: Array) -> Array:
+        """Chip of nodes of a tooth at rotation angles, m: the thinnest over all earlier passes."""
+        slope = np.sin(phi) * np.sin(self.nodes.immersion[node])
+        thinnest = self.feed * slope
+        for other in range(len(self.tooth_angle)):
+            if other == tooth:
+                continue
+            since = np.mod(self.angle[other] - self.angle[tooth], _REVOLUTION)[node]
+            chip = self.feed * since / _REVOLUTION * slope
+            chip += (self.offset[tooth] - self.offset[other])[node]
+            thinnest = np.minimum(thinnest, chip)
+        return thinnest
+
     def _force(self, tooth: int, node: NDArray[np.intp], phi: Array) -> Array:
         """Force on the tool and tangential force times radius (4, ...), per length of edge.
 
@@ -96,14 +109,7 @@ class RigidCut:
         immersion = self.nodes.immersion[node]
         s, c = np.sin(phi), np.cos(phi)
         sk, ck = np.sin(immersion), np.cos(immersion)
-        thinnest = self.feed * s * sk
-        for other in range(len(self.tooth_angle)):
-            if other == tooth:
-                continue
-            since = np.mod(self.angle[other] - self.angle[tooth], _REVOLUTION)[node]
-            chip = self.feed * since / _REVOLUTION * s * sk
-            chip += (self.offset[tooth] - self.offset[other])[node]
-            thinnest = np.minimum(thinnest, chip)
+        thinnest = self._chip(tooth, node, phi)
         cuts = thinnest > 0.0
         tangential, radial, axial = _edge_force(
             self.coefficients[tooth], np.where(cuts, thinnest, 1.0)

@@ -60,7 +60,8 @@ def test_draws_are_cases_that_the_product_reads_and_come_from_seed_and_number(co
     assert documents[3] == drawn(confrontation, SEED, 3)
     assert documents[3] != documents[4]
     for document in documents:
-        assert Case.from_text(tomlkit.dumps(document)).tool is not None
+        written = tomlkit.parse(tomlkit.dumps(document)).unwrap()
+        assert confrontation.reads(written) is not None
 
 
 def test_tasks_follow_the_weights():
