@@ -35,14 +35,25 @@ _SEARCHED = (1.0, 6.0)
 #: growth of a period that is none, as a logarithm
 _NO_GROWTH = 1e-3
 #: contact lengths of flanks, of the wave that the first mode leaves: longer ones are no dashpots
-_LAND = (0.003, 0.06)
+_LAND = (0.003, 0.045)
+#: least radial depth over the diameter
+_WIDTH = 0.15
 #: stiffness of contacts over that of the first mode
 _CONTACT = (0.003, 0.3)
 
 
+def draw_wide(rng: np.random.Generator) -> Document:
+    """A vibrating cut of some width: at less there is seldom a limit within reach of the tool."""
+    while True:
+        sections = draw_vibrating(rng)
+        width = sections["cut"].get("radial_depth")
+        if width is None or number_of(width) > _WIDTH * 2e3 * radius_of(sections["tool"]):
+            return sections
+
+
 def draw_ploughing(rng: np.random.Generator) -> Document:
     """A vibrating cut whose flank is worn, or its edge rounded, and ploughs."""
-    sections = draw_vibrating(rng)
+    sections = draw_wide(rng)
     viscous = structure.viscous_damping(rng, sections)
     mode = sections["structure"]["mode"][0]
     mode["damping"] = max(mode["damping"], 0.012)
@@ -54,8 +65,8 @@ def draw_ploughing(rng: np.random.Generator) -> Document:
         tool["flank_wear"] = text(1e6 * length, "um")
     else:
         tool["edge_radius"] = text(1e6 * length, "um")
-    # such that K l^2/4 is of the size of the viscous form
-    indentation = 4.0 * number_of(viscous["coefficient"]) / length**2
+    # such that K l^2/4 is of the size of the viscous form, or a part of it
+    indentation = 4.0 * log_uniform(rng, 0.1, 1.0) * number_of(viscous["coefficient"]) / length**2
     sections["process_damping"] = {
         "indentation_force": text(indentation, "N/m^3"),
         "friction": viscous["friction"],
@@ -65,7 +76,7 @@ def draw_ploughing(rng: np.random.Generator) -> Document:
 
 def draw_in_contact(rng: np.random.Generator) -> Document:
     """A vibrating cut whose tool and work have a contact while they cut."""
-    sections = draw_vibrating(rng)
+    sections = draw_wide(rng)
     mode = sections["structure"]["mode"][0]
     stiffness = number_of(mode["stiffness"]) * log_uniform(rng, *_CONTACT)
     natural = 2.0 * math.pi * number_of(mode["frequency"])
