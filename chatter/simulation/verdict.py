@@ -109,7 +109,7 @@ def _lowest_frequency(result: SimulationResult) -> float:
         gains = [drive.controller.position.gain for drive in on_machine.machine.drives]
         # the corner of a position loop
         corners = (gain / (2.0 * math.pi) for gain in gains if gain > 0.0)
-        lowest = min(lowest, *corners)
+        lowest = min([lowest, *corners])
     return _WELL_BELOW * lowest
 
 

@@ -39,6 +39,8 @@ _AROUND, _DEPTHS_AROUND = (0.6, 1.6), 6
 _RISE, _LARGEST_MOVE, _LOOSE = 0.04, 0.5, 3e-3
 #: depths at which a cut that is stable about a still tool is looked at beside its own motion
 _LOOKED_AT = 8
+#: up to this many speeds their limits keep to the tolerance of the case
+_FEW_SPEEDS = 8
 #: points of a map share the steady motion of a depth within this factor
 _SHARED_DEPTH = 1.5
 #: up to this many points each has its own
@@ -133,6 +135,8 @@ def limits_about_steady_motion(
         with one_thread():
             start = float(still.critical_depth[i]), float(still.chatter_frequency[i])
             crossings = len(still.crossings[i])
+            if len(speeds) > _FEW_SPEEDS:
+                own = replace(own, limit_tolerance=max(_LOOSE, own.tolerance))
             if radius is not None and crossings == 0 and _is_stable(own, speed, depths, radius):
                 return still_at(i)
             if radius is not None and crossings == 1:
@@ -175,7 +179,7 @@ def _moved_limit(
     if depth >= depths[-1] or not near.size:
         return None
     beside = about_steady_motion(model, speed, depth, frequency)
-    found = limits(replace(beside, limit_tolerance=_LOOSE), speed, np.append(near, depths[-1]))
+    found = limits(beside, speed, np.append(near, depths[-1]))
     moved = float(found.critical_depth[0])
     return found if abs(moved - depth) < 3.0 * _LOOSE * depth else None
 

@@ -120,7 +120,8 @@ def _height_of(cutter: Cutter, radius: float) -> float:
     if radius <= start:
         return -1.0
     if radius <= start + corner * math.sin(angle):
-        sine = (radius - start) / corner
+        # rounding may take it beyond 1 at the full radius
+        sine = min(1.0, (radius - start) / corner)
         return corner * (1.0 - math.sqrt(1.0 - sine * sine))
     if angle >= 0.5 * math.pi - 1e-9:
         return math.inf

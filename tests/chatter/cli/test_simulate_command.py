@@ -83,9 +83,9 @@ def test_numbers_of_a_run(case_file, tmp_path):
     assert summary["verdict"] == "stable"
     assert summary["chatter_frequency_Hz"] is None
     for column, name in enumerate(("Fx", "Fy", "Fz"), start=2):
-        assert summary["peak_force_N"][name] == pytest.approx(
-            np.abs(table[:, column]).max(), rel=1e-5
-        )
+        # the largest force may lie between two rows
+        largest = np.abs(table[:, column]).max()
+        assert (1.0 - 1e-5) * largest <= summary["peak_force_N"][name] <= 1.005 * largest
     # a periodic motion of the tool leaves the mean of Ktc h (a tooth after the other) as it is:
     # N b f / (2 pi) times the integrals of K over the immersion from 90 to 180 degrees
     width, feed, tangential, radial = 1e-3, 1e-4, 600e6, 200e6
