@@ -259,7 +259,7 @@ CASES = st.fixed_dictionaries(
                 "diameter": st.just("41 mm"),
                 "helix": quantity(["deg"], 1e-3, 80.0)
                 | quantity(["deg"], -80.0, -1e-3)
-                | st.floats(-1.5, 1.5),
+                | st.floats(1e-3, 1.5),
                 **optional(
                     kind=st.sampled_from(["end mill", "taper", "inserted"]),
                     corner_radius=LENGTH,
