@@ -13,6 +13,9 @@ from cutting.process_damping.ploughing import Ploughing
 from cutting.process_damping.viscous import ViscousProcessDamping
 from cutting.tool.cutter import Cutter, Serration
 
+#: longest worn land that ploughs, of the diameter: it is taken as flat along the path
+_LONGEST_LAND = 0.1
+
 
 def helix_angles(case: Case) -> tuple[float, ...]:
     """Helix angle of each tooth, rad."""
@@ -82,6 +85,12 @@ def process_damping_of(case: Case) -> ProcessDampingLaw | None:
         problems.append(
             f"{case.name}: tool.edge_radius: neither edge_radius nor flank_wear is given; "
             "process_damping.indentation_force needs one of them"
+        )
+    longest = _LONGEST_LAND * tool.diameter
+    if tool.flank_wear and tool.flank_wear > longest:
+        problems.append(
+            f"{case.name}: tool.flank_wear: {tool.flank_wear * 1e3:g} mm is out of range; a land "
+            f"that ploughs is at most a tenth of the diameter, {longest * 1e3:g} mm"
         )
     if problems:
         raise InputError(problems)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from chatter.description.case import Case
+from chatter.description.errors import InputError
 from chatter.description.progress import no_progress
 from chatter.stability.check import check
 from chatter.stability.methods.time_domain.critical_depths import growths
@@ -102,3 +103,8 @@ def test_check_says_which_share_of_the_dashpot_acts():
     assert found.critical_depth == pytest.approx(limit_of(worn_case("0.1 mm")), rel=2e-3)
     notes = [note for note in found.notes if note.startswith("ploughing: at 1500 rpm")]
     assert "of the dashpot K l^2/2 on average; beside a still tool 0.5 of it" in notes[0]
+
+
+def test_a_land_that_no_flank_has_is_refused():
+    with pytest.raises(InputError, match=r"tool\.flank_wear: 50 mm is out of range"):
+        check(worn_case("0.1 mm").patch({"tool.flank_wear": "50 mm"}))
