@@ -55,8 +55,8 @@ def force_law(case: Case, helix: float) -> ForceLaw:
     if case.wear is None or case.cut is None:
         return law
     wear, time = case.wear, case.cut.cut_time
-    growth = time * np.array([wear.edge_tangential, wear.edge_radial, 0.0])
-    return law.worn(wear.cutting * time, growth)
+    edges = [wear.increase(key, time) for key in ("edge_tangential", "edge_radial")]
+    return law.worn(wear.increase("cutting", time), [*edges, 0.0])
 
 
 def edge_law(case: Case) -> NamedTuple:
@@ -74,6 +74,8 @@ def process_damping_of(case: Case) -> ProcessDampingLaw | None:
         return None
     if section.indentation_force is None:
         given = section.coefficient
+        if case.wear is not None and case.cut is not None:
+            given *= 1.0 + case.wear.increase("process_damping", case.cut.cut_time)
         return ViscousProcessDamping(given, section.friction) if given else None
     problems = []
     if tool.clearance_angle is None:

@@ -75,6 +75,7 @@ class Measurement:
     runs: tuple[Run, ...]
     #: relative, of declared values by path
     tolerances: Mapping[str, float] = field(default_factory=dict)
+    idle_power: float | None = None  # that the spindle takes in the air, W
 
     def in_parts(self) -> Measurement:
         """Return the measurement with its runs cut in time where there are too few to judge by."""

@@ -1,5 +1,6 @@
 """Measurement folders: measurement.toml, the declared case, and the signals of every run."""
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,7 @@ from chatter.io.signals import read_signals
 
 #: keys of [[run]] that are no override of the case
 _OWN_KEYS = ("file", "condition", "direction", "title")
-_KEYS = ("title", "kind", "case", "points", "run", "tolerance")
+_KEYS = ("title", "kind", "case", "points", "run", "tolerance", "idle_power")
 #: sections of a case that a short key of a run may mean
 _SECTIONS = ("cut", "tool", "material", "axis")
 
@@ -56,7 +57,8 @@ def read_measurement(folder: str | Path, case: str | Path | Case | None = None) 
     _refuse_names_twice(path, runs)
     tolerances = _tolerances(path, content.get("tolerance", {}))
     title = str(content.get("title", path.parent.name))
-    return Measurement(name, title, path.parent, declared, runs, tolerances)
+    idle = _idle_power(path, content)
+    return Measurement(name, title, path.parent, declared, runs, tolerances, idle)
 
 
 def _content(path: Path) -> dict[str, Any]:
@@ -85,6 +87,19 @@ def _tolerances(path: Path, given: Any) -> dict[str, float]:
                 f"{path}: tolerance.{key}: {formatted(value)} is not a share such as 0.05"
             )
     return {key: float(value) for key, value in given.items()}
+
+
+def _idle_power(path: Path, content: Mapping[str, Any]) -> float | None:
+    if "idle_power" not in content:
+        return None
+    try:
+        value = parse(content["idle_power"], "power").value
+    except QuantityError as error:
+        raise InputError(f"{path}: idle_power: {error}") from error
+    if not 0.0 <= value < math.inf:
+        given = formatted(content["idle_power"])
+        raise InputError(f"{path}: idle_power: {given} is out of range; it is 0 W or more")
+    return value
 
 
 def _file(path: Path, content: Mapping[str, Any], key: str) -> Path:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pydantic import Field, field_validator, model_validator
@@ -65,6 +66,20 @@ class Contact(Section):
     )
 
 
+class Chipping(Section):
+    """Damage of the edge at once: what the coefficients grow by from then on."""
+
+    time: quantity("time", at_least=0.0) = Field(description="cutting time at which the edge chips")
+    edge_tangential: quantity("line_force") = Field(0.0, description="added to Kte")
+    edge_radial: quantity("line_force") = Field(0.0, description="added to Kre")
+    cutting: quantity("number", above=-1.0) = Field(
+        0.0, description="of Ktc, Krc and Kac, as a share of them"
+    )
+    process_damping: quantity("number", above=-1.0) = Field(
+        0.0, description="of process_damping.coefficient, as a share of it"
+    )
+
+
 class Wear(Section):
     """Growth of the force coefficients with the cutting time of the tool."""
 
@@ -73,6 +88,25 @@ class Wear(Section):
     cutting: quantity("rate") = Field(
         0.0, description="of Ktc, Krc and Kac per cutting time, as a share of them"
     )
+    process_damping: quantity("rate") = Field(
+        0.0, description="of process_damping.coefficient per cutting time, as a share of it"
+    )
+    saturation_time: quantity("time", above=0.0) | None = Field(
+        None, description="time constant with which the growth ends; without it, it goes on"
+    )
+    chipping: Chipping | None = None
+
+    def grown_time(self, cut_time: float) -> float:
+        """Time (s) that rates count after a cutting time, s: less as wear saturates."""
+        if self.saturation_time is None:
+            return cut_time
+        return -self.saturation_time * math.expm1(-cut_time / self.saturation_time)
+
+    def increase(self, key: str, cut_time: float) -> float:
+        """Increase of what a key names after a cutting time (s), by rate and by chipping, SI."""
+        grown = getattr(self, key) * self.grown_time(cut_time)
+        chipped = self.chipping is not None and cut_time >= self.chipping.time
+        return grown + (getattr(self.chipping, key) if chipped else 0.0)
 
 
 class Dynamometer(Section):

@@ -231,3 +231,37 @@ def test_missing_columns_are_named_with_those_there_are(tmp_path):
     )
     with pytest.raises(InputError, match=r"a\.csv: column Fx or Fy.*there are time, torque"):
         checked(read_measurement(tmp_path))
+
+
+def written_tests(folder: Path, heading: str, more: str = "") -> Path:
+    """Folder of cutting tests with a column more."""
+    (folder / "case.toml").write_text(CASE)
+    rows = f"spindle_speed [rpm],axial_depth [mm],stable,{heading}\n9000,1.0,1,1.5\n9500,2.0,0,\n"
+    (folder / "points.csv").write_text(rows)
+    head = 'kind = "stability"\ncase = "case.toml"\npoints = "points.csv"\n'
+    (folder / "measurement.toml").write_text(head + more)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("heading", "name", "value"),
+    [
+        ("spindle_power [kW]", "spindle_power", 1500.0),
+        ("power [W]", "spindle_power", 1.5),
+        ("cut_time [min]", "cut_time", 90.0),
+        ("feed_per_tooth [mm]", "feed_per_tooth", 1.5e-3),
+        ("chatter_frequency [kHz]", "chatter_frequency", 1500.0),
+    ],
+)
+def test_columns_of_cutting_tests_come_in_si(tmp_path, heading, name, value):
+    measurement = read_measurement(written_tests(tmp_path, heading, 'idle_power = "0.18 kW"\n'))
+    column = measurement.runs[0].signals[name]
+    assert column[0] == pytest.approx(value)
+    assert np.isnan(column[1])
+    assert measurement.idle_power == pytest.approx(180.0)
+
+
+@pytest.mark.parametrize("given", ['"-20 W"', '"20 N"'])
+def test_an_idle_power_that_is_none_is_refused(tmp_path, given):
+    with pytest.raises(InputError, match="idle_power"):
+        read_measurement(written_tests(tmp_path, "power [W]", f"idle_power = {given}\n"))
