@@ -40,6 +40,7 @@ class Axis(NamedTuple):
     quadratic_drag: float = 0.0
     warm_up_share: float = 0.0
     warm_up_time: float = 1.0
+    warm_up_each_move: float = 0.0  # 1: cold again at the start of every move
     viscous_slope: float = 0.0  # of the viscous friction along the axis, 1/m
     pulley_amplitude: float = 0.0  # torque of a pulley out of balance, as force at 1 m/s
     pulley_circumference: float = 0.1
@@ -58,7 +59,9 @@ class Axis(NamedTuple):
 @njit(cache=True, error_model="numpy")
 def _resistance(a, begun, t, x, v, bristle, cable):
     """Force of the guide against the motion, and the rates of bristle and cable."""
-    warm = 1.0 + a.warm_up_share * np.exp(-(begun + t) / a.warm_up_time)
+    warm = 1.0 + a.warm_up_share * np.exp(
+        -(begun * (1.0 - a.warm_up_each_move) + t) / a.warm_up_time
+    )
     sign = np.tanh(v / a.smooth)
     level = a.coulomb + a.above * np.exp(-((v / a.stribeck_velocity) ** 2))
     level += a.sticky_force * np.exp(-(((x - a.sticky_place) / a.sticky_width) ** 2))

@@ -16,7 +16,7 @@ from benchmarks.blind_sets.files import (
     write_toml,
 )
 from benchmarks.blind_sets.machines import Machine, draw_machine, tool_table
-from benchmarks.blind_sets.milling_effects import KNOWN, UNLISTED, Conditions, Drawn, Rng
+from benchmarks.blind_sets.milling_effects import FAMILIES, KNOWN, UNLISTED, Conditions, Drawn, Rng
 from benchmarks.blind_sets.milling_physics import TURN, Cut, Plant, Record, arc_of, run, settles
 
 #: share of the signals that an effect must make up to be seen, and may at the most (by channel)
@@ -24,7 +24,8 @@ SEEN, SWAMPS = 0.07, 0.75
 UNSEEN_RUNS = 3
 _CLASSES_FOR = {
     "process_damping": ("steel", "face"),  # the slow ones
-    "mode_shift": ("small", "middle"),  # the fast ones, over a wide range of speeds
+    "mode_shift": ("small", "middle"),
+    "mode_shift_of_one": ("small", "middle"),  # the fast ones, over a wide range of speeds
     "slide_friction": ("middle", "steel", "face"),
 }
 #: pairs that no measurement of this kind could tell from one another, or that exclude each other
@@ -98,7 +99,7 @@ def _drawn(rng: Rng, names: list[str]) -> Set:
     effects: list[Drawn] = []
     plant = base
     for name in names:
-        draw = {**KNOWN, **UNLISTED}[name]
+        draw = {**KNOWN, **FAMILIES, **UNLISTED}[name]
         effect = _seen(rng, draw, plant, whole, about, cuts)
         effects.append(effect)
         plant = effect.applied(plant)
@@ -276,7 +277,7 @@ def write_set(out: Path, number: int, rng: Rng, only: str | None = None) -> list
         truth / "truth.toml",
         {
             "kind": "milling",
-            "effects": names,
+            "effects": [one.name for one in drawn.effects],
             "verdict": "unexplained" if unlisted else "explained" if names else "nothing-missing",
             "noise": np.median(shares, axis=0).round(5),
             "effect_size": drawn.sizes,

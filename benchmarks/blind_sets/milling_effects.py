@@ -156,6 +156,38 @@ def wear(rng: Rng, plant: Plant, about: Conditions, strength: float) -> Drawn:
     return Drawn("wear", dict(rates), changes, rates)
 
 
+def wear_of_all(rng: Rng, plant: Plant, about: Conditions, strength: float) -> Drawn:
+    """All coefficients and the process damping, steadily, saturating or at once."""
+    drawn = wear(rng, plant, about, strength)
+    changes = dict(drawn.changes)
+    natural = TURN * float(np.max(plant.frequency))
+    own = 2.0 * float(np.median(plant.damping)) * natural * float(np.min(plant.mass))
+    ploughing = strength * rng.uniform(0.2, 1.0) * own * 0.7 * about.speed * plant.radius
+    changes["wear_ploughing"] = float(ploughing / about.depth / about.cut_time)
+    shape = str(rng.choice(["rising", "saturating", "step"]))
+    if shape == "saturating":
+        changes["wear_saturation"] = float(rng.uniform(0.15, 0.5) * about.cut_time)
+    if shape == "step":
+        changes["wear_step"] = float(rng.uniform(0.3, 0.7) * about.cut_time)
+    return Drawn("wear", {**changes, "shape": shape}, changes)
+
+
+def mode_shift_of_one(rng: Rng, plant: Plant, about: Conditions, strength: float) -> Drawn:
+    """One mode, with the square of the speed."""
+    share = float(np.clip(strength * rng.uniform(0.05, 0.15), 0.02, 0.3)) * rng.choice([-1.0, 0.6])
+    mode = int(rng.integers(len(plant.frequency)))
+    changes = {"square_slope": float(share / about.speed**2), "square_mode": mode}
+    return Drawn("mode_shift", {**changes, "at_highest_speed": share}, changes)
+
+
+def dynamometer_of_two(rng: Rng, plant: Plant, about: Conditions, strength: float) -> Drawn:
+    """Another resonance in each direction."""
+    drawn = dynamometer(rng, plant, about, strength)
+    first = float(drawn.changes["sensor_frequency"])
+    changes = {**drawn.changes, "sensor_frequency_y": first * float(rng.uniform(1.15, 1.6))}
+    return Drawn("dynamometer", dict(changes), changes)
+
+
 def contact(rng: Rng, plant: Plant, about: Conditions, strength: float) -> Drawn:
     stiffness = float(strength * rng.uniform(0.08, 0.25) * np.min(_stiffness(plant)))
     slowest = TURN * float(np.min(plant.frequency))
@@ -273,6 +305,10 @@ KNOWN: dict[str, Draw] = {
         dynamometer,
         slide_friction,
     )
+}
+#: members of families beyond the simplest, under the name of the family
+FAMILIES: dict[str, Draw] = {
+    one.__name__: one for one in (wear_of_all, mode_shift_of_one, dynamometer_of_two)
 }
 UNLISTED: dict[str, Draw] = {
     one.__name__: one

@@ -39,6 +39,8 @@ class Plant(NamedTuple):
     h0: float = 1e-4
     exponent: float = 1.0
     frequency_slope: float = 0.0  # s/rad
+    square_slope: float = 0.0  # of the frequency of one mode with the square of speed, s^2/rad^2
+    square_mode: int = 0
     runout_offset: float = 0.0
     runout_angle: float = 0.0
     ploughing: float = 0.0  # C, N/m
@@ -49,8 +51,12 @@ class Plant(NamedTuple):
     wear_tangential: float = 0.0  # N/m/s
     wear_radial: float = 0.0
     wear_cutting: float = 0.0  # 1/s
+    wear_ploughing: float = 0.0  # N/m/s
+    wear_saturation: float = 0.0  # time in which the growth dies away, s
+    wear_step: float = 0.0  # cut time at which what grows linearly comes at once, s
     sensor_frequency: float = 0.0  # Hz
     sensor_damping: float = 0.0
+    sensor_frequency_y: float = 0.0  # of Fy, where it is another one, Hz
     slide_mode: int = 0
     slide_friction: float = 0.0  # N
     slide_velocity: float = 1e-3  # m/s
@@ -140,6 +146,16 @@ def _when(angle, guess, p, c):
 
 
 @njit(cache=True, error_model="numpy")
+def _worn_time(p, c):
+    """Cut time that linear growth would have taken."""
+    if p.wear_saturation > 0.0:
+        return p.wear_saturation * (1.0 - np.exp(-c.cut_time / p.wear_saturation))
+    if p.wear_step > 0.0:
+        return p.wear_step if c.cut_time >= p.wear_step else 0.0
+    return c.cut_time
+
+
+@njit(cache=True, error_model="numpy")
 def _cutting(t, now, vel, step, known, u, v, p, c, past, force):
     """Force of the cut on the tool at time t; returns the engaged share of the depth."""
     teeth = p.tooth_angle.shape[0]
@@ -149,10 +165,12 @@ def _cutting(t, now, vel, step, known, u, v, p, c, past, force):
         2.0 * np.pi * feed_speed * t / p.spot_wavelength + p.spot_phase
     )
     drift = 1.0 + p.drift_amplitude * np.sin(2.0 * np.pi * p.drift_frequency * t + p.drift_phase)
-    worn = 1.0 + p.wear_cutting * c.cut_time
+    cut_time = _worn_time(p, c)
+    worn = 1.0 + p.wear_cutting * cut_time
     ktc, krc = p.Ktc * spots * drift * worn, p.Krc * spots * worn
-    kte = (p.Kte + p.wear_tangential * c.cut_time) * spots
-    kre = (p.Kre + p.wear_radial * c.cut_time) * spots
+    kte = (p.Kte + p.wear_tangential * cut_time) * spots
+    kre = (p.Kre + p.wear_radial * cut_time) * spots
+    ploughing = p.ploughing + p.wear_ploughing * cut_time
     force[0] = force[1] = 0.0
     engaged = 0.0
     for j in range(teeth):
@@ -193,7 +211,7 @@ def _cutting(t, now, vel, step, known, u, v, p, c, past, force):
                 if h <= 0.0:
                     continue
                 law = h if p.exponent == 1.0 else p.h0 * (h / p.h0) ** p.exponent
-                rub = p.ploughing / (c.speed * p.radius) * (vel[0] * sine + vel[1] * cosine)
+                rub = ploughing / (c.speed * p.radius) * (vel[0] * sine + vel[1] * cosine)
                 ft = ktc * law + kte * p.edge_share[j] + p.ploughing_friction * rub
                 fr = krc * law + kre * p.edge_share[j] + rub
                 force[0] += width * (-ft * cosine - fr * sine)
@@ -224,7 +242,10 @@ def _rates(t, state, step, known, u, v, p, c, past, force, measured, rate):
     force[1] += p.cross_stiffness * now[0]
     for m in range(modes):
         q, w = state[2 * m], state[2 * m + 1]
-        natural = 2.0 * np.pi * p.frequency[m] * (1.0 + p.frequency_slope * c.speed)
+        shift = p.frequency_slope * c.speed
+        if m == p.square_mode:
+            shift += p.square_slope * c.speed**2
+        natural = 2.0 * np.pi * p.frequency[m] * (1.0 + shift)
         push = p.direction[m, 0] * force[0] + p.direction[m, 1] * force[1]
         push -= p.cubic_stiffness * q**3
         if m == p.slide_mode:
@@ -232,8 +253,9 @@ def _rates(t, state, step, known, u, v, p, c, past, force, measured, rate):
         rate[2 * m] = w
         rate[2 * m + 1] = push / p.mass[m] - 2.0 * p.damping[m] * natural * w - natural**2 * q
     if p.sensor_frequency > 0.0:
-        ws = 2.0 * np.pi * p.sensor_frequency
         for i in range(2):
+            own = p.sensor_frequency_y if i == 1 and p.sensor_frequency_y > 0.0 else 0.0
+            ws = 2.0 * np.pi * (own if own > 0.0 else p.sensor_frequency)
             s = 2 * modes + 2 * i
             rate[s] = state[s + 1]
             rate[s + 1] = (

@@ -118,7 +118,7 @@ def _is_one_of(effect: Mapping[str, Any], true: list[str]) -> bool:
 
 def _names_right(effects: list[Mapping[str, Any]], true: list[str], verdict: str) -> bool:
     """One effect: named first. Two: both named and no other. None or unlisted: none named."""
-    if verdict != "explained":
+    if verdict not in ("explained", "explained-in-part"):
         return not effects
     if len(true) == 1:
         return bool(effects) and _is_one_of(effects[0], true)

@@ -81,7 +81,12 @@ def _print_explanation(result: Explanation) -> None:
             typer.echo(f"  {in_words(name, test)}")
     helping = [one["name"] for one in summary.get("partial", ())]
     if helping:
-        typer.echo(f"explains a part: {', '.join(helping)}")
+        typer.echo(f"may explain a part, not added: {', '.join(helping)}")
+    for one in summary["out_of_tolerance"]:
+        typer.echo(
+            f"out of tolerance: {one['path']} declared {one['declared']:.5g}, refitted "
+            f"{one['refitted']:.5g} ({one['standard_deviations']:+.1f} standard deviations)"
+        )
     error = summary["error"]
     rows = [[key, f"{value:.4g}"] for key, value in error.items() if isinstance(value, float)]
     print_table("error, rms over signal", ["", ""], rows)

@@ -18,6 +18,7 @@ prediction          predictions of a case for every run, each made once
 effects             what a case may lack, each a patch of it
 selection           candidates, search, discriminating tests
 errors              errors of predictions, before and after
+reported_effects    numbers, intervals and probability of an effect
 lobes_before_after  stability lobes before and after
 stability_margin    how far cutting tests are from the limit
 explanation         `explain`: verdict, effects, errors; files

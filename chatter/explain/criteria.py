@@ -13,26 +13,49 @@ NO_RESIDUAL = 1.0
 #: top: 20 times the log likelihood, as residuals beside a wrong model are not independent, and
 #: half the variance by which other numerics may differ
 LEAST_GAIN, LEAST_GAIN_SHARE = 40.0, 0.004
+#: the same share for an effect beside others: a change of a tenth of the noise, which is no more
+#: than what a refit of the others leaves by chance
+LEAST_GAIN_SHARE_BESIDE = 0.01
+#: logarithm of the evidence, over that without it, from which on an effect is added, and from which
+#: on it is beyond doubt though something else is left: odds of 400 and of 20000, as some twenty
+#: effects are tried
+LEAST_EVIDENCE, CERTAIN_EVIDENCE = 6.0, 10.0
+#: share of the misfit above the noise that an effect beyond doubt takes away where something else
+#: is left: effects that stood for others of the unlisted took away a fifth at the most
+LEAST_SHARE_IN_PART = 0.15
+#: sum of squares of holdout runs over that without an effect, from which on it is not one
+MOST_LOST = 1.02
+#: runs, of how many, in which such an effect may gain nothing
+FAILS_IN = 5
+#: standard deviations of its declared value beyond which a refitted one is out of its tolerance
+OUT_OF_TOLERANCE = 3.0
+#: probability at which an interval of an effect that reaches nothing makes it none
+REACHES_NOTHING = 0.95
+#: standard deviation, in sizes, from which on a combination of parameters is not determined: half
+#: of what holds those that nothing else does
+UNDETERMINED = 15.0
 #: share of the residual above the noise that an effect must remove: what removes less of a misfit
 #: stands for another effect
 LEAST_SHARE = 0.05
 #: effects that are added at the most: more are not told apart in a few dozen runs
 MOST_EFFECTS = 3
-#: candidates followed as the first, where the best does not lead near the noise: of two missing
-#: effects neither may do well alone; and how near that is, rms
-ALTERNATIVES, NEAR_NOISE = 2, 1.3
+#: rms above which pairs of candidates are tried: of two missing effects neither may do well alone
+NEAR_NOISE = 1.3
 #: candidates that are fitted in full after the linearised step, which ranks the right one among the
 #: first three in the blind sets; and those that are fitted again beside another effect
 FITTED_IN_FULL, FITTED_AGAIN = 4, 3
+#: candidates of which pairs are fitted jointly where effects added one by one leave a misfit
+PAIRED = 4
+#: cost of the simplest member of a family over that of the best up to which it is tried alone
+SIMPLE_ENOUGH = 1.02
 #: starts of a candidate from which a second linearised step is made
 FOLLOWED_STARTS = 2
-#: sums of squares that differ by less do not rank: the log likelihood changes by one
-EQUAL = 2.0
+#: logarithms of evidence that differ by less do not rank
+EQUAL = 1.0
 #: share of the gain of the best that a candidate may lack and still count as confounded with it
 CONFOUNDED = 0.03
-#: samples that count as one in the probability of a candidate, as neighbours are correlated: a
-#: record at 12.8 kHz holds about that many a period of a mode at 640 Hz
-CORRELATED_SAMPLES = 20.0
+#: the highest probability that is stated: numerics and laws of the model are no better known
+MOST_PROBABLE = 0.999
 #: part of a signal's rms by which predictions of other numerics may differ
 NUMERICS = 0.004
 #: normalised residual of a run that a trial case cannot predict: worse than any that it can
@@ -41,3 +64,6 @@ IMPOSSIBLE = 1e3
 FIRST_NOISE = 0.03
 #: times the noise by which predictions must differ for a discriminating test to be proposed
 DISCRIMINATES = 2.0
+#: lines of a periodogram over which its mean is the spectrum of a residual: few enough that what
+#: is left at one line does not hide what is lost beside it
+SMOOTHED_LINES = 5

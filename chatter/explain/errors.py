@@ -41,8 +41,8 @@ def errors_of(case: Case, predictions: Predictions, runs: Sequence[Run]) -> list
                 residual = residual * run.usable
             squared = None if weight is None else weight**2
             error = float(np.sqrt(np.average(residual**2, weights=squared)))
-            level = float(np.sqrt(np.mean(signal**2)))
-            found.append(ChannelError(run.name, channel, error, error / max(level, 1e-300)))
+            level = max(run.level(channel), 1e-300)
+            found.append(ChannelError(run.name, channel, error, error / level))
     return found
 
 
@@ -115,7 +115,7 @@ def before_after(
     noise = {}
     for channel in shown:
         shares = [
-            part.noise**2 / max(float(np.mean(part.measured**2)), 1e-300)
+            (part.noise / max(part.run.level(part.channel), 1e-150)) ** 2
             for part in residual.of(channel)
         ]
         noise[channel] = float(np.sqrt(np.mean(shares)))

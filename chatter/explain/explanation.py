@@ -8,15 +8,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.explain.checking import Checked, checked
-from chatter.explain.criteria import CONFOUNDED, CORRELATED_SAMPLES, NUMERICS
+from chatter.explain.criteria import OUT_OF_TOLERANCE
 from chatter.explain.data_checks.finding import SignalFinding
-from chatter.explain.effects.effect import Effect
 from chatter.explain.errors import (
     DECLARED,
     REFITTED,
@@ -26,12 +22,12 @@ from chatter.explain.errors import (
     errors_of,
     overall,
 )
-from chatter.explain.fitting import Fit
 from chatter.explain.kinds.kind_list import KINDS
 from chatter.explain.lobes_before_after import Added, LobesBeforeAfter, lobes_before_after
 from chatter.explain.measurement import Measurement
 from chatter.explain.measurement_file import read_measurement
 from chatter.explain.prediction import Predictions
+from chatter.explain.reported_effects import confounded, parameters_of, probability
 from chatter.explain.residuals.residual_dependence import ResidualDependence
 from chatter.explain.residuals.signature import Signature, signature_of
 from chatter.explain.selection.candidates import Candidate, Progress, Stage
@@ -44,6 +40,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 EXPLAINED, NOTHING_MISSING, UNEXPLAINED = "explained", "nothing-missing", "unexplained"
+EXPLAINED_IN_PART = "explained-in-part"
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +53,7 @@ class Explanation:
         As prepared for its kind.
     found : Search
     verdict : str
-        "explained", "nothing-missing" or "unexplained".
+        "explained", "explained-in-part", "nothing-missing" or "unexplained".
     checks : tuple of SignalFinding
         What is unusable in the signals, and was excluded.
     predictions : Predictions
@@ -69,10 +66,15 @@ class Explanation:
     predictions: Predictions
     checks: tuple[SignalFinding, ...] = ()
 
+    @property
+    def adds_effects(self) -> bool:
+        """Whether effects are named and added to the case."""
+        return self.verdict in (EXPLAINED, EXPLAINED_IN_PART)
+
     @cached_property
     def case(self) -> Case:
-        """Case refitted, with the effects added where they explain."""
-        return self._with_effects if self.verdict == EXPLAINED else self.refitted
+        """Case refitted, with the effects added that were found."""
+        return self._with_effects if self.adds_effects else self.refitted
 
     @cached_property
     def refitted(self) -> Case:
@@ -90,7 +92,7 @@ class Explanation:
             DECLARED: self.measurement.case,
             REFITTED: self.measurement.with_values(self.found.first.before.by_name),
         }
-        if self.verdict == EXPLAINED:
+        if self.adds_effects:
             cases[REPAIRED] = self.found.problem.case(self.found.of_fitted.by_name)
         return cases
 
@@ -100,15 +102,14 @@ class Explanation:
 
     @cached_property
     def _summary(self) -> dict[str, Any]:
-        effects = self._effects()
-        explained = self.verdict == EXPLAINED
         dependence = self.residual_dependence
         return {
             "verdict": self.verdict,
             "checks": [one.as_dict() for one in self.checks],
-            "effects": effects if explained else [],
-            # what helps, but leaves a residual that is not known
-            "partial": effects if self.verdict == UNEXPLAINED else [],
+            "effects": self._effects(self.found.accepted) if self.adds_effects else [],
+            # what helps, but is not beyond doubt
+            "partial": self._effects(self.helping),
+            "out_of_tolerance": self._out_of_tolerance(),
             "error": self._errors(),
             "candidates": self._candidates(),
             "error_by_channel": self.before_after.summary(),
@@ -145,7 +146,7 @@ class Explanation:
     @cached_property
     def residual_dependence(self) -> ResidualDependence | None:
         """On what a residual that no effect explains depends; None where there is none."""
-        if self.verdict != UNEXPLAINED:
+        if self.verdict in (EXPLAINED, NOTHING_MISSING):
             return None
         repaired = self.repaired_signature
         if repaired is not None and repaired.dependence.finding.significant:
@@ -163,7 +164,7 @@ class Explanation:
         """Stability lobes before and after; None where the case holds no cut."""
         cases = {DECLARED: self.measurement.case, REFITTED: self.refitted}
         added = None
-        if self.verdict == EXPLAINED:
+        if self.adds_effects:
             cases[REPAIRED] = self.case
             nuisance = {one.name for one in self.found.base.parameters}
             values = {key: v for key, v in self.found.final.by_name.items() if key in nuisance}
@@ -173,7 +174,7 @@ class Explanation:
     def _errors(self) -> dict[str, Any]:
         runs, holdout = self.measurement.runs, self.found.split.holdout
         signature = self.refitted_signature
-        if self.verdict == EXPLAINED:
+        if self.adds_effects:
             signature = self.repaired_signature
         floor = self.predictions.kind.noise_floor(signature.residual.parts)
         fitted = list(self._of_fitted.values())
@@ -191,23 +192,48 @@ class Explanation:
             "holdout_after": error(fitted[-1], holdout),
         }
 
-    def _effects(self) -> list[dict[str, Any]]:
+    @property
+    def helping(self) -> tuple[Stage, ...]:
+        """Effects that take some of the residual away, but are not added."""
+        return (
+            self.found.helping if self.adds_effects else (*self.found.accepted, *self.found.helping)
+        )
+
+    def _effects(self, stages: tuple[Stage, ...]) -> list[dict[str, Any]]:
+        added = set(self.found.effect_names)
         return [
             {
                 "name": stage.best.effect.name,
-                "parameters": parameters_of(self.found.final, stage.best.effect),
-                "probability": round(probability(stage.tried, stage.best), 4),
-                "confounded_with": [one.effect.name for one in _confounded(stage)],
+                "parameters": parameters_of(
+                    self.found.final if stage.best.effect.name in added else stage.best.fit,
+                    stage.best.effect,
+                ),
+                "probability": round(probability(stage), 4),
+                "confounded_with": [one.effect.name for one in confounded(stage)],
                 "discriminating_test": self._discriminating_tests(stage),
                 "description": stage.best.effect.help,
             }
-            for stage in self.found.accepted
+            for stage in stages
         ]
+
+    def _out_of_tolerance(self) -> list[dict[str, Any]]:
+        """Declared values that the refit pulls out of their tolerances."""
+        fit = self.found.final if self.adds_effects else self.found.base
+        declared = {one.name: one.start for one in fit.parameters}
+        return [
+            {"path": name, "declared": declared[name], "refitted": fit.by_name[name],
+             "standard_deviations": pull}
+            for name, pull in fit.pulls.items()
+            if abs(pull) > OUT_OF_TOLERANCE
+        ]  # fmt: skip
 
     def _discriminating_tests(self, stage: Stage) -> dict[str, Any]:
         """Confounded effect -> measurement that tells it from the one named, if any does."""
         problem = self.found.problem
-        others = problem.without_effect(stage.best.effect)
+        names = {one.name for one in problem.effects} - {stage.best.effect.name}
+        others = replace(
+            problem, effects=tuple(one for one in problem.effects if one.name in names)
+        )
 
         def case_with(one: Candidate) -> Case:
             trial = replace(others, effects=(*others.effects, one.effect))
@@ -215,15 +241,15 @@ class Explanation:
             found = {**self.found.final.by_name, **one.fit.by_name}
             return trial.case({p.name: found.get(p.name, p.start) for p in trial.parameters()})
 
-        confounded = _confounded(stage)
-        if not confounded:
+        alike = confounded(stage)
+        if not alike:
             return {}
         named, kind = case_with(stage.best), self.predictions.kind
         return {
             one.effect.name: discriminating_test(
                 problem.measurement, kind, problem.noise, named, case_with(one)
             )
-            for one in confounded
+            for one in alike
         }
 
     def _candidates(self) -> list[dict[str, Any]]:
@@ -233,6 +259,7 @@ class Explanation:
         return [
             {
                 "name": one.effect.name,
+                "evidence": finite_or_none(one.evidence - stage.evidence),
                 "holdout_error": finite_or_none(math.sqrt(one.holdout / holdout)),
                 "bic": finite_or_none(one.fit.cost + len(one.fit.parameters) * math.log(count)),
             }
@@ -290,6 +317,7 @@ class Contradiction:
             "checks": self.checked.as_list(),
             "effects": [],
             "partial": [],
+            "out_of_tolerance": [],
             "error": {
                 "metric": "nrmse",
                 "noise_floor": None,
@@ -363,10 +391,17 @@ def explain(
     kind = KINDS[measurement.kind]
     prepared, predictions = kind.prepared(usable.measurement), Predictions(kind)
     found = search(prepared, predictions, progress)
-    verdict = UNEXPLAINED
-    if max(found.normalised_residual.values()) <= kind.at_noise:
-        verdict = EXPLAINED if found.accepted else NOTHING_MISSING
-    return Explanation(prepared, found, verdict, predictions, usable.findings)
+    return Explanation(prepared, found, verdict_of(found), predictions, usable.findings)
+
+
+def verdict_of(found: Search) -> str:
+    """Verdict on what was found.
+
+    A residual at the noise explains nothing where declared values left their tolerances for it.
+    """
+    if not found.is_at_noise or found.out_of_tolerance:
+        return EXPLAINED_IN_PART if found.accepted and found.is_certain else UNEXPLAINED
+    return EXPLAINED if found.accepted else NOTHING_MISSING
 
 
 def as_measurement(
@@ -378,58 +413,3 @@ def as_measurement(
     if case is None:
         return given
     return given.with_case(case if isinstance(case, Case) else Case.from_file(case))
-
-
-def probability(tried: tuple[Candidate, ...], of: Candidate) -> float:
-    """Probability of a candidate among those tried, by their fit to holdout runs."""
-    best = min(one.holdout for one in tried)
-    scale = 2.0 * CORRELATED_SAMPLES
-    weights = {one.effect.name: math.exp(-(one.holdout - best) / scale) for one in tried}
-    return weights[of.effect.name] / sum(weights.values())
-
-
-def _confounded(stage: Stage) -> list[Candidate]:
-    """Candidates with no more parameters than the best that gain nearly as much."""
-    gain = stage.holdout - stage.best.holdout
-    most = len(stage.best.fit.parameters)
-    return [
-        other
-        for other in stage.tried[1:]
-        if stage.holdout - other.holdout > (1.0 - CONFOUNDED) * gain
-        and len(other.fit.parameters) <= most
-    ]
-
-
-def parameters_of(fit: Fit, effect: Effect) -> dict[str, dict[str, Any]]:
-    """Numbers that an effect reports, with their 95 % intervals."""
-    indices, own = [], {}
-    for index, one in enumerate(fit.parameters):
-        name, _, key = one.name.partition(".")
-        if name == effect.name:
-            indices.append(index)
-            own[key] = one
-    values, keys = fit.values[indices], list(own)
-
-    def numbers(at: NDArray[np.float64]) -> dict[str, tuple[float, str]]:
-        given = dict(zip(keys, (float(v) for v in at), strict=True))
-        reported = effect.reported(given)
-        if reported is None:
-            return {key: (value, own[key].unit) for key, value in given.items()}
-        return dict(reported)
-
-    reported = numbers(values)
-    covariance = fit.covariance[np.ix_(indices, indices)]
-    # spread of what is reported by its slopes over the parameters
-    slopes = {key: np.zeros(len(indices)) for key in reported}
-    for index, moved in enumerate(1e-3 * np.sqrt(np.maximum(np.diag(covariance), 0.0))):
-        if moved > 0.0:
-            beside = numbers(values + moved * (np.arange(len(indices)) == index))
-            for key in reported:
-                slopes[key][index] = (beside[key][0] - reported[key][0]) / moved
-    found = {}
-    for key, (value, unit) in reported.items():
-        half = 1.96 * math.sqrt(max(slopes[key] @ covariance @ slopes[key], 0.0))
-        # the simulation itself is no better than this
-        half = math.hypot(half, NUMERICS * abs(value))
-        found[key] = {"value": value, "unit": unit, "ci95": [value - half, value + half]}
-    return found

@@ -32,6 +32,9 @@ _FIRST_REGION = 100.0
 _LEAST_OF_PROMISE, _LEAST_HOPED = 0.8, 1.0
 #: steps tried at the most, without those of finite differences
 _MOST_STEPS = 30
+#: standard deviation, in sizes, of a parameter that has no declared value and begins at nothing:
+#: of values that the data do not tell apart, the smallest
+FREE_SIZES = 30.0
 #: groups from which a scatter between them can be told
 _LEAST_GROUPS = 4
 
@@ -47,6 +50,13 @@ class Parameter:
     upper: float = np.inf
     prior: bool = True  # whether the start is a declared value with a standard deviation
     unit: str = ""  # SI unit, for reports
+
+    @property
+    def weight(self) -> float:
+        """Weight of the row that holds it near its start; 0 where nothing does."""
+        if self.prior:
+            return 1.0
+        return 1.0 / FREE_SIZES if self.start == 0.0 else 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +78,38 @@ class Fit:
     def by_name(self) -> dict[str, float]:
         """Values by name."""
         return {one.name: float(v) for one, v in zip(self.parameters, self.values, strict=True)}
+
+    @property
+    def pulls(self) -> dict[str, float]:
+        """Standard deviations by which declared values have moved, by name."""
+        return {
+            one.name: float((value - one.start) / one.size)
+            for one, value in zip(self.parameters, self.values, strict=True)
+            if one.prior
+        }
+
+    @property
+    def log_prior(self) -> float:
+        """Logarithm of the prior at the solution, over that at the start."""
+        moved = [
+            one.weight * (value - one.start) / one.size
+            for one, value in zip(self.parameters, self.values, strict=True)
+        ]
+        return -0.5 * float(np.dot(moved, moved))
+
+    @property
+    def log_volume(self) -> float:
+        """Logarithm of the volume of the posterior over that of the prior.
+
+        The noise is taken for as large as the residual is, where that is larger.
+        """
+        if not self.parameters:
+            return 0.0
+        larger = max(1.0, self.cost / max(self.residuals.size, 1))
+        widths = np.array([1.0 if one.prior else FREE_SIZES for one in self.parameters])
+        widths *= np.array([one.size for one in self.parameters])
+        spread = np.linalg.eigvalsh(self.covariance * larger / np.outer(widths, widths))
+        return 0.5 * float(np.sum(np.log(np.clip(spread, 1e-12, 1.0))))
 
     def interval(self, index: int) -> tuple[float, float]:
         """95 % confidence interval of a parameter, within its bounds."""
@@ -93,8 +135,8 @@ class _Scaled:
         self.origin = np.array([one.start for one in parameters])
         self.lower = self.scaled(np.array([one.lower for one in parameters]))
         self.upper = self.scaled(np.array([one.upper for one in parameters]))
-        has_prior = np.array([one.prior for one in parameters], dtype=bool)
-        self.priors = np.eye(self.size.size)[has_prior]
+        weight = np.array([one.weight for one in parameters])
+        self.priors = np.diag(weight)[weight > 0.0]
         self.latest: tuple[Vector, Vector] | None = None
         #: Jacobian of the residuals, where it is from, the rows there, updates since differences
         self.known, self.at, self.then = jacobian, None, np.empty(0)

@@ -41,6 +41,10 @@ class Run:
         weight = self.weights.get(channel, np.ones(count))
         return weight if self.usable is None else weight * self.usable
 
+    def level(self, channel: str) -> float:
+        """Rms of a channel over the whole run, of which a part may be at rest."""
+        return float(np.sqrt(np.mean((self.whole or self).signals[channel] ** 2)))
+
     def in_part(self, number: int, parts: int) -> Run:
         """Return one of some equal parts in time, 0 <= number < parts."""
         size = self.signals["time"].size
@@ -77,11 +81,14 @@ class Measurement:
     tolerances: Mapping[str, float] = field(default_factory=dict)
     idle_power: float | None = None  # that the spindle takes in the air, W
 
-    def in_parts(self) -> Measurement:
-        """Return the measurement with its runs cut in time where there are too few to judge by."""
+    def in_parts(self, most: int = _PARTS) -> Measurement:
+        """Return the measurement with its runs cut in time where there are too few to judge by.
+
+        Runs are cut into `most` parts, all together.
+        """
         if len(self.runs) >= _ENOUGH_RUNS:
             return self
-        parts = -(-_PARTS // len(self.runs))
+        parts = -(-most // len(self.runs))
         return self.with_runs([run.in_part(k, parts) for run in self.runs for k in range(parts)])
 
     def with_runs(self, runs: list[Run]) -> Measurement:

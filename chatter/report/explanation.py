@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from chatter.explain.data_checks.finding import FOLLOWS
-from chatter.explain.explanation import EXPLAINED, Contradiction, Explanation
+from chatter.explain.explanation import Contradiction, Explanation
 from chatter.explain.residuals.finding import Finding
 from chatter.explain.selection.discriminating_test import in_words
 from chatter.plots.explanation import plot_errors, plot_lobes_before_after
@@ -34,7 +34,8 @@ def page_of(explanation: Explanation, summary: dict[str, Any], picture: Figure) 
             refitted=explanation.refitted_signature,
             repaired=explanation.repaired_signature,
             effect_names=found.effect_names,
-            fit=found.final if explanation.verdict == EXPLAINED else found.base,
+            at_noise=found.is_at_noise,
+            fit=found.final if explanation.adds_effects else found.base,
             lobes=explanation.lobes,
             residuals=picture,
             follows=FOLLOWS,

@@ -131,6 +131,9 @@ class WarmUp(Section):
         description="of the viscous friction at the start that is lost in the end"
     )
     time: quantity("time", above=0.0) = Field(description="constant of the decay")
+    begins: Literal["day", "move"] = Field(
+        "day", description="cold at the first of all moves, or again at the start of each"
+    )
 
 
 class Axis(Section):

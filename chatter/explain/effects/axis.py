@@ -1,5 +1,7 @@
 """Effects of a feed axis: its friction, offset, cogging, backlash."""
 
+from typing import ClassVar
+
 import numpy as np
 
 from chatter.description.case import Case
@@ -98,6 +100,10 @@ class Stribeck(Effect):
             free("stribeck_velocity", 5e-3, 2e-3, "m/s", lower=1e-3, upper=0.3),
         ]
 
+    def nothing(self, measurement: Measurement) -> Values:
+        """No friction above the Coulomb friction."""
+        return {"above": 0.0}
+
     def patch(self, case: Case, values: Values) -> Patch:
         """Static friction and Stribeck velocity."""
         return {
@@ -150,6 +156,12 @@ class WarmUp(Effect):
     kinds = ("axis",)
     section = "axis.warm_up"
     declared = "axis.warm_up"
+    begins: ClassVar[str] = "day"
+
+    @property
+    def variants(self) -> tuple[Effect, ...]:
+        """Over the day, or within every move."""
+        return (self, WarmUpOfMove())
 
     def parameters(self, measurement: Measurement) -> list[Parameter]:
         """Share and time."""
@@ -158,6 +170,30 @@ class WarmUp(Effect):
             free("share", 0.0, 0.05, "", lower=-0.9, upper=20.0),
             free("time", 0.4 * total, 0.2 * total, "s", lower=0.02 * total, upper=20.0 * total),
         ]
+
+    def patch(self, case: Case, values: Values) -> Patch:
+        """Warm-up of the axis, and from when on."""
+        return {**super().patch(case, values), "axis.warm_up.begins": self.begins}
+
+
+class WarmUpOfMove(WarmUp):
+    """Friction that falls within each move and is back at the next."""
+
+    begins = "move"
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """Share and time."""
+        longest = max(float(np.ptp((run.whole or run).signals["time"])) for run in measurement.runs)
+        bounds = {"lower": 0.01 * longest, "upper": 10.0 * longest}
+        return [
+            free("share", 0.0, 0.05, "", lower=-0.9, upper=20.0),
+            free("time", 0.3 * longest, 0.1 * longest, "s", **bounds),
+        ]
+
+    def starts(self, measurement: Measurement) -> list[Values]:
+        """Times from short to long."""
+        longest = self.parameters(measurement)[1].start / 0.3
+        return [{"share": 0.1, "time": share * longest} for share in (0.05, 0.15, 0.5)]
 
 
 class Offset(AxisValue):
@@ -222,6 +258,10 @@ class Backlash(Effect):
             return [gap]
         mass = measurement.case.axis.moving_mass
         return [gap, free("motor_mass", 0.2 * mass, 0.05 * mass, "kg", lower=0.0, upper=mass)]
+
+    def nothing(self, measurement: Measurement) -> Values:
+        """No gap."""
+        return {"backlash": 0.0}
 
     def starts(self, measurement: Measurement) -> list[Values]:
         """Gaps from small to large."""

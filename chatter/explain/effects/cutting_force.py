@@ -48,6 +48,10 @@ class ChipExponent(Effect):
         """The exponent."""
         return [free("exponent", 1.0, 0.03, "", lower=0.3, upper=1.0)]
 
+    def nothing(self, measurement: Measurement) -> Values:
+        """The linear law."""
+        return {"exponent": 1.0}
+
     def patch(self, case: Case, values: Values) -> Patch:
         """Law of the material."""
         return {

@@ -49,6 +49,11 @@ class Effect(ABC):
         """Forms of the effect that are tried, of which the best counts."""
         return (self,)
 
+    @property
+    def richer(self) -> tuple[Effect, ...]:
+        """Forms with more parameters, tried in its place once it is found and something is left."""
+        return ()
+
     def applies(self, measurement: Measurement) -> bool:
         """Whether it may be missing in a measurement of one of its kinds."""
         return not measurement.case.get(self.declared)
@@ -56,6 +61,14 @@ class Effect(ABC):
     @abstractmethod
     def parameters(self, measurement: Measurement) -> Sequence[Parameter]:
         """Numbers that are fitted, with their priors or sizes and bounds, SI."""
+
+    def nothing(self, measurement: Measurement) -> Values:
+        """Amounts and their values at which there is no effect; what begins at zero by default."""
+        return {
+            one.name: 0.0
+            for one in self.parameters(measurement)
+            if not one.prior and one.start == 0.0
+        }
 
     def patch(self, case: Case, values: Values) -> Patch:
         """Assignments of a case by path; the parameters as keys of the section by default."""

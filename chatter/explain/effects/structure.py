@@ -9,6 +9,10 @@ from chatter.explain.effects.effect import Effect, Patch, Reported, Values, free
 from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
 
+#: modes of which each may shift alone
+_MOST_MODES = 4
+#: speeds of a table, over that of the declared case, and the least frequency over that at rest
+_TABLE_SPEEDS, _LEAST_FREQUENCY = np.linspace(0.0, 3.0, 61), 0.05
 #: force of a typical cut where none was measured, N
 _TYPICAL_FORCE = 100.0
 
@@ -44,6 +48,10 @@ class MissingMode(Effect):
             free("compliance", 0.01 * compliance, 0.02 * compliance, "m/N", lower=0.0),
             free("angle", 0.0, 0.3, "rad"),
         ]
+
+    def nothing(self, measurement: Measurement) -> Values:
+        """No compliance."""
+        return {"compliance": 0.0}
 
     def patch(self, case: Case, values: Values) -> Patch:
         """Modes of the structure."""
@@ -91,6 +99,17 @@ class ModeShift(Effect):
     help = "natural frequencies change with the spindle speed"
     kinds = ("milling", "stability")
 
+    @property
+    def variants(self) -> tuple[Effect, ...]:
+        """All modes alike, or one of them; with the speed or its square."""
+        single = (ModeShiftOf(mode, square) for mode in range(_MOST_MODES) for square in (0, 1))
+        return (self, *single)
+
+    @property
+    def richer(self) -> tuple[Effect, ...]:
+        """Each mode in its own way."""
+        return (ModeShiftOfEach(),)
+
     def applies(self, measurement: Measurement) -> bool:
         """Of modes at several speeds."""
         speeds = {str(run.overrides.get("cut.spindle_speed")) for run in measurement.runs}
@@ -110,6 +129,78 @@ class ModeShift(Effect):
     def starts(self, measurement: Measurement) -> list[Values]:
         """Falling and rising."""
         return [{"slope": value} for value in (0.0, 2e-5, -2e-5, 6e-5, -6e-5)]
+
+
+class ModeShiftOfEach(ModeShift):
+    """Natural frequencies that change with the speed and its square, each mode in its own way."""
+
+    kinds = ("milling",)
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """Relative change with the speed, and with its square over that of the declared case."""
+        return [
+            free(f"{key}_{mode + 1}", 0.0, 0.01, "", lower=-0.6, upper=1.0)
+            for mode in self._shifted(measurement.case)
+            for key in ("linear", "square")
+        ]
+
+    def patch(self, case: Case, values: Values) -> Patch:
+        """Table of the frequency of each mode over the spindle speed."""
+        given: Patch = {}
+        for mode in self._shifted(case):
+            linear, square = (values.get(f"{key}_{mode + 1}", 0.0) for key in ("linear", "square"))
+            declared = case.structure.mode[mode]
+            share = _TABLE_SPEEDS
+            factor = np.maximum(1.0 + linear * share + square * share**2, _LEAST_FREQUENCY)
+            table = declared.speed_dependence
+            given[f"structure.mode[{mode}].speed_dependence"] = {
+                **({} if table is None else table.model_dump(exclude_none=True)),
+                "speeds": (case.cut.spindle_speed * share).tolist(),
+                "frequency": (declared.frequency * factor).tolist(),
+            }
+        return given
+
+    def applies(self, measurement: Measurement) -> bool:
+        """Of modes without a table over the speed."""
+        modes = measurement.case.structure.mode if measurement.case.structure else ()
+        alone = all(mode.speed_dependence is None for mode in modes)
+        return super().applies(measurement) and alone and self._is_other(len(modes))
+
+    def starts(self, measurement: Measurement) -> list[Values]:
+        """No shift: what follows is nearly linear in it."""
+        return [{}]
+
+    def _is_other(self, modes: int) -> bool:
+        """Whether it is another effect than that of all modes, where there are so many."""
+        return modes > 0
+
+    def _shifted(self, case: Case) -> tuple[int, ...]:
+        return tuple(range(min(len(case.structure.mode), _MOST_MODES)))
+
+
+class ModeShiftOf(ModeShiftOfEach):
+    """Natural frequency of one mode with the spindle speed, or with its square."""
+
+    def __init__(self, mode: int, square: int) -> None:
+        self.mode = mode
+        self.key = ("linear", "square")[square]
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """Relative change at the speed of the declared case."""
+        own = f"{self.key}_{self.mode + 1}"
+        return [one for one in super().parameters(measurement) if one.name == own]
+
+    def reported(self, values: Values) -> Reported:
+        """Relative change at the speed of the declared case, with which power, of which mode."""
+        change = values[f"{self.key}_{self.mode + 1}"]
+        power = 1.0 if self.key == "linear" else 2.0
+        return {"change": (change, ""), "power": (power, ""), "mode": (self.mode + 1.0, "")}
+
+    def _is_other(self, modes: int) -> bool:
+        return self.mode < modes and (modes > 1 or self.key == "square")
+
+    def _shifted(self, case: Case) -> tuple[int, ...]:
+        return (self.mode,)
 
 
 class Contact(Effect):

@@ -1,6 +1,7 @@
 """Effects of the tool: runout, pitch, wear."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -64,6 +65,10 @@ class Pitch(Effect):
         return {"tool.pitch": np.diff(np.append(angles, 2.0 * math.pi)).tolist()}
 
 
+#: shares of the longest cut time after which wear may saturate
+_SATURATIONS = (0.15, 0.4, 1.0)
+
+
 class Wear(Effect):
     """Forces that grow with the cut time of the runs."""
 
@@ -72,6 +77,11 @@ class Wear(Effect):
     help = "forces grow with the time that the tool has cut"
     kinds = ("milling",)
     section = "wear"
+
+    @property
+    def richer(self) -> tuple[Effect, ...]:
+        """Less and less, or at once."""
+        return (SaturatingWear(), Chipping())
 
     def applies(self, measurement: Measurement) -> bool:
         """Of runs at several cut times."""
@@ -84,4 +94,53 @@ class Wear(Effect):
             free("edge_tangential", 0.0, 3e3 / longest, "N/m/s"),
             free("edge_radial", 0.0, 3e3 / longest, "N/m/s"),
             free("cutting", 0.0, 0.02 / longest, "1/s"),
+            *self._of_process_damping(measurement, 0.1 / longest, "1/s"),
         ]
+
+    @staticmethod
+    def _of_process_damping(measurement: Measurement, size: float, unit: str) -> list[Parameter]:
+        """Growth of the process damping, where there is any."""
+        declared = measurement.case.process_damping
+        if declared is None or not declared.coefficient:
+            return []
+        return [free("process_damping", 0.0, size, unit)]
+
+
+class SaturatingWear(Wear):
+    """Forces that grow less and less with the cut time of the runs."""
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """Growth at first, and the time in which it dies away."""
+        longest = max(run.cut_time for run in measurement.runs)
+        bounds = {"lower": 0.02 * longest, "upper": 20.0 * longest}
+        time = free("saturation_time", 0.5 * longest, 0.1 * longest, "s", **bounds)
+        return [*super().parameters(measurement), time]
+
+    def starts(self, measurement: Measurement) -> list[Values]:
+        """Early and late."""
+        longest = max(run.cut_time for run in measurement.runs)
+        return [{"saturation_time": share * longest} for share in _SATURATIONS]
+
+
+class Chipping(Wear):
+    """Forces that grow at once, at some cut time between two runs."""
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """Growth, and when it comes."""
+        times = sorted({run.cut_time for run in measurement.runs})
+        return [
+            free("edge_tangential", 0.0, 3e3, "N/m"),
+            free("edge_radial", 0.0, 3e3, "N/m"),
+            free("cutting", 0.0, 0.02, ""),
+            *self._of_process_damping(measurement, 0.1, ""),
+            free("time", times[1], 0.1 * times[-1], "s", lower=times[0], upper=times[-1]),
+        ]
+
+    def patch(self, case: Case, values: Values) -> Patch:
+        """Chipping of the edge."""
+        return {"wear.chipping": {key: float(value) for key, value in values.items()}}
+
+    def starts(self, measurement: Measurement) -> list[Values]:
+        """Between every two runs."""
+        times = sorted({run.cut_time for run in measurement.runs})
+        return [{"time": 0.5 * (one + other)} for one, other in pairwise(times)]

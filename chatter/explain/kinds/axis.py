@@ -36,6 +36,8 @@ _COLUMNS = Columns(
 )
 #: of a discriminating test: rate of samples, Hz, time, s, and the slow speed over the fastest
 _RATE, _LASTING, _SLOW = 1000.0, 1.0, 0.02
+#: parts of a few moves: short ones, so that holdout parts lie among those fitted
+_PARTS = 12
 #: values of an axis that are declared
 _DECLARED = (
     "moving_mass",
@@ -99,7 +101,7 @@ class Axis(Kind):
                 axis_record.with_motor(made, run, _slide_force(law, made)) if ahead else made
             )
             begun += float(run.signals["time"][-1] - run.signals["time"][0])
-        return measurement.with_runs(runs).in_parts()
+        return measurement.with_runs(runs).in_parts(_PARTS)
 
     def reweighted(self, measurement: Measurement, case: Case) -> Measurement:
         """Return the measurement whose samples count as far as the force of a case is certain."""
@@ -116,7 +118,9 @@ class Axis(Kind):
         law, motor = axis_force(case), run.record.motor
         record: axis_record.AxisRecord = run.record
         acceleration = None if motor is None else motor.acceleration
-        force = law.along(*record.motion, record.step, record.begun, acceleration)
+        warm_up = case.axis.warm_up
+        begun = 0.0 if warm_up is not None and warm_up.begins == "move" else record.begun
+        force = law.along(*record.motion, record.step, begun, acceleration)
         found = {"force": axis_record.kept(force)}
         if motor is not None:
             ahead = 0.5 * case.axis.backlash * axis_record.driving_flank(_slide_force(law, run))

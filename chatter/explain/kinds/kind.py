@@ -80,6 +80,8 @@ class Kind(ABC):
         Whether a run is a series of samples that is drawn as such.
     estimates_noise : bool
         Whether the noise is estimated anew from the residual; else what is known of it stays.
+    has_autocorrelation : bool
+        Whether residuals of a channel are a series in which neighbours depend on each other.
     at_noise : float
         Rms of the normalised residual up to which a channel is at its noise.
     least_gain : (float, float)
@@ -101,6 +103,7 @@ class Kind(ABC):
     sources: ClassVar[tuple[str, ...]] = ()
     is_sampled: ClassVar[bool] = True
     estimates_noise: ClassVar[bool] = True
+    has_autocorrelation: ClassVar[bool] = True
     at_noise: ClassVar[float] = AT_NOISE
     least_gain: ClassVar[tuple[float, float]] = (LEAST_GAIN, LEAST_GAIN_SHARE)
 
@@ -183,8 +186,8 @@ class Kind(ABC):
         shares: dict[str, list[float]] = {}
         for one in residuals:
             if one.channel in self.reported_channels(one.run):
-                level = max(float(np.mean(one.measured**2)), 1e-300)
-                shares.setdefault(one.channel, []).append(one.noise**2 / level)
+                level = max(one.run.level(one.channel), 1e-150)
+                shares.setdefault(one.channel, []).append((one.noise / level) ** 2)
         return mean_over_channels(shares)
 
     def trials(self, measurement: Measurement, noise: Noise) -> Sequence[Trial]:

@@ -37,6 +37,7 @@ class Stability(Kind):
     columns = (("spindle_speed",), ("axial_depth",), ("stable",))
     is_sampled = False
     estimates_noise = False
+    has_autocorrelation = False
     diagnostics = (misclassified, over_speed, over_depth)
     checks = ((), (wrong_verdicts,))
     #: deviance residuals of a model that is right are small

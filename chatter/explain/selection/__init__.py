@@ -4,7 +4,12 @@
 module              responsibility
 =================== ================================================================
 problem             a measurement as a least-squares problem
-candidates          effects tried on top of others, judged on holdout runs
+split               runs fitted, and runs held out
+evidence            evidence of a model by Laplace's and Whittle's approximations
+significance        whether a candidate gains more than chance gives
+candidates          effects tried on top of others
+path                effects added one by one or in pairs, and tried again
+established         which effects are certain though something is left, and which are none
 search              which effects are added
 discriminating_test measurements in which explanations that fit alike differ
 =================== ================================================================

@@ -1,19 +1,30 @@
 """Candidates: every effect that may be missing, tried on top of others."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.explain.criteria import EQUAL, FITTED_IN_FULL, FOLLOWED_STARTS, MOST_EFFECTS
+from chatter.explain.criteria import (
+    EQUAL,
+    FITTED_IN_FULL,
+    FOLLOWED_STARTS,
+    MOST_EFFECTS,
+    SIMPLE_ENOUGH,
+)
 from chatter.explain.effects.effect import Effect
 from chatter.explain.effects.effect_list import candidates, rank
 from chatter.explain.fitting import WORKERS, Fit, Parameter
 from chatter.explain.measurement import Run
+from chatter.explain.selection.evidence import log_evidence
 from chatter.explain.selection.problem import Problem
+from chatter.explain.selection.significance import is_significant
+from chatter.explain.selection.split import Split
 
 Progress = Callable[[str, float], None]
 
@@ -25,20 +36,6 @@ _WEAK_PRIOR = 1e-3
 _LINEARISED_SHARE = 0.7
 
 
-class Split(NamedTuple):
-    """Runs to fit, and runs held out to judge by."""
-
-    fitted: tuple[Run, ...]
-    holdout: tuple[Run, ...]
-
-
-def split_runs(runs: Sequence[Run]) -> Split:
-    """Hold out every third run, so that both parts cover the conditions."""
-    holdout = tuple(run for index, run in enumerate(runs) if index % 3 == 2)
-    fitted = tuple(run for index, run in enumerate(runs) if index % 3 != 2)
-    return Split(fitted, holdout) if holdout else Split(tuple(runs), tuple(runs))
-
-
 @dataclass(frozen=True, eq=False)
 class Candidate:
     """An effect tried on top of others."""
@@ -46,6 +43,7 @@ class Candidate:
     effect: Effect
     fit: Fit  # to the runs for fitting
     holdout: float  # sum of squares on the holdout runs
+    evidence: float  # logarithm
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,11 +52,12 @@ class Stage:
 
     before: Fit  # of the others, to the runs for fitting
     holdout: float  # sum of squares on the holdout runs, by it
+    evidence: float  # logarithm, by it
     tried: tuple[Candidate, ...]  # best first
 
     @property
     def best(self) -> Candidate:
-        """Candidate with the least residual of the holdout runs."""
+        """Candidate of the highest evidence."""
         return self.tried[0]
 
 
@@ -79,20 +78,48 @@ def stage_of(problem: Problem, now: Fit, split: Split, progress: Progress, numbe
         share = _LINEARISED_SHARE * index / len(effects)
         progress(f"looking at {effect.name}", (number + share) / (MOST_EFFECTS + 1))
         steps.append((effect, linearised(problem, effect, now, split.fitted)))
-    steps.sort(key=lambda entry: entry[1].cost)
-    best_of_name: dict[str, tuple[Effect, LinearisedStep]] = {}
-    for effect, step in steps:
-        best_of_name.setdefault(effect.name, (effect, step))
-    chosen = list(best_of_name.values())[:FITTED_IN_FULL]
+    chosen = _chosen(problem, steps)
     tried = []
     for index, (effect, step) in enumerate(chosen):
         share = _LINEARISED_SHARE + (1.0 - _LINEARISED_SHARE) * index / len(chosen)
         progress(f"fitting {effect.name}", (number + share) / (MOST_EFFECTS + 1))
         tried.append(fitted(problem, effect, split, step.values, step.jacobian))
-    # what every candidate gains, the nuisance parameters gained by going on
+    return stage_with(problem, now, split, tried)
+
+
+def stage_with(problem: Problem, now: Fit, split: Split, tried: Sequence[Candidate]) -> Stage:
+    """Stage of candidates that were tried beside the effects of a problem.
+
+    Those that are significant first, and of the highest evidence; equals in the order of the list
+    of effects.
+    """
     holdout = problem.cost(now.by_name, split.holdout)
-    holdout = min(holdout, max((one.holdout for one in tried), default=holdout))
-    return Stage(now, holdout, ranked(tried))
+    stage = Stage(now, holdout, log_evidence(problem, now, split), ())
+    best = max((one.evidence for one in tried), default=0.0)
+
+    def order(one: Candidate) -> tuple[bool, float, int]:
+        significant = is_significant(stage, one, problem, split)
+        return not significant, -min(one.evidence, best - EQUAL), rank(one.effect)
+
+    return replace(stage, tried=tuple(sorted(tried, key=order)))
+
+
+def _chosen(
+    problem: Problem, steps: list[tuple[Effect, LinearisedStep]]
+) -> list[tuple[Effect, LinearisedStep]]:
+    """Most promising effects; of a family its best member, and the simplest where that may do."""
+    steps = sorted(steps, key=lambda entry: entry[1].cost)
+    names = list(dict.fromkeys(effect.name for effect, _ in steps))[:FITTED_IN_FULL]
+    chosen = []
+    for name in names:
+        members = [entry for entry in steps if entry[0].name == name]
+        count = {id(effect): len(effect.parameters(problem.measurement)) for effect, _ in members}
+        best = members[0]
+        simplest = min(members, key=lambda entry: (count[id(entry[0])], entry[1].cost))
+        if simplest[1].cost <= SIMPLE_ENOUGH * best[1].cost:
+            best = simplest
+        chosen += [best] if best is simplest else [best, simplest]
+    return chosen
 
 
 def fitted(
@@ -105,13 +132,8 @@ def fitted(
     """Fit a problem with an effect added."""
     trial = problem.with_effect(effect)
     found = trial.fit(split.fitted, start, jacobian)
-    return Candidate(effect, found, trial.cost(found.by_name, split.holdout))
-
-
-def ranked(tried: Sequence[Candidate]) -> tuple[Candidate, ...]:
-    """Candidates, best on the holdout runs first; equals in the order of the list of effects."""
-    best = min((one.holdout for one in tried), default=0.0)
-    return tuple(sorted(tried, key=lambda one: (max(one.holdout, best + EQUAL), rank(one.effect))))
+    holdout = trial.cost(found.by_name, split.holdout)
+    return Candidate(effect, found, holdout, log_evidence(trial, found, split))
 
 
 def linearised(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) -> LinearisedStep:

@@ -75,8 +75,9 @@ class Problem:
                 given[name] = float(value)
         case = self.measurement.with_values(given)
         for effect in self.effects:
-            given |= effect.patch(case, own[effect.name])
-        return self.measurement.with_values(given)
+            # each upon those before it: modes that one adds are not lost to another
+            case = case.patch(effect.patch(case, own[effect.name]))
+        return case
 
     def residuals(self, values: Mapping[str, float], runs: Sequence[Run]) -> NDArray[np.float64]:
         """Scaled residuals of runs, one after the other."""

@@ -1,33 +1,20 @@
 """Which effects the data ask for: candidates fitted on some runs and judged on others."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 
-from chatter.explain.criteria import (
-    ALTERNATIVES,
-    FITTED_AGAIN,
-    LEAST_SHARE,
-    MOST_EFFECTS,
-    NEAR_NOISE,
-    NO_RESIDUAL,
-)
+from chatter.explain.criteria import OUT_OF_TOLERANCE
 from chatter.explain.fitting import Fit, over_groups
-from chatter.explain.measurement import Measurement, Run
+from chatter.explain.measurement import Measurement
 from chatter.explain.prediction import Predictions
-from chatter.explain.selection.candidates import (
-    Progress,
-    Split,
-    Stage,
-    fitted,
-    ranked,
-    split_runs,
-    stage_of,
-)
+from chatter.explain.selection.candidates import Progress, Stage, stage_of
+from chatter.explain.selection.established import established_alone, is_established, reaches_nothing
+from chatter.explain.selection.path import Path, best_path, richer, tried_again
 from chatter.explain.selection.problem import Problem
+from chatter.explain.selection.split import Split, split_runs
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +25,7 @@ class Search:
     first: Stage  # every candidate alone
     #: one an effect that was added, each tried beside all the others that were
     accepted: tuple[Stage, ...]
+    helping: tuple[Stage, ...]  # of effects that take some of the residual away, but not for sure
     problem: Problem  # with the effects accepted, and the noise beside them
     of_fitted: Fit  # of it, to the runs for fitting
     final: Fit  # of it, to all runs
@@ -56,32 +44,44 @@ class Search:
     @property
     def normalised_residual(self) -> dict[str, float]:
         """Rms of the residual of each channel over its noise, by the effects accepted."""
-        squares: dict[str, list[float]] = {}
-        begin = 0
-        for run in self.measurement.runs:
-            for channel in self.problem.kind.channels(run):
-                end = begin + run.signals[channel].size
-                parts = self.final.residuals[begin:end]
-                squares.setdefault(channel, []).append(float(np.mean(parts**2)))
-                begin = end
-        return {channel: math.sqrt(np.mean(parts)) for channel, parts in squares.items()}
+        return normalised_residual(self.problem, self.final)
+
+    @property
+    def is_at_noise(self) -> bool:
+        """Whether the residual of every channel is at its noise."""
+        return is_at_noise(self.problem, self.final)
+
+    @property
+    def is_certain(self) -> bool:
+        """Whether every effect accepted is beyond doubt, whatever is left."""
+        return all(
+            is_established(stage, self.problem.without_effect(stage.best.effect), self.split)
+            for stage in self.accepted
+        )
+
+    @property
+    def out_of_tolerance(self) -> Mapping[str, float]:
+        """Declared values that the fit pulls out of their tolerances, in standard deviations."""
+        return {
+            name: pull for name, pull in self.final.pulls.items() if abs(pull) > OUT_OF_TOLERANCE
+        }
 
 
-class Path(NamedTuple):
-    """Effects added one after the other."""
+def normalised_residual(problem: Problem, found: Fit) -> dict[str, float]:
+    """Rms of the residual of each channel over its noise, by a fit to all runs."""
+    squares: dict[str, list[float]] = {}
+    begin = 0
+    for run in problem.measurement.runs:
+        for channel in problem.kind.channels(run):
+            end = begin + run.signals[channel].size
+            squares.setdefault(channel, []).append(float(np.mean(found.residuals[begin:end] ** 2)))
+            begin = end
+    return {channel: math.sqrt(np.mean(parts)) for channel, parts in squares.items()}
 
-    stages: list[Stage]
-    problem: Problem
-    now: Fit
 
-    def over_noise(self, holdout: Sequence[Run]) -> float:
-        """Rms of the normalised residual of holdout runs."""
-        cost = self.problem.cost(self.now.by_name, holdout)
-        return math.sqrt(cost / self.problem.count(holdout))
-
-    def cost_beside(self, other: Problem, holdout: Sequence[Run]) -> float:
-        """Sum of squares on holdout runs with the noise of a problem, so that paths compare."""
-        return replace(self.problem, noise=other.noise).cost(self.now.by_name, holdout)
+def is_at_noise(problem: Problem, found: Fit) -> bool:
+    """Whether a fit to all runs leaves no more than noise in any channel."""
+    return max(normalised_residual(problem, found).values()) <= problem.kind.at_noise
 
 
 def search(measurement: Measurement, predictions: Predictions, progress: Progress) -> Search:
@@ -95,88 +95,67 @@ def search(measurement: Measurement, predictions: Predictions, progress: Progres
     now = problem.fit(split.fitted, now.by_name)
     base_values = now.by_name
     first = stage_of(problem, now, split, progress, 0)
-    path = _best_path(Path([], problem, now), first, split, progress)
+    path = best_path(Path([], problem, now), first, split, progress)
     if len(path.stages) > 1:
         progress("trying again the effects added first", 0.85)
-        path = _tried_again(path, split)
+        path = tried_again(path, split)
+    path, split, final = _to_all_runs(path, split, progress)
+    if path.stages and not is_at_noise(path.problem, final):
+        path = richer(path, split, progress)
+        final = _of_all_runs(path)
+    helping: list[Stage] = []
+    if path.stages and not is_at_noise(path.problem, final):
+        path, helping = established_alone(path, split)
+        final = _of_what_is_left(path)
+    elif path.stages and reaches_nothing(path, final) is not None:
+        path, final = _without_nothing(path, final, split)
+    base = replace(path.problem, effects=()).fit(measurement.runs, base_values)
+    return Search(
+        split, first, tuple(path.stages), tuple(helping), path.problem, path.now, final, base
+    )
+
+
+def _to_all_runs(path: Path, split: Split, progress: Progress) -> tuple[Path, Split, Fit]:
+    """Path with samples weighted by the case that was found, and the fit to all runs."""
+    progress("fitting all runs", 0.86)
     stages, problem, now = path
-    progress("fitting all runs", 0.95)
+    measurement = problem.measurement
     if stages:
-        measurement = kind.reweighted(measurement, problem.case(now.by_name))
+        measurement = problem.kind.reweighted(measurement, problem.case(now.by_name))
     if measurement is not problem.measurement:
         split = split_runs(measurement.runs)
         problem = replace(problem, measurement=measurement)
         now = problem.fit(split.fitted, now.by_name)
-    final = problem.fit(measurement.runs, now.by_name)
-    final = over_groups(final, [problem.count([run]) for run in measurement.runs])
-    base = replace(problem, effects=()).fit(measurement.runs, base_values)
-    return Search(split, first, tuple(stages), problem, now, final, base)
-
-
-def _best_path(begin: Path, first: Stage, split: Split, progress: Progress) -> Path:
-    """Follow the best candidate and, where that does not lead to the noise, the next ones too.
-
-    Of two effects that are missing, neither may do well alone, and a third best in their place.
-    """
-    best = _forward(begin, first, split, progress, MOST_EFFECTS)
-    for index in range(1, min(ALTERNATIVES + 1, len(first.tried))):
-        if not best.stages or best.over_noise(split.holdout) < NEAR_NOISE:
-            break
-        turned = (first.tried[index], *first.tried[:index], *first.tried[index + 1 :])
-        path = _forward(begin, replace(first, tried=turned), split, progress, 2)
-        costs = [one.cost_beside(begin.problem, split.holdout) for one in (path, best)]
-        if costs[0] < costs[1]:
-            best = path
-    return best
-
-
-def _forward(begin: Path, stage: Stage, split: Split, progress: Progress, most: int) -> Path:
-    """Add effects, the first as ranked by a stage, as long as holdout runs gain by them."""
-    stages, problem, now = [], begin.problem, begin.now
-    while stage.tried and _is_significant(stage.holdout, stage.best.holdout, problem, split):
-        stages.append(stage)
-        values = stage.best.fit.by_name
-        problem = problem.with_effect(stage.best.effect).with_noise_beside(values)
-        now = problem.fit(split.fitted, values)
         path = Path(stages, problem, now)
-        if len(stages) == most or path.over_noise(split.holdout) < NO_RESIDUAL:
+    return path, split, _of_all_runs(path)
+
+
+def _of_all_runs(path: Path) -> Fit:
+    runs = path.problem.measurement.runs
+    final = path.problem.fit(runs, path.now.by_name)
+    return over_groups(final, [path.problem.count([run]) for run in runs])
+
+
+def _of_what_is_left(path: Path) -> Fit:
+    """Fit to all runs that takes what is left for noise, so that tolerances hold against it."""
+    problem, runs = path.problem, path.problem.measurement.runs
+    level = normalised_residual(problem, _of_all_runs(path))
+    noise = {
+        run: {channel: max(1.0, level[channel]) * one for channel, one in channels.items()}
+        for run, channels in problem.noise.items()
+    }
+    final = _of_all_runs(Path(path.stages, replace(problem, noise=noise), path.now))
+    return replace(final, residuals=problem.residuals(final.by_name, runs))
+
+
+def _without_nothing(path: Path, final: Fit, split: Split) -> tuple[Path, Fit]:
+    """Path without effects whose interval reaches nothing, where the rest is at the noise too."""
+    while (stage := reaches_nothing(path, final)) is not None:
+        problem = path.problem.without_effect(stage.best.effect)
+        stages = [one for one in path.stages if one is not stage]
+        shorter = Path(stages, problem, problem.fit(split.fitted, path.now.by_name))
+        fitted = _of_all_runs(shorter)
+        if not is_at_noise(problem, fitted):
             break
-        stage = stage_of(problem, now, split, progress, len(stages))
-    return Path(stages, problem, now)
-
-
-def _tried_again(path: Path, split: Split) -> Path:
-    """Ask of every effect but the last whether it is needed, or another does better beside them.
-
-    The first was chosen when the others were not there, and may have stood for them.
-    """
-    stages, problem, now = path
-    kept = list(stages)
-    for stage in stages[:-1]:
-        without = problem.without_effect(stage.best.effect)
-        before = without.fit(split.fitted, now.by_name)
-        holdout = without.cost(before.by_name, split.holdout)
-        names = {effect.name for effect in without.effects}
-        tried = []
-        for one in stage.tried[:FITTED_AGAIN]:
-            if one.effect.name in names:
-                continue
-            start = {**one.fit.by_name, **before.by_name}
-            start = now.by_name if one.effect is stage.best.effect else start
-            tried.append(fitted(without, one.effect, split, start))
-        found = Stage(before, holdout, ranked(tried))
-        index = kept.index(stage)
-        if not _is_significant(holdout, found.best.holdout, problem, split):
-            del kept[index]
-            problem, now = without, before
-            continue
-        kept[index] = found
-        problem, now = without.with_effect(found.best.effect), found.best.fit
-    return Path(kept, problem, now)
-
-
-def _is_significant(before: float, after: float, problem: Problem, split: Split) -> bool:
-    """Whether the sum of squares of holdout runs falls by more than chance, or a sliver of it."""
-    least, share = problem.kind.least_gain
-    count = problem.count(split.holdout)
-    return before - after > max(least + share * count, LEAST_SHARE * (before - count))
+        path, final = shorter, fitted
+    return path, final

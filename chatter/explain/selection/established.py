@@ -1,0 +1,98 @@
+"""Which effects are beyond doubt though something else is left, and which are none."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.stats
+
+from chatter.explain.criteria import (
+    CERTAIN_EVIDENCE,
+    FAILS_IN,
+    LEAST_SHARE_IN_PART,
+    REACHES_NOTHING,
+)
+from chatter.explain.effects.effect import Effect
+from chatter.explain.fitting import Fit
+from chatter.explain.measurement import Measurement
+from chatter.explain.selection.candidates import Stage, fitted, stage_with
+from chatter.explain.selection.path import Path
+from chatter.explain.selection.problem import Problem
+from chatter.explain.selection.significance import share_removed
+from chatter.explain.selection.split import Split
+
+
+def established_alone(path: Path, split: Split) -> tuple[Path, list[Stage]]:
+    """Path with the effects alone that are beyond doubt beside each other, and the other stages."""
+    helping: list[Stage] = []
+    while path.stages:
+        stages = [_beside_the_others(path, stage, split) for stage in path.stages]
+        path = Path(stages, path.problem, path.now)
+        uncertain = [
+            stage
+            for stage in stages
+            if not is_established(stage, path.problem.without_effect(stage.best.effect), split)
+        ]
+        if not uncertain:
+            break
+        least = min(uncertain, key=lambda stage: stage.best.evidence - stage.evidence)
+        helping.append(least)
+        problem = path.problem.without_effect(least.best.effect)
+        now = problem.fit(split.fitted, path.now.by_name)
+        path = Path([one for one in stages if one is not least], problem, now)
+    return path, helping
+
+
+def _beside_the_others(path: Path, stage: Stage, split: Split) -> Stage:
+    """Stage of an effect, tried beside all the others with the noise as it is now."""
+    effect = stage.best.effect
+    without = path.problem.without_effect(effect)
+    before = without.fit(split.fitted, path.now.by_name)
+    names = {one.name for one in without.effects} | {effect.name}
+    own = fitted(without, effect, split, path.now.by_name)
+    if len(path.stages) > 1:
+        return stage_with(without, before, split, [own])
+    others = [
+        fitted(without, one.effect, split, {**one.fit.by_name, **before.by_name})
+        for one in stage.tried
+        if one.effect.name not in names
+    ]
+    found = stage_with(without, before, split, [own, *others])
+    tried = (own, *(one for one in found.tried if one is not own))
+    return Stage(before, found.holdout, found.evidence, tried)
+
+
+def is_established(stage: Stage, others: Problem, split: Split) -> bool:
+    """Whether an effect takes much of the misfit away, in nearly every run."""
+    best = stage.best
+    if best.evidence - stage.evidence < CERTAIN_EVIDENCE:
+        return False
+    if share_removed(stage, best, others, split) < LEAST_SHARE_IN_PART:
+        return False
+    runs = others.measurement.runs
+    trial = others.with_effect(best.effect)
+    fails = sum(
+        trial.cost(best.fit.by_name, [run]) >= others.cost(stage.before.by_name, [run])
+        for run in runs
+    )
+    return fails <= len(runs) // FAILS_IN
+
+
+def reaches_nothing(path: Path, final: Fit) -> Stage | None:
+    """First effect whose interval reaches no effect at all; None where none does."""
+    for stage in path.stages:
+        if _reaches_nothing(final, stage.best.effect, path.problem.measurement):
+            return stage
+    return None
+
+
+def _reaches_nothing(final: Fit, effect: Effect, measurement: Measurement) -> bool:
+    """Wald's (1943) test of an effect's amounts against none."""
+    nothing = effect.nothing(measurement)
+    names = [one.name for one in final.parameters]
+    indices = [names.index(f"{effect.name}.{key}") for key in nothing]
+    if not indices:
+        return False
+    away = final.values[indices] - np.array(list(nothing.values()))
+    covariance = final.covariance[np.ix_(indices, indices)]
+    distance = float(away @ np.linalg.pinv(covariance, hermitian=True) @ away)
+    return distance < float(scipy.stats.chi2.ppf(REACHES_NOTHING, len(indices)))

@@ -1,0 +1,167 @@
+"""Effects that were added one after the other or in pairs, and whether the data ask for each."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+from chatter.explain.criteria import (
+    FITTED_AGAIN,
+    LEAST_EVIDENCE,
+    MOST_EFFECTS,
+    NEAR_NOISE,
+    NO_RESIDUAL,
+    PAIRED,
+)
+from chatter.explain.fitting import Fit
+from chatter.explain.measurement import Run
+from chatter.explain.selection.candidates import (
+    Progress,
+    Stage,
+    fitted,
+    linearised,
+    stage_of,
+    stage_with,
+)
+from chatter.explain.selection.evidence import log_evidence
+from chatter.explain.selection.problem import Problem
+from chatter.explain.selection.significance import is_significant
+from chatter.explain.selection.split import Split
+
+
+class Path(NamedTuple):
+    """Effects added to a problem, each in its stage, and the fit to the runs for fitting."""
+
+    stages: list[Stage]
+    problem: Problem
+    now: Fit
+
+    def over_noise(self, holdout: Sequence[Run]) -> float:
+        """Rms of the normalised residual of holdout runs."""
+        cost = self.problem.cost(self.now.by_name, holdout)
+        return math.sqrt(cost / self.problem.count(holdout))
+
+    def evidence_beside(self, other: Problem, split: Split) -> float:
+        """Logarithm of the evidence with the noise of a problem, so that paths compare."""
+        alike = replace(self.problem, noise=other.noise)
+        residuals = alike.residuals(self.now.by_name, split.fitted)
+        return log_evidence(alike, replace(self.now, residuals=residuals), split)
+
+
+def best_path(begin: Path, first: Stage, split: Split, progress: Progress) -> Path:
+    """Follow the best candidate and, where that does not lead to the noise, pairs of them.
+
+    Of two effects that are missing, neither may do well alone, and a third best in their place.
+    """
+    best = _forward(begin, first, split, progress, MOST_EFFECTS)
+    if best.over_noise(split.holdout) < NEAR_NOISE:
+        return best
+    progress("fitting pairs of effects", 0.8)
+    for path in _pairs(begin, first, best, split):
+        best = _better(path, best, begin.problem, split)
+    return best
+
+
+def _better(one: Path, other: Path, problem: Problem, split: Split) -> Path:
+    """Path of the higher evidence, the other where they hardly differ."""
+    gain = one.evidence_beside(problem, split) - other.evidence_beside(problem, split)
+    return one if gain > LEAST_EVIDENCE else other
+
+
+def _forward(begin: Path, stage: Stage, split: Split, progress: Progress, most: int) -> Path:
+    """Add effects, the first as ranked by a stage, as long as holdout runs gain by them."""
+    stages, problem, now = [], begin.problem, begin.now
+    while stage.tried and is_significant(stage, stage.best, problem, split):
+        stages.append(stage)
+        values = stage.best.fit.by_name
+        problem = problem.with_effect(stage.best.effect).with_noise_beside(values)
+        now = problem.fit(split.fitted, values)
+        path = Path(stages, problem, now)
+        if len(stages) == most or path.over_noise(split.holdout) < NO_RESIDUAL:
+            break
+        stage = stage_of(problem, now, split, progress, len(stages))
+    return Path(stages, problem, now)
+
+
+def _pairs(begin: Path, first: Stage, best: Path, split: Split) -> list[Path]:
+    """Pairs of the first candidates, fitted jointly, of which both are significant together."""
+    seen = {frozenset(stage.best.effect.name for stage in best.stages)}
+    paths = []
+    for one, other in itertools.combinations(first.tried[:PAIRED], 2):
+        names = frozenset((one.effect.name, other.effect.name))
+        if len(names) < 2 or names in seen:
+            continue
+        seen.add(names)
+        alone = begin.problem.with_effect(one.effect)
+        joint = fitted(alone, other.effect, split, {**other.fit.by_name, **one.fit.by_name})
+        start = stage_with(begin.problem, begin.now, split, [one])
+        added = Stage(one.fit, one.holdout, one.evidence, (joint,))
+        # the first of them may gain nothing alone
+        if all(
+            is_significant(before, joint, problem, split)
+            for before, problem in ((start, begin.problem), (added, alone))
+        ):
+            problem = alone.with_effect(other.effect).with_noise_beside(joint.fit.by_name)
+            now = problem.fit(split.fitted, joint.fit.by_name)
+            paths.append(Path([start, added], problem, now))
+    return paths
+
+
+def tried_again(path: Path, split: Split) -> Path:
+    """Ask of every effect whether it is needed, or another does better beside the others.
+
+    The first was chosen when the others were not there, and may have stood for them.
+    """
+    stages, problem, now = path
+    kept = list(stages)
+    for stage in stages:
+        without = problem.without_effect(stage.best.effect)
+        before = without.fit(split.fitted, now.by_name)
+        names = {effect.name for effect in without.effects}
+        tried = []
+        for one in stage.tried[:FITTED_AGAIN]:
+            if one.effect.name in names:
+                continue
+            start = {**one.fit.by_name, **before.by_name}
+            start = now.by_name if one.effect is stage.best.effect else start
+            tried.append(fitted(without, one.effect, split, start))
+        found = stage_with(without, before, split, tried)
+        index = kept.index(stage)
+        if not is_significant(found, found.best, without, split):
+            del kept[index]
+            problem, now = without, before
+            continue
+        kept[index] = found
+        problem, now = without.with_effect(found.best.effect), found.best.fit
+    return Path(kept, problem, now)
+
+
+def richer(path: Path, split: Split, progress: Progress) -> Path:
+    """Put other members of families in the place of those added, where the data ask for them."""
+    for index, stage in enumerate(path.stages):
+        effect = stage.best.effect
+        measurement = path.problem.measurement
+        others = [
+            one
+            for one in effect.richer
+            if type(one) is not type(effect) and one.applies(measurement)
+        ]
+        if not others:
+            continue
+        progress(f"looking at other forms of {effect.name}", 0.88)
+        without = path.problem.without_effect(effect)
+        before = without.fit(split.fitted, path.now.by_name)
+        own = fitted(without, effect, split, path.now.by_name)
+        steps = [(one, linearised(without, one, before, split.fitted)) for one in others]
+        one, step = min(steps, key=lambda entry: entry[1].cost)
+        member = fitted(without, one, split, step.values, step.jacobian)
+        if member.evidence - own.evidence < LEAST_EVIDENCE or member.holdout > own.holdout:
+            continue
+        found = stage_with(without, before, split, [member, own])
+        problem = without.with_effect(member.effect).with_noise_beside(member.fit.by_name)
+        now = problem.fit(split.fitted, member.fit.by_name)
+        path = Path([*path.stages[:index], found, *path.stages[index + 1 :]], problem, now)
+    return path

@@ -1,0 +1,131 @@
+"""Members of families put their numbers into the case; what is not determined is not reported."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from chatter.description.case import loads
+from chatter.explain.effects.effect_list import candidates
+from chatter.explain.effects.structure import MissingMode, ModeShift, ModeShiftOf, ModeShiftOfEach
+from chatter.explain.effects.tool import Chipping, Runout, SaturatingWear, Wear
+from chatter.explain.fitting import fit
+from chatter.explain.measurement import Measurement, Run
+from chatter.explain.reported_effects import parameters_of
+from chatter.explain.selection.evidence import probabilities, whittle
+from chatter.explain.selection.problem import Problem
+
+CASE = loads("""
+title = "a cut"
+[tool]
+kind = "end mill"
+teeth = 2
+diameter = "12 mm"
+helix = "30 deg"
+[material]
+law = "linear"
+Ktc = "800 MPa"
+Krc = "200 MPa"
+Kte = "10 N/mm"
+[cut]
+mode = "down"
+spindle_speed = "6000 rpm"
+feed_per_tooth = "0.05 mm"
+axial_depth = "0.5 mm"
+radial_depth = "6 mm"
+[[structure.mode]]
+frequency = "700 Hz"
+damping = 0.03
+mass = "0.6 kg"
+direction = [1, 0, 0]
+[[structure.mode]]
+frequency = "800 Hz"
+damping = 0.03
+mass = "0.6 kg"
+direction = [0, 1, 0]
+""")
+SPEED = CASE.cut.spindle_speed
+
+
+def cuts() -> Measurement:
+    runs = tuple(
+        Run(f"run{k}.csv", {"cut.spindle_speed": f"{5000 + 500 * k} rpm"}, {}, cut_time=2.0 * k)
+        for k in range(5)
+    )
+    return Measurement("milling", "made up", None, CASE, runs)
+
+
+def test_one_mode_shifts_with_the_square_of_speed():
+    effect = ModeShiftOf(1, square=1)
+    patched = CASE.patch(effect.patch(CASE, {"square_2": -0.05}))
+    first, second = patched.structure.mode
+    assert first == CASE.structure.mode[0]
+    for share in (0.5, 0.93, 1.4):
+        expected = 800.0 * (1.0 - 0.05 * share**2)
+        assert second.frequency_at(share * SPEED) == pytest.approx(expected, rel=1e-4)
+    assert effect.reported({"square_2": -0.05})["mode"] == (2.0, "")
+
+
+def test_simple_members_come_first_and_richer_ones_once_they_are_found():
+    shifts = [one for one in candidates(cuts()) if isinstance(one, ModeShift)]
+    counts = [len(one.parameters(cuts())) for one in shifts]
+    assert set(counts) == {1}
+    assert len(shifts) == 5  # all alike, two modes by the speed or its square
+    (richer,) = shifts[0].richer
+    assert isinstance(richer, ModeShiftOfEach)
+    assert len(richer.parameters(cuts())) == 4
+    assert [type(one) for one in Wear().richer] == [SaturatingWear, Chipping]
+
+
+def test_wear_comes_at_once_or_dies_away():
+    chipping = Chipping()
+    assert [start["time"] for start in chipping.starts(cuts())] == [1.0, 3.0, 5.0, 7.0]
+    values = {"edge_tangential": 4e3, "edge_radial": 0.0, "cutting": 0.1, "time": 3.0}
+    wear = CASE.patch(chipping.patch(CASE, values)).wear
+    assert [wear.increase("cutting", time) for time in (2.0, 4.0)] == [0.0, 0.1]
+    values = {"edge_tangential": 0.0, "edge_radial": 0.0, "cutting": 0.1, "saturation_time": 2.0}
+    wear = CASE.patch(SaturatingWear().patch(CASE, values)).wear
+    assert wear.increase("cutting", 100.0) == pytest.approx(0.2)
+
+
+def test_effects_are_put_in_one_after_the_other():
+    """A mode that is added does not take back what shifts the others."""
+    problem = Problem(cuts(), None, {}, (ModeShift(), MissingMode()))
+    mode = {"frequency": 300.0, "damping": 0.03, "compliance": 1e-8, "angle": 0.0}
+    values = {"mode_shift.slope": 1e-5, **{f"missing_mode.{key}": v for key, v in mode.items()}}
+    modes = problem.case(values).structure.mode
+    assert [one.frequency_slope for one in modes] == [1e-5, 1e-5, 0.0]
+    assert modes[2].frequency == 300.0
+
+
+def test_two_teeth_show_the_difference_of_their_radii_alone():
+    effect = Runout()
+    parameters = [replace(one, name=f"runout.{one.name}") for one in effect.parameters(cuts())]
+
+    def residuals(values):
+        across, along = values * 1e6
+        # next to nothing of the part across, as the model curves
+        return np.full(400, 20.0 * (along - 11.5) + 1e-9 * across**2)
+
+    found = fit(parameters, residuals, np.zeros(2))
+    reported = parameters_of(found, effect)
+    assert reported["offset"]["value"] == pytest.approx(11.5e-6, rel=0.01)  # the smallest
+    low, high = reported["offset"]["ci95"]
+    assert low < 11.6e-6
+    assert high > 1e-3  # as far as the bounds go
+    low, high = reported["along"]["ci95"]
+    assert 11.4e-6 < low < 11.5e-6 < high < 11.6e-6
+
+
+def test_evidence_of_what_a_spectrum_hides_is_small():
+    rng = np.random.default_rng(2)
+    noise, time = rng.standard_normal(2000), np.arange(2000)
+    assert whittle(noise) == pytest.approx(-1000.0, rel=0.1)
+    ripple = 30.0 * np.sin(2.0 * np.pi * 0.05 * time)
+    step = 1.0 * (time > 1000)
+    beside, alone = whittle(noise + ripple + step), whittle(noise + ripple)
+    # a step at low frequencies is seen beside a ripple at others
+    assert alone - beside > 10.0
+    # a change at the ripple's own frequency is not
+    assert abs(whittle(noise + 1.01 * ripple) - alone) < 1.0
+    assert probabilities([0.0, -np.log(3.0)]) == pytest.approx([0.75, 0.25])
