@@ -18,7 +18,7 @@ from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.registry import METHODS
 
 #: depths of the grid of limits, and how far it goes in depths of the cut
-_DEPTHS, _REACH = 24, 3.0
+_DEPTHS, _REACH = 48, 6.0
 
 
 def signals(case: Case) -> NDArray[np.float64]:

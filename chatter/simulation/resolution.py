@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from cutting.engagement.immersion import slice_engagement
-from cutting.tool.cutter import Cutter
+from cutting.tool.cutter import Cutter, slices_between
 from cutting.tool.slice_bounds import SliceLimits, slice_bounds
 from dynamics.modal.modes import Mode
 
@@ -21,6 +21,8 @@ _STEPS_BEYOND = 30
 #: steps of a turn, and of the time that a tooth is in the cut, at the least
 _LEAST_STEPS_A_TURN = 1440
 _STEPS_A_CUT = 60
+#: of a carved chip whose edge trails by less than this share of the arc
+_STEPS_AT_ONCE, _AT_ONCE = 240, 0.05
 #: steps between teeth, at the least, and steps of a turn, at the most
 _STEPS_A_PITCH = 16
 _MOST_STEPS_A_TURN = 4_000_000
@@ -35,9 +37,11 @@ _FORCE_TOLERANCE = 0.005
 #: whole
 _LIMITS = {
     "delay": SliceLimits(lag=0.05, tilt=math.radians(5.0), arc=1.0 / 16.0),
-    "dexel": SliceLimits(lag=0.01, tilt=math.radians(5.0), arc=1.0 / 64.0),
-    "voxel": SliceLimits(lag=0.01, tilt=math.radians(5.0), arc=1.0 / 64.0),
+    "dexel": SliceLimits(lag=0.01, tilt=math.radians(2.5), arc=1.0 / 64.0),
+    "voxel": SliceLimits(lag=0.01, tilt=math.radians(2.5), arc=1.0 / 64.0),
 }
+#: lag within a layer of a carved workpiece, of the arc of the cut: peaks are high by half of it
+_LAG_OF_ARC = 0.015
 #: depth of the waves of an edge in feeds per tooth below which no tooth loses a part of its edge;
 #: parts of a wave within a slice of shallow and deep waves: the mean force of 36 random serrated
 #: tools is within 0.7 % then, where 16 slices a wave leave up to 6 %
@@ -62,21 +66,41 @@ class Resolution:
         return max(1, round(self.revolutions * self.steps_per_revolution))
 
 
-def shortest_arc(case: Case, cutter: Cutter) -> float:
-    """Angle within which an edge crosses the cut, with the lag of its helix, rad."""
+def shortest_arc(case: Case, cutter: Cutter, radius: float) -> float:
+    """Angle within which an edge at a radius, m, crosses the cut, with its lag, rad."""
+    return max(_arc_at(case, cutter, radius) + _least_lag(case, cutter), 1e-3)
+
+
+def _arc_at(case: Case, cutter: Cutter, radius: float) -> float:
+    """Angle from entry to exit of an edge at a radius, m, in the cut of [cut], rad."""
     entry, leave = slice_engagement(
-        case.cut.mode, case.width_of_cut, cutter.radius, np.array([cutter.radius])
+        case.cut.mode, case.width_of_cut, cutter.radius, np.array([radius])
     )
-    lag = min(abs(math.tan(helix)) for helix in cutter.helix) * case.cut.axial_depth / cutter.radius
-    return max(float(leave[0] - entry[0]) + lag, 1e-3)
+    return float(leave[0] - entry[0])
+
+
+def _least_lag(case: Case, cutter: Cutter) -> float:
+    """Angle by which the upper end of an edge trails its tip, of the straightest flute, rad."""
+    return min(abs(math.tan(helix)) for helix in cutter.helix) * case.cut.axial_depth / cutter.radius
+
+
+def outermost_radius(case: Case, cutter: Cutter) -> float:
+    """Radius of the widest slice of the edge, m; less than that of the tool within a corner."""
+    return float(slices_between(cutter, bounds_of(case, cutter)).radius.max())
 
 
 def resolved_arc(case: Case, cutter: Cutter) -> float:
     """Angle over which the steps of a cut are counted, rad.
 
-    That of the shortest arc, less for a smaller tolerance of the forces.
+    That of the shortest arc, less for a smaller tolerance of the forces. A carved chip is read at
+    the end of each step, so that an edge that comes in at once needs more steps.
     """
-    return shortest_arc(case, cutter) * min(1.0, _refinement(case))
+    refinement = min(1.0, _refinement(case))
+    if case.simulation is None or case.simulation.chip == "delay":
+        return refinement * shortest_arc(case, cutter, cutter.radius)
+    arc = shortest_arc(case, cutter, outermost_radius(case, cutter))
+    at_once = _least_lag(case, cutter) < _AT_ONCE * arc
+    return refinement * arc * (_STEPS_A_CUT / _STEPS_AT_ONCE if at_once else 1.0)
 
 
 def _refinement(case: Case) -> float:
@@ -122,12 +146,16 @@ def bounds_of(case: Case, cutter: Cutter) -> NDArray[np.float64]:
     wall = None
     if case.cut.mode != "slot" and case.stock is None:
         wall = cutter.radius - case.width_of_cut
+    limits = _LIMITS[chip]
+    if chip != "delay":
+        # the upper end of a layer leaves the chip before its middle does
+        limits = replace(limits, lag=min(limits.lag, _LAG_OF_ARC * _arc_at(case, cutter, cutter.radius)))
     boxes = () if case.stock is None else case.stock.box
     bounds = slice_bounds(
         cutter,
         case.cut.axial_depth,
         wall,
-        replace(_LIMITS[chip], wavelength=_part_of_a_wave(case)).refined(_refinement(case)),
+        replace(limits, wavelength=_part_of_a_wave(case)).refined(_refinement(case)),
         section.slices if section else None,
         [height for box in boxes for height in (box.z[0], box.z[1])],
     )

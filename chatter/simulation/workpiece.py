@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from chatter.compile.cutter import edge_law, flank_table
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.simulation.resolution import Resolution
+from chatter.simulation.resolution import Resolution, outermost_radius
 from chatter.simulation.spindle import Spindle, ToolPath
 from cutting.chip.discrete_chip import DiscreteCut
 from cutting.dexel.stock import (
@@ -44,12 +44,17 @@ _MARGIN = 0.15
 #: coarsest spacing, m
 _DEXELS_A_WAVE = 24
 _COARSEST_DEXEL = 2.5e-5
-_DEXELS_A_CHIP = 4
+_DEXELS_A_CHIP = 8
 #: voxels within the thickest chip
 _VOXELS_A_CHIP = 12
+#: arc at which dexels get no finer, rad
+_LEAST_ARC = 0.05
 #: error of mean forces that are read from voxels, and its part that falls with the square of the
 #: cells in the thickest chip
-_VOXEL_ERROR, _VOXEL_ERROR_OF_CELLS = 0.01, 0.6
+_VOXEL_ERROR, _VOXEL_ERROR_OF_CELLS = 0.01, 1.2
+#: feeds per tooth in the radius of an edge below which chips are no longer thin against it: dexels
+#: and true trochoids part by 1 % there and by half at two; share of the edge that is let pass
+_FEEDS_A_RADIUS, _NARROW_SHARE = 3.0, 0.01
 #: coarsest resolution that is taken, as a share of the diameter
 _COARSEST_SHARE = 0.02
 #: the stock may take this much memory, bytes
@@ -75,25 +80,38 @@ class DiscreteChip:
     remaining_area: Callable[..., float]  # of the module of the workpiece
     wall_profile: Callable[..., NDArray[np.float64]]  # of the module of the workpiece
     #: spacing (m) for a case, where it gives none
-    resolution: Callable[[Case, tuple[Mode, ...]], float]
+    resolution: Callable[[Case, Cutter, tuple[Mode, ...]], float]
     #: bytes for a rectangle, a number of layers and a spacing
     memory: Callable[[Rectangle, int, float], float]
     advanced: Callable[..., DexelStock | VoxelStock]  # moves the workpiece along x
     cells_a_move: int  # lines or cells by whose multiples it moves
 
 
-def _dexel_spacing(case: Case, modes: tuple[Mode, ...]) -> float:
+def _coarsest(case: Case, modes: tuple[Mode, ...]) -> float:
     """Fine enough for the shortest wave, and for the radius."""
     highest = max((mode.frequency for mode in inside_band(modes)), default=0.0)
     speed = 0.5 * case.tool.diameter * case.cut.spindle_speed
     wave = speed / highest if highest else math.inf
-    chip = case.cut.feed_per_tooth / _DEXELS_A_CHIP
-    return min(_COARSEST_DEXEL, chip, 0.0025 * case.tool.diameter, wave / _DEXELS_A_WAVE)
+    return min(_COARSEST_DEXEL, 0.0025 * case.tool.diameter, wave / _DEXELS_A_WAVE)
 
 
-def _voxel_size(case: Case, modes: tuple[Mode, ...]) -> float:
-    """Fine enough for the chip, and for the shortest wave."""
-    return min(case.cut.feed_per_tooth / _VOXELS_A_CHIP, _dexel_spacing(case, modes))
+def _dexel_spacing(case: Case, cutter: Cutter, modes: tuple[Mode, ...]) -> float:
+    """Fine enough for the thickest chip as well, which decides where a short arc ends."""
+    return min(_coarsest(case, modes), _thickest_chip(case, cutter) / _DEXELS_A_CHIP)
+
+
+def _voxel_size(case: Case, _: Cutter, modes: tuple[Mode, ...]) -> float:
+    """Fine enough for the chip of a wide cut as well; thinner ones cost too much memory."""
+    return min(_coarsest(case, modes), case.cut.feed_per_tooth / _VOXELS_A_CHIP)
+
+
+def _thickest_chip(case: Case, cutter: Cutter) -> float:
+    """Thickest chip of a cut, m; that of a wide one where a stock may be anywhere."""
+    if case.stock is not None or case.cut.mode == "slot":
+        return case.cut.feed_per_tooth
+    wall = max(cutter.radius - case.width_of_cut, 0.0)
+    arc = math.acos(min(wall / outermost_radius(case, cutter), 1.0))
+    return case.cut.feed_per_tooth * math.sin(max(arc, _LEAST_ARC))
 
 
 def reading_notes(case: Case, cutter: Cutter, cut: DiscreteCut) -> tuple[str, ...]:
@@ -101,16 +119,34 @@ def reading_notes(case: Case, cutter: Cutter, cut: DiscreteCut) -> tuple[str, ..
 
     The error of voxels was measured on rigid cuts over the cells in their thickest chip.
     """
+    notes = _tip_notes(case, cutter, cut)
     if not isinstance(cut.stock, VoxelStock):
-        return ()
-    arc = 0.5 * math.pi
-    if case.stock is None and case.cut.mode != "slot":
-        arc = min(arc, math.acos(max(1.0 - case.width_of_cut / cutter.radius, 0.0)))
-    cells = case.cut.feed_per_tooth * math.sin(arc) / cut.stock.spacing
+        return notes
+    cells = _thickest_chip(case, cutter) / cut.stock.spacing
     error = _VOXEL_ERROR + _VOXEL_ERROR_OF_CELLS / cells**2
     return (
+        *notes,
         f"voxel: the thickest chip is {cells:.2g} cells thick; mean forces are read to about "
         f"{100.0 * error:.2g} %",
+    )
+
+
+def _tip_notes(case: Case, cutter: Cutter, cut: DiscreteCut) -> tuple[str, ...]:
+    """Note of a tip so narrow that the feed is no small part of its radius."""
+    narrow = _FEEDS_A_RADIUS * case.cut.feed_per_tooth
+    inner = 0.0
+    if case.stock is None and case.cut.mode != "slot":
+        inner = max(cutter.radius - case.width_of_cut, 0.0)
+    inner, outer = max(inner, float(cut.edges.radius.min())), float(cut.edges.radius.max())
+    if not inner < narrow < outer:
+        return ()
+    share = (narrow**2 - inner**2) / (outer**2 - inner**2)
+    if share < _NARROW_SHARE:
+        return ()
+    return (
+        f"{case.simulation.chip}: {100.0 * share:.2g} % of the engaged edge, seen along the axis, "
+        f"has a radius below {_FEEDS_A_RADIUS:g} feeds per tooth; the chip there is not thin "
+        "against the radius, and its thickness is read to some per cent only",
     )
 
 
@@ -163,7 +199,7 @@ def discrete_cut(
     InputError if the workpiece would need too much memory.
     """
     kind = DISCRETE_CHIPS[case.simulation.chip]
-    size = case.simulation.resolution or kind.resolution(case, modes)
+    size = case.simulation.resolution or kind.resolution(case, cutter, modes)
     ends = _ends(case, cutter, slices, resolution, spindle, path, size)
     boxes = _boxes(case, cutter, slices, ends, size)
     _refuse_too_coarse(case, size)

@@ -12,8 +12,8 @@ from cutting.edge_segments.coupling import arc_at, coupling_at, delay_at, part_b
 
 #: delays vary by no more than this along a part of a segment, rad; the most parts
 _DELAY_STEP, _MOST_PARTS = 2e-3, 64
-#: Gauss points over an arc
-_POINTS = 16
+#: Gauss points over an arc, and along a part
+_POINTS, _ALONG = 16, 8
 
 
 class AveragedCoefficients(NamedTuple):
@@ -21,6 +21,32 @@ class AveragedCoefficients(NamedTuple):
 
     delay: Array  # rad (g,)
     mean: Array  # N/m, or N/m^2 per axial depth (g, r, r)
+
+
+@njit(**DRIVER)
+def _dense_at_ends(cut, count, q):
+    """Gauss point of 0..1 and its weight, dense towards both ends.
+
+    There a size effect may be singular, and the arc of an edge that just touches grows as a root.
+    """
+    x, w = cut.edge_position[count, q], cut.edge_weight[count, q]
+    return x * x * (3.0 - 2.0 * x), 6.0 * w * x * (1.0 - x)
+
+
+@njit(**DRIVER)
+def _add_over_arc(cut, segment, position, weight, part, unused, mean):
+    """Add the coupling of a point of a segment, averaged over a revolution, times a weight."""
+    entry, leave, at = arc_at(cut.segments, segment, position)
+    for q in range(_POINTS):
+        x, w = _dense_at_ends(cut, _POINTS, q)
+        spindle = entry + x * (leave - entry) - at
+        of_revolution = weight * w * (leave - entry) / (2.0 * math.pi)
+        coupling_at(
+            cut.segments, segment, position, spindle, of_revolution, 0.0, cut.basis, part, unused
+        )
+        for i in range(mean.shape[0]):
+            for j in range(mean.shape[1]):
+                mean[i, j] += part[i, j]
 
 
 @njit(**DRIVER)
@@ -52,20 +78,9 @@ def averaged_coefficients(cut, depth):
                 own = used
                 delays[own] = delay
                 used += 1
-            entry, leave, at = arc_at(segments, segment, position)
-            weight = segments.length[segment] * top / parts
-            for q in range(_POINTS):
-                x, w = cut.edge_position[_POINTS, q], cut.edge_weight[_POINTS, q]
-                # dense towards both ends, where a size effect may be singular
-                w *= 6.0 * x * (1.0 - x)
-                x = x * x * (3.0 - 2.0 * x)
-                spindle = entry + x * (leave - entry) - at
-                of_revolution = w * (leave - entry) / (2.0 * math.pi)
-                coupling_at(
-                    segments, segment, position, spindle, weight * of_revolution, 0.0, cut.basis,
-                    part, unused,
-                )  # fmt: skip
-                for i in range(rank):
-                    for j in range(rank):
-                        means[own, i, j] += part[i, j]
+            for along in range(_ALONG):
+                x, w = _dense_at_ends(cut, _ALONG, along)
+                position = top * (share + x) / parts
+                weight = w * segments.length[segment] * top / parts
+                _add_over_arc(cut, segment, position, weight, part, unused, means[own])
     return AveragedCoefficients(delays[:used], means[:used])

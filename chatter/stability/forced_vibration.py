@@ -1,4 +1,4 @@
-"""Loss of contact that forced vibration causes.
+"""Where the steady cut is another than linear methods take it for: loss of contact, edge forces.
 
 The linear methods assume that every tooth cuts what the tooth before it has left. In the steady cut
 the tool vibrates at the harmonics of its rotation. With a uniform pitch every tooth meets the wave
@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from chatter.description.units import rpm
+from chatter.stability.edge_force_onset import REPORTED_ONSET, edge_force_onset
 from chatter.stability.model import MillingModel
 from chatter.stability.stability_method import StabilityMethod
 from chatter.stability.steady_flank import flank_in_motion
@@ -56,7 +57,11 @@ def notes_on_steady_cut(model: MillingModel, method: StabilityMethod) -> tuple[s
     if not method.is_linear:
         return ()
     speed, depth = model.operating_point
-    return (*_notes_on_contact(model, speed, depth), *_notes_on_flank(model, speed, depth))
+    return (
+        *_notes_on_contact(model, speed, depth),
+        *_notes_on_edge_forces(model, depth),
+        *_notes_on_flank(model, speed, depth),
+    )
 
 
 def _notes_on_contact(model: MillingModel, speed: float, depth: float) -> tuple[str, ...]:
@@ -71,6 +76,18 @@ def _notes_on_contact(model: MillingModel, speed: float, depth: float) -> tuple[
         f"{found.chip_change * 1e6:.3g} um: teeth lose contact over {found.loss_of_contact:.0%} of "
         "their arc, which linear methods leave out; the limit in the time domain may differ "
         "(--method time-domain)",
+    )
+
+
+def _notes_on_edge_forces(model: MillingModel, depth: float) -> tuple[str, ...]:
+    share = edge_force_onset(model, depth)
+    if share < REPORTED_ONSET:
+        return ()
+    return (
+        f"edge forces set in or end where the chip of {model.case.cut.feed_per_tooth * 1e6:.3g} um "
+        "a tooth is zero, and vibration shifts these moments: a stiffness of "
+        f"{share:.0%} of that of the chip, which linear methods leave out; the limit in the time "
+        "domain may be lower by up to as much (--method time-domain)",
     )
 
 

@@ -81,7 +81,7 @@ class SteadyMotion(NamedTuple):
 def steady_motion(model: MillingModel, speed: float, depth: float) -> SteadyMotion | None:
     """Steady motion of a cut at a constant spindle speed, rad/s, and a depth, m; None in air."""
     cut = model.cut(depth)
-    points = _edge_points(cut.segments, depth)
+    points = edge_points(cut.segments, depth)
     if not points.angle.size:
         return None
     period = cut.period_angle
@@ -148,7 +148,7 @@ def _with_ploughing(
     return motion._replace(harmonics=harmonics, steepest=steepest, pressed=pressed)
 
 
-def _edge_points(segments: EdgeSegments, depth: float) -> EdgePoints:
+def edge_points(segments: EdgeSegments, depth: float) -> EdgePoints:
     columns: list[tuple] = []
     count = segments.bottom.size
     for segment in range(count):

@@ -108,8 +108,10 @@ def _cut_oldest(stock, layer, tooth, family):
 
 
 @register_jitable(**UNCOUNTED)
-def _cut_what_lies_behind(stock, layer, tooth, family, along, across):
+def _cut_what_lies_behind(stock, layer, tooth, family, along, across, radius):
     """Carry out the waiting cuts farther than the delay from an edge; length removed, m."""
+    # an edge near the axis never gets farther from its cuts than its diameter
+    delay = min(stock.delay, radius)
     removed = 0.0
     while stock.queue[layer, tooth, family, 1] > 0:
         at = stock.queue[layer, tooth, family, 0]
@@ -118,7 +120,7 @@ def _cut_what_lies_behind(stock, layer, tooth, family, along, across):
         )
         a = along - stock.pending[layer, tooth, family, at, 1]
         b = across - coordinate
-        if a * a + b * b < stock.delay * stock.delay:
+        if a * a + b * b < delay * delay:
             break
         removed += _cut_oldest(stock, layer, tooth, family)
     return removed
@@ -128,8 +130,10 @@ def _cut_what_lies_behind(stock, layer, tooth, family, along, across):
 def _carve_family(stock, layer, tooth, family, ca0, ct0, ea0, et0, ca1, ct1, ea1, et1):
     """Cut the lines of a family; a is the coordinate along the lines, t across them."""
     removed = 0.0
+    ra0, rt0, ra1, rt1 = ea0 - ca0, et0 - ct0, ea1 - ca1, et1 - ct1
+    radius = math.sqrt(ra1 * ra1 + rt1 * rt1)
     if stock.queue[layer, tooth, family, 1] > 0:
-        removed += _cut_what_lies_behind(stock, layer, tooth, family, ea1, et1)
+        removed += _cut_what_lies_behind(stock, layer, tooth, family, ea1, et1, radius)
     first, spacing = stock.first[family], stock.spacing
     k0 = math.floor((et0 - first) / spacing)
     k1 = math.floor((et1 - first) / spacing)
@@ -139,8 +143,6 @@ def _carve_family(stock, layer, tooth, family, ca0, ct0, ea0, et0, ca1, ct1, ea1
     highest = min(max(k0, k1), stock.lines[family] - 1)
     number = highest - lowest + 1
     ring = stock.pending.shape[3]
-    ra0, rt0, ra1, rt1 = ea0 - ca0, et0 - ct0, ea1 - ca1, et1 - ct1
-    radius = math.sqrt(ra1 * ra1 + rt1 * rt1)
     for i in range(number):
         line = lowest + i if k1 > k0 else highest - i
         coordinate = first + line * spacing

@@ -13,6 +13,8 @@ from cutting.tool.cutter import Cutter, corner_height
 _REVOLUTION = 2.0 * math.pi
 #: an edge trails by this much within a segment, rad, or a cone widens by this share of its radius
 _SEGMENT_LAG = 0.03
+#: parts of the first step of an arc at which segments border as well
+_HALVED = 0.5 ** np.arange(1, 4)
 
 
 class EdgeLine(NamedTuple):
@@ -30,12 +32,14 @@ def _radii_of_even_arcs(
     """Radii at which the arc has grown by even steps, from none to half a revolution.
 
     Where the edge first meets the stock its arc grows steeply, and again where it is no more cut
-    all around.
+    all around; the steps are halved towards these.
     """
     reach = cutter.radius - radial_depth
     if mode == "slot" or abs(reach) >= cutter.radius:
         return np.empty(0)
     arcs = np.linspace(0.0, math.pi, math.ceil(math.pi / arc_step) + 1)
+    graded = arcs[1] * _HALVED
+    arcs = np.unique(np.concatenate([arcs, graded, math.pi - graded]))
     with np.errstate(divide="ignore"):
         radius = reach / np.cos(arcs)
     return radius[radius > 0.0]

@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 
+from benchmarks.contradictions.trochoid_cut import TrochoidCut
 from chatter import Case
 from chatter.simulation.simulate import simulate
 from tests.validation.reference.rigid_forces import RigidCut, drawn_case
@@ -87,3 +88,21 @@ def test_mean_does_not_depend_on_the_record(tmp_path):
         assert one == pytest.approx(other, rel=1e-3)
     written = json.loads((long.save(tmp_path), tmp_path / "summary.json")[1].read_text())
     assert written["mean_force_N"] == long.summary()["mean_force_N"]
+
+
+def test_tip_of_a_ball_of_dexels_cuts_the_chip_of_one_tooth():
+    # cuts near the axis once waited for the edge to be farther away than it ever got, so that
+    # the tip met stock all around; the edge force there then acted twice as long
+    sections = {
+        "tool": {"kind": "ball", "teeth": 1, "diameter": 4.6e-3, "helix": 0.0},
+        "material": {"Ktc": 600e6, "Krc": 200e6, "Kte": 20e3, "Kre": 20e3},
+        "cut": {
+            "mode": "slot", "spindle_speed": 314.0, "feed_per_tooth": 29e-6,
+            "axial_depth": 0.29e-3, "radial_depth": 4.6e-3,
+        },
+    }  # fmt: skip
+    carved = {"chip": "dexel", "revolutions": 4, "slices": 12, "resolution": 4e-6}
+    case = Case.from_dict({**sections, "simulation": carved})
+    expected = TrochoidCut(case).mean()[:3]
+    found = simulate(case).mean_force
+    assert np.abs(found - expected).max() < 0.01 * np.linalg.norm(expected)

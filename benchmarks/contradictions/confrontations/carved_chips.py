@@ -10,7 +10,13 @@ import re
 
 import numpy as np
 
-from benchmarks.contradictions.confrontation import Comparison, Confrontation, Document, relative
+from benchmarks.contradictions.confrontation import (
+    Comparison,
+    Confrontation,
+    Document,
+    PremiseFailsError,
+    relative,
+)
 from benchmarks.contradictions.drawing import cut, material, tool
 from benchmarks.contradictions.drawing.quantities import chosen, happens, log_uniform, text
 from benchmarks.contradictions.trochoid_cut import TrochoidCut
@@ -29,6 +35,7 @@ _TURNS = 4
 _ANGLES = 720
 #: deeper cuts have more layers than are quick
 _DEEPEST_SHARE = 0.6
+_NARROW = "not thin against the radius"
 _STATED = re.compile(r"mean forces are read to about ([\d.]+) %")
 
 
@@ -64,6 +71,9 @@ def compare_carved(document: Document) -> list[Comparison]:
     """Mean forces and torque, and peaks of dexels, against the quadrature."""
     case = Case.from_dict(document)
     result = simulate(case)
+    narrow = [note for note in result.notes if _NARROW in note]
+    if narrow:
+        raise PremiseFailsError(narrow[0])
     rigid = TrochoidCut(case)
     mean = rigid.mean()
     scale = [float(np.linalg.norm(mean[:3]))] * 3 + [float(mean[3])]

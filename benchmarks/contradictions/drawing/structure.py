@@ -23,6 +23,8 @@ _AXES = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
 _LIMIT_SHARE = (0.01, 0.3)
 #: vibrations within a revolution, of the first mode: more are slow, fewer are beyond any lobe
 _WAVES_A_REVOLUTION = (0.3, 40.0)
+#: force along a mode over the force on an edge, times chip along a mode over its motion, about
+_MEAN_PROJECTION = 0.25
 
 
 def modes(rng: np.random.Generator, sections: Document) -> list[Document]:
@@ -35,7 +37,7 @@ def modes(rng: np.random.Generator, sections: Document) -> list[Document]:
     found = []
     for index in range(int(rng.integers(1, 5))):
         damping = log_uniform(rng, 0.006, 0.08)
-        stiffness = limit * tangential_coefficient(sections["material"]) / (2.0 * damping)
+        stiffness = limit * cutting_stiffness(sections) / (2.0 * damping)
         direction = _AXES[index % 2] if happens(rng, 0.6) else _any_direction(rng)
         found.append(
             {
@@ -49,6 +51,16 @@ def modes(rng: np.random.Generator, sections: Document) -> list[Document]:
     return found
 
 
+def cutting_stiffness(sections: Document) -> float:
+    """Rough change of the cutting force over chip and depth, N/m^2, averaged over a revolution."""
+    tool, cut = sections["tool"], sections["cut"]
+    share = 1.0
+    if cut["mode"] != "slot":
+        within = 1.0 - 1e-3 * number_of(cut["radial_depth"]) / radius_of(tool)
+        share = math.acos(max(within, -1.0)) / math.pi
+    return tangential_coefficient(sections["material"]) * tool["teeth"] * _MEAN_PROJECTION * share
+
+
 def _any_direction(rng: np.random.Generator) -> list[float]:
     vector = rng.normal(size=3)
     vector /= np.linalg.norm(vector)
@@ -60,7 +72,7 @@ def at_depth_of_limits(rng: np.random.Generator, sections: Document) -> Document
     stiffness = [number_of(mode["stiffness"]) for mode in sections["structure"]["mode"]]
     damping = [mode["damping"] for mode in sections["structure"]["mode"]]
     softest = min(2.0 * k * d for k, d in zip(stiffness, damping, strict=True))
-    depth = softest / tangential_coefficient(sections["material"]) * log_uniform(rng, 0.3, 3.0)
+    depth = softest / cutting_stiffness(sections) * log_uniform(rng, 0.3, 3.0)
     depth = min(depth, 3.0 * radius_of(sections["tool"]))
     cut = {**sections["cut"], "axial_depth": text(1e3 * depth, "mm")}
     return {**sections, "cut": reaching(sections["tool"], cut)}
