@@ -81,7 +81,9 @@ def _arc_at(case: Case, cutter: Cutter, radius: float) -> float:
 
 def _least_lag(case: Case, cutter: Cutter) -> float:
     """Angle by which the upper end of an edge trails its tip, of the straightest flute, rad."""
-    return min(abs(math.tan(helix)) for helix in cutter.helix) * case.cut.axial_depth / cutter.radius
+    return (
+        min(abs(math.tan(helix)) for helix in cutter.helix) * case.cut.axial_depth / cutter.radius
+    )
 
 
 def outermost_radius(case: Case, cutter: Cutter) -> float:
@@ -149,7 +151,9 @@ def bounds_of(case: Case, cutter: Cutter) -> NDArray[np.float64]:
     limits = _LIMITS[chip]
     if chip != "delay":
         # the upper end of a layer leaves the chip before its middle does
-        limits = replace(limits, lag=min(limits.lag, _LAG_OF_ARC * _arc_at(case, cutter, cutter.radius)))
+        limits = replace(
+            limits, lag=min(limits.lag, _LAG_OF_ARC * _arc_at(case, cutter, cutter.radius))
+        )
     boxes = () if case.stock is None else case.stock.box
     bounds = slice_bounds(
         cutter,

@@ -149,6 +149,7 @@ def _with_ploughing(
 
 
 def edge_points(segments: EdgeSegments, depth: float) -> EdgePoints:
+    """Points of all edges down to a depth, m."""
     columns: list[tuple] = []
     count = segments.bottom.size
     for segment in range(count):
