@@ -29,7 +29,7 @@ from chatter.simulation.simulate import run_setup
 #: of the peak displacement, and of the peak normal displacement for the location error
 _DISPLACEMENT, _LOCATION = 0.01, 0.03
 #: samples of a tooth period for the series, and heights of the wall
-_SAMPLES, _HEIGHTS = 1500, 200
+_SAMPLES, _HEIGHTS = 6000, 200
 #: a transient has died out at this share
 _REST = 1e-4
 #: of the feed per tooth: beyond it teeth may leave the cut before the motion is steady
