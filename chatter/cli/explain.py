@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -87,6 +87,7 @@ def _print_explanation(result: Explanation) -> None:
             f"out of tolerance: {one['path']} declared {one['declared']:.5g}, refitted "
             f"{one['refitted']:.5g} ({one['standard_deviations']:+.1f} standard deviations)"
         )
+    _print_refitted(summary)
     error = summary["error"]
     rows = [[key, f"{value:.4g}"] for key, value in error.items() if isinstance(value, float)]
     print_table("error, rms over signal", ["", ""], rows)
@@ -98,6 +99,26 @@ def _print_explanation(result: Explanation) -> None:
         typer.echo(f"residual dependence: {dependence['description']}")
     typer.echo("residual of the refitted case:")
     print_diagnostics(signature["refitted"])
+
+
+def _print_refitted(summary: dict[str, Any]) -> None:
+    """Print what became of the declared values."""
+    moved = summary.get("refitted", [])
+    rows = [
+        [
+            one["name"],
+            f"{one['declared']:.5g}",
+            f"{one['refitted']:.5g}",
+            f"{100.0 * one['change']:+.2g} %",
+            f"{one['tolerances']:+.2f}",
+        ]
+        for one in moved
+    ]
+    if rows:
+        columns = ["declared value", "declared [SI]", "refitted [SI]", "change", "tolerances"]
+        print_table("refitted", columns, rows)
+    for remark in summary.get("remarks", ()):
+        typer.echo(remark)
 
 
 def print_diagnostics(signature: dict) -> None:

@@ -90,8 +90,9 @@ def _without(run: Run, found: Sequence[SignalFinding]) -> Run:
                 signals.pop(name, None)
     marked = [one for one in own if one.severity == SAMPLES and one.samples is not None]
     for one in marked:
-        if one.channel == "stable":
-            signals["stable"] = np.where(one.samples, np.nan, signals["stable"])
+        if one.channel in ("stable", "spindle_power"):
+            # the test counts by what else was noted of it
+            signals[one.channel] = np.where(one.samples, np.nan, signals[one.channel])
         elif one.channel in signals:
             signals[one.channel] = bridged(signals[one.channel], one.samples)
             usable = (1.0 if usable is None else usable) * ~one.samples

@@ -12,6 +12,8 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.explain.checking import Checked, checked
 from chatter.explain.criteria import OUT_OF_TOLERANCE
+from chatter.explain.cutting_tests.report_on_tests import entries_on_tests
+from chatter.explain.cutting_tests.search_of_tests import search_of_tests
 from chatter.explain.data_checks.finding import SignalFinding
 from chatter.explain.errors import (
     DECLARED,
@@ -23,6 +25,7 @@ from chatter.explain.errors import (
     overall,
 )
 from chatter.explain.kinds.kind_list import KINDS
+from chatter.explain.kinds.stability import Stability
 from chatter.explain.lobes_before_after import Added, LobesBeforeAfter, lobes_before_after
 from chatter.explain.measurement import Measurement
 from chatter.explain.measurement_file import read_measurement
@@ -124,6 +127,7 @@ class Explanation:
                 channel: finite_or_none(rms)
                 for channel, rms in self.found.normalised_residual.items()
             },
+            **entries_on_tests(self.found, self.case),
         }
 
     @cached_property
@@ -390,7 +394,8 @@ def explain(
         return Contradiction(usable)
     kind = KINDS[measurement.kind]
     prepared, predictions = kind.prepared(usable.measurement), Predictions(kind)
-    found = search(prepared, predictions, progress)
+    searched = search_of_tests if kind.name == Stability.name else search
+    found = searched(prepared, predictions, progress)
     return Explanation(prepared, found, verdict_of(found), predictions, usable.findings)
 
 

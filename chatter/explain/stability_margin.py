@@ -1,56 +1,190 @@
-"""How far cutting tests are from the stability limit of a case."""
+"""How far cutting tests are from the stability limit of a case, and how they chatter."""
 
-from collections.abc import Iterator
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from threading import Lock
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.compile.structure import depends_on_speed
+from chatter.compile.cutter import force_law, helix_angles, process_damping_of
+from chatter.compile.structure import depends_on_speed, structure_of
 from chatter.description.case import Case
 from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.methods.collocation.multipliers import multipliers
 from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.steady_flank import about_steady_motion, follows_steady_motion
 
+Array = NDArray[np.float64]
+
 #: share of the depth over which the growth rate is evaluated
 _STEP = 0.04
 #: margins beyond this count as this
 _FAR = 3.0
+#: columns of tests that override the case -> path
+_COLUMNS = {
+    "radial_depth": "cut.radial_depth",
+    "feed_per_tooth": "cut.feed_per_tooth",
+    "cut_time": "cut.cut_time",
+}
 
 
-def stability_margins(
-    case: Case, speeds: NDArray[np.float64], depths: NDArray[np.float64]
-) -> NDArray[np.float64]:
+#: models by tool, engagement and directions of motion, of which a search needs many
+_MODELS: dict[Any, MillingModel] = {}
+_MOST_MODELS = 64
+_LOCK = Lock()
+
+
+class CuttingTests(NamedTuple):
+    """Conditions of n cutting tests."""
+
+    speed: Array  # rad/s
+    depth: Array  # axial, m
+    #: path of the case -> value of every test, SI
+    varied: Mapping[str, Array]
+
+    def at(self, chosen: NDArray[np.bool_]) -> CuttingTests:
+        """Some of the tests."""
+        varied = {path: values[chosen] for path, values in self.varied.items()}
+        return CuttingTests(self.speed[chosen], self.depth[chosen], varied)
+
+
+class ResponseOfTests(NamedTuple):
+    """What a case predicts of n cutting tests."""
+
+    margin: Array  # share of its depth by which a cut is away from the limit; above 0: stable
+    angle: Array  # of the dominant multiplier, rad, 0 to pi
+    period: Array  # after which the cut repeats itself, s
+
+    def chatter_frequency(self, near: Array) -> Array:
+        """Frequency (Hz) of the dominant motion that is nearest to one given for each test.
+
+        A motion of a periodic cut holds its frequency and all that differ by multiples of that of
+        the cut (Insperger et al. 2003, J. Sound Vib. 262:333).
+        """
+        own, turn = self.angle / (2.0 * math.pi * self.period), 1.0 / self.period
+        above = own + turn * np.round((near - own) / turn)
+        below = -own + turn * np.round((near + own) / turn)
+        return np.where(np.abs(above - near) < np.abs(below - near), above, below)
+
+
+def tests_of(case: Case, signals: Mapping[str, Array]) -> CuttingTests:
+    """Conditions of the tests of a table; those of the case where a cell is empty."""
+    varied = {}
+    for column, path in _COLUMNS.items():
+        if column in signals and np.isfinite(signals[column]).any():
+            declared = case.get(path)
+            values = signals[column]
+            varied[path] = np.where(np.isfinite(values), values, declared or np.nanmin(values))
+    return CuttingTests(signals["spindle_speed"], signals["axial_depth"], varied)
+
+
+def stability_margins(case: Case, speeds: Array, depths: Array) -> Array:
     """Share of its depth by which a cut is away from the limit; above 0: stable.
 
-    From the logarithm of the spectral radius at the depth and a little above, as if it were linear
-    in the logarithm of the depth.
+    Speeds (n,), rad/s, and depths (n,), m, are point by point.
     """
-    rate, slope = np.empty(speeds.size), np.empty(speeds.size)
-    for chosen, model in _models(case, speeds, depths):
-        cut = element_cut(model, (1.0 + _STEP) * float(depths[chosen].max()))
-        at = multipliers(cut, speeds[chosen], depths[chosen])
-        above = multipliers(cut, speeds[chosen], depths[chosen] * (1.0 + _STEP))
-        rate[chosen] = np.log(np.maximum(np.abs(at), 1e-12))
-        slope[chosen] = (np.log(np.maximum(np.abs(above), 1e-12)) - rate[chosen]) / np.log1p(_STEP)
+    return response_of_tests(case, CuttingTests(speeds, depths, {})).margin
+
+
+def response_of_tests(case: Case, tests: CuttingTests) -> ResponseOfTests:
+    """Margins and multipliers of cutting tests.
+
+    A margin follows from the logarithm of the spectral radius at the depth and a little above, as
+    if it were linear in the logarithm of the depth.
+    """
+    count = tests.speed.size
+    rate, slope, angle, period = (np.empty(count) for _ in range(4))
+    for chosen, model in _models(case, tests):
+        speeds, depths = tests.speed[chosen], tests.depth[chosen]
+        cut = element_cut(model, (1.0 + _STEP) * float(depths.max()))
+        both = multipliers(
+            cut, np.tile(speeds, 2), np.concatenate([depths, depths * (1.0 + _STEP)])
+        )
+        at, above = np.split(np.log(np.maximum(np.abs(both), 1e-12)), 2)
+        rate[chosen], slope[chosen] = at, (above - at) / np.log1p(_STEP)
+        angle[chosen] = np.abs(np.angle(both[: speeds.size]))
+        period[chosen] = cut.arrays.period_angle / speeds
     # where rate does not rise with depth, its size tells no more than the side
     rising = np.maximum(slope, 0.3 * np.abs(rate) + 1e-3)
-    return np.clip(-rate / rising, -_FAR, _FAR)
+    return ResponseOfTests(np.clip(-rate / rising, -_FAR, _FAR), angle, period)
 
 
-def _models(
-    case: Case, speeds: NDArray[np.float64], depths: NDArray[np.float64]
-) -> Iterator[tuple[NDArray[np.bool_], MillingModel]]:
+def _models(case: Case, tests: CuttingTests) -> Iterator[tuple[NDArray[np.bool_], MillingModel]]:
     """Tests that share a model, and the model."""
-    model = milling_model(case)
-    if not depends_on_speed(case) and not follows_steady_motion(model):
-        yield np.ones(speeds.size, dtype=bool), model
+    for chosen, own in cases_of(case, tests, [path for path in tests.varied if _acts(case, path)]):
+        yield from _models_at(own, tests, chosen)
+
+
+def cases_of(
+    case: Case, tests: CuttingTests, paths: Sequence[str]
+) -> Iterator[tuple[NDArray[np.bool_], Case]]:
+    """Tests that are alike in some paths of the case, and the case with their values."""
+    if not paths:
+        yield np.ones(tests.speed.size, dtype=bool), case
         return
-    for speed in np.unique(speeds):
+    columns = np.column_stack([tests.varied[path] for path in paths])
+    keys = [path.partition(".")[2] for path in paths]
+    for row in np.unique(columns, axis=0):
+        # numbers of [cut] that the table of tests was checked for
+        cut = case.cut.model_copy(update=dict(zip(keys, row.tolist(), strict=True)))
+        yield np.all(columns == row, axis=1), case.model_copy(update={"cut": cut})
+
+
+def _acts(case: Case, path: str) -> bool:
+    """Whether the limit depends on what a column of the tests changes."""
+    if path == "cut.cut_time":
+        return case.wear is not None
+    if path == "cut.feed_per_tooth":
+        # of a linear law the slope does not know the feed
+        return case.material.law != "linear" or _ploughs(case)
+    return True
+
+
+def _ploughs(case: Case) -> bool:
+    return case.process_damping is not None and case.process_damping.coefficient is None
+
+
+def _model_of(case: Case) -> MillingModel:
+    """Model of a case; checks and averages are those of a case with the same tool and modes."""
+    directions = tuple(mode.direction for mode in case.structure.mode)
+    if not directions or _ploughs(case):
+        return milling_model(case)
+    key = (case.tool, case.cut.mode, case.cut.radial_depth, directions)
+    with _LOCK:
+        like = _MODELS.get(key)
+    if like is None:
+        like = milling_model(case)
+        with _LOCK:
+            while len(_MODELS) >= _MOST_MODELS:
+                del _MODELS[next(iter(_MODELS))]
+            _MODELS[key] = like
+    return replace(
+        like,
+        case=case,
+        structure=structure_of(case),
+        laws=tuple(force_law(case, helix) for helix in helix_angles(case)),
+        flank=process_damping_of(case),
+    )
+
+
+def _models_at(
+    case: Case, tests: CuttingTests, chosen: NDArray[np.bool_]
+) -> Iterator[tuple[NDArray[np.bool_], MillingModel]]:
+    model = _model_of(case)
+    if not depends_on_speed(case) and not follows_steady_motion(model):
+        yield chosen, model
+        return
+    for speed in np.unique(tests.speed[chosen]):
         own = model.at_speed(float(speed)) if depends_on_speed(case) else model
-        at_speed = speeds == speed
+        at_speed = chosen & (tests.speed == speed)
         if not follows_steady_motion(model):
             yield at_speed, own
             continue
-        for depth in np.unique(depths[at_speed]):
-            yield at_speed & (depths == depth), about_steady_motion(own, float(speed), float(depth))
+        for depth in np.unique(tests.depth[at_speed]):
+            here = at_speed & (tests.depth == depth)
+            yield here, about_steady_motion(own, float(speed), float(depth))

@@ -32,7 +32,7 @@ class MissingMode(Effect):
     name = "missing_mode"
     label = "missing mode"
     help = "the structure has a mode more"
-    kinds = ("milling", "frf")
+    kinds = ("milling", "frf", "stability")
 
     def applies(self, measurement: Measurement) -> bool:
         """Of a structure of modes."""

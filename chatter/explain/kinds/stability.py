@@ -1,29 +1,57 @@
-"""Cutting tests judged stable or chatter: how likely each verdict is by the model."""
+"""Cutting tests judged stable or chatter: how likely is what each of them shows."""
 
+from collections import OrderedDict
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from threading import Lock
 
 import numpy as np
 import scipy.special
+from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.units import rpm
+from chatter.explain.cutting_tests.spindle_power import cutting_power, readings
+from chatter.explain.cutting_tests.wear import has_power
+from chatter.explain.data_checks.power import wrong_powers
 from chatter.explain.data_checks.verdicts import wrong_verdicts
 from chatter.explain.fitting import Parameter, with_priors
-from chatter.explain.kinds.kind import Array, Cuts, Deviation, Kind, Noise, Signals, Trial
+from chatter.explain.kinds.kind import (
+    Array,
+    Cuts,
+    Deviation,
+    Kind,
+    Noise,
+    Signals,
+    Trial,
+    mean_over_channels,
+)
 from chatter.explain.kinds.milling import cutting_paths
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.misclassified_tests import misclassified, over_depth, over_speed
-from chatter.explain.stability_margin import stability_margins
+from chatter.explain.stability_margin import (
+    CuttingTests,
+    ResponseOfTests,
+    response_of_tests,
+    tests_of,
+)
 
 #: scatter of a critical depth from test to test, as a share, and tests judged wrongly for no reason
-_SCATTER, _WRONG = 0.06, 0.02
-#: runs that the tests are dealt out to, and verdicts that are needed
-_PARTS, _LEAST_VERDICTS = 6, 12
+SCATTER, _WRONG = 0.06, 0.02
+#: scatter of chatter frequencies and of spindle powers before it is estimated, as shares
+FREQUENCY_SCATTER, POWER_SCATTER = 0.01, 0.03
+#: normalised residual of a frequency or a power that none exceeds
+_LARGEST_RESIDUAL = 4.0
+#: tolerance of a declared process damping
+_DAMPING, _DAMPING_TOLERANCE = "process_damping.coefficient", 0.7
+#: runs that the tests are dealt out to, the least of them, and verdicts that are needed
+_PARTS, _LEAST_PARTS, _LEAST_VERDICTS = 6, 3, 12
 #: least probability of an outcome in the scatter of a verdict
 _LEAST_LIKELY = 1e-6
+#: responses that are kept
+_MOST_KEPT = 200
 #: points of a discriminating test, a side, and noise of its verdict: outcomes are told apart where
 #: their probabilities differ by most of one
 _POINTS, _NOISE_OF_VERDICT = 12, 0.25
@@ -39,18 +67,22 @@ class Stability(Kind):
     estimates_noise = False
     has_autocorrelation = False
     diagnostics = (misclassified, over_speed, over_depth)
-    checks = ((), (wrong_verdicts,))
+    checks = ((), (wrong_verdicts, wrong_powers))
     #: deviance residuals of a model that is right are small
     at_noise = 1.0
     #: twice the logarithm of the likelihood, whatever the number of points
     least_gain = (8.0, 0.0)
+    correlated_samples = 1.0
+
+    def __init__(self) -> None:
+        self._responses = _Responses()
 
     def channels(self, run: Run) -> tuple[str, ...]:
-        """The verdicts."""
-        return ("stable",)
+        """The verdicts, the chatter frequencies or the spindle powers: one of them a run."""
+        return (str(run.record),)
 
     def prepared(self, measurement: Measurement) -> Measurement:
-        """Return the measurement whose points are dealt out to several runs.
+        """Return the measurement whose tests are dealt out to several runs of each channel.
 
         Raises InputError if there are fewer than a dozen verdicts.
         """
@@ -60,53 +92,100 @@ class Stability(Kind):
             raise InputError(
                 f"{run.name}: {judged.sum()} verdicts; {_LEAST_VERDICTS} at least are needed"
             )
-        columns = {name: values[judged] for name, values in run.signals.items()}
-        return measurement.with_runs(
-            [
-                replace(
-                    run,
-                    name=f"points {part + 1}",
-                    signals={name: values[part::_PARTS] for name, values in columns.items()},
-                )
-                for part in range(_PARTS)
-            ]
-        )
+        signals, idle = dict(run.signals), measurement.idle_power
+        if _has(run, "spindle_power"):
+            tests = tests_of(measurement.case, signals)
+            found = readings(measurement.case, tests, signals["spindle_power"], idle)
+            signals["spindle_power"], idle = found.power, found.idle
+        parts = _parts(run, signals, "stable", judged)
+        if _has(run, "chatter_frequency"):
+            heard = judged & (signals["stable"] < 0.5) & (signals["chatter_frequency"] > 0.0)
+            parts += _parts(run, signals, "chatter_frequency", heard)
+        if _has(run, "spindle_power"):
+            parts += _parts(run, signals, "spindle_power", signals["spindle_power"] > 0.0)
+        return replace(measurement.with_runs(parts), idle_power=idle)
 
     def noise_floor(self, residuals: Sequence[ChannelResidual]) -> float:
         """Error that a model has that is right: verdicts scatter about their probabilities."""
-        scatter = np.mean([np.mean(one.predicted * (1.0 - one.predicted)) for one in residuals])
-        level = np.mean([np.mean(one.measured**2) for one in residuals])
-        return float(np.sqrt(scatter / level))
+        shares: dict[str, list[float]] = {}
+        for one in residuals:
+            variance = float(np.mean(one.deviation**2))
+            if one.channel == "stable":
+                variance = float(np.mean(one.predicted * (1.0 - one.predicted)))
+            shares.setdefault(one.channel, []).append(
+                variance / max(float(np.mean(one.measured**2)), 1e-9)
+            )
+        return mean_over_channels(shares)
 
     def predict(self, case: Case, run: Run) -> Signals:
-        """Probability of a stable verdict at every point."""
-        margins = stability_margins(case, run.signals["spindle_speed"], run.signals["axial_depth"])
-        likely = scipy.special.ndtr(margins / _SCATTER)
-        return {"stable": _WRONG + (1.0 - 2.0 * _WRONG) * likely}
+        """Probability of a stable verdict, chatter frequency or power of every test."""
+        tests = tests_of(case, run.signals)
+        if run.record == "spindle_power":
+            return {"spindle_power": cutting_power(case, tests)}
+        response = self._responses.of(case, tests, run.signals)
+        if run.record == "chatter_frequency":
+            near = run.signals["chatter_frequency"]
+            return {"chatter_frequency": response.chatter_frequency(near)}
+        return {"stable": likely_stable(response.margin, SCATTER), "margin": response.margin}
+
+    def first_noise(self, run: Run) -> Mapping[str, float]:
+        """Scatter of limits as a share; of frequencies in Hz; of powers as a share."""
+        (channel,) = self.channels(run)
+        if channel == "chatter_frequency":
+            whole = (run.whole or run).signals[channel]
+            return {channel: FREQUENCY_SCATTER * float(np.median(whole))}
+        return {channel: SCATTER if channel == "stable" else POWER_SCATTER}
 
     def residuals(self, run: Run, predicted: Signals, noise: Mapping[str, float]) -> Array:
-        """Deviance residuals: their squares are twice the lost logarithm of likelihood."""
-        stable = predicted["stable"]
-        verdict = run.signals["stable"] > 0.5
-        likely = np.where(verdict, stable, 1.0 - stable)
-        return np.where(verdict, 1.0, -1.0) * np.sqrt(-2.0 * np.log(likely))
+        """Deviance residuals: their squares are twice the lost logarithm of likelihood.
+
+        Frequencies and powers that nothing explains are limited: one reading decides nothing.
+        """
+        (channel,) = self.channels(run)
+        if channel == "stable":
+            stable = likely_stable(predicted["margin"], noise[channel])
+            verdict = run.signals["stable"] > 0.5
+            likely = np.where(verdict, stable, 1.0 - stable)
+            return np.where(verdict, 1.0, -1.0) * np.sqrt(-2.0 * np.log(likely))
+        left = predicted[channel] - run.signals[channel]
+        if channel == "spindle_power":
+            left = left / run.signals[channel]
+        scaled = left / noise[channel]
+        return scaled / np.sqrt(1.0 + (scaled / _LARGEST_RESIDUAL) ** 2)
 
     def deviation(
         self, run: Run, channel: str, measured: Array, predicted: Array, level: float | None
     ) -> Deviation:
-        """Scatter of every verdict by its own probability."""
+        """Scatter of every verdict by its own probability, of every reading by its level."""
+        if channel != "stable":
+            level = level or self.first_noise(run)[channel]
+            samples = np.full(measured.size, level)
+            if channel == "spindle_power":
+                samples = level * np.abs(measured)
+            return Deviation(samples, float(np.sqrt(np.mean(samples**2))))
         likely = np.clip(predicted, _LEAST_LIKELY, 1.0 - _LEAST_LIKELY)
         variance = likely * (1.0 - likely)
         return Deviation(np.sqrt(variance), float(np.sqrt(np.mean(variance))))
 
     def nuisance_parameters(self, measurement: Measurement) -> list[Parameter]:
-        """Cutting coefficients and modal parameters."""
-        return with_priors(measurement, cutting_paths(measurement.case, ("Ktc", "Krc")))
+        """Cutting coefficients, modal parameters and process damping.
+
+        Process damping is known to a factor of two at the best, where nothing else is said
+        (Ahmadi and Altintas 2014, CIRP J. Manuf. Sci. Technol. 7:235).
+        """
+        coefficients = ("Ktc", "Krc", "Kte") if has_power(measurement) else ("Ktc", "Krc")
+        declared = measurement.case.deviations()
+        tolerances = dict(measurement.tolerances)
+        if _DAMPING not in declared and "coefficient" not in tolerances:
+            tolerances.setdefault(_DAMPING, _DAMPING_TOLERANCE)
+        with_damping = replace(measurement, tolerances=tolerances)
+        return with_priors(with_damping, cutting_paths(measurement.case, coefficients))
 
     def cuts(self, measurement: Measurement) -> Cuts:
         """The tests, with their verdicts."""
+        judged = [run for run in measurement.runs if run.record in (None, "stable")]
         speed, depth, stable = (
-            np.concatenate([run.signals[name] for run in measurement.runs])
+            np.concatenate([run.signals[name] for run in judged])
             for name in ("spindle_speed", "axial_depth", "stable")
         )
         return Cuts(speed, depth, stable > 0.5)
@@ -119,5 +198,77 @@ class Stability(Kind):
             for depth in np.geomspace(depths.min(), depths.max(), _POINTS):
                 words = f"a cut at {rpm(speed):.0f} rpm and {depth * 1e3:.3g} mm"
                 point = {"spindle_speed": np.array([speed]), "axial_depth": np.array([depth])}
-                trials.append(Trial(words, Run("trial", {}, point), {"stable": _NOISE_OF_VERDICT}))
+                run = Run("trial", {}, point, record="stable")
+                trials.append(Trial(words, run, {"stable": _NOISE_OF_VERDICT}))
         return trials
+
+
+def likely_stable(margin: Array, scatter: float) -> Array:
+    """Probability of a stable verdict at a margin, by the scatter of limits from test to test."""
+    return _WRONG + (1.0 - 2.0 * _WRONG) * scipy.special.ndtr(margin / scatter)
+
+
+def _has(run: Run, column: str) -> bool:
+    return column in run.signals and bool(np.isfinite(run.signals[column]).any())
+
+
+def _parts(run: Run, signals: Signals, channel: str, chosen: NDArray[np.bool_]) -> list[Run]:
+    """The tests that have a channel, dealt out to runs that are predicted together."""
+    own = {name: values[chosen] for name, values in signals.items()}
+    parts = _PARTS
+    if channel == "stable":
+        order = np.arange(chosen.sum())
+        if any(not np.any(own["stable"][part::parts] > 0.5) for part in range(parts)):
+            # an error over the signal needs a stable test in every part
+            order = np.argsort(-own["stable"], kind="stable")
+            parts = int(np.clip(np.sum(own["stable"] > 0.5), _LEAST_PARTS, _PARTS))
+        own = {name: values[order] for name, values in own.items()}
+    words = channel if channel != "stable" else "points"
+    whole = replace(run, name=words.replace("_", " "), signals=own, record=channel)
+    return [
+        replace(
+            whole,
+            name=f"{whole.name} {part + 1}",
+            signals={name: values[part::parts] for name, values in own.items()},
+            whole=whole,
+            part=slice(part, None, parts),
+        )
+        for part in range(parts)
+        if part < int(chosen.sum())
+    ]
+
+
+class _Responses:
+    """Responses of tests, kept by what of a case they depend on: edge forces are not of it."""
+
+    def __init__(self) -> None:
+        self._kept: OrderedDict[tuple[Case, int], tuple[Signals, ResponseOfTests]] = OrderedDict()
+        self._lock = Lock()
+
+    def of(self, case: Case, tests: CuttingTests, signals: Signals) -> ResponseOfTests:
+        """Response of tests, whose signals tell them from others."""
+        key = (_without_edge_forces(case), id(signals))
+        with self._lock:
+            if key in self._kept:
+                self._kept.move_to_end(key)
+                return self._kept[key][1]
+        found = response_of_tests(case, tests)
+        with self._lock:
+            self._kept[key] = signals, found
+            while len(self._kept) > _MOST_KEPT:
+                self._kept.popitem(last=False)
+        return found
+
+
+def _without_edge_forces(case: Case) -> Case:
+    if case.material.law != "linear" or case.tool.runout is not None:
+        return case
+    if case.process_damping is not None and case.process_damping.coefficient is None:
+        return case  # of a flank that ploughs
+    given = {f"material.{key}": 0.0 for key in ("Kte", "Kre", "Kae")}
+    if case.wear is not None:
+        keys = ("edge_tangential", "edge_radial")
+        given |= {f"wear.{key}": 0.0 for key in keys}
+        if case.wear.chipping is not None:
+            given |= {f"wear.chipping.{key}": 0.0 for key in keys}
+    return case.patch(given)

@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.units import rpm
+from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.finding import Curve, Curves, Finding, Points
 from chatter.explain.residuals.over_runs import rank_correlation
 from chatter.explain.residuals.residual import Residual
-from chatter.explain.stability_margin import stability_margins
+from chatter.explain.stability_margin import response_of_tests, tests_of
 
 Array = NDArray[np.float64]
 
@@ -24,12 +25,14 @@ class _Tests:
     """All tests of a measurement, with what a case predicts of them."""
 
     def __init__(self, residual: Residual) -> None:
+        parts = residual.of("stable")
+
         def column(name: str) -> Array:
-            return np.concatenate([part.run.signals[name] for part in residual.parts])
+            return np.concatenate([part.run.signals[name] for part in parts])
 
         self.speed, self.depth = column("spindle_speed"), column("axial_depth")
         self.stable = column("stable") > 0.5
-        self.likely = np.concatenate([part.predicted for part in residual.parts])
+        self.likely = np.concatenate([part.predicted for part in parts])
         self.misclassified = self.stable != (self.likely > 0.5)
         #: above zero where a test is more stable than the case
         self.surprise = self.stable - self.likely
@@ -43,7 +46,7 @@ def misclassified(residual: Residual) -> Finding:
     count = int(tests.misclassified.sum())
     beyond = count > expected + _BEYOND * max(spread, 0.7)
     too_careful = int(np.sum(tests.misclassified & tests.stable))
-    margins = stability_margins(residual.case, tests.speed, tests.depth)
+    margins = np.concatenate([margins_of(part) for part in residual.of("stable")])
     far = float(np.median(np.abs(margins[tests.misclassified]))) if count else 0.0
     description = (
         f"{count} of {tests.stable.size} tests are misclassified ({expected:.1f} by scatter "
@@ -63,6 +66,11 @@ def misclassified(residual: Residual) -> Finding:
         "median_distance_from_limit": far,
     }
     return Finding("misclassified tests", description, beyond, numbers, _map_of(tests))
+
+
+def margins_of(part: ChannelResidual) -> Array:
+    """Margins of the tests of a run by its case."""
+    return response_of_tests(part.case, tests_of(part.case, part.run.signals)).margin
 
 
 def _map_of(tests: _Tests) -> Points:

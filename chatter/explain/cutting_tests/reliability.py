@@ -1,0 +1,72 @@
+"""Whether tests that a model was not fitted to are predicted as well as their scatter allows."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from chatter.explain.cutting_tests.fit_to_tests import fit_tests
+from chatter.explain.fitting import Fit
+from chatter.explain.kinds.stability import likely_stable
+from chatter.explain.selection.problem import Problem
+
+#: parts of the tests, each predicted from the others
+_FOLDS = 3
+#: steps of a fit to the others, which begins at that to all
+_STEPS = 3
+#: standard deviations by which the lost likelihood of holdout tests may exceed that of scatter
+_MOST = 2.5
+#: scatter of limits that repeated tests may have; beyond it something is missing
+_LARGEST_SCATTER = 0.1
+
+
+class Reliability(NamedTuple):
+    """Holdout tests against their prediction."""
+
+    tests: int
+    right: int  # verdicts that are as predicted
+    lost: float  # twice the lost logarithm of likelihood of the verdicts
+    expected: float  # of it, by the predicted probabilities
+    deviation: float  # standard deviation of it
+
+    @property
+    def is_as_scatter(self) -> bool:
+        """Whether the verdicts are predicted as well as the scatter of limits allows."""
+        return self.lost <= self.expected + _MOST * self.deviation
+
+    def summary(self) -> dict[str, float | int | bool]:
+        """Entry of explanation.json."""
+        return {
+            "tests": self.tests,
+            "predicted_rightly": self.right,
+            "lost_log_likelihood": 0.5 * self.lost,
+            "expected_by_scatter": 0.5 * self.expected,
+            "standard_deviation": 0.5 * self.deviation,
+            "as_scatter_allows": self.is_as_scatter,
+        }
+
+
+def reliability_of(problem: Problem, fit: Fit) -> Reliability:
+    """Predict every test by a model that was fitted to the others."""
+    runs = problem.measurement.runs
+    right, lost, expected, variance, count = 0, 0.0, 0.0, 0.0, 0
+    for fold in range(_FOLDS):
+        held = [run for run in runs if run.part.start % _FOLDS == fold]
+        others = [run for run in runs if run.part.start % _FOLDS != fold]
+        values = fit_tests(problem, others, fit.by_name, _STEPS).by_name
+        case = problem.case(values)
+        for run in held:
+            if run.record != "stable":
+                continue
+            scatter = min(problem.noise[run.name]["stable"], _LARGEST_SCATTER)
+            margin = problem.predictions.of(case, run)["margin"]
+            stable, verdict = likely_stable(margin, scatter), run.signals["stable"] > 0.5
+            gain, other = np.log(stable), np.log1p(-stable)
+            lost -= 2.0 * float(np.sum(np.where(verdict, gain, other)))
+            expected -= 2.0 * float(np.sum(stable * gain + (1.0 - stable) * other))
+            variance += 4.0 * float(np.sum(stable * (1.0 - stable) * (gain - other) ** 2))
+            right += int(np.sum((margin > 0.0) == verdict))
+            count += verdict.size
+    return Reliability(count, right, lost, expected, math.sqrt(variance))

@@ -1,0 +1,210 @@
+"""Which effects cutting tests ask for: all tests fitted, models compared by their evidence."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from chatter.explain.cutting_tests.evidence import penalised_cost, with_scatter
+from chatter.explain.cutting_tests.fit_to_tests import fit_tests
+from chatter.explain.cutting_tests.priors import prior_cost
+from chatter.explain.cutting_tests.reliability import Reliability, reliability_of
+from chatter.explain.cutting_tests.wear import forms_of_wear
+from chatter.explain.effects.effect import Effect, Values
+from chatter.explain.effects.effect_list import candidates
+from chatter.explain.effects.structure import MissingMode
+from chatter.explain.fitting import Fit
+from chatter.explain.kinds.stability import likely_stable
+from chatter.explain.measurement import Measurement, Run
+from chatter.explain.prediction import Predictions
+from chatter.explain.selection.candidates import Candidate, Progress, Split, Stage, linearised
+from chatter.explain.selection.problem import Problem
+from chatter.explain.selection.search import Search
+
+#: fall of the penalised cost from which an effect counts as found: odds of 20 to 1
+_LEAST_GAIN = 6.0
+#: fall of the cost by a linearised step below which an effect is not fitted in full
+_LEAST_HOPED = 2.0
+#: steps of a fit that begins near its end
+_FEW_STEPS = 3
+#: effects added at the most, and candidates fitted in full
+_MOST_EFFECTS, _FITTED = 2, 3
+#: growth of process damping that wear is begun with
+_DAMPING_GROWTHS = (0.0, 1.0, 3.0)
+#: starts drawn from the tolerances where the declared one leads to a misfit, and those followed
+_DRAWN, _FOLLOWED = 160, 3
+
+
+@dataclass(frozen=True, eq=False)
+class SearchOfTests(Search):
+    """Search over cutting tests, with how reliably it predicts tests that it has not seen."""
+
+    reliability: Reliability
+    gain: float  # fall of the penalised cost by the effects accepted
+    before: Problem  # without effects, with the scatter that was estimated beside it
+
+
+class _Found(NamedTuple):
+    """A model fitted to all tests."""
+
+    problem: Problem
+    fit: Fit
+
+    @property
+    def cost(self) -> float:
+        """Penalised cost."""
+        return penalised_cost(self.problem, self.fit)
+
+    def beside(self, other: Problem) -> float:
+        """Penalised cost with the scatter of another problem, so that models compare."""
+        problem = replace(self.problem, noise=other.noise)
+        residuals = problem.residuals(self.fit.by_name, problem.measurement.runs)
+        return penalised_cost(problem, replace(self.fit, residuals=residuals))
+
+
+def search_of_tests(
+    measurement: Measurement, predictions: Predictions, progress: Progress
+) -> Search:
+    """Refit the declared values, then add effects as long as the evidence of all tests gains."""
+    kind, runs = predictions.kind, measurement.runs
+    problem = Problem(measurement, predictions, {run.name: kind.first_noise(run) for run in runs})
+    progress("refitting the declared values", 0.0)
+    base = _refitted(problem)
+    stages: list[Stage] = []
+    found = base
+    for number in range(_MOST_EFFECTS):
+        stage, best = _stage(found, progress, number)
+        stages.append(stage)
+        if best is None:
+            break
+        found = best
+    progress("predicting holdout tests", 0.85)
+    accepted = stages[:-1] if len(stages) > len(found.problem.effects) else stages
+    split = _split(runs)
+    of_fitted = fit_tests(found.problem, split.fitted, found.fit.by_name, _FEW_STEPS)
+    reliability = reliability_of(found.problem, found.fit)
+    gain = base.beside(found.problem) - found.cost
+    return SearchOfTests(
+        split,
+        stages[0],
+        tuple(accepted),
+        found.problem,
+        of_fitted,
+        found.fit,
+        base.fit,
+        reliability,
+        gain,
+        base.problem,
+    )
+
+
+def _refitted(problem: Problem) -> _Found:
+    """Declared values fitted to all tests, from other starts too where they do not fit."""
+    runs = problem.measurement.runs
+    fits = [fit_tests(problem, runs, {})]
+    problem = with_scatter(problem, fits[0].by_name)
+    fits = [fit_tests(problem, runs, fits[0].by_name)]
+    return _Found(problem, fits[0])
+
+
+class MissingModeOfTests(MissingMode):
+    """A mode more, looked for at fewer frequencies: limits say less of it than forces do."""
+
+    def starts(self, measurement: Measurement) -> list[Values]:
+        """Every other start."""
+        return super().starts(measurement)[::2]
+
+
+def _is_at_noise(found: _Found) -> bool:
+    """Whether no effect can gain enough: tests fit, and no declared value had to move for it."""
+    problem, fit = found
+    case = problem.case(fit.by_name)
+    expected, count = 0.0, 0
+    for run in problem.measurement.runs:
+        predicted = problem.predictions.of(case, run)
+        if run.record != "stable":
+            expected += predicted[str(run.record)].size
+            continue
+        likely = likely_stable(predicted["margin"], problem.noise[run.name]["stable"])
+        count += likely.size
+        expected -= 2.0 * float(
+            np.sum(likely * np.log(likely) + (1.0 - likely) * np.log1p(-likely))
+        )
+    # an effect has a number at the least, which the evidence charges for
+    least = _LEAST_GAIN + math.log(max(count, 2))
+    return fit.cost - expected + prior_cost(problem, fit) < least
+
+
+def _stage(found: _Found, progress: Progress, number: int) -> tuple[Stage, _Found | None]:
+    """Try every effect beside those found; the best where the tests ask for it."""
+    problem, runs = found.problem, found.problem.measurement.runs
+    named = {effect.name for effect in problem.effects}
+    steps = []
+    if _is_at_noise(found):
+        return Stage(found.fit, found.cost, ()), None
+    for effect in _candidates(problem, found.fit):
+        if effect.name not in named:
+            progress(f"looking at {effect.name}", 0.1 + 0.35 * number)
+            steps.append((_start(problem, effect, found.fit), effect))
+    steps.sort(key=lambda entry: entry[0][0])
+    tried = []
+    for (cost, start), effect in steps[:_FITTED]:
+        if found.fit.cost - cost < _LEAST_HOPED:
+            continue
+        progress(f"fitting {effect.name}", 0.25 + 0.35 * number)
+        trial = problem.with_effect(effect)
+        tried.append(_Found(trial, fit_tests(trial, runs, start)))
+    tried.sort(key=lambda one: one.cost)
+    shown = tuple(Candidate(one.problem.effects[-1], one.fit, one.cost) for one in tried)
+    stage = Stage(found.fit, found.cost, shown)
+    if not tried or found.cost - tried[0].cost < _LEAST_GAIN:
+        return stage, None
+    best = tried[0]
+    again = with_scatter(best.problem, best.fit.by_name)
+    return stage, _Found(again, fit_tests(again, runs, best.fit.by_name))
+
+
+def _candidates(problem: Problem, now: Fit) -> list[Effect]:
+    """Effects that may be missing; of wear the simplest form that the power asks for."""
+    measurement = problem.measurement
+    others = [one for one in candidates(measurement) if one.name not in ("wear", "missing_mode")]
+    wear: list[Effect] = list(forms_of_wear(measurement))
+    powers = [run for run in measurement.runs if run.record == "spindle_power"]
+    if wear and powers:
+        tried = []
+        for form in wear:
+            trial = problem.with_effect(form)
+            start = linearised(problem, form, fit_tests(problem, powers, now.by_name), powers)
+            fit = fit_tests(trial, powers, start.values)
+            tried.append(penalised_cost(trial, fit))
+        wear = [wear[int(np.argmin(tried))]]
+    return [*wear, *others, MissingModeOfTests()]
+
+
+def _start(problem: Problem, effect: Effect, now: Fit) -> tuple[float, Mapping[str, float]]:
+    """Cost by a linearised step from the best start of an effect, and the values there."""
+    runs = problem.measurement.runs
+    powers = [run for run in runs if run.record == "spindle_power"]
+    if effect.name != "wear" or not powers:
+        step = linearised(problem, effect, now, runs)
+        return step.cost, step.values
+    # the power shows when and how forces grow, at no cost; the limits, what becomes of damping
+    step = linearised(problem, effect, fit_tests(problem, powers, now.by_name), powers)
+    acting = ("wear.", "material.")
+    own = {key: value for key, value in step.values.items() if key.startswith(acting)}
+    grown = "wear.process_damping_growth"
+    trials = [now.by_name | own]
+    if grown in own:
+        trials = [now.by_name | own | {grown: growth} for growth in _DAMPING_GROWTHS]
+    trial = problem.with_effect(effect)
+    return min(((trial.cost(one, runs), one) for one in trials), key=lambda entry: entry[0])
+
+
+def _split(runs: Sequence[Run]) -> Split:
+    """Every third test held out, of verdicts and readings alike."""
+    held = tuple(run for run in runs if run.part is not None and run.part.start % 3 == 2)
+    return Split(tuple(run for run in runs if run not in held), held)
