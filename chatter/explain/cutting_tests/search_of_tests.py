@@ -11,7 +11,7 @@ import numpy as np
 
 from chatter.explain.cutting_tests.evidence import penalised_cost, with_scatter
 from chatter.explain.cutting_tests.fit_to_tests import fit_tests
-from chatter.explain.cutting_tests.priors import prior_cost
+from chatter.explain.cutting_tests.priors import declared, prior_cost
 from chatter.explain.cutting_tests.reliability import Reliability, reliability_of
 from chatter.explain.cutting_tests.wear import forms_of_wear
 from chatter.explain.effects.effect import Effect, Values
@@ -35,8 +35,11 @@ _FEW_STEPS = 3
 _MOST_EFFECTS, _FITTED = 2, 3
 #: growth of process damping that wear is begun with
 _DAMPING_GROWTHS = (0.0, 1.0, 3.0)
-#: starts drawn from the tolerances where the declared one leads to a misfit, and those followed
-_DRAWN, _FOLLOWED = 160, 3
+#: scatters of limits that fits begin with
+_ANNEALED = (0.25, 0.12)
+#: twice the lost logarithm of likelihood a test from which the declared values misfit; starts
+#: drawn from the tolerances then, and those followed
+_MISFIT, _DRAWN, _FOLLOWED = 0.5, 60, 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,12 +106,52 @@ def search_of_tests(
 
 
 def _refitted(problem: Problem) -> _Found:
-    """Declared values fitted to all tests, from other starts too where they do not fit."""
-    runs = problem.measurement.runs
-    fits = [fit_tests(problem, runs, {})]
-    problem = with_scatter(problem, fits[0].by_name)
-    fits = [fit_tests(problem, runs, fits[0].by_name)]
-    return _Found(problem, fits[0])
+    """Declared values fitted to all tests, from several starts.
+
+    Limits are taken as scattered widely at first: verdicts far from the limit still pull, and a
+    fit does not end beside the first lobe that it meets.
+    """
+    runs, wide = problem.measurement.runs, problem
+    starts = _starts(problem)
+    fits = []
+    for start in starts:
+        values: Mapping[str, float] = start
+        for scatter in _ANNEALED:
+            wide = _scattered(problem, scatter)
+            values = fit_tests(wide, runs, values, _FEW_STEPS).by_name
+        fits.append(fit_tests(problem, runs, values))
+    best = min(fits, key=lambda fit: fit.cost + prior_cost(problem, fit))
+    problem = with_scatter(problem, best.by_name)
+    return _Found(problem, fit_tests(problem, runs, best.by_name))
+
+
+def _scattered(problem: Problem, scatter: float) -> Problem:
+    """Same problem with a scatter of limits."""
+    noise = {
+        name: {"stable": scatter} if "stable" in own else own for name, own in problem.noise.items()
+    }
+    return replace(problem, noise=noise)
+
+
+def _starts(problem: Problem) -> list[dict[str, float]]:
+    """Declared values; and where they misfit, the best of values drawn from their tolerances."""
+    runs, parameters = problem.measurement.runs, declared(problem)
+    wide = _scattered(problem, _ANNEALED[0])
+    random = np.random.default_rng(1)
+    pulls = random.standard_t(4.0, (_DRAWN, len(parameters)))
+    drawn = [
+        {
+            one.name: float(max(one.start + pull * one.size, 0.2 * one.start))
+            for one, pull in zip(parameters, row, strict=True)
+        }
+        for row in pulls
+    ]
+    verdicts = [run for run in runs if run.record == "stable"]
+    count = sum(run.signals["stable"].size for run in verdicts)
+    if wide.cost({}, verdicts) < _MISFIT * count:
+        return [{}]
+    ranked = sorted(drawn, key=lambda one: wide.cost(one, verdicts))
+    return [{}, *ranked[:_FOLLOWED]]
 
 
 class MissingModeOfTests(MissingMode):
@@ -196,7 +239,7 @@ def _start(problem: Problem, effect: Effect, now: Fit) -> tuple[float, Mapping[s
     step = linearised(problem, effect, fit_tests(problem, powers, now.by_name), powers)
     acting = ("wear.", "material.")
     own = {key: value for key, value in step.values.items() if key.startswith(acting)}
-    grown = "wear.process_damping_growth"
+    grown = "wear.process_damping_increase"
     trials = [now.by_name | own]
     if grown in own:
         trials = [now.by_name | own | {grown: growth} for growth in _DAMPING_GROWTHS]

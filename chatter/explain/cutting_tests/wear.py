@@ -52,11 +52,11 @@ class GradualWear(Effect):
         """Growth from the first to the last test, as shares of what the tool begins with."""
         bounds = {"lower": _LEAST, "upper": _MOST}
         case = measurement.case
-        found = [free("cutting_growth", 0.0, _CUTTING, "", **bounds)]
+        found = [free("cutting_increase", 0.0, _CUTTING, "", **bounds)]
         if has_power(measurement) and case.material.Kte:
-            found.append(free("edge_growth", 0.0, _EDGE, "", **bounds))
+            found.append(free("edge_increase", 0.0, _EDGE, "", **bounds))
         if case.process_damping is not None and case.process_damping.coefficient:
-            found.append(free("process_damping_growth", 0.0, _DAMPING, "", **bounds))
+            found.append(free("process_damping_increase", 0.0, _DAMPING, "", **bounds))
         return found
 
     def patch(self, case: Case, values: Values) -> Patch:
@@ -70,8 +70,8 @@ class GradualWear(Effect):
     def starts(self, measurement: Measurement) -> list[Values]:  # noqa: ARG002
         """From none to much, together."""
         return [
-            {"cutting_growth": 0.3, "edge_growth": 0.5, "process_damping_growth": 1.0},
-            {"cutting_growth": 0.05, "edge_growth": 0.05, "process_damping_growth": 0.0},
+            {"cutting_increase": 0.3, "edge_increase": 0.5, "process_damping_increase": 1.0},
+            {"cutting_increase": 0.05, "edge_increase": 0.05, "process_damping_increase": 0.0},
         ]
 
     def reported(self, values: Values) -> Reported:
@@ -125,12 +125,12 @@ class ChippedEdge(GradualWear):
 
 def growths(case: Case, values: Values, time: float) -> dict[str, float]:
     """Keys of [wear] for growth that is reached after a time, s."""
-    edge = float(values.get("edge_growth", 0.0)) / time
+    edge = float(values.get("edge_increase", 0.0)) / time
     found = {
-        "cutting": float(values.get("cutting_growth", 0.0)) / time,
+        "cutting": float(values.get("cutting_increase", 0.0)) / time,
         "edge_tangential": edge * float(case.material.Kte or 0.0),
         "edge_radial": edge * float(case.material.Kre or 0.0),
-        "process_damping": float(values.get("process_damping_growth", 0.0)) / time,
+        "process_damping": float(values.get("process_damping_increase", 0.0)) / time,
     }
     return {key: value for key, value in found.items() if value}
 

@@ -94,9 +94,9 @@ def test_a_corrupt_reading_is_out_of_line_and_a_chipped_edge_is_not():
 
 
 @pytest.mark.parametrize("form", [GradualWear, SaturatingWear, ChippedEdge])
-def test_every_form_of_wear_reaches_its_growth_at_the_last_test(form):
+def test_every_form_of_wear_reaches_its_increase_at_the_last_test(form):
     case: Case = loads(CASE)
-    values = {"cutting_growth": 0.3, "edge_growth": 0.5, "process_damping_growth": 2.0}
+    values = {"cutting_increase": 0.3, "edge_increase": 0.5, "process_damping_increase": 2.0}
     shapes = {"saturation_time": 200.0, "chipping_time": 570.0}
     worn = case.patch(form(TIMES).patch(case, values | shapes))
     assert worn.cut.cut_time == TIMES[-1]
