@@ -5,23 +5,11 @@ from __future__ import annotations
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-
 from chatter.description.case import Case
 from chatter.explain.cutting_tests.limits import limits_over_time
-from chatter.explain.cutting_tests.refitted import (
-    Refitted,
-    are_off_together,
-    in_words,
-    refitted_values,
-)
+from chatter.explain.cutting_tests.refitted import Refitted, in_words, refitted_values
 from chatter.explain.cutting_tests.search_of_tests import SearchOfTests
 from chatter.explain.selection.search import Search
-
-#: rms of the normalised residual of powers up to which they are at their scatter
-_AT_SCATTER = 1.5
-#: scatter of chatter frequencies, as a share, that readings of a spectrum have at the most
-_FREQUENCY_SCATTER = 0.03
 
 
 class ReportOnTests:
@@ -36,39 +24,10 @@ class ReportOnTests:
         return refitted_values(self.found.problem, self.found.final)
 
     @cached_property
-    def are_at_scatter(self) -> bool:
-        """Whether holdout verdicts, frequencies and powers are predicted as they scatter."""
-        found = self.found
-        power = found.normalised_residual.get("spindle_power", 0.0)
-        # single frequencies may be those of another motion: what counts is how most scatter
-        scatter = max(
-            (
-                found.problem.noise[run.name]["chatter_frequency"]
-                / float(np.median(run.signals["chatter_frequency"]))
-                for run in found.measurement.runs
-                if run.record == "chatter_frequency"
-            ),
-            default=0.0,
-        )
-        readings = power <= _AT_SCATTER and scatter <= _FREQUENCY_SCATTER
-        return found.reliability.is_as_scatter and readings
-
-    @cached_property
-    def leaves_tolerances(self) -> bool:
-        """Whether declared values had to move further than their tolerances make likely."""
-        off = are_off_together(self.found.problem, self.found.final)
-        return off or any(one.is_doubtful for one in self.refitted)
-
-    @property
-    def is_explained(self) -> bool:
-        """Whether nothing is left to explain: tests at their scatter, values in tolerance."""
-        return self.are_at_scatter and not self.leaves_tolerances
-
-    @cached_property
     def words(self) -> list[str]:
         """Sentences on what was refitted, what is left, and which tool the updated case is."""
         found, sentences = self.found, [in_words(self.refitted)]
-        if self.leaves_tolerances:
+        if found.out_of_tolerance:
             sentences.append(
                 "The tests move declared values further than their tolerances make likely, and "
                 "no known effect explains it: measure these values again."

@@ -12,6 +12,7 @@ import numpy as np
 from chatter.explain.cutting_tests.evidence import penalised_cost, with_scatter
 from chatter.explain.cutting_tests.fit_to_tests import fit_tests
 from chatter.explain.cutting_tests.priors import declared, prior_cost
+from chatter.explain.cutting_tests.refitted import are_off_together, refitted_values
 from chatter.explain.cutting_tests.reliability import Reliability, reliability_of
 from chatter.explain.cutting_tests.wear import forms_of_wear
 from chatter.explain.effects.effect import Effect, Values
@@ -21,10 +22,15 @@ from chatter.explain.fitting import Fit
 from chatter.explain.kinds.stability import likely_stable
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.prediction import Predictions
-from chatter.explain.selection.candidates import Candidate, Progress, Split, Stage, linearised
+from chatter.explain.selection.candidates import Candidate, Progress, Stage, linearised
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.search import Search
+from chatter.explain.selection.split import Split
 
+#: rms of the normalised residual of powers up to which they are at their scatter
+_AT_SCATTER = 1.5
+#: scatter of chatter frequencies, as a share, that readings of a spectrum have at the most
+_FREQUENCY_SCATTER = 0.03
 #: fall of the penalised cost from which an effect counts as found: odds of 20 to 1
 _LEAST_GAIN = 6.0
 #: fall of the cost by a linearised step below which an effect is not fitted in full
@@ -49,6 +55,36 @@ class SearchOfTests(Search):
     reliability: Reliability
     gain: float  # fall of the penalised cost by the effects accepted
     before: Problem  # without effects, with the scatter that was estimated beside it
+
+    @property
+    def is_at_noise(self) -> bool:
+        """Whether holdout verdicts, frequencies and powers are predicted as they scatter."""
+        power = self.normalised_residual.get("spindle_power", 0.0)
+        # single frequencies may be those of another motion: what counts is how most scatter
+        scatter = max(
+            (
+                self.problem.noise[run.name]["chatter_frequency"]
+                / float(np.median(run.signals["chatter_frequency"]))
+                for run in self.measurement.runs
+                if run.record == "chatter_frequency"
+            ),
+            default=0.0,
+        )
+        readings = power <= _AT_SCATTER and scatter <= _FREQUENCY_SCATTER
+        return self.reliability.is_as_scatter and readings
+
+    @property
+    def is_certain(self) -> bool:
+        """Every effect accepted has odds of 20 to 1."""
+        return True
+
+    @property
+    def out_of_tolerance(self) -> Mapping[str, float]:
+        """Declared values that moved further than is likely, alone or together, in tolerances."""
+        values = refitted_values(self.problem, self.final)
+        off = are_off_together(self.problem, self.final)
+        chosen = [one for one in values if one.is_doubtful]
+        return {one.name: one.pull for one in (chosen or (values[:1] if off else []))}
 
 
 class _Found(NamedTuple):
@@ -95,6 +131,7 @@ def search_of_tests(
         split,
         stages[0],
         tuple(accepted),
+        (),
         found.problem,
         of_fitted,
         found.fit,
@@ -188,7 +225,7 @@ def _stage(found: _Found, progress: Progress, number: int) -> tuple[Stage, _Foun
     named = {effect.name for effect in problem.effects}
     steps = []
     if _is_at_noise(found):
-        return Stage(found.fit, found.cost, ()), None
+        return Stage(found.fit, found.fit.cost, -0.5 * found.cost, ()), None
     for effect in _candidates(problem, found.fit):
         if effect.name not in named:
             progress(f"looking at {effect.name}", 0.1 + 0.35 * number)
@@ -202,8 +239,10 @@ def _stage(found: _Found, progress: Progress, number: int) -> tuple[Stage, _Foun
         trial = problem.with_effect(effect)
         tried.append(_Found(trial, fit_tests(trial, runs, start)))
     tried.sort(key=lambda one: one.cost)
-    shown = tuple(Candidate(one.problem.effects[-1], one.fit, one.cost) for one in tried)
-    stage = Stage(found.fit, found.cost, shown)
+    shown = tuple(
+        Candidate(one.problem.effects[-1], one.fit, one.fit.cost, -0.5 * one.cost) for one in tried
+    )
+    stage = Stage(found.fit, found.fit.cost, -0.5 * found.cost, shown)
     if not tried or found.cost - tried[0].cost < _LEAST_GAIN:
         return stage, None
     best = tried[0]

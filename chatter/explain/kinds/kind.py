@@ -12,14 +12,7 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.explain.criteria import (
-    AT_NOISE,
-    CORRELATED_SAMPLES,
-    FIRST_NOISE,
-    LEAST_GAIN,
-    LEAST_GAIN_SHARE,
-    NUMERICS,
-)
+from chatter.explain.criteria import AT_NOISE, FIRST_NOISE, LEAST_GAIN, LEAST_GAIN_SHARE, NUMERICS
 from chatter.explain.data_checks.finding import Check
 from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement, Run
@@ -91,8 +84,6 @@ class Kind(ABC):
         Whether residuals of a channel are a series in which neighbours depend on each other.
     at_noise : float
         Rms of the normalised residual up to which a channel is at its noise.
-    correlated_samples : float
-        Samples that count as one in the probability of a candidate.
     least_gain : (float, float)
         Fall of the sum of squares of holdout runs that is significant, and what is added to it
         for each of their samples.
@@ -114,7 +105,6 @@ class Kind(ABC):
     estimates_noise: ClassVar[bool] = True
     has_autocorrelation: ClassVar[bool] = True
     at_noise: ClassVar[float] = AT_NOISE
-    correlated_samples: ClassVar[float] = CORRELATED_SAMPLES
     least_gain: ClassVar[tuple[float, float]] = (LEAST_GAIN, LEAST_GAIN_SHARE)
 
     @abstractmethod

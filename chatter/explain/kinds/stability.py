@@ -72,7 +72,6 @@ class Stability(Kind):
     at_noise = 1.0
     #: twice the logarithm of the likelihood, whatever the number of points
     least_gain = (8.0, 0.0)
-    correlated_samples = 1.0
 
     def __init__(self) -> None:
         self._responses = _Responses()
