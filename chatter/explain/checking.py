@@ -47,10 +47,14 @@ def checked(measurement: Measurement) -> Checked:
     kind.require(measurement)
     found: list[SignalFinding] = []
     usable = measurement
-    for group in kind.checks:
+    for number, group in enumerate(kind.checks):
         new = [finding for check in group for finding in check(usable)]
         found += new
         remaining = excluding(usable, new)
+        if number == 0 and remaining.runs and not any(one.severity == FATAL for one in new):
+            # what is told of records is believed of samples that are sound alone
+            remaining, new = kind.as_recorded(remaining)
+            found += new
         if any(one.severity == FATAL for one in new):
             break
         if not remaining.runs:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
+from chatter.explain.records.description import RecordDescription
 
 #: runs of which some can be held out, and parts that fewer runs are cut into
 _ENOUGH_RUNS, _PARTS = 3, 6
@@ -32,6 +33,10 @@ class Run:
     #: of samples by channel, 1 at the most
     weights: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
     record: Any = None  # what the kind derives from the signals, in a type of its own
+    #: channels beside the usual ones that are predicted -> what they hold
+    components: Mapping[str, Any] = field(default_factory=dict)
+    #: channels that are described in measurement.toml and have a direction
+    described: tuple[str, ...] = ()
     whole: Run | None = None  # run of which this one is a part
     part: slice | None = None  # samples of the whole run that the part holds
 
@@ -80,6 +85,7 @@ class Measurement:
     #: relative, of declared values by path
     tolerances: Mapping[str, float] = field(default_factory=dict)
     idle_power: float | None = None  # that the spindle takes in the air, W
+    record: RecordDescription | None = None  # how the runs were recorded, where it is told
 
     def in_parts(self, most: int = _PARTS) -> Measurement:
         """Return the measurement with its runs cut in time where there are too few to judge by.

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +14,12 @@ from chatter.description.formatting import formatted
 from chatter.description.units import QuantityError, parse
 from chatter.explain.kinds.kind_list import KINDS
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.records.description import RecordDescription, record_of
 from chatter.io.signals import read_signals
 
 #: keys of [[run]] that are no override of the case
 _OWN_KEYS = ("file", "condition", "direction", "title")
-_KEYS = ("title", "kind", "case", "points", "run", "tolerance", "idle_power")
+_KEYS = ("title", "kind", "case", "points", "run", "tolerance", "idle_power", "record", "channels")
 #: sections of a case that a short key of a run may mean
 _SECTIONS = ("cut", "tool", "material", "axis")
 
@@ -56,9 +58,24 @@ def read_measurement(folder: str | Path, case: str | Path | Case | None = None) 
         raise InputError(f"{path}: there is no [[run]]")
     _refuse_names_twice(path, runs)
     tolerances = _tolerances(path, content.get("tolerance", {}))
+    record = record_of(path, content)
+    if record is not None:
+        runs = tuple(_described(path, run, record) for run in runs)
     title = str(content.get("title", path.parent.name))
     idle = _idle_power(path, content)
-    return Measurement(name, title, path.parent, declared, runs, tolerances, idle)
+    return Measurement(name, title, path.parent, declared, runs, tolerances, idle, record)
+
+
+def _described(path: Path, run: Run, record: RecordDescription) -> Run:
+    """Run that names its described channels; InputError where its file lacks one."""
+    missing = [name for name in record.channels if name not in run.signals]
+    if missing:
+        raise InputError(
+            f"{path}: channels.{missing[0]}: {run.name} has no such column; there are "
+            f"{', '.join(run.signals)}"
+        )
+    vectors = tuple(name for name, one in record.channels.items() if one.is_vector)
+    return replace(run, described=vectors)
 
 
 def _content(path: Path) -> dict[str, Any]:

@@ -33,7 +33,7 @@ class Columns(NamedTuple):
 
     def of(self, run: Run) -> list[str]:
         """Those that a run has."""
-        return [name for name in self.recorded if name in run.signals]
+        return [name for name in (*self.recorded, *run.described) if name in run.signals]
 
 
 def sample_checks(columns: Columns) -> tuple[Check, ...]:

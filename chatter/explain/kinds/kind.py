@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.explain.criteria import AT_NOISE, FIRST_NOISE, LEAST_GAIN, LEAST_GAIN_SHARE, NUMERICS
-from chatter.explain.data_checks.finding import Check
+from chatter.explain.data_checks.finding import Check, SignalFinding
 from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.residuals.channel_residual import ChannelResidual, white_level
@@ -118,6 +118,14 @@ class Kind(ABC):
     @abstractmethod
     def nuisance_parameters(self, measurement: Measurement) -> list[Parameter]:
         """Declared values that are refitted within their tolerances, by their paths."""
+
+    def as_recorded(self, measurement: Measurement) -> tuple[Measurement, list[SignalFinding]]:
+        """Measurement as its kind judges it, and what was found out about its records.
+
+        It is made when samples and clock have been checked. InputError where a record lacks what
+        is described. Unchanged by default.
+        """
+        return measurement, []
 
     def reported_channels(self, run: Run) -> tuple[str, ...]:
         """Channels whose errors are reported; all that are predicted by default."""

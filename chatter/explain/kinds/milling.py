@@ -10,12 +10,18 @@ from chatter.description.units import rpm
 from chatter.explain.data_checks.channel_assignment import wrong_assignment
 from chatter.explain.data_checks.clock import clock_check
 from chatter.explain.data_checks.displacement import wrong_displacements
+from chatter.explain.data_checks.finding import SignalFinding
 from chatter.explain.data_checks.samples import Columns, dropouts, sample_checks
 from chatter.explain.data_checks.scale import wrong_scales
 from chatter.explain.data_checks.spindle import wrong_speeds, wrong_teeth
 from chatter.explain.fitting import Parameter, with_priors
 from chatter.explain.kinds.kind import Cuts, Kind, Noise, Signals, Trial
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.records.beginning import beginning_of
+from chatter.explain.records.description import REST
+from chatter.explain.records.from_rest import from_rest
+from chatter.explain.records.recognition import from_rest_records, settled_records
+from chatter.explain.records.steady_record import SteadyRecord
 from chatter.explain.residuals.by_channel import by_channel, over_time
 from chatter.explain.residuals.over_runs import over_runs
 from chatter.explain.residuals.over_variable import over_period, over_variable
@@ -26,15 +32,11 @@ from chatter.explain.residuals.variables import (
     MILLING_MEASURES,
     MILLING_VARIABLES,
 )
-from chatter.simulation.setup import set_up
-from chatter.simulation.simulate import run_setup
 
 _FORCES = ("Fx", "Fy", "Fz")
 _DISPLACEMENTS = ("x", "y", "z")
 #: steps of the clock that no record of a cut has, s
 _LONGEST_STEP = 0.02
-#: revolutions simulated beyond the end of a record
-_BEYOND = 1e-3
 #: conditions of a cut that a discriminating test may change: unit, reported over SI
 _VARIED = {
     "cut.spindle_speed": ("rpm", rpm(1.0)),
@@ -48,7 +50,7 @@ _REVOLUTIONS = 10.0
 
 
 class Milling(Kind):
-    """Runs from rest at the moment the tool meets full immersion."""
+    """Runs from rest as the tool meets full immersion, or where the cut is settled."""
 
     name = "milling"
     columns = (("time",), (*_FORCES, *_DISPLACEMENTS))
@@ -81,8 +83,28 @@ class Milling(Kind):
     )
 
     def channels(self, run: Run) -> tuple[str, ...]:
-        """Forces and displacements that were recorded."""
-        return tuple(name for name in (*_FORCES, *_DISPLACEMENTS) if name in run.signals)
+        """Forces and motions that were recorded."""
+        names = run.components or (*_FORCES, *_DISPLACEMENTS)
+        return tuple(name for name in names if name in run.signals)
+
+    def require(self, measurement: Measurement) -> None:
+        """Raise InputError where the case lacks a section, or runs a channel that is predicted."""
+        record = measurement.record
+        if record is None or not any(one.is_vector for one in record.channels.values()):
+            super().require(measurement)
+            return
+        measurement.case.require(*self.sections)
+
+    def as_recorded(self, measurement: Measurement) -> tuple[Measurement, list[SignalFinding]]:
+        """Runs in the axes of the case; where they are settled, if they do not begin from rest."""
+        record, notes = measurement.record, []
+        if record is None or record.begins == REST:
+            record, notes = beginning_of(measurement, record)
+        if record is None:
+            return measurement, notes
+        make = settled_records if record.is_settled_only else from_rest_records
+        found, new = make(measurement, record)
+        return found, [*notes, *new]
 
     def prepared(self, measurement: Measurement) -> Measurement:
         """Return the measurement whose runs, where they are few, are judged in parts."""
@@ -90,16 +112,9 @@ class Milling(Kind):
 
     def predict(self, case: Case, run: Run) -> Signals:
         """Simulated signals at the samples of a run."""
-        at = run.signals["time"] - run.signals["time"][0]
-        revolutions = float(at[-1]) * case.cut.spindle_speed / (2.0 * math.pi) + _BEYOND
-        result, _ = run_setup(set_up(case.patch({"simulation.revolutions": revolutions})))
-        columns = {
-            **dict(zip(_FORCES, result.force.T, strict=True)),
-            **dict(zip(_DISPLACEMENTS, result.displacement.T, strict=True)),
-        }
-        return {
-            name: np.interp(at, result.time, columns[name]) for name in (*_FORCES, *_DISPLACEMENTS)
-        }
+        if isinstance(run.record, SteadyRecord):
+            return run.record.predicted(case)
+        return from_rest(case, run)
 
     def nuisance_parameters(self, measurement: Measurement) -> list[Parameter]:
         """Cutting coefficients and modal parameters."""
@@ -122,7 +137,8 @@ class Milling(Kind):
         run = measurement.runs[len(measurement.runs) // 2]
         made = run.of(measurement.case)
         step = float(np.median(np.diff(run.signals["time"])))
-        levels = {name: level for name, level in noise[run.name].items() if name in run.signals}
+        told = (*_FORCES, *_DISPLACEMENTS)
+        levels = {name: level for name, level in noise[run.name].items() if name in told}
         trials = []
         for path, (unit, scale) in _VARIED.items():
             value = made.get(path)
@@ -134,7 +150,13 @@ class Milling(Kind):
                 time = np.arange(0.0, _REVOLUTIONS * 2.0 * math.pi / speed, step)
                 overrides = {**run.overrides, path: float(value * factor)}
                 trial = replace(
-                    run, overrides=overrides, signals={"time": time}, whole=None, part=None
+                    run,
+                    overrides=overrides,
+                    signals={"time": time},
+                    whole=None,
+                    part=None,
+                    record=None,
+                    components={},
                 )
                 name = path.partition(".")[2].replace("_", " ")
                 words = (

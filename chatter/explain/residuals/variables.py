@@ -83,7 +83,15 @@ class Measure(NamedTuple):
 
 def reported_unit(channel: str) -> tuple[str, float]:
     """Unit in which a channel is reported, and its value over SI."""
+    if channel in _MOTIONS:
+        return _MOTIONS[channel]
     return ("N", 1.0) if channel[0] in "Ff" else ("µm", 1e6)
+
+
+_MOTIONS = {
+    **dict.fromkeys(("vx", "vy", "vz"), ("mm/s", 1e3)),
+    **dict.fromkeys(("ax", "ay", "az"), ("m/s²", 1.0)),
+}
 
 
 def _percent(_: str) -> tuple[str, float]:

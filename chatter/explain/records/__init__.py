@@ -1,0 +1,16 @@
+"""Records as they come off a rig: what is not told about them is estimated.
+
+=================== ================================================================
+module              responsibility
+=================== ================================================================
+description         [record] and [channels] of measurement.toml
+case_axes           channels turned into the axes of the case
+spindle             speed by the tacho or by what repeats
+stages              air, entry, cut and exit; the settled part
+steady_cut          revolution of a settled cut, by the time-domain engine
+alignment           start angle, speed, offsets, drifts and filter of a prediction
+orientation         directions and signs that are not told
+steady_record       what a run needs to be predicted in its settled part
+recognition         from runs as read to runs that can be judged
+=================== ================================================================
+"""

@@ -1,0 +1,44 @@
+"""Signals of a run that begins from rest as the tool meets full immersion."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.case import Case
+from chatter.explain.measurement import Run
+from chatter.explain.records.case_axes import USUAL, Component
+from chatter.explain.records.description import ACCELERATION, FORCE, VELOCITY
+from chatter.simulation.result import SimulationResult
+from chatter.simulation.setup import set_up
+from chatter.simulation.simulate import run_setup
+
+Array = NDArray[np.float64]
+
+#: revolutions simulated beyond the end of a record
+_BEYOND = 1e-3
+
+
+def from_rest(case: Case, run: Run) -> dict[str, Array]:
+    """Signals of a case with the overrides of the run, at the samples of the run."""
+    at = run.signals["time"] - run.signals["time"][0]
+    revolutions = float(at[-1]) * case.cut.spindle_speed / (2.0 * math.pi) + _BEYOND
+    result, _ = run_setup(set_up(case.patch({"simulation.revolutions": revolutions})))
+    components = {**_ALWAYS, **{k: v for k, v in USUAL.items() if k in run.signals}}
+    components |= run.components
+    return {
+        name: np.interp(at, result.time, _signal(result, component))
+        for name, component in components.items()
+    }
+
+
+#: channels of every run, whether recorded or not
+_ALWAYS = {name: USUAL[name] for name in ("Fx", "Fy", "Fz", "x", "y", "z")}
+
+
+def _signal(result: SimulationResult, component: Component) -> Array:
+    source = result.force if component.quantity == FORCE else result.displacement
+    values = source @ np.array(component.direction)
+    for _ in range({VELOCITY: 1, ACCELERATION: 2}.get(component.quantity, 0)):
+        values = np.gradient(values, result.time)
+    return values

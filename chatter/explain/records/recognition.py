@@ -1,0 +1,287 @@
+"""From runs as they were read to runs that can be judged."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.case import Case
+from chatter.description.errors import InputError
+from chatter.description.units import rpm
+from chatter.explain.data_checks.finding import FATAL, NOTE, RUN, SignalFinding
+from chatter.explain.measurement import Measurement, Run
+from chatter.explain.records.alignment import Recorded
+from chatter.explain.records.case_axes import in_case_axes
+from chatter.explain.records.description import TACHO, UNKNOWN, Channel, RecordDescription
+from chatter.explain.records.orientation import oriented
+from chatter.explain.records.spindle import TachoReading, speed_by_repetition, tacho_reading
+from chatter.explain.records.stages import Stages, stages_of
+from chatter.explain.records.steady_cut import revolutions_to_settle, steady_cut
+from chatter.explain.records.steady_record import SteadyRecord, unseen_turn
+
+Array = NDArray[np.float64]
+
+#: noise that is assumed, as a share of a channel, at the least
+_LEAST_NOISE = 5e-3
+#: unsteadiness of a run that is no settled cut, and times that of the others
+_UNSTEADY, _MORE_UNSTEADY = 0.12, 4.0
+#: share of the records that must be predicted for an orientation, and by which it beats others
+_LEAST_SHARE, _CLEARER = 0.3, 0.05
+#: length of the mean of what a tacho tells against what the cut tells, from which they agree
+_AGREE = 0.7
+
+
+@dataclass(frozen=True, eq=False)
+class _Settled:
+    """A run cut down to its settled part."""
+
+    run: Run  # with the speed found; its channels as they were recorded
+    case: Case  # with the overrides of the run
+    stages: Stages
+    tacho: TachoReading | None
+    description: str
+
+    def recorded(self, names: Sequence[str]) -> Recorded:
+        """Channels as predictions are laid beside them."""
+        signals = np.array([self.run.signals[name] for name in names])
+        time = self.run.signals["time"]
+        usable = np.ones(time.size) if self.run.usable is None else self.run.usable
+        turn = unseen_turn(self.case)
+        deviation = _deviations(signals, time, 2.0 * math.pi / self.case.cut.spindle_speed)
+        return Recorded(time, signals, deviation, usable, self.case.cut.spindle_speed, turn)
+
+
+def settled_records(
+    measurement: Measurement, record: RecordDescription
+) -> tuple[Measurement, list[SignalFinding]]:
+    """Runs cut down to their settled part, in the axes of the case, with their own speeds.
+
+    And what was found out about them. InputError where a channel is missing that is described.
+    """
+    channels = _present(measurement, record.channels)
+    vectors = {name: one for name, one in channels.items() if one.is_vector}
+    findings = _unpredicted(channels)
+    settled = [_settled(measurement, run, record, channels) for run in measurement.runs]
+    settled, new = _without_unsteady(settled)
+    findings += new
+    unknown = {k: v for k, v in vectors.items() if v.direction is None or not v.has_sign}
+    if unknown and settled:
+        channels, new = _with_orientation(channels, vectors, settled)
+        findings += new
+        if any(one.severity == FATAL for one in new):
+            return measurement, findings
+    found = [_steady(one, channels, record) for one in settled]
+    found, new = _with_tachos(found, [one.tacho for one in settled])
+    findings += new
+    findings += [
+        SignalFinding(NOTE, one.run.name, "", f"{one.run.name}: {one.description}")
+        for one in settled
+    ]
+    return measurement.with_runs(found), findings
+
+
+def from_rest_records(
+    measurement: Measurement, record: RecordDescription
+) -> tuple[Measurement, list[SignalFinding]]:
+    """Runs from rest whose channels are turned into the axes of the case."""
+    found = []
+    for run in measurement.runs:
+        turned, components = in_case_axes(run, record.channels)
+        found.append(replace(turned, components=components))
+    return measurement.with_runs(found), _unpredicted(record.channels)
+
+
+def _present(measurement: Measurement, channels: Mapping[str, Channel]) -> dict[str, Channel]:
+    """Channels that every run has; a channel that the checks have excluded anywhere is left."""
+    return {
+        name: one
+        for name, one in channels.items()
+        if all(name in run.signals for run in measurement.runs)
+    }
+
+
+def _unpredicted(channels: Mapping[str, Channel]) -> list[SignalFinding]:
+    """Notes on channels that nothing is predicted for."""
+    return [
+        SignalFinding(NOTE, "", name, f"{name}: {one.quantity} is not predicted of this case")
+        for name, one in channels.items()
+        if not one.is_vector and one.quantity != TACHO
+    ]
+
+
+def _names(run: Run, channels: Mapping[str, Channel]) -> list[str]:
+    """Channels of a run by which its stages are told."""
+    described = [name for name, one in channels.items() if one.is_vector]
+    return described or list(in_case_axes(run, {})[1])
+
+
+def _settled(
+    measurement: Measurement, run: Run, record: RecordDescription, channels: Mapping[str, Channel]
+) -> _Settled:
+    """Settled part of a run, and its speed."""
+    time, names = run.signals["time"], _names(run, channels)
+    signals = np.array([run.signals[name] for name in names])
+    declared = run.of(measurement.case)
+    tacho = next(
+        (
+            tacho_reading(time, run.signals[name])
+            for name, one in channels.items()
+            if one.quantity == TACHO and name in run.signals
+        ),
+        None,
+    )
+    stages = stages_of(declared, time, signals, record.begins)
+    part = stages.settled
+    speed = tacho.speed if tacho else _speed(time[part], signals[:, part], declared, record)
+    own = {
+        "cut.spindle_speed": float(speed),
+        # the feed drive keeps its speed
+        "cut.feed_per_tooth": float(
+            declared.cut.feed_per_tooth * declared.cut.spindle_speed / speed
+        ),
+    }
+    case = declared.patch(own)
+    stages = stages_of(case, time, signals, record.begins)
+    description = (
+        f"{stages.description(time)}; {rpm(speed):.6g} rpm "
+        f"{'by the tacho' if tacho else 'by what repeats'} "
+        f"({100.0 * (speed / declared.cut.spindle_speed - 1.0):+.2f} %)"
+    )
+    cut_out = _cut_out(run, stages, names)
+    overrides = {**run.overrides, **own}
+    return _Settled(replace(cut_out, overrides=overrides), case, stages, tacho, description)
+
+
+def _speed(time: Array, signals: Array, case: Case, record: RecordDescription) -> float:
+    return speed_by_repetition(time, signals, case.cut.spindle_speed, record.speed_tolerance)
+
+
+def _cut_out(run: Run, stages: Stages, names: Sequence[str]) -> Run:
+    """Run of the settled part alone, its offsets in the air taken off."""
+    signals = {name: values[stages.settled] for name, values in run.signals.items()}
+    # what is not quite in the air yet does not count
+    air = slice(0, int(0.8 * stages.entry))
+    if air.stop >= _LEAST_AIR:
+        for name in names:
+            signals[name] = signals[name] - float(np.median(run.signals[name][air]))
+    usable = None if run.usable is None else run.usable[stages.settled]
+    return replace(run, signals=signals, usable=usable)
+
+
+#: samples in the air that tell an offset
+_LEAST_AIR = 20
+
+
+def _without_unsteady(settled: Sequence[_Settled]) -> tuple[list[_Settled], list[SignalFinding]]:
+    """Runs whose cut settles, where most do."""
+    typical = float(np.median([one.stages.unsteadiness for one in settled]))
+    limit = max(_UNSTEADY, _MORE_UNSTEADY * typical)
+    kept, found = [], []
+    for one in settled:
+        unsteady = one.stages.unsteadiness
+        if unsteady <= limit:
+            kept.append(one)
+            continue
+        description = (
+            f"{one.run.name}: {100.0 * unsteady:.0f} % of the signal does not repeat with the "
+            f"revolution, of the other runs {100.0 * typical:.1f} %: the cut chatters or has not "
+            "settled"
+        )
+        found.append(SignalFinding(RUN, one.run.name, "", description))
+    return kept, found
+
+
+def _with_orientation(
+    channels: Mapping[str, Channel], vectors: Mapping[str, Channel], settled: Sequence[_Settled]
+) -> tuple[dict[str, Channel], list[SignalFinding]]:
+    """Channels with the directions and signs that fit best."""
+    names = ", ".join(k for k, v in vectors.items() if v.direction is None or not v.has_sign)
+    cuts = [steady_cut(one.case, revolutions_to_settle(one.case)) for one in settled]
+    records = [one.recorded(list(vectors)) for one in settled]
+    found = oriented(vectors, list(zip(records, cuts, strict=True)))
+    words = "; ".join(
+        f"{name} along [{', '.join(f'{v:.3f}' for v in found.channels[name].direction)}]"
+        for name, one in vectors.items()
+        if one.direction is None or not one.has_sign
+    )
+    if found.share < _LEAST_SHARE:
+        description = (
+            f"the orientation of {names} cannot be told: the best one predicts "
+            f"{100.0 * max(found.share, 0.0):.0f} % of the signals"
+        )
+        return dict(channels), [SignalFinding(FATAL, "", names, description)]
+    description = (
+        f"orientation of {names} found: {words}; it predicts {100.0 * found.share:.0f} % of the "
+        f"signals, the next {100.0 * max(found.next_share, 0.0):.0f} %"
+    )
+    if found.share - found.next_share < _CLEARER:
+        description += ": the two are hard to tell apart"
+    return {**channels, **found.channels}, [SignalFinding(NOTE, "", names, description)]
+
+
+def _steady(one: _Settled, channels: Mapping[str, Channel], record: RecordDescription) -> Run:
+    """Run in the axes of the case, with what its prediction needs."""
+    turned, components = in_case_axes(one.run, channels)
+    rows = replace(one, run=turned).recorded(list(components))
+    angle = _known_angle(turned, record)
+    rows = replace(rows, angle=angle)
+    kept = components
+    steady = SteadyRecord(kept, rows, revolutions_to_settle(one.case), one.description)
+    signals = dict(turned.signals)
+    signals["spindle_angle"] = steady.aligned(one.case).angle
+    return replace(turned, signals=signals, record=steady, components=kept)
+
+
+def _known_angle(run: Run, record: RecordDescription) -> Array | None:
+    """Angle of the spindle where a channel has it."""
+    if record.spindle_angle in ("", UNKNOWN):
+        return None
+    if record.spindle_angle not in run.signals:
+        raise InputError(
+            f"{run.name}: record.spindle_angle: there is no channel {record.spindle_angle}; there "
+            f"are {', '.join(run.signals)}"
+        )
+    return np.unwrap(run.signals[record.spindle_angle])
+
+
+def _with_tachos(
+    runs: list[Run], tachos: Sequence[TachoReading | None]
+) -> tuple[list[Run], list[SignalFinding]]:
+    """Runs whose tachos tell which tooth is where, the same in all."""
+    if not runs or any(tacho is None for tacho in tachos):
+        return runs, []
+    by_tacho = []
+    for run, tacho in zip(runs, tachos, strict=True):
+        time = run.signals["time"]
+        by_tacho.append(tacho.speed * (0.5 * (time[0] + time[-1]) - tacho.pulse))
+    middle = [0.5 * (angle[0] + angle[-1]) for angle in _angles(runs)]
+    turn = runs[0].record.recorded.pitch
+    apart = (np.array(middle) - np.array(by_tacho)) * 2.0 * math.pi / turn
+    mean = np.mean(np.exp(1j * apart))
+    if abs(mean) < _AGREE:
+        description = (
+            "the tacho and the cut do not turn together from run to run: the tacho is used for "
+            "the speed alone"
+        )
+        return runs, [SignalFinding(NOTE, "", "", description)]
+    offset = float(np.angle(mean)) * turn / (2.0 * math.pi)
+    found = []
+    for run, angle in zip(runs, by_tacho, strict=True):
+        rows = replace(run.record.recorded, expected=angle + offset)
+        found.append(replace(run, record=replace(run.record, recorded=rows)))
+    return found, []
+
+
+def _angles(runs: Sequence[Run]) -> list[Array]:
+    return [run.signals["spindle_angle"] for run in runs]
+
+
+def _deviations(signals: Array, time: Array, turn: float) -> Array:
+    """Typical deviation (c,) from revolution to revolution, SI."""
+    earlier = np.array([np.interp(time - turn, time, row) for row in signals])
+    later = time - time[0] > turn
+    change = (signals - earlier)[:, later] if later.any() else np.zeros((len(signals), 1))
+    level = np.maximum(np.std(signals, axis=1), 1e-300)
+    return np.maximum(np.sqrt(np.mean(change**2, axis=1) / 2.0), _LEAST_NOISE * level)

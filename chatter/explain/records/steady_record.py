@@ -1,0 +1,60 @@
+"""What a run needs to be predicted in the settled part of its record."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.case import Case
+from chatter.explain.records.alignment import Alignment, Recorded, aligned
+from chatter.explain.records.case_axes import Component
+from chatter.explain.records.steady_cut import steady_cut
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyRecord:
+    """Settled part of a run: its channels, and how it is predicted."""
+
+    components: Mapping[str, Component]  # channel -> what it holds, in the order of `recorded`
+    recorded: Recorded
+    revolutions: int  # simulated from rest until the cut is settled
+    entered_by: str = ""  # stages of the record in words
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Channels that are predicted."""
+        return tuple(self.components)
+
+    @property
+    def knows_tooth(self) -> bool:
+        """Whether it is known which tooth is where: by a tacho or a measured angle."""
+        return self.recorded.angle is not None or self.recorded.expected is not None
+
+    def aligned(self, case: Case) -> Alignment:
+        """Prediction of a case with the overrides of the run, laid beside the record."""
+        return aligned(self._harmonics(case), self.recorded)
+
+    def _harmonics(self, case: Case) -> Complex:
+        cut = steady_cut(case, self.revolutions)
+        orders = self.recorded.orders
+        return np.array([cut.harmonics(one, orders) for one in self.components.values()])
+
+    def predicted(self, case: Case) -> dict[str, Array]:
+        """Signals at the samples by a case with the overrides of the run."""
+        return dict(zip(self.components, self.aligned(case).predicted, strict=True))
+
+
+def unseen_turn(case: Case) -> float:
+    """Smallest angle by which a declared tool may be turned without a difference, rad."""
+    tool = case.tool
+    uneven = tool.runout is not None or tool.radial_error or tool.axial_error
+    pitch = np.asarray(tool.pitch or (1.0,))
+    helix = np.atleast_1d(np.asarray(tool.helix, dtype=np.float64))
+    if uneven or np.ptp(pitch) > 0.0 or np.ptp(helix) > 0.0:
+        return 2.0 * math.pi
+    return 2.0 * math.pi / tool.teeth
