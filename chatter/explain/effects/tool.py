@@ -10,6 +10,9 @@ from chatter.explain.effects.effect import Effect, Patch, Reported, Values, free
 from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
 
+#: directions within a pitch, and offset, m, from which a runout is sought where teeth are not told
+_DIRECTIONS, _FIRST_OFFSET = 3, 5e-6
+
 
 class Runout(Effect):
     """Offset in two directions, so that none of them is singular where there is none."""
@@ -27,6 +30,20 @@ class Runout(Effect):
         """Offset across and along the first tooth."""
         most = 0.1 * measurement.case.tool.diameter
         return [free(key, 0.0, 3e-6, "m", lower=-most, upper=most) for key in ("across", "along")]
+
+    def starts(self, measurement: Measurement) -> list[Values]:
+        """None; where it is not known which tooth is where, some in directions within a pitch.
+
+        Every run then chooses its tooth, and a start without runout leaves that to chance.
+        """
+        if all(getattr(run.record, "knows_tooth", True) for run in measurement.runs):
+            return [{}]
+        pitch = 2.0 * math.pi / measurement.case.tool.teeth
+        angles = pitch * np.arange(_DIRECTIONS) / _DIRECTIONS
+        return [
+            {"across": _FIRST_OFFSET * math.cos(angle), "along": _FIRST_OFFSET * math.sin(angle)}
+            for angle in angles
+        ]
 
     def patch(self, case: Case, values: Values) -> Patch:
         """Runout of the tool."""
