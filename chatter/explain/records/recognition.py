@@ -134,7 +134,7 @@ def _settled(
     )
     stages = stages_of(declared, time, signals, record.begins)
     part = stages.settled
-    speed = tacho.speed if tacho else _speed(time[part], signals[:, part], declared, record)
+    speed = _speed(time[part], signals[:, part], declared, record, tacho)
     own = {
         "cut.spindle_speed": float(speed),
         # the feed drive keeps its speed
@@ -154,7 +154,12 @@ def _settled(
     return _Settled(replace(cut_out, overrides=overrides), case, stages, tacho, description)
 
 
-def _speed(time: Array, signals: Array, case: Case, record: RecordDescription) -> float:
+def _speed(
+    time: Array, signals: Array, case: Case, record: RecordDescription, tacho: TachoReading | None
+) -> float:
+    """Speed, rad/s: near that of the tacho, whose pulses are no finer than the samples."""
+    if tacho is not None:
+        return speed_by_repetition(time, signals, tacho.speed, 0.0)
     return speed_by_repetition(time, signals, case.cut.spindle_speed, record.speed_tolerance)
 
 

@@ -15,8 +15,12 @@ _LEAST_PULSES = 3
 _MOST_ORDERS, _BAND = 60, 0.9
 #: points of the spectrum for each that the record resolves
 _REFINED = 16
-#: tolerance of a speed, at the least, as a share
-_LEAST_TOLERANCE = 1e-3
+#: power of an order over the median of the spectrum from which it tells the speed
+_ABOVE_NOISE = 30.0
+#: orders that are looked at in full
+_TELLING = 12
+#: tolerance of a speed, at the least, and to which it is found, as shares
+_LEAST_TOLERANCE, _RESOLVED = 1e-3, 1e-6
 
 
 class TachoReading(NamedTuple):
@@ -52,24 +56,42 @@ def speed_by_repetition(time: Array, signals: Array, declared: float, tolerance:
     window = np.hanning(count)
     level = np.maximum(np.std(signals, axis=1), 1e-300)
     centred = (signals - signals.mean(axis=1, keepdims=True)) / level[:, None]
-    power = np.sum(np.abs(np.fft.rfft(centred * window, size, axis=1)) ** 2, axis=0)
-    resolution = 2.0 * math.pi / (size * step)
-    orders = np.arange(1, max(1, min(_MOST_ORDERS, int(_BAND * math.pi / step / declared))) + 1)
+    windowed = centred * window
+    power = np.sum(np.abs(np.fft.rfft(windowed, size, axis=1)) ** 2, axis=0)
+    tolerance = max(tolerance, _LEAST_TOLERANCE)
+    orders = _telling(power, 2.0 * math.pi / (size * step), declared, tolerance, math.pi / step)
 
     def held(speed: float) -> float:
-        return float(np.sum(np.interp(orders * speed / resolution, np.arange(power.size), power)))
+        waves = np.exp(-1j * speed * np.outer(time - time[0], orders))
+        return float(np.sum(np.abs(windowed @ waves) ** 2))
 
-    tolerance = max(tolerance, _LEAST_TOLERANCE)
     # the sharpest peak is that of the highest order
-    grid_step = 0.5 * math.pi / (step * count) / orders[-1]
+    grid_step = math.pi / (step * count) / orders.max()
     points = int(2.0 * tolerance * declared / grid_step) + 3
     speeds = declared * np.linspace(1.0 - tolerance, 1.0 + tolerance, points)
     best = int(np.argmax([held(speed) for speed in speeds]))
-    low, high = speeds[max(best - 1, 0)], speeds[min(best + 1, points - 1)]
     found = scipy.optimize.minimize_scalar(
         lambda speed: -held(speed),
-        bounds=(low, high),
+        bounds=(speeds[max(best - 1, 0)], speeds[min(best + 1, points - 1)]),
         method="bounded",
-        options={"xatol": 1e-7 * declared},
+        options={"xatol": _RESOLVED * declared},
     )
     return float(found.x)
+
+
+def _telling(
+    power: Array, resolution: float, speed: float, tolerance: float, band: float
+) -> NDArray[np.int64]:
+    """Orders of the revolution that tell most of the speed: in power by the square of the order.
+
+    Of a spectrum over angular frequencies in steps of a resolution, rad/s.
+    """
+    orders = np.arange(1, max(1, min(_MOST_ORDERS, int(_BAND * band / speed))) + 1)
+    levels = np.empty(orders.size)
+    for index, order in enumerate(orders):
+        low = int(order * speed * (1.0 - tolerance) / resolution)
+        high = int(order * speed * (1.0 + tolerance) / resolution) + 2
+        levels[index] = float(power[low:high].max(initial=0.0))
+    told = np.where(levels > _ABOVE_NOISE * float(np.median(power)), levels * orders**2, 0.0)
+    chosen = np.argsort(-told)[:_TELLING]
+    return np.sort(orders[chosen[told[chosen] > 0.0]]) if told.any() else orders
