@@ -19,7 +19,7 @@ from chatter.explain.records.orientation import oriented
 from chatter.explain.records.spindle import TachoReading, speed_by_repetition, tacho_reading
 from chatter.explain.records.stages import Stages, stages_of
 from chatter.explain.records.steady_cut import revolutions_to_settle, steady_cut
-from chatter.explain.records.steady_record import SteadyRecord, unseen_turn
+from chatter.explain.records.steady_record import SteadyRecord, smallest_symmetry
 
 Array = NDArray[np.float64]
 
@@ -48,7 +48,7 @@ class _Settled:
         signals = np.array([self.run.signals[name] for name in names])
         time = self.run.signals["time"]
         usable = np.ones(time.size) if self.run.usable is None else self.run.usable
-        turn = unseen_turn(self.case)
+        turn = smallest_symmetry(self.case)
         deviation = _deviations(signals, time, 2.0 * math.pi / self.case.cut.spindle_speed)
         return Recorded(time, signals, deviation, usable, self.case.cut.spindle_speed, turn)
 
@@ -222,7 +222,7 @@ def _with_orientation(
         f"signals, the next {100.0 * max(found.next_share, 0.0):.0f} %"
     )
     if found.share - found.next_share < _CLEARER:
-        description += ": the two are hard to tell apart"
+        description += ": the two hardly differ"
     return {**channels, **found.channels}, [SignalFinding(NOTE, "", names, description)]
 
 

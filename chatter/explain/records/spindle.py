@@ -61,7 +61,7 @@ def speed_by_repetition(time: Array, signals: Array, declared: float, tolerance:
     tolerance = max(tolerance, _LEAST_TOLERANCE)
     orders = _telling(power, 2.0 * math.pi / (size * step), declared, tolerance, math.pi / step)
 
-    def held(speed: float) -> float:
+    def power_at_orders(speed: float) -> float:
         waves = np.exp(-1j * speed * np.outer(time - time[0], orders))
         return float(np.sum(np.abs(windowed @ waves) ** 2))
 
@@ -69,9 +69,9 @@ def speed_by_repetition(time: Array, signals: Array, declared: float, tolerance:
     grid_step = math.pi / (step * count) / orders.max()
     points = int(2.0 * tolerance * declared / grid_step) + 3
     speeds = declared * np.linspace(1.0 - tolerance, 1.0 + tolerance, points)
-    best = int(np.argmax([held(speed) for speed in speeds]))
+    best = int(np.argmax([power_at_orders(speed) for speed in speeds]))
     found = scipy.optimize.minimize_scalar(
-        lambda speed: -held(speed),
+        lambda speed: -power_at_orders(speed),
         bounds=(speeds[max(best - 1, 0)], speeds[min(best + 1, points - 1)]),
         method="bounded",
         options={"xatol": _RESOLVED * declared},

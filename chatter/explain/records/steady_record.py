@@ -49,7 +49,7 @@ class SteadyRecord:
         return dict(zip(self.components, self.aligned(case).predicted, strict=True))
 
 
-def unseen_turn(case: Case) -> float:
+def smallest_symmetry(case: Case) -> float:
     """Smallest angle by which a declared tool may be turned without a difference, rad."""
     tool = case.tool
     uneven = tool.runout is not None or tool.radial_error or tool.axial_error
