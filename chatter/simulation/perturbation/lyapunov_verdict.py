@@ -35,6 +35,8 @@ _MOST_STEPS = 6_000_000
 _LEAST_PERIODS = 1.0
 #: standard errors by which a rate must be below another one
 _ERRORS = 4.0
+#: perturbation, as a share of the feed per tooth, below which growth is none
+_MATTERS = 1e-3
 #: a run that tells nothing is repeated, so often: faster taken hold of by this, or longer watched
 _TRIES, _FASTER, _LONGER = 3, 3, 4
 #: forced vibration that is large, as a share of the feed per tooth; and by which it may be larger
@@ -98,6 +100,10 @@ def lyapunov_verdict(case: Case, modes: tuple[Mode, ...]) -> LyapunovVerdict:
         else:
             hold = max(hold // _FASTER, 1)
         found = _judged(follow(case, modes, hold, watch, period), feed)
+    if found.verdict == "chatter" and not found.from_rest_alone:
+        larger = _judged(follow(case, modes, hold, watch, period, _MATTERS), feed)
+        # what grows among the kinks of the chip, and stays smaller than this, matters to no part
+        return larger if larger.stable else found
     return found
 
 

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 #: size of the difference after every turn, as a share of the feed, and the share of it that is
 #: rounding
-_PERTURBATION, _ROUNDING = 1e-6, 1e-12
+SMALL, _ROUNDING = 1e-6, 1e-12
 #: the same where there is friction, for which small is what does not move it at all; and the share
 #: at which a perturbation is gone: when it lets go differs from run to run by rounding
 _RUBBING_PERTURBATION, _GONE = 1e-2, 1e-3
@@ -41,16 +41,22 @@ class _Turn(NamedTuple):
 
 
 def follow(
-    case: Case, modes: tuple[Mode, ...], hold: int, watch: int, period: float
+    case: Case,
+    modes: tuple[Mode, ...],
+    hold: int,
+    watch: int,
+    period: float,
+    share: float = SMALL,
 ) -> LyapunovRecord:
     """Follow a cut through its force ramp and on, a perturbed run and one from rest beside it.
 
     The force ramp takes `hold` revolutions, `watch` more are watched; the period is that
-    of the variation, turns.
+    of the variation, turns. The perturbation is a share of the feed per tooth; with friction it
+    has a size of its own.
     """
     leader, perturbed, rest = (FollowedRun(case, modes, turns) for turns in (hold, hold, 0))
     rubs = leader.setup.structure.rubs
-    perturbation = (_RUBBING_PERTURBATION if rubs else _PERTURBATION) * case.cut.feed_per_tooth
+    perturbation = (_RUBBING_PERTURBATION if rubs else share) * case.cut.feed_per_tooth
     gone = (_GONE if rubs else _ROUNDING) * perturbation
     frequencies = [mode.frequency for mode in inside_band(leader.setup.modes)]
     a_second = leader.setup.spindle.speed / (2.0 * math.pi)
