@@ -41,12 +41,7 @@ class _Turn(NamedTuple):
 
 
 def follow(
-    case: Case,
-    modes: tuple[Mode, ...],
-    hold: int,
-    watch: int,
-    period: float,
-    share: float = SMALL,
+    case: Case, modes: tuple[Mode, ...], hold: int, watch: int, period: float, share: float = SMALL
 ) -> LyapunovRecord:
     """Follow a cut through its force ramp and on, a perturbed run and one from rest beside it.
 
