@@ -70,7 +70,7 @@ def parameters_of(fit: Fit, effect: Effect) -> dict[str, dict[str, Any]]:
     free = _undetermined(fit, indices)
     determined = covariance
     for direction in free:
-        # what is left of the covariance beside a combination that nothing determines
+        # the covariance beside a combination that nothing determines
         along = determined @ np.linalg.pinv(determined) @ direction
         spread = float(along @ np.linalg.pinv(determined) @ along)
         if spread > 0.0:

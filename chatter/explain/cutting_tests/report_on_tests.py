@@ -25,7 +25,7 @@ class ReportOnTests:
 
     @cached_property
     def words(self) -> list[str]:
-        """Sentences on what was refitted, what is left, and which tool the updated case is."""
+        """Sentences on what was refitted, the residual, and which tool the updated case is."""
         found, sentences = self.found, [in_words(self.refitted)]
         if found.out_of_tolerance:
             sentences.append(

@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 #: share of the way, on a logarithmic scale, from the level in the air to that in the cut
 _CONTACT = 0.5
-#: least ratio of the levels in the cut and in the air by which they are told apart
+#: least ratio of the levels in the cut and in the air by which they differ for certain
 _APART = 3.0
 #: deviation from the settled revolutions, over that among these, from which one is not settled,
 #: and least one, as a share of the signal

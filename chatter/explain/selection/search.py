@@ -137,7 +137,7 @@ def _of_all_runs(path: Path) -> Fit:
 
 
 def _of_what_is_left(path: Path) -> Fit:
-    """Fit to all runs that takes what is left for noise, so that tolerances hold against it."""
+    """Fit to all runs that takes the residual for noise, so that tolerances hold against it."""
     problem, runs = path.problem, path.problem.measurement.runs
     level = normalised_residual(problem, _of_all_runs(path))
     noise = {

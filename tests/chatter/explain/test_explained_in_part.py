@@ -56,7 +56,7 @@ def test_friction_beside_a_ringing_is_named_and_added():
     error = summary["error"]
     assert error["noise_floor"] < error["after"] < 0.6 * error["before"]
     assert error["holdout_after"] < 0.6 * error["holdout_before"]
-    # a refit against what is left would pull them
+    # a refit against the residual would pull them
     assert summary["out_of_tolerance"] == []
 
 

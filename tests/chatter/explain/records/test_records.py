@@ -221,7 +221,7 @@ def test_speed_by_repetition_and_by_the_tacho():
     assert tacho_reading(time, 0.0 * time + 1.0) is None
 
 
-def test_stages_are_told_apart(case):
+def test_stages_are_recognised(case):
     """Air, a rise over the entry, the cut, a fall, air again."""
     case = case.patch({"cut.feed_per_tooth": "0.5 mm"})
     time = np.arange(12000) * 1e-4
