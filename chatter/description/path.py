@@ -1,6 +1,7 @@
 """Dotted paths into a case: "cut.axial_depth", "structure.mode[0].damping", "structure.mode[*]"."""
 
 import re
+from functools import cache
 from types import UnionType
 from typing import Annotated, Any, Union, get_args, get_origin
 
@@ -48,6 +49,7 @@ def join_path(steps: tuple[Step, ...]) -> str:
     return text
 
 
+@cache
 def model_at(model: type[BaseModel], steps: tuple[Step, ...]) -> type[BaseModel] | None:
     """Section class that a path leads to; None where it leads to no section."""
     annotation: Any = model
@@ -65,6 +67,7 @@ def model_at(model: type[BaseModel], steps: tuple[Step, ...]) -> type[BaseModel]
     return sections[0] if sections and not is_mapping(annotation) else None
 
 
+@cache
 def info_at(model: type[BaseModel], steps: tuple[Step, ...]) -> FieldInfo | None:
     """Declaration of the field that a path leads to or into; None where there is none."""
     while steps and (isinstance(steps[-1], int) or steps[-1] == "*"):
@@ -74,6 +77,7 @@ def info_at(model: type[BaseModel], steps: tuple[Step, ...]) -> FieldInfo | None
     return section.model_fields[name] if name else None
 
 
+@cache
 def field_at(model: type[BaseModel], steps: tuple[Step, ...]) -> QuantityField | None:
     """Quantity field that a path leads to, or into where it is a list; None for other fields."""
     info = info_at(model, steps)
@@ -85,6 +89,7 @@ def field_at(model: type[BaseModel], steps: tuple[Step, ...]) -> QuantityField |
     return next(iter(_quantity_fields(entries)), None)
 
 
+@cache
 def key_of(section: type[BaseModel], key: str) -> str | None:
     """Attribute of a section for a key of the file (``from`` is ``from_``); None if unknown."""
     for name, info in section.model_fields.items():

@@ -48,6 +48,14 @@ FITTED_IN_FULL, FITTED_AGAIN = 4, 3
 PAIRED = 4
 #: cost of the simplest member of a family over that of the best up to which it is tried alone
 SIMPLE_ENOUGH = 1.02
+#: share of the significant gain that linearised steps must promise for a fit in full: they err by
+#: less than a factor of four where they are of any use
+PROMISING = 0.25
+#: share of the best gain of candidates fitted roughly from which on one is fitted in full: a rough
+#: fit ends short of the minimum by less
+FINISHED = 0.5
+#: starts of a candidate of which a linearised step is made at the most, ranked by one prediction
+SCREENED_STARTS = 4
 #: starts of a candidate from which a second linearised step is made
 FOLLOWED_STARTS = 2
 #: logarithms of evidence that differ by less do not rank

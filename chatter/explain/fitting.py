@@ -209,26 +209,51 @@ def fit(
     start, per size of a parameter, is given where it is known.
     """
     problem = _Scaled(parameters, residuals, jacobian)
-    scaled = np.clip(problem.scaled(start), problem.lower, problem.upper)
-    most = _MOST_STEPS
-    while parameters and most > 0:
-        found = scipy.optimize.least_squares(
-            problem.rows,
-            scaled,
-            problem.jacobian,
-            bounds=(problem.lower, problem.upper),
-            # bounds as active sets: many effects start at a bound, zero
-            method="dogbox",
-            ftol=_SMALLEST_GAIN,
-            xtol=_SMALLEST_STEP,
-            gtol=None,
-            max_nfev=most + 1,
-        )
-        scaled, most = found.x, most - (found.nfev - 1)
-        if problem.updates <= 1:
-            break
+    scaled, most = _followed(problem, problem.scaled(start), _MOST_STEPS)
+    while problem.updates > 1 and most > 0:
         # what no longer gains by a Jacobian brought up to date may by differences
         problem.forget_jacobian()
+        scaled, most = _followed(problem, scaled, most)
+    return _fit_at(problem, parameters, scaled)
+
+
+def rough_fit(
+    parameters: Sequence[Parameter],
+    residuals: Residuals,
+    start: Vector,
+    jacobian: Matrix | None = None,
+) -> Fit:
+    """Fit as `fit` does, as far as the Jacobian near the start leads when brought up to date.
+
+    Near enough to rank candidates by, at a fraction of the simulations.
+    """
+    problem = _Scaled(parameters, residuals, jacobian)
+    scaled, _ = _followed(problem, problem.scaled(start), _MOST_STEPS)
+    return _fit_at(problem, parameters, scaled)
+
+
+def _followed(problem: _Scaled, scaled: Vector, most: int) -> tuple[Vector, int]:
+    """Where the trust region leads within so many steps, and how many are left."""
+    scaled = np.clip(scaled, problem.lower, problem.upper)
+    if not scaled.size:
+        return scaled, most
+    found = scipy.optimize.least_squares(
+        problem.rows,
+        scaled,
+        problem.jacobian,
+        bounds=(problem.lower, problem.upper),
+        # bounds as active sets: many effects start at a bound, zero
+        method="dogbox",
+        ftol=_SMALLEST_GAIN,
+        xtol=_SMALLEST_STEP,
+        gtol=None,
+        max_nfev=most + 1,
+    )
+    return found.x, most - (found.nfev - 1)
+
+
+def _fit_at(problem: _Scaled, parameters: Sequence[Parameter], scaled: Vector) -> Fit:
+    """Fit with the covariance by the Jacobian that is known."""
     rows = problem.jacobian(scaled)
     inverse = np.linalg.pinv(rows.T @ rows, hermitian=True)
     return Fit(

@@ -68,6 +68,11 @@ class Run:
             part=chosen,
         )
 
+    def with_overrides(self, overrides: Mapping[str, Any]) -> Run:
+        """Same run, as a whole and in its part, with more overrides."""
+        whole = None if self.whole is None else self.whole.with_overrides(overrides)
+        return replace(self, overrides={**self.overrides, **overrides}, whole=whole)
+
     def of(self, case: Case) -> Case:
         """Return a case with the overrides of the run."""
         return case.patch(dict(self.overrides)) if self.overrides else case

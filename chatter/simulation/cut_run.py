@@ -21,7 +21,7 @@ from chatter.engine.loop import Laws, run
 from chatter.engine.record import PortRecord, cut_record, port_record
 from chatter.simulation.carved_workpiece import FollowingStock
 from chatter.simulation.setup import Setup
-from chatter.simulation.spindle import bins_at, counted_bins, prescribed_path, prescribed_spindle
+from chatter.simulation.spindle import bins_at, counted_spindle, prescribed_path, prescribed_spindle
 from chatter.simulation.workpiece import STEPS_A_CHUNK, follows, reach_of, steps_a_chunk
 from cutting.chip.discrete_chip import DiscreteCut
 from cutting.chip.tool_point import ToolPoint, tool_point
@@ -155,7 +155,7 @@ class CutRun:
             turning = setup.structure.tables.port["tool turn"]
             return SpindleOnPort(turning, self.angle, bins)
         if setup.on_machine is None and setup.spindle.amplitude == 0.0:
-            return prescribed_spindle(setup.spindle, time, counted_bins(number, bins), bins)
+            return counted_spindle(setup.spindle, time, number, bins)
         return prescribed_spindle(setup.spindle, time, bins_at(setup.spindle, time, bins), bins)
 
 

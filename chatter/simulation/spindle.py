@@ -120,6 +120,17 @@ def prescribed_spindle(
     )
 
 
+def counted_spindle(
+    spindle: Spindle, time: NDArray[np.float64], number: NDArray[np.int64], bins: int
+) -> PrescribedSpindle:
+    """Rotation of the spindle at steps, by their numbers, that each turn it by one bin."""
+    whole, part, advance = counted_bins(number, bins)
+    angle = np.arange(bins) * (_REVOLUTION / bins)
+    return PrescribedSpindle(
+        whole, part, np.sin(angle)[whole], np.cos(angle)[whole], advance, spindle.speed_at(time)
+    )
+
+
 def prescribed_path(
     path: ToolPath, time: NDArray[np.float64], share: NDArray[np.float64] | None = None
 ) -> PrescribedPath:

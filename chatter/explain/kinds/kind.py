@@ -138,6 +138,10 @@ class Kind(ABC):
         """
         return measurement
 
+    def screening(self, measurement: Measurement) -> Measurement:
+        """Return the measurement as predicted to rank candidates by; unchanged by default."""
+        return measurement
+
     def reweighted(self, measurement: Measurement, case: Case) -> Measurement:
         """Return the measurement with weights by a case that was found; unchanged by default."""
         return measurement

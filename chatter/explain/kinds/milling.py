@@ -32,6 +32,7 @@ from chatter.explain.residuals.variables import (
     MILLING_MEASURES,
     MILLING_VARIABLES,
 )
+from chatter.simulation.setup import set_up
 
 _FORCES = ("Fx", "Fy", "Fz")
 _DISPLACEMENTS = ("x", "y", "z")
@@ -109,6 +110,17 @@ class Milling(Kind):
     def prepared(self, measurement: Measurement) -> Measurement:
         """Return the measurement whose runs, where they are few, are judged in parts."""
         return measurement.in_parts()
+
+    def screening(self, measurement: Measurement) -> Measurement:
+        """Return the measurement with half the steps: 0.2 to 0.6 % of the signals less accurate."""
+        case, runs = measurement.case, []
+        given = case.simulation is not None and case.simulation.steps
+        if given or case.structure.machine is not None:
+            return measurement
+        for run in measurement.runs:
+            steps = set_up(run.of(case)).resolution.steps_per_revolution
+            runs.append(run.with_overrides({"simulation.steps": steps // 2}))
+        return measurement.with_runs(runs)
 
     def predict(self, case: Case, run: Run) -> Signals:
         """Simulated signals at the samples of a run."""

@@ -9,9 +9,8 @@ from chatter.description.case import Case
 from chatter.explain.measurement import Run
 from chatter.explain.records.case_axes import USUAL, Component
 from chatter.explain.records.description import ACCELERATION, FORCE, VELOCITY
+from chatter.explain.records.simulated import simulated
 from chatter.simulation.result import SimulationResult
-from chatter.simulation.setup import set_up
-from chatter.simulation.simulate import run_setup
 
 Array = NDArray[np.float64]
 
@@ -23,7 +22,7 @@ def from_rest(case: Case, run: Run) -> dict[str, Array]:
     """Signals of a case with the overrides of the run, at the samples of the run."""
     at = run.signals["time"] - run.signals["time"][0]
     revolutions = float(at[-1]) * case.cut.spindle_speed / (2.0 * math.pi) + _BEYOND
-    result, _ = run_setup(set_up(case.patch({"simulation.revolutions": revolutions})))
+    result = simulated(case.patch({"simulation.revolutions": revolutions}))
     components = {**_ALWAYS, **{k: v for k, v in USUAL.items() if k in run.signals}}
     components |= run.components
     return {

@@ -10,8 +10,8 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.explain.records.case_axes import Component
 from chatter.explain.records.description import ACCELERATION, FORCE, VELOCITY
-from chatter.simulation.setup import delayed, set_up
-from chatter.simulation.simulate import run_setup
+from chatter.explain.records.simulated import simulated
+from chatter.simulation.setup import delayed
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -79,14 +79,14 @@ def revolutions_to_settle(case: Case) -> int:
 
 def _revolutions(case: Case, count: int) -> Array:
     """Force, displacement and torque (count, points, 7) of revolutions from rest."""
-    case = delayed(case) if case.stock is not None else case
     if case.cut.speed_variation is not None:
         raise InputError(
             f"{case.name}: cut.speed_variation: a record with an unknown spindle angle, or from "
             "the middle of a cut, is judged by the revolution that repeats; with a varying speed "
             'none does: give the angle as a column and begins = "rest"'
         )
-    result, _ = run_setup(set_up(case.patch({"simulation.revolutions": float(count)})))
+    case = case.patch({"simulation.revolutions": float(count)})
+    result = simulated(case if case.stock is None else delayed(case))
     if not result.complete:
         raise RunError(f"{case.name}: the tool is displaced too far for a cut")
     signals = np.column_stack([result.force, result.displacement, result.torque])

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import solve_triangular
 
 from chatter.compile.structure import structure_of
 from chatter.explain.criteria import AT_NOISE
@@ -286,6 +287,8 @@ def _panel(pooled: _Pooled) -> Curves:
 _MOST_SAMPLES, _SAMPLES_A_HARMONIC = 6000, 6
 #: of a harmonic the fewest samples a cycle
 _SAMPLES_A_CYCLE = 2.2
+#: share of the diagonal that keeps the harmonics of a short record apart
+_RIDGE = 1e-9
 #: lines on each side over which the level beside a line is read
 _BESIDE = 12
 
@@ -316,15 +319,20 @@ class Harmonics:
         columns = [np.ones((self.samples, 1))]
         phase = np.outer(angle, self.orders)
         pairs = np.stack((np.cos(phase), np.sin(phase)), axis=2).reshape(self.samples, -1)
-        self.basis = np.linalg.qr(np.hstack([*columns, pairs]))[0]
+        self.columns = np.hstack([*columns, pairs])
+        gram = self.columns.T @ self.columns
+        # of less than a revolution harmonics are collinear
+        gram[np.diag_indices_from(gram)] += _RIDGE * self.samples
+        self.factor = np.linalg.cholesky(gram)
         self.window = np.hanning(self.samples)
         self.frequency = np.fft.rfftfreq(self.samples, self.step)
 
     def split(self, residual: ChannelResidual) -> Split:
         """Split one channel of the run."""
         values = residual.normalised[: self.samples]
-        parts = self.basis.T @ values
-        between = values - self.basis @ parts
+        parts = solve_triangular(self.factor, self.columns.T @ values, lower=True)
+        amplitudes = solve_triangular(self.factor, parts, lower=True, trans="T")
+        between = values - self.columns @ amplitudes
         density = self._density(between)
         return Split(
             self.orders,

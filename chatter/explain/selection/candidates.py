@@ -3,35 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from typing import NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
 
 from chatter.explain.criteria import (
     EQUAL,
+    FINISHED,
     FITTED_IN_FULL,
-    FOLLOWED_STARTS,
     MOST_EFFECTS,
+    PROMISING,
     SIMPLE_ENOUGH,
 )
 from chatter.explain.effects.effect import Effect
 from chatter.explain.effects.effect_list import candidates, rank
-from chatter.explain.fitting import WORKERS, Fit, Parameter
+from chatter.explain.fitting import Fit
 from chatter.explain.measurement import Run
 from chatter.explain.selection.evidence import log_evidence
+from chatter.explain.selection.linearised_step import LinearisedStep, linearised
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.significance import is_significant
-from chatter.explain.selection.split import Split
+from chatter.explain.selection.split import Split, split_runs
 
 Progress = Callable[[str, float], None]
 
-#: finite difference and fractions of a linearised step, in units of a parameter's size
-_DIFFERENCE, _FRACTIONS = 0.05, (1.0, 0.5, 0.2)
-#: weight of a linearised step on parameters without a prior, which keeps it finite
-_WEAK_PRIOR = 1e-3
 #: share of the progress of a stage that the linearised steps take
 _LINEARISED_SHARE = 0.7
 
@@ -61,30 +54,58 @@ class Stage:
         return self.tried[0]
 
 
-class LinearisedStep(NamedTuple):
-    """Where a linearised step of a candidate leads."""
-
-    cost: float
-    values: dict[str, float]
-    jacobian: NDArray[np.float64]
-
-
 def stage_of(problem: Problem, now: Fit, split: Split, progress: Progress, number: int) -> Stage:
     """Try every effect beside those of a problem; `number` is that of the stage, for progress."""
     added = {effect.name for effect in problem.effects}
     effects = [one for one in candidates(problem.measurement) if one.name not in added]
+    screened, base, runs = _screening(problem, now, split)
     steps: list[tuple[Effect, LinearisedStep]] = []
     for index, effect in enumerate(effects):
         share = _LINEARISED_SHARE * index / len(effects)
         progress(f"looking at {effect.name}", (number + share) / (MOST_EFFECTS + 1))
-        steps.append((effect, linearised(problem, effect, now, split.fitted)))
+        steps.append((effect, linearised(screened, effect, base, runs)))
     chosen = _chosen(problem, steps)
+    hopeful = [entry for entry in chosen if _may_be_significant(problem, entry[1], base)]
+    # one at the least, so that the report can say how far nothing helps
+    chosen = hopeful or chosen[:1]
     tried = []
     for index, (effect, step) in enumerate(chosen):
         share = _LINEARISED_SHARE + (1.0 - _LINEARISED_SHARE) * index / len(chosen)
         progress(f"fitting {effect.name}", (number + share) / (MOST_EFFECTS + 1))
-        tried.append(fitted(problem, effect, split, step.values, step.jacobian))
-    return stage_with(problem, now, split, tried)
+        tried.append(_roughly_fitted(problem, effect, split, step))
+    return stage_with(problem, now, split, _finished(problem, now, split, tried))
+
+
+def _screening(problem: Problem, now: Fit, split: Split) -> tuple[Problem, Fit, tuple[Run, ...]]:
+    """Problem, fit and runs for fitting as predicted to rank candidates by."""
+    measurement = problem.kind.screening(problem.measurement)
+    if measurement is problem.measurement:
+        return problem, now, split.fitted
+    screened, runs = replace(problem, measurement=measurement), split_runs(measurement.runs).fitted
+    return screened, replace(now, residuals=screened.residuals(now.by_name, runs)), runs
+
+
+def _finished(
+    problem: Problem, now: Fit, split: Split, tried: Sequence[Candidate]
+) -> list[Candidate]:
+    """Candidates that were fitted roughly, the best ones in full."""
+    most = max((now.cost - one.fit.cost for one in tried), default=0.0)
+    fixed, share = problem.kind.least_gain
+    least = max(FINISHED * most, PROMISING * (fixed + share * now.residuals.size))
+    return [
+        fitted(problem, one.effect, split, one.fit.by_name)
+        if now.cost - one.fit.cost >= least
+        else one
+        for one in tried
+    ]
+
+
+def _roughly_fitted(
+    problem: Problem, effect: Effect, split: Split, step: LinearisedStep
+) -> Candidate:
+    """Fit a problem with an effect added, near enough to rank it."""
+    trial = problem.with_effect(effect)
+    return _candidate(trial, trial.rough_fit(split.fitted, step.values, step.jacobian), split)
 
 
 def stage_with(problem: Problem, now: Fit, split: Split, tried: Sequence[Candidate]) -> Stage:
@@ -102,6 +123,13 @@ def stage_with(problem: Problem, now: Fit, split: Split, tried: Sequence[Candida
         return not significant, -min(one.evidence, best - EQUAL), rank(one.effect)
 
     return replace(stage, tried=tuple(sorted(tried, key=order)))
+
+
+def _may_be_significant(problem: Problem, step: LinearisedStep, now: Fit) -> bool:
+    """Whether a full fit may yet make significant what linearised steps promise or gain."""
+    fixed, share = problem.kind.least_gain
+    gain = max(step.promised, now.cost - step.cost)
+    return gain >= PROMISING * (fixed + share * now.residuals.size)
 
 
 def _chosen(
@@ -122,72 +150,12 @@ def _chosen(
     return chosen
 
 
-def fitted(
-    problem: Problem,
-    effect: Effect,
-    split: Split,
-    start: Mapping[str, float],
-    jacobian: NDArray[np.float64] | None = None,
-) -> Candidate:
+def fitted(problem: Problem, effect: Effect, split: Split, start: Mapping[str, float]) -> Candidate:
     """Fit a problem with an effect added."""
     trial = problem.with_effect(effect)
-    found = trial.fit(split.fitted, start, jacobian)
+    return _candidate(trial, trial.fit(split.fitted, start), split)
+
+
+def _candidate(trial: Problem, found: Fit, split: Split) -> Candidate:
     holdout = trial.cost(found.by_name, split.holdout)
-    return Candidate(effect, found, holdout, log_evidence(trial, found, split))
-
-
-def linearised(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) -> LinearisedStep:
-    """Best of the linearised steps from every start of an effect.
-
-    The nuisance parameters move along by the Jacobian that is known of them.
-    """
-    trial = problem.with_effect(effect)
-    parameters = trial.parameters()
-    added = parameters[len(now.parameters) :]
-
-    def from_start(start: Mapping[str, float]) -> LinearisedStep:
-        values = {one.name: one.start for one in parameters}
-        values |= now.by_name
-        values |= {f"{effect.name}.{key}": value for key, value in start.items()}
-        return _one_step(trial, added, values, now, runs)
-
-    with ThreadPoolExecutor(WORKERS) as pool:
-        steps = list(pool.map(from_start, effect.starts(problem.measurement)))
-        steps.sort(key=lambda step: step.cost)
-        followed = pool.map(
-            lambda step: _one_step(trial, added, step.values, now, runs), steps[:FOLLOWED_STARTS]
-        )
-        return min([*followed, steps[0]], key=lambda step: step.cost)
-
-
-def _one_step(
-    trial: Problem,
-    added: Sequence[Parameter],
-    values: dict[str, float],
-    now: Fit,
-    runs: Sequence[Run],
-) -> LinearisedStep:
-    residual = trial.residuals(values, runs)
-    columns = []
-    for one in added:
-        step = _DIFFERENCE * one.size
-        if values[one.name] + step > one.upper:
-            step = -step
-        moved = trial.residuals({**values, one.name: values[one.name] + step}, runs)
-        columns.append((moved - residual) / (step / one.size))
-    jacobian = np.column_stack([now.jacobian, *columns])
-    weight = [1.0] * len(now.parameters) + [1.0 if one.prior else _WEAK_PRIOR for one in added]
-    normal = jacobian.T @ jacobian + np.diag(weight)
-    step = -np.linalg.solve(normal, jacobian.T @ residual)
-    everything = [*now.parameters, *added]
-    for fraction in _FRACTIONS:
-        moved = {
-            one.name: float(
-                np.clip(values[one.name] + fraction * change * one.size, one.lower, one.upper)
-            )
-            for one, change in zip(everything, step, strict=True)
-        }
-        cost = trial.cost(moved, runs)
-        if cost < residual @ residual:
-            return LinearisedStep(cost, moved, jacobian)
-    return LinearisedStep(float(residual @ residual), values, jacobian)
+    return Candidate(trial.effects[-1], found, holdout, log_evidence(trial, found, split))

@@ -18,15 +18,9 @@ from chatter.explain.criteria import (
 )
 from chatter.explain.fitting import Fit
 from chatter.explain.measurement import Run
-from chatter.explain.selection.candidates import (
-    Progress,
-    Stage,
-    fitted,
-    linearised,
-    stage_of,
-    stage_with,
-)
+from chatter.explain.selection.candidates import Progress, Stage, fitted, stage_of, stage_with
 from chatter.explain.selection.evidence import log_evidence
+from chatter.explain.selection.linearised_step import linearised
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.significance import is_significant
 from chatter.explain.selection.split import Split
@@ -157,7 +151,7 @@ def richer(path: Path, split: Split, progress: Progress) -> Path:
         own = fitted(without, effect, split, path.now.by_name)
         steps = [(one, linearised(without, one, before, split.fitted)) for one in others]
         one, step = min(steps, key=lambda entry: entry[1].cost)
-        member = fitted(without, one, split, step.values, step.jacobian)
+        member = fitted(without, one, split, step.values)
         if member.evidence - own.evidence < LEAST_EVIDENCE or member.holdout > own.holdout:
             continue
         found = stage_with(without, before, split, [member, own])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -13,7 +13,7 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.explain.criteria import IMPOSSIBLE
 from chatter.explain.effects.effect import Effect
-from chatter.explain.fitting import Fit, Parameter, fit
+from chatter.explain.fitting import Fit, Parameter, fit, rough_fit
 from chatter.explain.kinds.kind import Kind, Noise
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.prediction import Predictions
@@ -114,6 +114,21 @@ class Problem:
         From values by name, declared ones where they are not named, with a Jacobian (n, p) near the
         start where it is known.
         """
+        return self._fit_by(fit, runs, start, jacobian)
+
+    def rough_fit(
+        self, runs: Sequence[Run], start: Mapping[str, float], jacobian: NDArray[np.float64]
+    ) -> Fit:
+        """Fit everything to runs near enough to rank candidates by."""
+        return self._fit_by(rough_fit, runs, start, jacobian)
+
+    def _fit_by(
+        self,
+        method: Callable[..., Fit],
+        runs: Sequence[Run],
+        start: Mapping[str, float],
+        jacobian: NDArray[np.float64] | None,
+    ) -> Fit:
         parameters = self.parameters()
         names = [one.name for one in parameters]
         begin = np.array([start.get(one.name, one.start) for one in parameters])
@@ -121,4 +136,4 @@ class Problem:
         def residuals(values: NDArray[np.float64]) -> NDArray[np.float64]:
             return self.residuals(dict(zip(names, values, strict=True)), runs)
 
-        return fit(parameters, residuals, begin, jacobian)
+        return method(parameters, residuals, begin, jacobian)
