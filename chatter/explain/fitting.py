@@ -4,6 +4,7 @@ Parameters are counted in standard deviations of their priors (or in a typical s
 have none) from where they start, so that one step fits all. A prior is one more row of residuals.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -58,6 +59,49 @@ class Parameter:
             return 1.0
         return 1.0 / FREE_SIZES if self.start == 0.0 else 0.0
 
+    def counted(self, value: float) -> float:
+        """Distance of a value from the start, in sizes."""
+        return (value - self.start) / self.size
+
+    def value(self, counted: float) -> float:
+        """Value at a distance from the start that is counted in sizes."""
+        return self.start + counted * self.size
+
+    def per_size(self, counted: float) -> float:  # noqa: ARG002
+        """Change of the value with a size, at a distance from the start."""
+        return self.size
+
+
+@dataclass(frozen=True)
+class KnownByFactor(Parameter):
+    """A positive number that is known by a factor, 1 + size/start, up or down.
+
+    Its logarithm scatters: twice as much as declared is as far as half of it.
+    """
+
+    @property
+    def _unit_of_logarithm(self) -> float:
+        return math.log1p(self.size / self.start)
+
+    def counted(self, value: float) -> float:
+        """Logarithm of the factor, in that of the declared one."""
+        if value <= 0.0:
+            return -math.inf
+        return math.log(value / self.start) / self._unit_of_logarithm
+
+    def value(self, counted: float) -> float:
+        """Value at so many factors."""
+        return self.start * math.exp(counted * self._unit_of_logarithm)
+
+    def per_size(self, counted: float) -> float:
+        """Change of the value with a factor more."""
+        return self.value(counted) * self._unit_of_logarithm
+
+
+def by_factor(one: Parameter) -> KnownByFactor:
+    """Return a positive parameter as known by a factor."""
+    return KnownByFactor(one.name, one.start, one.size, one.lower, one.upper, one.prior, one.unit)
+
 
 @dataclass(frozen=True, eq=False)
 class Fit:
@@ -83,7 +127,7 @@ class Fit:
     def pulls(self) -> dict[str, float]:
         """Standard deviations by which declared values have moved, by name."""
         return {
-            one.name: float((value - one.start) / one.size)
+            one.name: one.counted(float(value))
             for one, value in zip(self.parameters, self.values, strict=True)
             if one.prior
         }

@@ -6,7 +6,8 @@ module              responsibility
 spindle_power       mean power of a cut; readings in another unit, readings out of line
 wear                effect of a tool that wears from test to test, in its forms
 priors              declared values with tolerances that a clear contradiction widens
-fit_to_tests        damped least squares beside such priors
+fit_to_tests        least of likelihood and priors over predictions that are nearly linear
+starts              where fits begin: values drawn from their tolerances
 evidence            how much better one model of the tests is than another
 search_of_tests     which effects the tests ask for
 reliability         whether holdout tests are predicted as well as the scatter allows

@@ -18,7 +18,7 @@ from chatter.explain.selection.problem import Problem
 Array = NDArray[np.float64]
 
 #: degrees of freedom of Student's t
-_FREEDOM = 4.0
+FREEDOM = 4.0
 
 
 def declared(problem: Problem) -> list[Parameter]:
@@ -28,7 +28,7 @@ def declared(problem: Problem) -> list[Parameter]:
 
 def pulls(parameters: Sequence[Parameter], values: Mapping[str, float]) -> Array:
     """Deviations (p,) of values from the declared ones, in their tolerances."""
-    return np.array([(values[one.name] - one.start) / one.size for one in parameters])
+    return np.array([one.counted(values[one.name]) for one in parameters])
 
 
 class Priors:
@@ -41,12 +41,12 @@ class Priors:
 
     def cost(self, scaled: Array) -> float:
         """Twice the lost logarithm of the density at (p,) scaled parameters."""
-        heavy = (_FREEDOM + 1.0) * np.log1p(scaled[self.heavy] ** 2 / _FREEDOM)
+        heavy = (FREEDOM + 1.0) * np.log1p(scaled[self.heavy] ** 2 / FREEDOM)
         return float(np.sum(heavy) + np.sum(scaled[self.normal] ** 2))
 
     def weight(self, scaled: Array) -> Array:
         """Weight (p,) with which the square of each counts as if the density were normal."""
-        heavy = (_FREEDOM + 1.0) / (_FREEDOM + scaled**2)
+        heavy = (FREEDOM + 1.0) / (FREEDOM + scaled**2)
         return np.where(self.heavy, heavy, np.where(self.normal, 1.0, 0.0))
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import scipy.stats
 
 from chatter.explain.cutting_tests.priors import declared, pulls
-from chatter.explain.fitting import Fit
+from chatter.explain.fitting import Fit, Parameter
 from chatter.explain.selection.problem import Problem
 
 #: tolerances by which a single declared value may be off
@@ -24,11 +24,19 @@ _DETERMINED = 0.7
 class Refitted(NamedTuple):
     """A declared value, and what the tests make of it."""
 
-    name: str  # path in the case
-    declared: float  # SI
+    parameter: Parameter
     refitted: float  # SI
-    tolerance: float  # SI
     deviation: float  # standard deviation of the refitted value, SI
+
+    @property
+    def name(self) -> str:
+        """Path in the case."""
+        return self.parameter.name
+
+    @property
+    def declared(self) -> float:
+        """Declared value, SI."""
+        return self.parameter.start
 
     @property
     def change(self) -> float:
@@ -38,7 +46,12 @@ class Refitted(NamedTuple):
     @property
     def pull(self) -> float:
         """Change in tolerances."""
-        return (self.refitted - self.declared) / self.tolerance
+        return self.parameter.counted(self.refitted)
+
+    @property
+    def is_determined(self) -> bool:
+        """Whether the tests alone determine the value."""
+        return self.deviation < _DETERMINED * self.parameter.per_size(self.pull)
 
     @property
     def is_doubtful(self) -> bool:
@@ -54,7 +67,7 @@ class Refitted(NamedTuple):
             "change": self.change,
             "tolerances": self.pull,
             "standard_deviation": self.deviation,
-            "determined_by_tests": self.deviation < _DETERMINED * self.tolerance,
+            "determined_by_tests": self.is_determined,
             "outside_tolerance": self.is_doubtful,
         }
 
@@ -64,10 +77,8 @@ def refitted_values(problem: Problem, fit: Fit) -> list[Refitted]:
     index = {one.name: k for k, one in enumerate(fit.parameters)}
     found = [
         Refitted(
-            one.name,
-            one.start,
+            one,
             float(fit.values[index[one.name]]),
-            one.size,
             float(np.sqrt(max(fit.covariance[index[one.name], index[one.name]], 0.0))),
         )
         for one in declared(problem)

@@ -14,8 +14,6 @@ from chatter.explain.selection.problem import Problem
 
 #: parts of the tests, each predicted from the others
 _FOLDS = 3
-#: steps of a fit to the others, which begins at that to all
-_STEPS = 3
 #: standard deviations by which the lost likelihood of holdout tests may exceed that of scatter
 _MOST = 2.5
 #: scatter of limits that repeated tests may have; beyond it something is missing
@@ -55,7 +53,7 @@ def reliability_of(problem: Problem, fit: Fit) -> Reliability:
     for fold in range(_FOLDS):
         held = [run for run in runs if run.part.start % _FOLDS == fold]
         others = [run for run in runs if run.part.start % _FOLDS != fold]
-        values = fit_tests(problem, others, fit.by_name, _STEPS).by_name
+        values = fit_tests(problem, others, fit.by_name).by_name
         case = problem.case(values)
         for run in held:
             if run.record != "stable":

@@ -10,10 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from chatter.explain.cutting_tests.evidence import penalised_cost, with_scatter
-from chatter.explain.cutting_tests.fit_to_tests import fit_tests
-from chatter.explain.cutting_tests.priors import declared, prior_cost
+from chatter.explain.cutting_tests.fit_to_tests import fit_tests, fit_tests_widely
+from chatter.explain.cutting_tests.priors import prior_cost
 from chatter.explain.cutting_tests.refitted import are_off_together, refitted_values
 from chatter.explain.cutting_tests.reliability import Reliability, reliability_of
+from chatter.explain.cutting_tests.starts import ANNEALED, starts_of_tests
 from chatter.explain.cutting_tests.wear import forms_of_wear
 from chatter.explain.effects.effect import Effect, Values
 from chatter.explain.effects.effect_list import candidates
@@ -35,17 +36,10 @@ _FREQUENCY_SCATTER = 0.03
 _LEAST_GAIN = 6.0
 #: fall of the cost by a linearised step below which an effect is not fitted in full
 _LEAST_HOPED = 2.0
-#: steps of a fit that begins near its end
-_FEW_STEPS = 3
 #: effects added at the most, and candidates fitted in full
 _MOST_EFFECTS, _FITTED = 2, 3
 #: growth of process damping that wear is begun with
 _DAMPING_GROWTHS = (0.0, 1.0, 3.0)
-#: scatters of limits that fits begin with
-_ANNEALED = (0.25, 0.12)
-#: twice the lost logarithm of likelihood a test from which the declared values misfit; starts
-#: drawn from the tolerances then, and those followed
-_MISFIT, _DRAWN, _FOLLOWED = 0.5, 60, 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +118,7 @@ def search_of_tests(
     progress("predicting holdout tests", 0.85)
     accepted = stages[:-1] if len(stages) > len(found.problem.effects) else stages
     split = _split(runs)
-    of_fitted = fit_tests(found.problem, split.fitted, found.fit.by_name, _FEW_STEPS)
+    of_fitted = fit_tests(found.problem, split.fitted, found.fit.by_name)
     reliability = reliability_of(found.problem, found.fit)
     gain = base.beside(found.problem) - found.cost
     return SearchOfTests(
@@ -143,52 +137,24 @@ def search_of_tests(
 
 
 def _refitted(problem: Problem) -> _Found:
-    """Declared values fitted to all tests, from several starts.
-
-    Limits are taken as scattered widely at first: verdicts far from the limit still pull, and a
-    fit does not end beside the first lobe that it meets.
-    """
-    runs, wide = problem.measurement.runs, problem
-    starts = _starts(problem)
-    fits = []
-    for start in starts:
-        values: Mapping[str, float] = start
-        for scatter in _ANNEALED:
-            wide = _scattered(problem, scatter)
-            values = fit_tests(wide, runs, values, _FEW_STEPS).by_name
-        fits.append(fit_tests(problem, runs, values))
-    best = min(fits, key=lambda fit: fit.cost + prior_cost(problem, fit))
-    problem = with_scatter(problem, best.by_name)
-    return _Found(problem, fit_tests(problem, runs, best.by_name))
+    """Declared values fitted to all tests; from other starts too where they lead nowhere."""
+    problem, fit = _fitted_from(problem, {})
+    found = _Found(problem, fit)
+    if _is_at_noise(found):
+        return found
+    others = [_fitted_from(problem, start) for start in starts_of_tests(problem)]
+    alike = [found, *(_Found(problem, fit) for _, fit in others)]
+    best = min(alike, key=lambda one: one.beside(problem))
+    problem = with_scatter(problem, best.fit.by_name)
+    return _Found(problem, fit_tests(problem, problem.measurement.runs, best.fit.by_name))
 
 
-def _scattered(problem: Problem, scatter: float) -> Problem:
-    """Same problem with a scatter of limits."""
-    noise = {
-        name: {"stable": scatter} if "stable" in own else own for name, own in problem.noise.items()
-    }
-    return replace(problem, noise=noise)
-
-
-def _starts(problem: Problem) -> list[dict[str, float]]:
-    """Declared values; and where they misfit, the best of values drawn from their tolerances."""
-    runs, parameters = problem.measurement.runs, declared(problem)
-    wide = _scattered(problem, _ANNEALED[0])
-    random = np.random.default_rng(1)
-    pulls = random.standard_t(4.0, (_DRAWN, len(parameters)))
-    drawn = [
-        {
-            one.name: float(max(one.start + pull * one.size, 0.2 * one.start))
-            for one, pull in zip(parameters, row, strict=True)
-        }
-        for row in pulls
-    ]
-    verdicts = [run for run in runs if run.record == "stable"]
-    count = sum(run.signals["stable"].size for run in verdicts)
-    if wide.cost({}, verdicts) < _MISFIT * count:
-        return [{}]
-    ranked = sorted(drawn, key=lambda one: wide.cost(one, verdicts))
-    return [{}, *ranked[:_FOLLOWED]]
+def _fitted_from(problem: Problem, start: Mapping[str, float]) -> tuple[Problem, Fit]:
+    """Problem with the scatter beside a fit from a start, and the fit beside that scatter."""
+    runs = problem.measurement.runs
+    first = fit_tests_widely(problem, runs, start, ANNEALED)
+    problem = with_scatter(problem, first.by_name)
+    return problem, fit_tests(problem, runs, first.by_name)
 
 
 class MissingModeOfTests(MissingMode):
@@ -237,7 +203,7 @@ def _stage(found: _Found, progress: Progress, number: int) -> tuple[Stage, _Foun
             continue
         progress(f"fitting {effect.name}", 0.25 + 0.35 * number)
         trial = problem.with_effect(effect)
-        tried.append(_Found(trial, fit_tests(trial, runs, start)))
+        tried.append(_Found(trial, fit_tests_widely(trial, runs, start, ANNEALED)))
     tried.sort(key=lambda one: one.cost)
     shown = tuple(
         Candidate(one.problem.effects[-1], one.fit, one.fit.cost, -0.5 * one.cost) for one in tried

@@ -16,7 +16,7 @@ from chatter.explain.cutting_tests.spindle_power import cutting_power, readings
 from chatter.explain.cutting_tests.wear import has_power
 from chatter.explain.data_checks.power import wrong_powers
 from chatter.explain.data_checks.verdicts import wrong_verdicts
-from chatter.explain.fitting import Parameter, with_priors
+from chatter.explain.fitting import Parameter, by_factor, with_priors
 from chatter.explain.kinds.kind import (
     Array,
     Cuts,
@@ -44,8 +44,8 @@ SCATTER, _WRONG = 0.06, 0.02
 FREQUENCY_SCATTER, POWER_SCATTER = 0.01, 0.03
 #: normalised residual of a frequency or a power that none exceeds
 _LARGEST_RESIDUAL = 4.0
-#: tolerance of a declared process damping
-_DAMPING, _DAMPING_TOLERANCE = "process_damping.coefficient", 0.7
+#: tolerance of a declared process damping: a factor of two
+_DAMPING, _DAMPING_TOLERANCE = "process_damping.coefficient", 1.0
 #: runs that the tests are dealt out to, the least of them, and verdicts that are needed
 _PARTS, _LEAST_PARTS, _LEAST_VERDICTS = 6, 3, 12
 #: least probability of an outcome in the scatter of a verdict
@@ -121,7 +121,7 @@ class Stability(Kind):
         tests = tests_of(case, run.signals)
         if run.record == "spindle_power":
             return {"spindle_power": cutting_power(case, tests)}
-        response = self._responses.of(case, tests, run.signals)
+        response = self._responses.of(case, tests)
         if run.record == "chatter_frequency":
             near = run.signals["chatter_frequency"]
             return {"chatter_frequency": response.chatter_frequency(near)}
@@ -169,7 +169,7 @@ class Stability(Kind):
     def nuisance_parameters(self, measurement: Measurement) -> list[Parameter]:
         """Cutting coefficients, modal parameters and process damping.
 
-        Process damping is known to a factor of two at the best, where nothing else is said
+        Process damping is known by a factor, of two at the best where nothing else is said
         (Ahmadi and Altintas 2014, CIRP J. Manuf. Sci. Technol. 7:235).
         """
         coefficients = ("Ktc", "Krc", "Kte") if has_power(measurement) else ("Ktc", "Krc")
@@ -178,7 +178,8 @@ class Stability(Kind):
         if _DAMPING not in declared and "coefficient" not in tolerances:
             tolerances.setdefault(_DAMPING, _DAMPING_TOLERANCE)
         with_damping = replace(measurement, tolerances=tolerances)
-        return with_priors(with_damping, cutting_paths(measurement.case, coefficients))
+        found = with_priors(with_damping, cutting_paths(measurement.case, coefficients))
+        return [by_factor(one) if one.name == _DAMPING else one for one in found]
 
     def cuts(self, measurement: Measurement) -> Cuts:
         """The tests, with their verdicts."""
@@ -238,25 +239,31 @@ def _parts(run: Run, signals: Signals, channel: str, chosen: NDArray[np.bool_]) 
 
 
 class _Responses:
-    """Responses of tests, kept by what of a case they depend on: edge forces are not of it."""
+    """Responses of tests, kept by what of a case they depend on: edge forces are not of it.
+
+    Every test is computed once: those whose chatter frequency is known are some of the verdicts.
+    """
 
     def __init__(self) -> None:
-        self._kept: OrderedDict[tuple[Case, int], tuple[Signals, ResponseOfTests]] = OrderedDict()
+        self._kept: OrderedDict[Case, dict[tuple[float, ...], tuple[float, ...]]] = OrderedDict()
         self._lock = Lock()
 
-    def of(self, case: Case, tests: CuttingTests, signals: Signals) -> ResponseOfTests:
-        """Response of tests, whose signals tell them from others."""
-        key = (_without_edge_forces(case), id(signals))
+    def of(self, case: Case, tests: CuttingTests) -> ResponseOfTests:
+        """Response of tests."""
+        case = _without_edge_forces(case)
+        columns = [tests.speed, tests.depth, *tests.varied.values()]
+        keys = list(zip(*(values.tolist() for values in columns), strict=True))
         with self._lock:
-            if key in self._kept:
-                self._kept.move_to_end(key)
-                return self._kept[key][1]
-        found = response_of_tests(case, tests)
-        with self._lock:
-            self._kept[key] = signals, found
+            known = self._kept.setdefault(case, {})
+            self._kept.move_to_end(case)
             while len(self._kept) > _MOST_KEPT:
                 self._kept.popitem(last=False)
-        return found
+        unknown = np.array([key not in known for key in keys])
+        if unknown.any():
+            parts = response_of_tests(case, tests.at(unknown))
+            found = zip(*(part.tolist() for part in parts), strict=True)
+            known.update(zip((keys[k] for k in np.flatnonzero(unknown)), found, strict=True))
+        return ResponseOfTests(*np.array([known[key] for key in keys]).T)
 
 
 def _without_edge_forces(case: Case) -> Case:

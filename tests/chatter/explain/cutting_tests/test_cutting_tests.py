@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,11 +12,18 @@ import pytest
 from chatter.compile.cutter import force_law, process_damping_of
 from chatter.description.case import Case, loads
 from chatter.explain.checking import checked
+from chatter.explain.cutting_tests.fit_to_tests import SearchOverTests, fit_tests, fit_tests_widely
+from chatter.explain.cutting_tests.priors import prior_cost
 from chatter.explain.cutting_tests.refitted import Refitted, in_words
 from chatter.explain.cutting_tests.spindle_power import cutting_power, readings
 from chatter.explain.cutting_tests.wear import ChippedEdge, GradualWear, SaturatingWear
+from chatter.explain.fitting import Parameter
 from chatter.explain.kinds.kind_list import KINDS
+from chatter.explain.kinds.stability import Stability
+from chatter.explain.measurement import Measurement, Run
 from chatter.explain.measurement_file import read_measurement
+from chatter.explain.prediction import Predictions
+from chatter.explain.selection.problem import Problem
 from chatter.explain.stability_margin import CuttingTests, ResponseOfTests
 
 CASE = """
@@ -115,13 +123,90 @@ def test_chatter_frequency_is_that_of_the_motion_nearest_to_what_was_heard():
 
 
 def test_what_was_refitted_is_told_by_how_much():
-    moved = Refitted("material.Ktc", 8e8, 6.88e8, 8e7, 2e7)
-    kept = Refitted("material.Krc", 2e8, 2.01e8, 2e7, 1e7)
+    moved = Refitted(Parameter("material.Ktc", 8e8, 8e7), 6.88e8, 2e7)
+    kept = Refitted(Parameter("material.Krc", 2e8, 2e7), 2.01e8, 1e7)
     assert moved.change == pytest.approx(-0.14)
     assert in_words([moved, kept]) == (
         "Refitted to the tests: material.Ktc by -14 % (1.4 tolerances)."
     )
     assert "stay as they are" in in_words([kept])
+
+
+def test_process_damping_is_known_by_a_factor_of_two():
+    measurement = Measurement("stability", "", Path(), loads(CASE), ())
+    (damping,) = [
+        one
+        for one in KINDS["stability"].nuisance_parameters(measurement)
+        if one.name == "process_damping.coefficient"
+    ]
+    assert damping.counted(8e4) == pytest.approx(1.0)
+    assert damping.counted(2e4) == pytest.approx(-1.0)
+    assert damping.value(math.log2(3.3)) == pytest.approx(3.3 * 4e4)
+    slope = (damping.value(1.001) - damping.value(0.999)) / 0.002
+    assert damping.per_size(1.0) == pytest.approx(slope, rel=1e-5)
+
+
+class PointedLimit(Stability):
+    """Tests of a cut whose limit over the speed is a peak that bends: known in closed form."""
+
+    def predict(self, case, run):
+        peak, height = case["peak"], case["height"]
+        limit = height * np.exp(-(((run.signals["spindle_speed"] - peak) / 0.3) ** 2))
+        return {"margin": limit / run.signals["axial_depth"] - 1.0}
+
+    def nuisance_parameters(self, measurement):
+        return [Parameter("peak", 2.0, 0.5, 0.1, 9.0), Parameter("height", 1.0, 0.3, 0.01, 9.0)]
+
+
+def pointed(peak: float, height: float) -> Problem:
+    kind, random = PointedLimit(), np.random.default_rng(3)
+    speed, depth = random.uniform(1.0, 3.0, 120), random.uniform(0.05, 1.6, 120)
+    signals = {"spindle_speed": speed, "axial_depth": depth, "stable": np.ones(120)}
+    run = Run("points", {}, signals, record="stable")
+    margin = kind.predict({"peak": peak, "height": height}, run)["margin"]
+    judged = replace(run, signals=signals | {"stable": (margin > 0.0).astype(float)})
+    measurement = Measurement("stability", "", Path(), loads(CASE), (judged,))
+    noise = {"points": {"stable": 0.06}}
+    return DirectProblem(measurement, Predictions(kind), noise)
+
+
+class DirectProblem(Problem):
+    """Problem whose case is its values."""
+
+    def case(self, values):
+        return FrozenValues(values)
+
+
+class FrozenValues(dict):
+    """Values that predictions can be kept by."""
+
+    def __hash__(self):
+        return hash(tuple(self.items()))
+
+
+def test_a_fit_finds_the_limit_between_the_verdicts_with_few_predictions():
+    problem = pointed(1.8, 1.3)
+    runs = problem.measurement.runs
+    fit = fit_tests_widely(problem, runs, {}, (0.25, 0.12))
+    # the nearest verdicts leave the limit open by about as much
+    assert fit.by_name["peak"] == pytest.approx(1.8, abs=0.02)
+    assert fit.by_name["height"] == pytest.approx(1.3, rel=0.05)
+    true = SearchOverTests(problem, runs, {"peak": 1.8, "height": 1.3})
+    assert fit.cost + prior_cost(problem, fit) <= true.cost(true.predicted, true.x) + 1e-6
+    assert problem.predictions.made < 60
+
+
+def test_the_covariance_of_a_fit_is_that_of_the_curvature_of_its_cost():
+    problem = pointed(1.9, 1.1)
+    fit = fit_tests(problem, problem.measurement.runs, {})
+    search = SearchOverTests(problem, problem.measurement.runs, fit.by_name)
+    search.slopes = search.differences()
+    residuals, slopes = search.linearised(search.predicted)
+    step = 1e-5
+    for index, one in enumerate(fit.parameters):
+        moved = dict(fit.by_name) | {one.name: fit.values[index] + step * one.size}
+        there = problem.residuals(moved, problem.measurement.runs)
+        assert slopes[:, index] == pytest.approx((there - residuals) / step, rel=2e-2, abs=2e-2)
 
 
 def test_a_corrupt_power_costs_the_reading_and_not_the_verdict(tmp_path: Path):
