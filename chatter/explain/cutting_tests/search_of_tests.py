@@ -14,7 +14,13 @@ from chatter.explain.cutting_tests.fit_to_tests import fit_tests, fit_tests_wide
 from chatter.explain.cutting_tests.priors import prior_cost
 from chatter.explain.cutting_tests.refitted import are_off_together, refitted_values
 from chatter.explain.cutting_tests.reliability import Reliability, reliability_of
-from chatter.explain.cutting_tests.starts import ANNEALED, starts_of_tests
+from chatter.explain.cutting_tests.starts import (
+    ANNEALED,
+    share_of_work,
+    starts_of_tests,
+    starts_with,
+    wide_cost,
+)
 from chatter.explain.cutting_tests.wear import forms_of_wear
 from chatter.explain.effects.effect import Effect, Values
 from chatter.explain.effects.effect_list import candidates
@@ -34,10 +40,8 @@ _AT_SCATTER = 1.5
 _FREQUENCY_SCATTER = 0.03
 #: fall of the penalised cost from which an effect counts as found: odds of 20 to 1
 _LEAST_GAIN = 6.0
-#: fall of the cost by a linearised step below which an effect is not fitted in full
-_LEAST_HOPED = 2.0
-#: effects added at the most, and candidates fitted in full
-_MOST_EFFECTS, _FITTED = 2, 3
+#: effects added at the most, and members of their families fitted beside the best of each
+_MOST_EFFECTS, _MORE_FITTED = 2, 4
 #: growth of process damping that wear is begun with
 _DAMPING_GROWTHS = (0.0, 1.0, 3.0)
 
@@ -188,19 +192,10 @@ def _is_at_noise(found: _Found) -> bool:
 def _stage(found: _Found, progress: Progress, number: int) -> tuple[Stage, _Found | None]:
     """Try every effect beside those found; the best where the tests ask for it."""
     problem, runs = found.problem, found.problem.measurement.runs
-    named = {effect.name for effect in problem.effects}
-    steps = []
     if _is_at_noise(found):
         return Stage(found.fit, found.fit.cost, -0.5 * found.cost, ()), None
-    for effect in _candidates(problem, found.fit):
-        if effect.name not in named:
-            progress(f"looking at {effect.name}", 0.1 + 0.35 * number)
-            steps.append((_start(problem, effect, found.fit), effect))
-    steps.sort(key=lambda entry: entry[0][0])
     tried = []
-    for (cost, start), effect in steps[:_FITTED]:
-        if found.fit.cost - cost < _LEAST_HOPED:
-            continue
+    for effect, start in _most_promising(found, progress, number):
         progress(f"fitting {effect.name}", 0.25 + 0.35 * number)
         trial = problem.with_effect(effect)
         tried.append(_Found(trial, fit_tests_widely(trial, runs, start, ANNEALED)))
@@ -216,12 +211,37 @@ def _stage(found: _Found, progress: Progress, number: int) -> tuple[Stage, _Foun
     return stage, _Found(again, fit_tests(again, runs, best.fit.by_name))
 
 
+def _most_promising(
+    found: _Found, progress: Progress, number: int
+) -> list[tuple[Effect, Mapping[str, float]]]:
+    """Effects to fit in full, each with its best start: the best of every name, then the others."""
+    problem, now = found.problem, found.fit.by_name
+    named = {effect.name for effect in problem.effects}
+    # those of effects stay; the declared values may have been led astray by what is missing
+    declared_values = {key: value for key, value in now.items() if key.partition(".")[0] in named}
+    ranked: list[tuple[float, Effect, Mapping[str, float]]] = []
+    for effect in _candidates(problem, found.fit):
+        if effect.name in named:
+            continue
+        progress(f"looking at {effect.name}", 0.1 + 0.35 * number)
+        if effect.name == "wear" and _powers(problem):
+            cost, start = _start_of_wear(problem, effect, found.fit)
+        else:
+            (cost, start), *_ = starts_with(problem, effect, [now, declared_values])
+        ranked.append((cost, effect, start))
+    ranked.sort(key=lambda entry: entry[0])
+    best = {entry[1].name: entry for entry in reversed(ranked)}
+    others = [entry for entry in ranked if entry is not best[entry[1].name]]
+    more = round(_MORE_FITTED * share_of_work(problem))
+    return [(effect, start) for _, effect, start in [*best.values(), *others[:more]]]
+
+
 def _candidates(problem: Problem, now: Fit) -> list[Effect]:
     """Effects that may be missing; of wear the simplest form that the power asks for."""
     measurement = problem.measurement
     others = [one for one in candidates(measurement) if one.name not in ("wear", "missing_mode")]
     wear: list[Effect] = list(forms_of_wear(measurement))
-    powers = [run for run in measurement.runs if run.record == "spindle_power"]
+    powers = _powers(problem)
     if wear and powers:
         tried = []
         for form in wear:
@@ -233,14 +253,12 @@ def _candidates(problem: Problem, now: Fit) -> list[Effect]:
     return [*wear, *others, MissingModeOfTests()]
 
 
-def _start(problem: Problem, effect: Effect, now: Fit) -> tuple[float, Mapping[str, float]]:
-    """Cost by a linearised step from the best start of an effect, and the values there."""
-    runs = problem.measurement.runs
-    powers = [run for run in runs if run.record == "spindle_power"]
-    if effect.name != "wear" or not powers:
-        step = linearised(problem, effect, now, runs)
-        return step.cost, step.values
-    # the power shows when and how forces grow, at no cost; the limits, what becomes of damping
+def _start_of_wear(problem: Problem, effect: Effect, now: Fit) -> tuple[float, Mapping[str, float]]:
+    """Cost of the best start of wear, and the values there.
+
+    The power shows when and how forces grow, at no cost; the limits, what becomes of damping.
+    """
+    runs, powers = problem.measurement.runs, _powers(problem)
     step = linearised(problem, effect, fit_tests(problem, powers, now.by_name), powers)
     acting = ("wear.", "material.")
     own = {key: value for key, value in step.values.items() if key.startswith(acting)}
@@ -249,7 +267,11 @@ def _start(problem: Problem, effect: Effect, now: Fit) -> tuple[float, Mapping[s
     if grown in own:
         trials = [now.by_name | own | {grown: growth} for growth in _DAMPING_GROWTHS]
     trial = problem.with_effect(effect)
-    return min(((trial.cost(one, runs), one) for one in trials), key=lambda entry: entry[0])
+    return min(((wide_cost(trial, runs, one), one) for one in trials), key=lambda entry: entry[0])
+
+
+def _powers(problem: Problem) -> list[Run]:
+    return [run for run in problem.measurement.runs if run.record == "spindle_power"]
 
 
 def _split(runs: Sequence[Run]) -> Split:
