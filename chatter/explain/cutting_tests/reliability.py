@@ -15,7 +15,7 @@ from chatter.explain.selection.problem import Problem
 #: parts of the tests, each predicted from the others
 _FOLDS = 3
 #: standard deviations by which the lost likelihood of holdout tests may exceed that of scatter
-_MOST = 2.5
+MOST_LOST_BY_SCATTER = 2.5
 #: scatter of limits that repeated tests may have; beyond it something is missing
 _LARGEST_SCATTER = 0.1
 
@@ -32,7 +32,7 @@ class Reliability(NamedTuple):
     @property
     def is_as_scatter(self) -> bool:
         """Whether the verdicts are predicted as well as the scatter of limits allows."""
-        return self.lost <= self.expected + _MOST * self.deviation
+        return self.lost <= self.expected + MOST_LOST_BY_SCATTER * self.deviation
 
     def summary(self) -> dict[str, float | int | bool]:
         """Entry of explanation.json."""
@@ -44,6 +44,21 @@ class Reliability(NamedTuple):
             "standard_deviation": 0.5 * self.deviation,
             "as_scatter_allows": self.is_as_scatter,
         }
+
+
+class LostByScatter(NamedTuple):
+    """Twice the lost logarithm of likelihood of verdicts that scatter as predicted."""
+
+    mean: float
+    variance: float
+
+
+def lost_by_scatter(stable: np.ndarray) -> LostByScatter:
+    """Twice the logarithm that verdicts lose by scatter, of probabilities (n,) of a stable one."""
+    gain, other = np.log(stable), np.log1p(-stable)
+    mean = -2.0 * float(np.sum(stable * gain + (1.0 - stable) * other))
+    variance = 4.0 * float(np.sum(stable * (1.0 - stable) * (gain - other) ** 2))
+    return LostByScatter(mean, variance)
 
 
 def reliability_of(problem: Problem, fit: Fit) -> Reliability:
@@ -61,10 +76,9 @@ def reliability_of(problem: Problem, fit: Fit) -> Reliability:
             scatter = min(problem.noise[run.name]["stable"], _LARGEST_SCATTER)
             margin = problem.predictions.of(case, run)["margin"]
             stable, verdict = likely_stable(margin, scatter), run.signals["stable"] > 0.5
-            gain, other = np.log(stable), np.log1p(-stable)
-            lost -= 2.0 * float(np.sum(np.where(verdict, gain, other)))
-            expected -= 2.0 * float(np.sum(stable * gain + (1.0 - stable) * other))
-            variance += 4.0 * float(np.sum(stable * (1.0 - stable) * (gain - other) ** 2))
+            lost -= 2.0 * float(np.sum(np.log(np.where(verdict, stable, 1.0 - stable))))
+            own = lost_by_scatter(stable)
+            expected, variance = expected + own.mean, variance + own.variance
             right += int(np.sum((margin > 0.0) == verdict))
             count += verdict.size
     return Reliability(count, right, lost, expected, math.sqrt(variance))

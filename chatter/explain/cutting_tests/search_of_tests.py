@@ -13,7 +13,12 @@ from chatter.explain.cutting_tests.evidence import penalised_cost, with_scatter
 from chatter.explain.cutting_tests.fit_to_tests import fit_tests, fit_tests_widely
 from chatter.explain.cutting_tests.priors import prior_cost
 from chatter.explain.cutting_tests.refitted import are_off_together, refitted_values
-from chatter.explain.cutting_tests.reliability import Reliability, reliability_of
+from chatter.explain.cutting_tests.reliability import (
+    MOST_LOST_BY_SCATTER,
+    Reliability,
+    lost_by_scatter,
+    reliability_of,
+)
 from chatter.explain.cutting_tests.starts import (
     ANNEALED,
     share_of_work,
@@ -103,6 +108,14 @@ class _Found(NamedTuple):
         return penalised_cost(problem, replace(self.fit, residuals=residuals))
 
 
+class _Path(NamedTuple):
+    """Effects added one after the other to declared values that were refitted."""
+
+    base: _Found
+    stages: list[Stage]  # of each effect, and of what was tried beside them in vain
+    found: _Found
+
+
 def search_of_tests(
     measurement: Measurement, predictions: Predictions, progress: Progress
 ) -> Search:
@@ -110,15 +123,13 @@ def search_of_tests(
     kind, runs = predictions.kind, measurement.runs
     problem = Problem(measurement, predictions, {run.name: kind.first_noise(run) for run in runs})
     progress("refitting the declared values", 0.0)
-    base = _refitted(problem)
-    stages: list[Stage] = []
-    found = base
-    for number in range(_MOST_EFFECTS):
-        stage, best = _stage(found, progress, number)
-        stages.append(stage)
-        if best is None:
-            break
-        found = best
+    path = _path_from(_refitted(problem, [{}]), progress)
+    if not _misfit_of(path.found).is_scatter:
+        progress("refitting the declared values from other starts", 0.6)
+        other = _path_from(_refitted(problem, starts_of_tests(problem)), progress)
+        if other.found.beside(path.found.problem) < path.found.cost:
+            path = other
+    base, stages, found = path
     progress("predicting holdout tests", 0.85)
     accepted = stages[:-1] if len(stages) > len(found.problem.effects) else stages
     split = _split(runs)
@@ -140,25 +151,31 @@ def search_of_tests(
     )
 
 
-def _refitted(problem: Problem) -> _Found:
-    """Declared values fitted to all tests; from other starts too where they lead nowhere."""
-    problem, fit = _fitted_from(problem, {})
-    found = _Found(problem, fit)
-    if _is_at_noise(found):
-        return found
-    others = [_fitted_from(problem, start) for start in starts_of_tests(problem)]
-    alike = [found, *(_Found(problem, fit) for _, fit in others)]
-    best = min(alike, key=lambda one: one.beside(problem))
-    problem = with_scatter(problem, best.fit.by_name)
-    return _Found(problem, fit_tests(problem, problem.measurement.runs, best.fit.by_name))
+def _path_from(base: _Found, progress: Progress) -> _Path:
+    """Add effects as long as the evidence of all tests gains."""
+    stages: list[Stage] = []
+    found = base
+    for number in range(_MOST_EFFECTS):
+        stage, best = _stage(found, progress, number)
+        stages.append(stage)
+        if best is None:
+            break
+        found = best
+    return _Path(base, stages, found)
 
 
-def _fitted_from(problem: Problem, start: Mapping[str, float]) -> tuple[Problem, Fit]:
-    """Problem with the scatter beside a fit from a start, and the fit beside that scatter."""
+def _refitted(problem: Problem, starts: Sequence[Mapping[str, float]]) -> _Found:
+    """Declared values fitted to all tests, from the best of several starts."""
+    tried = [_fitted_from(problem, start) for start in starts]
+    return min(tried, key=lambda one: one.beside(problem))
+
+
+def _fitted_from(problem: Problem, start: Mapping[str, float]) -> _Found:
+    """Fit from a start, and the scatter beside it."""
     runs = problem.measurement.runs
     first = fit_tests_widely(problem, runs, start, ANNEALED)
     problem = with_scatter(problem, first.by_name)
-    return problem, fit_tests(problem, runs, first.by_name)
+    return _Found(problem, fit_tests(problem, runs, first.by_name))
 
 
 class MissingModeOfTests(MissingMode):
@@ -169,30 +186,46 @@ class MissingModeOfTests(MissingMode):
         return super().starts(measurement)[::2]
 
 
-def _is_at_noise(found: _Found) -> bool:
-    """Whether no effect can gain enough: tests fit, and no declared value had to move for it."""
+class _Misfit(NamedTuple):
+    """Twice the lost logarithm of likelihood and prior above that of scatter."""
+
+    excess: float
+    deviation: float  # standard deviation of it, where nothing is missing
+    verdicts: int
+
+    @property
+    def is_scatter(self) -> bool:
+        """Whether no more is lost than scatter loses."""
+        return self.excess < MOST_LOST_BY_SCATTER * self.deviation
+
+    @property
+    def leaves_nothing(self) -> bool:
+        """Whether no effect can gain enough: it has a number, which the evidence charges for."""
+        return self.excess < _LEAST_GAIN + math.log(max(self.verdicts, 2))
+
+
+def _misfit_of(found: _Found) -> _Misfit:
     problem, fit = found
     case = problem.case(fit.by_name)
-    expected, count = 0.0, 0
+    expected, variance, count = 0.0, 0.0, 0
     for run in problem.measurement.runs:
         predicted = problem.predictions.of(case, run)
         if run.record != "stable":
-            expected += predicted[str(run.record)].size
+            readings = predicted[str(run.record)].size
+            expected, variance = expected + readings, variance + 2.0 * readings
             continue
         likely = likely_stable(predicted["margin"], problem.noise[run.name]["stable"])
+        own = lost_by_scatter(likely)
+        expected, variance = expected + own.mean, variance + own.variance
         count += likely.size
-        expected -= 2.0 * float(
-            np.sum(likely * np.log(likely) + (1.0 - likely) * np.log1p(-likely))
-        )
-    # an effect has a number at the least, which the evidence charges for
-    least = _LEAST_GAIN + math.log(max(count, 2))
-    return fit.cost - expected + prior_cost(problem, fit) < least
+    excess = fit.cost - expected + prior_cost(problem, fit)
+    return _Misfit(excess, math.sqrt(variance), count)
 
 
 def _stage(found: _Found, progress: Progress, number: int) -> tuple[Stage, _Found | None]:
     """Try every effect beside those found; the best where the tests ask for it."""
     problem, runs = found.problem, found.problem.measurement.runs
-    if _is_at_noise(found):
+    if _misfit_of(found).leaves_nothing:
         return Stage(found.fit, found.fit.cost, -0.5 * found.cost, ()), None
     tried = []
     for effect, start in _most_promising(found, progress, number):
