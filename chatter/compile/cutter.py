@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from chatter.compile.empirical import speed_factor
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from cutting.force.law import ForceLaw
@@ -51,7 +52,7 @@ def cutter_of(case: Case) -> Cutter:
 
 def force_law(case: Case, helix: float) -> ForceLaw:
     """Force law of a case after its cutting time, for an edge inclined by the helix, rad."""
-    law = case.material.force_law(helix)
+    law = case.material.force_law(helix).scaled(speed_factor(case))
     if case.wear is None or case.cut is None:
         return law
     wear, time = case.wear, case.cut.cut_time

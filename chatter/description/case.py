@@ -20,6 +20,7 @@ from chatter.description.patchable import Description
 from chatter.description.renamed import Renamed
 from chatter.description.section import raise_if_any
 from chatter.description.sections.cut import Cut
+from chatter.description.sections.empirical import Empirical, problems_of_terms
 from chatter.description.sections.friction import Friction
 from chatter.description.sections.material import Material
 from chatter.description.sections.optimisation import Optimum, PitchDesign
@@ -76,6 +77,7 @@ class Case(Description):
     contact: Contact | None = None
     wear: Wear | None = None
     dynamometer: Dynamometer | None = None
+    empirical: tuple[Empirical, ...] = ()
     friction: dict[str, Friction] = Field(default_factory=dict)
     axis: Axis | None = None
     simulation: Simulation | None = None
@@ -104,6 +106,7 @@ class Case(Description):
         return [
             *friction_problems(self.structure, self.friction),
             *optimum_problems(self.optimum, self.cut, self.tool),
+            *problems_of_terms(self.empirical),
         ]
 
     def _resolve_files(self, content: dict[str, Any]) -> None:
@@ -128,6 +131,10 @@ class Case(Description):
         """
         given = self.cut.radial_depth
         return self.tool.diameter if given is None else min(given, self.tool.diameter)
+
+    def empirical_over(self, variable: str) -> Empirical | None:
+        """Term learnt over a variable; None where there is none."""
+        return next((one for one in self.empirical if one.over == variable), None)
 
     def machine_file(self) -> MachineFile:
         """Machine of [structure]: the one that was put in its place, else that of the file."""

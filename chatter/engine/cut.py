@@ -17,12 +17,14 @@ from cutting.chip.delayed_chip import DelayedCut, delayed_commit, delayed_forces
 from cutting.chip.discrete_chip import DiscreteCut, discrete_commit, discrete_forces
 from cutting.chip.tool_point import Rotation, ToolPoint, tool_point
 from cutting.compiled import INLINED, by_table, for_each
+from cutting.force.force_factor import ForceFactor, factor_commit, factor_forces
 from cutting.process_damping.contact import ToolContact, contact_commit, contact_forces
 
 #: table -> kernels of its forces and its commit, called with rotation and tool point
 LAWS_AT_TOOL = {
     DelayedCut: (delayed_forces, delayed_commit),
     DiscreteCut: (discrete_forces, discrete_commit),
+    ForceFactor: (factor_forces, factor_commit),
     ToolContact: (contact_forces, contact_commit),
 }
 _forces_at_tool = for_each(by_table({table: kernels[0] for table, kernels in LAWS_AT_TOOL.items()}))

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from chatter.compile.cutter import cutter_of, edge_law, flank_table
+from chatter.compile.empirical import force_factor
 from chatter.compile.machine_cut import MachineCut
 from chatter.description.case import Case
 from chatter.description.errors import InputError
@@ -157,6 +158,8 @@ def _compiled(case: Case, cutter: Cutter, structure: StructureInTime) -> Setup:
     groups: tuple = (CHIPS[chip](case, cutter, slices, structure.modes, resolution, spindle, path),)
     if isinstance(groups[0], DiscreteCut):
         notes += reading_notes(case, cutter, groups[0])
+    factor = force_factor(case, resolution.steps_per_revolution)
+    groups += () if factor is None else (factor,)
     if case.contact is not None:
         contact = case.contact
         groups += (ToolContact(contact.stiffness, contact.damping, contact.full_engagement_share),)

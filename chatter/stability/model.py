@@ -278,6 +278,7 @@ def milling_model(case: Case, structure: Structure | None = None) -> MillingMode
         notes.append(
             "only the matrix-free and time-domain methods include the contact of tool and work"
         )
+    notes += empirical_notes(case)
     if case.structure is not None and any(mode.friction for mode in case.structure.mode):
         notes.append("friction of modes is included in the time domain only")
     model = MillingModel(
@@ -293,6 +294,18 @@ def milling_model(case: Case, structure: Structure | None = None) -> MillingMode
     if not np.any(np.abs(model.averaged_coefficients.mean) > 0.0):
         raise InputError(_no_limit(case, cutter))
     return model
+
+
+def empirical_notes(case: Case) -> list[str]:
+    """How linear methods take terms that were learnt from measurements."""
+    notes = []
+    if case.empirical_over("cutting speed") is not None:
+        notes.append(
+            "the empirical factor of the force is that at the cutting speed of [cut], at all speeds"
+        )
+    if any(case.empirical_over(name) for name in ("spindle angle", "feed distance")):
+        notes.append("empirical factors over angle or feed distance count in the time domain only")
+    return notes
 
 
 def _no_limit(case: Case, cutter: Cutter) -> str:

@@ -78,6 +78,13 @@ class ForceLaw(ABC):
         edge = np.asarray(self.edge) + np.asarray(edge_wear)  # type: ignore[attr-defined]
         return replace(self, cutting=tuple(cutting), edge=tuple(edge))  # type: ignore[call-arg]
 
+    def scaled(self, factor: float) -> ForceLaw:
+        """Law whose force is a multiple of this one's."""
+        if factor == 1.0:
+            return self
+        edge = np.asarray(self.edge) * (factor - 1.0)  # type: ignore[attr-defined]
+        return self.worn(factor - 1.0, tuple(edge))
+
 
 @dataclass(frozen=True)
 class ForceLawEntry:

@@ -29,7 +29,7 @@ from chatter.explain.cutting_tests.starts import (
 from chatter.explain.cutting_tests.wear import forms_of_wear
 from chatter.explain.effects.effect import Effect, Values
 from chatter.explain.effects.effect_list import candidates
-from chatter.explain.effects.structure import MissingMode
+from chatter.explain.effects.missing_mode import MissingMode
 from chatter.explain.fitting import Fit
 from chatter.explain.kinds.stability import likely_stable
 from chatter.explain.measurement import Measurement, Run

@@ -7,6 +7,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
+import numpy as np
+from numpy.typing import NDArray
+
 from chatter.description.case import Case
 from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
@@ -14,6 +17,8 @@ from chatter.explain.measurement import Measurement
 Values = Mapping[str, float]
 #: paths of a case -> values
 Patch = dict[str, Any]
+#: channel -> samples, SI
+Signals = Mapping[str, NDArray[np.float64]]
 #: name -> value and SI unit
 Reported = Mapping[str, tuple[float, str]]
 
@@ -77,6 +82,15 @@ class Effect(ABC):
     def starts(self, measurement: Measurement) -> Sequence[Values]:
         """Start values to try, each by name; those of the parameters where none is named."""
         return ({},)
+
+    def proposed(
+        self, measurement: Measurement, predicted: Mapping[str, Signals]
+    ) -> Sequence[Values]:
+        """Start values that the residual proposes beside those of `starts`; none by default.
+
+        Predicted signals are by run, of the case that leaves the residual.
+        """
+        return ()
 
     def reported(self, values: Values) -> Reported | None:
         """Numbers for the report; None for the parameters themselves."""

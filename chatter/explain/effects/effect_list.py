@@ -22,7 +22,8 @@ from chatter.explain.effects.cutting_force import (
     ProcessDamping,
 )
 from chatter.explain.effects.effect import Effect
-from chatter.explain.effects.structure import Contact, MissingMode, ModeShift, SlideFriction
+from chatter.explain.effects.missing_mode import MissingMode
+from chatter.explain.effects.structure import Contact, ModeShift, SlideFriction
 from chatter.explain.effects.tool import Pitch, Runout, Wear
 from chatter.explain.measurement import Measurement
 

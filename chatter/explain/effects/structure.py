@@ -1,4 +1,4 @@
-"""Effects of the structure: a missing mode, a frequency that shifts, contact, dry friction."""
+"""Effects of the structure: a frequency that shifts, contact, dry friction."""
 
 import math
 
@@ -17,78 +17,15 @@ _TABLE_SPEEDS, _LEAST_FREQUENCY = np.linspace(0.0, 3.0, 61), 0.05
 _TYPICAL_FORCE = 100.0
 
 
-def _stiffness(frequency: float, mass: float) -> float:
+def stiffness_of(frequency: float, mass: float) -> float:
+    """Modal stiffness, N/m, of a frequency, Hz, and a modal mass, kg."""
     return mass * (2.0 * math.pi * frequency) ** 2
 
 
-def _has_modes(measurement: Measurement) -> bool:
+def has_modes(measurement: Measurement) -> bool:
+    """Whether the declared structure is one of modes."""
     case = measurement.case
     return case.structure is not None and bool(case.structure.mode)
-
-
-class MissingMode(Effect):
-    """One mode more, in the plane of the cut."""
-
-    name = "missing_mode"
-    label = "missing mode"
-    help = "the structure has a mode more"
-    kinds = ("milling", "frf", "stability")
-
-    def applies(self, measurement: Measurement) -> bool:
-        """Of a structure of modes."""
-        return _has_modes(measurement)
-
-    def parameters(self, measurement: Measurement) -> list[Parameter]:
-        """Frequency, damping, compliance and direction; no compliance: no mode."""
-        modes = measurement.case.structure.mode
-        compliance = max(1.0 / _stiffness(m.frequency, m.modal_mass) for m in modes)
-        return [
-            free("frequency", 300.0, 5.0, "Hz", lower=5.0, upper=2e4),
-            Parameter("damping", 0.03, 0.01, 0.002, 0.3, True, ""),
-            free("compliance", 0.01 * compliance, 0.02 * compliance, "m/N", lower=0.0),
-            free("angle", 0.0, 0.3, "rad"),
-        ]
-
-    def nothing(self, measurement: Measurement) -> Values:
-        """No compliance."""
-        return {"compliance": 0.0}
-
-    def patch(self, case: Case, values: Values) -> Patch:
-        """Modes of the structure."""
-        known = [mode.model_dump(exclude_none=True) for mode in case.structure.mode]
-        angle = float(values["angle"])
-        added = {
-            "frequency": float(values["frequency"]),
-            "damping": float(values["damping"]),
-            "mass": self._mass(values),
-            "direction": [math.cos(angle), math.sin(angle), 0.0],
-            "side": "tool",
-        }
-        return {"structure.mode": [*known, added]}
-
-    def starts(self, measurement: Measurement) -> list[Values]:
-        """Frequencies around and between the known modes, along x and y."""
-        known = sorted(mode.frequency for mode in measurement.case.structure.mode)
-        frequencies = np.geomspace(0.3 * known[0], 2.5 * known[-1], 14)
-        return [
-            {"frequency": float(frequency), "angle": angle}
-            for angle in (0.0, 0.5 * math.pi)
-            for frequency in frequencies
-        ]
-
-    def reported(self, values: Values) -> Reported:
-        """Frequency, damping, mass, and the direction as an angle from x within half a turn."""
-        return {
-            "frequency": (values["frequency"], "Hz"),
-            "damping": (values["damping"], ""),
-            "mass": (self._mass(values), "kg"),
-            "direction": (values["angle"] % math.pi, "rad"),
-        }
-
-    @staticmethod
-    def _mass(values: Values) -> float:
-        compliance = max(float(values["compliance"]), 1e-16)
-        return 1.0 / compliance / (2.0 * math.pi * float(values["frequency"])) ** 2
 
 
 class ModeShift(Effect):
@@ -113,7 +50,7 @@ class ModeShift(Effect):
     def applies(self, measurement: Measurement) -> bool:
         """Of modes at several speeds."""
         speeds = {str(run.overrides.get("cut.spindle_speed")) for run in measurement.runs}
-        return _has_modes(measurement) and (measurement.kind == "stability" or len(speeds) > 2)
+        return has_modes(measurement) and (measurement.kind == "stability" or len(speeds) > 2)
 
     def parameters(self, measurement: Measurement) -> list[Parameter]:
         """Relative change of the frequencies with the speed: one in a thousand at 1000 rpm."""
@@ -226,12 +163,12 @@ class Contact(Effect):
 
     def applies(self, measurement: Measurement) -> bool:
         """Of modes without a contact."""
-        return _has_modes(measurement) and measurement.case.contact is None
+        return has_modes(measurement) and measurement.case.contact is None
 
     def parameters(self, measurement: Measurement) -> list[Parameter]:
         """Stiffness and damping."""
         modes = measurement.case.structure.mode
-        stiffness = min(_stiffness(m.frequency, m.modal_mass) for m in modes)
+        stiffness = min(stiffness_of(m.frequency, m.modal_mass) for m in modes)
         damping = 0.01 * stiffness / (2.0 * math.pi * min(m.frequency for m in modes))
         return [
             free("stiffness", 0.0, 0.01 * stiffness, "N/m", lower=0.0),
@@ -260,7 +197,7 @@ class SlideFriction(Effect):
 
     def applies(self, measurement: Measurement) -> bool:
         """Of modes without friction."""
-        return _has_modes(measurement) and not any(
+        return has_modes(measurement) and not any(
             mode.friction for mode in measurement.case.structure.mode
         )
 
@@ -277,7 +214,8 @@ class SlideFriction(Effect):
         """Friction laws, and the modes that they act on."""
         given: Patch = {}
         for index in range(len(case.structure.mode)):
-            coulomb = float(values[f"coulomb_{index + 1}"])
+            # a mode that another effect adds has none
+            coulomb = float(values.get(f"coulomb_{index + 1}", 0.0))
             if coulomb > 0.0:
                 given[f"friction.slide_{index + 1}"] = {
                     "law": "smooth-coulomb",

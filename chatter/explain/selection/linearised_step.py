@@ -31,7 +31,7 @@ class LinearisedStep(NamedTuple):
 
 
 def linearised(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) -> LinearisedStep:
-    """Best of the linearised steps from the starts of an effect.
+    """Best of the linearised steps from the starts of an effect and those that are proposed.
 
     The nuisance parameters move along by the Jacobian that is known of them.
     """
@@ -46,12 +46,15 @@ def linearised(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) 
     def from_values(values: dict[str, float]) -> LinearisedStep:
         return _one_step(trial, added, values, now, runs)
 
+    measured = problem.measurement.with_runs(list(runs))
+    predicted = problem.predicted(now.by_name, runs)
     with ThreadPoolExecutor(WORKERS) as pool:
         begins = [values_at(start) for start in effect.starts(problem.measurement)]
         if len(begins) > SCREENED_STARTS:
             costs = list(pool.map(lambda values: _along_secant(trial, values, now, runs), begins))
             ranked = sorted(range(len(begins)), key=lambda index: costs[index])
             begins = [begins[index] for index in ranked[:SCREENED_STARTS]]
+        begins += [values_at(start) for start in effect.proposed(measured, predicted)]
         steps = sorted(pool.map(from_values, begins), key=lambda step: step.cost)
         followed = pool.map(lambda step: from_values(step.values), steps[:FOLLOWED_STARTS])
         best = min([*followed, steps[0]], key=lambda step: step.cost)

@@ -14,7 +14,7 @@ from chatter.description.errors import InputError, RunError
 from chatter.explain.criteria import IMPOSSIBLE
 from chatter.explain.effects.effect import Effect
 from chatter.explain.fitting import Fit, Parameter, fit, rough_fit
-from chatter.explain.kinds.kind import Kind, Noise
+from chatter.explain.kinds.kind import Kind, Noise, Signals
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.prediction import Predictions
 
@@ -78,6 +78,14 @@ class Problem:
             # each upon those before it: modes that one adds are not lost to another
             case = case.patch(effect.patch(case, own[effect.name]))
         return case
+
+    def predicted(self, values: Mapping[str, float], runs: Sequence[Run]) -> Mapping[str, Signals]:
+        """Predicted signals by run; empty where one cannot be predicted."""
+        try:
+            case = self.case(values)
+            return {run.name: self.predictions.of(case, run) for run in runs}
+        except (RunError, InputError):
+            return {}
 
     def residuals(self, values: Mapping[str, float], runs: Sequence[Run]) -> NDArray[np.float64]:
         """Scaled residuals of runs, one after the other."""

@@ -7,7 +7,8 @@ import pytest
 
 from chatter.description.case import loads
 from chatter.explain.effects.effect_list import candidates
-from chatter.explain.effects.structure import MissingMode, ModeShift, ModeShiftOf, ModeShiftOfEach
+from chatter.explain.effects.missing_mode import MissingMode
+from chatter.explain.effects.structure import ModeShift, ModeShiftOf, ModeShiftOfEach
 from chatter.explain.effects.tool import Chipping, Runout, SaturatingWear, Wear
 from chatter.explain.fitting import fit
 from chatter.explain.measurement import Measurement, Run
