@@ -82,6 +82,11 @@ def _print_explanation(result: Explanation) -> None:
     helping = [one["name"] for one in summary.get("partial", ())]
     if helping:
         typer.echo(f"may explain a part, not added: {', '.join(helping)}")
+    for term in summary.get("empirical", ()):
+        typer.echo(
+            f"learnt over the {term['over']}, explains nothing: error of holdout runs "
+            f"{term['holdout_before']:.4g} to {term['holdout_after']:.4g} of the signal"
+        )
     for one in summary["out_of_tolerance"]:
         typer.echo(
             f"out of tolerance: {one['path']} declared {one['declared']:.5g}, refitted "

@@ -75,3 +75,5 @@ DISCRIMINATES = 2.0
 #: lines of a periodogram over which its mean is the spectrum of a residual: few enough that what
 #: is left at one line does not hide what is lost beside it
 SMOOTHED_LINES = 5
+#: empirical terms that are learnt at the most, and candidates of each that are fitted in full
+MOST_TERMS, LEARNT_IN_FULL = 2, 2

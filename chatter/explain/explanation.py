@@ -15,6 +15,7 @@ from chatter.explain.criteria import OUT_OF_TOLERANCE
 from chatter.explain.cutting_tests.report_on_tests import entries_on_tests
 from chatter.explain.cutting_tests.search_of_tests import search_of_tests
 from chatter.explain.data_checks.finding import SignalFinding
+from chatter.explain.empirical.learning import Learnt, learnt
 from chatter.explain.errors import (
     DECLARED,
     REFITTED,
@@ -57,10 +58,12 @@ class Explanation:
     found : Search
     verdict : str
         "explained", "explained-in-part", "nothing-missing" or "unexplained".
-    checks : tuple of SignalFinding
-        What is unusable in the signals, and was excluded.
     predictions : Predictions
         Made so far.
+    checks : tuple of SignalFinding
+        What is unusable in the signals, and was excluded.
+    empirical : Learnt, optional
+        Terms learnt from what no known effect explains.
     """
 
     measurement: Measurement
@@ -68,6 +71,7 @@ class Explanation:
     verdict: str
     predictions: Predictions
     checks: tuple[SignalFinding, ...] = ()
+    empirical: Learnt | None = None
 
     @property
     def adds_effects(self) -> bool:
@@ -76,6 +80,11 @@ class Explanation:
 
     @cached_property
     def case(self) -> Case:
+        """Case refitted, with the effects added that were found, and the terms learnt."""
+        return self._explained if self.empirical is None else self.empirical.case
+
+    @property
+    def _explained(self) -> Case:
         """Case refitted, with the effects added that were found."""
         return self._with_effects if self.adds_effects else self.refitted
 
@@ -110,6 +119,7 @@ class Explanation:
             "verdict": self.verdict,
             "checks": [one.as_dict() for one in self.checks],
             "effects": self._effects(self.found.accepted) if self.adds_effects else [],
+            **self._learnt(),
             # what helps, but is not beyond doubt
             "partial": self._effects(self.helping),
             "out_of_tolerance": self._out_of_tolerance(),
@@ -169,7 +179,7 @@ class Explanation:
         cases = {DECLARED: self.measurement.case, REFITTED: self.refitted}
         added = None
         if self.adds_effects:
-            cases[REPAIRED] = self.case
+            cases[REPAIRED] = self._explained
             nuisance = {one.name for one in self.found.base.parameters}
             values = {key: v for key, v in self.found.final.by_name.items() if key in nuisance}
             added = Added(self.found.effect_names, self.measurement.with_values(values))
@@ -191,10 +201,23 @@ class Explanation:
             "noise_floor": finite_or_none(floor),
             "declared": error(self.measurement.case),
             "before": error(self.refitted),
-            "after": error(self.case),
+            "after": error(self._explained),
             "holdout_before": error(fitted[1], holdout),
             "holdout_after": error(fitted[-1], holdout),
         }
+
+    def _learnt(self) -> dict[str, Any]:
+        """Terms learnt, with the errors before and after; nothing where there are none."""
+        if self.empirical is None:
+            return {}
+        holdout = self.found.split.holdout
+        before = self._of_fitted[REPAIRED if self.adds_effects else REFITTED]
+
+        def error(case: Case) -> float | None:
+            return finite_or_none(overall(errors_of(case, self.predictions, holdout)))
+
+        errors = {"holdout_before": error(before), "holdout_after": error(self.empirical.of_fitted)}
+        return {"empirical": [{**one, **errors} for one in self.empirical.summary()]}
 
     @property
     def helping(self) -> tuple[Stage, ...]:
@@ -396,7 +419,18 @@ def explain(
     prepared, predictions = kind.prepared(usable.measurement), Predictions(kind)
     searched = search_of_tests if kind.name == Stability.name else search
     found = searched(prepared, predictions, progress)
-    return Explanation(prepared, found, verdict_of(found), predictions, usable.findings)
+    verdict = verdict_of(found)
+    terms = None if verdict in (EXPLAINED, NOTHING_MISSING) else _learnt(found, verdict, progress)
+    return Explanation(prepared, found, verdict, predictions, usable.findings, terms)
+
+
+def _learnt(found: Search, verdict: str, progress: Progress) -> Learnt | None:
+    """Terms learnt from what is left beside the effects that are reported."""
+    problem, now = found.problem, found.of_fitted
+    if verdict == UNEXPLAINED and problem.effects:
+        problem = replace(problem, effects=())
+        now = problem.fit(found.split.fitted, found.first.before.by_name)
+    return learnt(problem, now, found.split, progress)
 
 
 def verdict_of(found: Search) -> str:

@@ -18,6 +18,7 @@ from chatter.plots.residual_diagnostics import plot_findings
 
 if TYPE_CHECKING:
     from chatter.explain.comparison import Comparison
+    from chatter.explain.empirical.learning import Learnt
     from chatter.explain.errors import BeforeAfter
     from chatter.explain.explanation import Explanation
     from chatter.explain.kinds.kind import Cuts, Signals
@@ -191,6 +192,26 @@ def plot_errors(errors: BeforeAfter) -> Figure:
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper right", ncols=4, fontsize=8.0, frameon=False)
     panels[0].margins(y=0.15)
+    return figure
+
+
+#: drawn over SI, and unit, by dimension of the variable of a term
+_OVER = {"angle": (180.0 / np.pi, "deg"), "length": (1e3, "mm"), "velocity": (1.0, "m/s")}
+
+
+def plot_terms(learnt: Learnt) -> Figure:
+    """Draw every term that was learnt over its variable."""
+    figure = style.new_figure(4.6 * len(learnt.terms), 3.0)
+    panels = np.atleast_1d(figure.subplots(1, len(learnt.terms)))
+    for axes, term in zip(panels, learnt.terms, strict=True):
+        table = learnt.case.empirical_over(term.over)
+        scale, unit = _OVER[table.DIMENSION[table.over]]
+        axes.plot(scale * np.array(table.at), table.factor or table.force, color=style.BLUE)
+        axes.axhline(1.0 if table.factor else 0.0, color=style.GREY, lw=0.8)
+        within = ", one period" if table.repeats else ""
+        axes.set_xlabel(f"{table.over}{within} [{unit}]")
+        axes.set_ylabel("factor of the cutting force" if table.factor else "force [N]")
+        style.finish(axes)
     return figure
 
 

@@ -12,7 +12,7 @@ from chatter.explain.data_checks.finding import FOLLOWS
 from chatter.explain.explanation import Contradiction, Explanation
 from chatter.explain.residuals.finding import Finding
 from chatter.explain.selection.discriminating_test import in_words
-from chatter.plots.explanation import plot_errors, plot_lobes_before_after
+from chatter.plots.explanation import plot_errors, plot_lobes_before_after, plot_terms
 from chatter.plots.residual_diagnostics import plot_findings
 
 if TYPE_CHECKING:
@@ -38,6 +38,7 @@ def page_of(explanation: Explanation, summary: dict[str, Any], picture: Figure) 
             fit=found.final if explanation.adds_effects else found.base,
             lobes=explanation.lobes,
             residuals=picture,
+            learnt=explanation.empirical,
             follows=FOLLOWS,
             in_words=in_words,
         )
@@ -72,6 +73,7 @@ def _templates() -> Environment:
         "embedded": _embedded,
         "drawn": _drawn,
         "errors_drawn": plot_errors,
+        "terms_drawn": plot_terms,
         "lobes_drawn": plot_lobes_before_after,
     }
     return templates

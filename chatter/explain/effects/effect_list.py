@@ -67,5 +67,6 @@ def candidates(measurement: Measurement) -> list[Effect]:
 
 
 def rank(effect: Effect) -> int:
-    """Place of an effect in the list."""
-    return EFFECTS.names().index(effect.name)
+    """Place of an effect in the list; what is not in it comes last."""
+    names = EFFECTS.names()
+    return names.index(effect.name) if effect.name in names else len(names)

@@ -121,6 +121,10 @@ class Axis(Kind):
         warm_up = case.axis.warm_up
         begun = 0.0 if warm_up is not None and warm_up.begins == "move" else record.begun
         force = law.along(*record.motion, record.step, begun, acceleration)
+        for term in case.empirical:
+            if not term.is_of_a_cut:
+                position, velocity, _ = record.motion
+                force = force + term.value_at(position if term.over == "position" else velocity)
         found = {"force": axis_record.kept(force)}
         if motor is not None:
             ahead = 0.5 * case.axis.backlash * axis_record.driving_flank(_slide_force(law, run))
