@@ -10,7 +10,6 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
-from cutting.chip.tool_point import Rotation, ToolPoint
 from cutting.compiled import INLINED
 
 
@@ -53,5 +52,5 @@ def factor_forces(group, rotation, point):
 
 
 @register_jitable(**INLINED)
-def factor_commit(group: ForceFactor, rotation: Rotation, point: ToolPoint) -> None:
+def factor_commit(group, rotation, point):
     """Remember nothing: the factor has no memory."""

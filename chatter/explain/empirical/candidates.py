@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from chatter.explain.empirical.term import (
-    AxisTable,
     EmpiricalTerm,
     Harmonic,
+    OverPosition,
     OverSpeed,
+    OverVelocity,
     PeriodicTravel,
 )
 from chatter.explain.residuals.regression import best_period
@@ -49,9 +50,9 @@ def _of_moves(residual: Residual) -> list[EmpiricalTerm]:
     runs = residual.measurement.runs
     force = float(np.sqrt(np.mean([np.mean(run.signals["force"] ** 2) for run in runs])))
     terms: list[EmpiricalTerm] = []
-    for over in ("position", "velocity"):
-        values = np.concatenate([run.signals[over] for run in runs])
+    for table in (OverPosition, OverVelocity):
+        values = np.concatenate([run.signals[table.over] for run in runs])
         lowest, highest = float(values.min()), float(values.max())
         if highest > lowest:
-            terms += [AxisTable(over, np.linspace(lowest, highest, n), force) for n in _KNOTS]
+            terms += [table(np.linspace(lowest, highest, n), force) for n in _KNOTS]
     return terms

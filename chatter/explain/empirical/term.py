@@ -146,13 +146,11 @@ class OverSpeed(EmpiricalTerm):
 
 
 class AxisTable(EmpiricalTerm):
-    """Force on an axis, linear between knots over the position or the velocity."""
+    """Force on an axis, linear between knots of its variable."""
 
     kinds = ("axis",)
 
-    def __init__(self, over: str, knots: Array, force: float) -> None:
-        self.name = f"empirical_{over}"
-        self.over = over
+    def __init__(self, knots: Array, force: float) -> None:
         self.knots = knots
         self.shapes = knots.size
         self.typical = force
@@ -166,3 +164,17 @@ class AxisTable(EmpiricalTerm):
         """Force at each knot."""
         force = [float(values[f"force_{k}"]) for k in range(1, self.knots.size + 1)]
         return {"at": self.knots.tolist(), "force": force}
+
+
+class OverPosition(AxisTable):
+    """Force on an axis over its position."""
+
+    name = "empirical_position"
+    over = "position"
+
+
+class OverVelocity(AxisTable):
+    """Force on an axis over its velocity."""
+
+    name = "empirical_velocity"
+    over = "velocity"

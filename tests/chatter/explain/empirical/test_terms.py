@@ -66,7 +66,7 @@ def test_force_over_the_cutting_speed_scales_the_coefficients():
 @pytest.mark.parametrize(
     ("table", "words"),
     [
-        ({"over": "feed distance", "at": ["0 mm", "1 mm"], "factor": [1.0]}, "has 1 entries"),
+        ({"over": "feed distance", "at": ["0 mm", "1 mm"], "factor": [1, 1, 1]}, "has 3 entries"),
         ({"over": "feed distance", "at": ["1 mm", "0 mm"], "factor": [1, 1]}, "does not rise"),
         ({"over": "position", "at": ["0 mm", "1 mm"], "factor": [1, 1]}, "has a force"),
         ({"over": "spindle angle", "at": ["0 mm", "1 mm"], "factor": [1, 1]}, "at"),
