@@ -15,6 +15,7 @@ package      responsibility
 cli, app     the command line, a module a command; the page in the browser
 plots        pictures of results
 report       pages of results
+learning     what a few cutting tests leave possible, and the next cut
 explain      what a measurement says that its declared case lacks
 studies      what-if, uncertainty, optimisation, pitch design; executor, result cache
 stability    `lobes`, `check`: diagrams, pockets, a package for each method
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from chatter.description.machine.machine_file import load_machine as load_machine
     from chatter.explain.comparison import compare as compare
     from chatter.io.shipped_examples import examples as examples
+    from chatter.learning.learn import learn as learn
     from chatter.simulation.simulate import simulate as simulate
     from chatter.simulation.virtual_tests.from_file import frf as frf
     from chatter.simulation.virtual_tests.from_file import move as move
@@ -64,6 +66,7 @@ _PUBLIC = {
     "compare": "chatter.explain.comparison",
     "examples": "chatter.io.shipped_examples",
     "frf": "chatter.simulation.virtual_tests.from_file",
+    "learn": "chatter.learning.learn",
     "load": "chatter.description.case",
     "load_machine": "chatter.description.machine.machine_file",
     "lobes": "chatter.studies.diagram_over_axes",

@@ -34,6 +34,7 @@ COMMANDS = (
     "modes",
     "compare",
     "explain",
+    "learn",
     "frf",
     "move",
     "examples",

@@ -91,7 +91,7 @@ class KnownByFactor(Parameter):
 
     def value(self, counted: float) -> float:
         """Value at so many factors."""
-        return self.start * math.exp(counted * self._unit_of_logarithm)
+        return self.start * np.exp(counted * self._unit_of_logarithm)
 
     def per_size(self, counted: float) -> float:
         """Change of the value with a factor more."""

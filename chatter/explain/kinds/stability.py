@@ -149,8 +149,7 @@ class Stability(Kind):
         left = predicted[channel] - run.signals[channel]
         if channel == "spindle_power":
             left = left / run.signals[channel]
-        scaled = left / noise[channel]
-        return scaled / np.sqrt(1.0 + (scaled / _LARGEST_RESIDUAL) ** 2)
+        return limited(left / noise[channel])
 
     def deviation(
         self, run: Run, channel: str, measured: Array, predicted: Array, level: float | None
@@ -206,6 +205,11 @@ class Stability(Kind):
 def likely_stable(margin: Array, scatter: float) -> Array:
     """Probability of a stable verdict at a margin, by the scatter of limits from test to test."""
     return _WRONG + (1.0 - 2.0 * _WRONG) * scipy.special.ndtr(margin / scatter)
+
+
+def limited(scaled: Array) -> Array:
+    """Residuals of readings in their standard deviations, limited: one reading decides nothing."""
+    return scaled / np.sqrt(1.0 + (scaled / _LARGEST_RESIDUAL) ** 2)
 
 
 def _has(run: Run, column: str) -> bool:

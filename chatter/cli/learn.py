@@ -1,0 +1,103 @@
+"""`chatter learn CASE CUTS`: what cutting tests leave possible, and the next cut to make."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from chatter.cli.options import (
+    Assignments,
+    CaseFile,
+    Json,
+    OutputFolder,
+    output_folder,
+    patched_case,
+)
+from chatter.cli.options_as_one import takes_options
+from chatter.cli.progress import progress_bar
+from chatter.cli.results import present
+from chatter.report.console import print_table
+
+if TYPE_CHECKING:
+    from chatter.learning.learn import Learnt
+
+
+@dataclass(frozen=True)
+class LearnOptions:
+    """What `chatter learn` is given."""
+
+    case: CaseFile
+    cuts: Annotated[
+        Path,
+        typer.Argument(metavar="CUTS", help="CSV table of cutting tests, or a measurement folder."),
+    ]
+    aim: Annotated[
+        str, typer.Option("--aim", help='Of the next cut: "information" or "metal".')
+    ] = "information"
+    risk: Annotated[
+        float, typer.Option("--risk", help="Largest probability of chatter of the next cut.")
+    ] = 0.5
+    particles: Annotated[int, typer.Option("--particles", help="Number of particles.")] = 128
+    seed: Annotated[int, typer.Option("--seed", help="Of the random numbers.")] = 1
+    assignments: Assignments = None
+    out: OutputFolder = None
+    json: Json = False
+
+
+@takes_options
+def learn(options: LearnOptions) -> None:
+    """Learn from a few cutting tests what a case leaves open, and choose the next cut."""
+    description = patched_case(options.case, options.assignments)
+    from chatter.learning.learn import learn as run_learn
+
+    with progress_bar("learning from the tests, %") as bar:
+        found = run_learn(
+            description,
+            options.cuts,
+            aim=options.aim,
+            risk=options.risk,
+            particles=options.particles,
+            seed=options.seed,
+            progress=lambda _, share: bar(round(100 * share), 100),
+        )
+    folder = output_folder(options.out, options.case.stem)
+    present(found, folder, json=options.json, words=_print_learnt)
+
+
+def _print_learnt(found: Learnt) -> None:
+    summary = found.summary()
+    rows = [
+        [
+            one["path"],
+            f"{one['declared']['value']:.5g}",
+            f"{one['declared']['standard_deviation']:.2g}",
+            f"{one['learnt']['median']:.5g}",
+            f"{one['learnt']['standard_deviation']:.2g}",
+        ]
+        for one in summary["parameters"]
+    ]
+    title = f"learnt from {summary['tests']} tests (SI units)"
+    print_table(title, ["value", "declared", "+-", "learnt", "+-"], rows)
+    verdicts = summary["verdicts"]
+    if verdicts["judged"]:
+        typer.echo(
+            f"{verdicts['right']} of {verdicts['judged']} verdicts are as the learnt case has them"
+        )
+    _print_next_cut(summary)
+
+
+def _print_next_cut(summary: dict) -> None:
+    chosen = summary["next_cut"]
+    if chosen is None:
+        typer.echo("no cut of the diagram is within the risk; allow more by --risk")
+        return
+    typer.echo(
+        f"next cut: {chosen['axial_depth_mm']:.3g} mm at {chosen['spindle_speed_rpm']:.0f} rpm, "
+        f"stable with a probability of {chosen['probability_of_stability']:.0%}, expected to give "
+        f"{chosen['expected_information_bit']:.2g} bit"
+    )
+    if summary["nothing_left_to_learn"]:
+        typer.echo("no cut is expected to say more: the limits are as sure as tests scatter")

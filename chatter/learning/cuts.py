@@ -1,0 +1,80 @@
+"""Cutting tests to learn from: a CSV table, or a measurement folder of kind "stability"."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from chatter.description.case import Case
+from chatter.description.errors import InputError
+from chatter.explain.measurement import Measurement, Run
+from chatter.explain.measurement_file import read_measurement
+from chatter.io.signals import read_signals
+
+#: what of a test can be compared with a prediction
+READINGS = ("stable", "chatter_frequency", "spindle_power")
+#: number of the test in the order of its table, as a column of every run
+TEST = "test"
+_NEEDED = ("spindle_speed", "axial_depth")
+
+
+def read_cuts(path: str | Path, case: Case) -> Measurement:
+    """Read cutting tests of a case.
+
+    A table has `spindle_speed`, `axial_depth` and one or more of `stable`, `chatter_frequency` and
+    `spindle_power`, with their units; `feed_per_tooth`, `radial_depth` and `cut_time` where they
+    differ from the case. InputError if it is missing or has no such column.
+    """
+    path = Path(path)
+    if path.is_dir() or path.suffix == ".toml":
+        measurement = read_measurement(path, case)
+        if measurement.kind != "stability":
+            raise InputError(
+                f'{path}: kind: "{measurement.kind}" is none to learn from; "stability" is'
+            )
+    else:
+        run = Run(path.name, {}, read_signals(path))
+        measurement = Measurement("stability", path.stem, path.parent, case, (run,))
+    return with_one_run_a_reading(measurement)
+
+
+def with_one_run_a_reading(measurement: Measurement) -> Measurement:
+    """Measurement with a run of the verdicts, one of the frequencies and one of the powers."""
+    (run,) = measurement.runs
+    where = measurement.folder / run.name
+    for name in _NEEDED:
+        if name not in run.signals:
+            raise InputError(
+                f"{where}: column {name} is missing; there are {', '.join(run.signals)}"
+            )
+        values = run.signals[name]
+        if not np.all(np.isfinite(values) & (values > 0.0)):
+            row = int(np.argmin(np.isfinite(values) & (values > 0.0))) + 1
+            raise InputError(f"{where}: {name}, row {row}: {values[row - 1]:g} is not above 0")
+    numbered = {**run.signals, TEST: np.arange(run.signals[_NEEDED[0]].size, dtype=float)}
+    run = replace(run, signals=numbered)
+    runs = [one for name in READINGS if (one := _of_reading(run, name, measurement)) is not None]
+    if not runs:
+        raise InputError(f"{where}: there is no column {', '.join(READINGS)} to learn from")
+    return measurement.with_runs(runs)
+
+
+def _of_reading(run: Run, name: str, measurement: Measurement) -> Run | None:
+    """Tests that have a reading; None if there is none."""
+    if name not in run.signals:
+        return None
+    signals = dict(run.signals)
+    if name == "spindle_power":
+        signals[name] = signals[name] - (measurement.idle_power or 0.0)
+    usable = np.isfinite(signals[name])
+    if name != "stable":
+        usable &= signals[name] > 0.0
+    if name == "chatter_frequency" and "stable" in signals:
+        # of a stable test it is that of forced vibration
+        usable &= ~(signals["stable"] > 0.5)
+    if not usable.any():
+        return None
+    own = {column: values[usable] for column, values in signals.items()}
+    return replace(run, name=name.replace("_", " "), signals=own, record=name)

@@ -1,0 +1,81 @@
+"""The stability diagram as particles see it: margins, probability of stability, limits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.special
+from numpy.typing import NDArray
+
+from chatter.description.case import Case
+from chatter.description.errors import InputError, RunError
+from chatter.explain.fitting import WORKERS
+from chatter.explain.stability_margin import CuttingTests, response_of_tests
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class ParticleDiagram:
+    """Margins of n particles over speeds and depths.
+
+    Parameters
+    ----------
+    speeds : (s,) array of float
+        rad/s.
+    depths : (d,) array of float
+        Ascending, m.
+    margins : (n, s, d) array of float
+        Share of its depth by which a cut is away from the limit; above 0: stable.
+    scatter : (n,) array of float
+        Of limits from test to test, as a share.
+    """
+
+    speeds: Array
+    depths: Array
+    margins: Array
+    scatter: Array
+
+    @property
+    def probability_of_particles(self) -> Array:
+        """Probability (n, s, d) of a stable cut by each particle."""
+        return scipy.special.ndtr(self.margins / self.scatter[:, None, None])
+
+    @property
+    def probability(self) -> Array:
+        """Probability (s, d) that a cut is stable."""
+        return self.probability_of_particles.mean(axis=0)
+
+    @property
+    def limits(self) -> Array:
+        """Least critical depth (n, s) of every particle, m; inf where none is on the grid."""
+        unstable = self.margins <= 0.0
+        first = unstable.argmax(axis=2)
+        above = np.take_along_axis(self.margins, first[..., None], axis=2)[..., 0]
+        before = np.maximum(first - 1, 0)
+        below = np.take_along_axis(self.margins, before[..., None], axis=2)[..., 0]
+        upper, lower = self.depths[first], self.depths[before]
+        share = np.where(first > 0, below / np.where(first > 0, below - above, 1.0), 0.0)
+        # below the first depth of the grid, margins are shares of the depth
+        crossing = np.where(first > 0, lower + share * (upper - lower), upper * (1.0 + above))
+        return np.where(unstable.any(axis=2), np.maximum(crossing, 0.0), np.inf)
+
+
+def diagram_of(
+    cases: Sequence[Case], scatter: Array, speeds: Array, depths: Array
+) -> ParticleDiagram:
+    """Margins of cases, a particle each, over speeds (s,), rad/s, and depths (d,), m."""
+    tests = CuttingTests(np.repeat(speeds, depths.size), np.tile(depths, speeds.size), {})
+
+    def margins(case: Case) -> Array:
+        try:
+            return response_of_tests(case, tests).margin.reshape(speeds.size, depths.size)
+        except (InputError, RunError):
+            # what cannot be cut is no cut to make
+            return np.full((speeds.size, depths.size), -1.0)
+
+    with ThreadPoolExecutor(WORKERS) as pool:
+        return ParticleDiagram(speeds, depths, np.stack(list(pool.map(margins, cases))), scatter)

@@ -1,0 +1,179 @@
+"""Particles of the posterior: sequential Monte Carlo with tempering and Markov chains.
+
+From the prior, or from what earlier tests left, the likelihood of new tests is brought in by steps
+that keep half of the particles alive (Del Moral, Doucet and Jasra 2006, J. R. Stat. Soc. B
+68:411). After each, particles are drawn by their weights and moved. What costs is the prediction of
+the tests, which is nearly linear in the parameters: chains of many steps over a linear regression
+propose, and one prediction decides (surrogate transition, Liu 2001, Monte Carlo Strategies in
+Scientific Computing, section 9.4.3).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.optimize
+from numpy.typing import NDArray
+
+from chatter.learning.likelihood import Likelihood
+from chatter.learning.prior import Prior
+
+Array = NDArray[np.float64]
+Progress = Callable[[str, float], None]
+
+#: effective share of the particles that a step leaves
+_EFFECTIVE = 0.5
+#: moves that every particle should have accepted after a step, on average, and tries at the most
+_ACCEPTED, _MOST_TRIES = 1.0, 4
+#: steps of a chain over the regression, and their length over the spread of the particles
+_CHAIN, _LENGTH = 40, 1.2
+#: ridge of the regression, as a share of the particles
+_RIDGE = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Particles:
+    """Equally likely particles.
+
+    Parameters
+    ----------
+    prior : Prior
+    counted : (n, p) array of float
+        Values, in sizes of the parameters from where they start.
+    tests : int
+        That they have learnt from, in the order of the table.
+    """
+
+    prior: Prior
+    counted: Array
+    tests: int = 0
+
+    def values(self) -> list[dict[str, float]]:
+        """Values of every particle by name, SI."""
+        return [self.prior.values(row) for row in self.counted]
+
+    def columns(self) -> dict[str, Array]:
+        """Values (n,) of every parameter by name, SI."""
+        rows = self.values()
+        return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
+
+def prior_particles(prior: Prior, count: int, generator: np.random.Generator) -> Particles:
+    """Particles before any test."""
+    return Particles(prior, prior.draws(count, generator))
+
+
+def updated(
+    before: Particles,
+    likelihood: Likelihood,
+    generator: np.random.Generator,
+    progress: Progress = lambda *_: None,
+) -> Particles:
+    """Particles after all tests of a likelihood, from those that its first tests left."""
+    chains = _Chains(before, likelihood, generator)
+    while chains.share < 1.0:
+        chains.step()
+        progress("learning from the tests", chains.share)
+    return Particles(before.prior, chains.counted, 1 + int(likelihood.test.max()))
+
+
+class _Chains:
+    """Particles on their way from the likelihood of the first tests to that of all."""
+
+    def __init__(
+        self, before: Particles, likelihood: Likelihood, generator: np.random.Generator
+    ) -> None:
+        self.prior, self.likelihood, self.generator = before.prior, likelihood, generator
+        self.first = likelihood.test < before.tests
+        self.share = 0.0
+        self.counted = before.counted
+        self.predictions = likelihood.predictions(self.counted)
+
+    def step(self) -> None:
+        """Bring in as much of the likelihood as leaves half of the particles alive; move them."""
+        each = self.likelihood.of(self.predictions, self.counted)
+        change, rest = each[:, ~self.first].sum(axis=1), 1.0 - self.share
+        part = rest
+        if _effective(rest * change) < _EFFECTIVE:
+            part = float(
+                scipy.optimize.brentq(lambda b: _effective(b * change) - _EFFECTIVE, 0.0, rest)
+            )
+        self.share = 1.0 if part == rest else self.share + part
+        chosen = self._drawn(part * change)
+        self.counted, self.predictions = self.counted[chosen], self.predictions[chosen]
+        accepted = 0.0
+        for _ in range(_MOST_TRIES):
+            accepted += self._move()
+            if accepted >= _ACCEPTED:
+                return
+
+    def _drawn(self, log_weight: Array) -> NDArray[np.intp]:
+        """Systematic resampling (Kitagawa 1996, J. Comput. Graph. Stat. 5:1)."""
+        weight = np.exp(log_weight - log_weight.max())
+        count = weight.size
+        ends = np.cumsum(weight / weight.sum())
+        at = (np.arange(count) + self.generator.random()) / count
+        return np.minimum(np.searchsorted(ends, at), count - 1)
+
+    def _density(self, predictions: Array, counted: Array) -> Array:
+        """Logarithm (n,) of what is sampled now: prior, first tests, a share of the others."""
+        prior = self.prior.log_density(counted)
+        each = self.likelihood.of(predictions, counted)
+        tempered = np.where(self.first, 1.0, self.share)
+        return np.where(np.isfinite(prior), prior + each @ tempered, -np.inf)
+
+    def _move(self) -> float:
+        """Move every particle along a chain over the regression; the share that went."""
+        nearly = _Regression(self.counted, self.predictions)
+        trial = self._along_chain(nearly)
+        predictions = self.likelihood.predictions(trial)
+        gain = self._density(predictions, trial) - self._density(self.predictions, self.counted)
+        hoped = self._density(nearly(trial), trial) - self._density(
+            nearly(self.counted), self.counted
+        )
+        goes = np.log(self.generator.random(gain.size)) < gain - hoped
+        self.counted = np.where(goes[:, None], trial, self.counted)
+        self.predictions = np.where(goes[:, None], predictions, self.predictions)
+        return float(goes.mean())
+
+    def _along_chain(self, nearly: _Regression) -> Array:
+        """Particles moved by Metropolis' rule as if the regression were true."""
+        now = self.counted
+        count, size = now.shape
+        spread = np.cov(now, rowvar=False) + 1e-10 * np.eye(size)
+        factor = np.linalg.cholesky(spread).T * (_LENGTH / math.sqrt(size))
+        density = self._density(nearly(now), now)
+        for _ in range(_CHAIN):
+            trial = now + self.generator.standard_normal((count, size)) @ factor
+            then = self._density(nearly(trial), trial)
+            goes = np.log(self.generator.random(count)) < then - density
+            now, density = np.where(goes[:, None], trial, now), np.where(goes, then, density)
+        return now
+
+
+class _Regression:
+    """Predictions as linear functions of the parameters, by those of some particles."""
+
+    def __init__(self, counted: Array, predictions: Array) -> None:
+        self.middle, count = counted.mean(axis=0), len(counted)
+        self.width = counted.std(axis=0) + 1e-12
+        rows = self._rows(counted)
+        ridge = _RIDGE * count * np.eye(rows.shape[1])
+        self.slopes = np.linalg.solve(rows.T @ rows + ridge, rows.T @ predictions)
+
+    def __call__(self, counted: Array) -> Array:
+        """Predictions (n, r) of particles (n, p)."""
+        return self._rows(counted) @ self.slopes
+
+    def _rows(self, counted: Array) -> Array:
+        scaled = (counted - self.middle) / self.width
+        return np.hstack([np.ones((len(scaled), 1)), scaled])
+
+
+def _effective(log_weight: Array) -> float:
+    """Effective share of weighted particles (Kong, Liu and Wong 1994, J. Am. Stat. Assoc. 89)."""
+    weight = np.exp(log_weight - log_weight.max())
+    return float(weight.sum() ** 2 / np.sum(weight**2) / weight.size)

@@ -1,0 +1,91 @@
+"""Values that are uncertain before any cut: Student's t about what is declared, within bounds.
+
+A declared value scatters by its standard deviation as a rule and by much more now and then (Lange,
+Little and Taylor 1989, J. Am. Stat. Assoc. 84:881).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.stats
+from numpy.typing import NDArray
+
+from chatter.explain.cutting_tests.priors import FREEDOM
+from chatter.explain.cutting_tests.wear import GradualWear, cut_times
+from chatter.explain.fitting import KnownByFactor, Parameter
+from chatter.explain.kinds.stability import SCATTER
+from chatter.explain.selection.problem import Problem
+
+Array = NDArray[np.float64]
+
+#: name of the scatter of limits from test to test, which is learnt as well
+SCATTER_OF_LIMITS = "scatter of limits"
+#: a factor of two either way
+_SCATTER_SIZE = SCATTER
+#: growth by wear that would be a gain of sharpness, as a share
+_LEAST_GROWTH = -0.1
+#: probability next to the open ends of a distribution
+_SMALLEST = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Prior:
+    """Independent distributions of p parameters, counted in their sizes from where they start."""
+
+    parameters: tuple[Parameter, ...]
+    lower: Array  # (p,), counted
+    upper: Array  # (p,), counted
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the parameters."""
+        return [one.name for one in self.parameters]
+
+    def draws(self, count: int, generator: np.random.Generator) -> Array:
+        """Particles (n, p), counted: a Latin hypercube (McKay, Beckman and Conover 1979)."""
+        cube = scipy.stats.qmc.LatinHypercube(len(self.parameters), seed=generator).random(count)
+        low, high = (scipy.stats.t.cdf(end, FREEDOM) for end in (self.lower, self.upper))
+        probability = np.clip(low + cube * (high - low), _SMALLEST, 1.0 - _SMALLEST)
+        return scipy.stats.t.ppf(probability, FREEDOM)
+
+    def log_density(self, counted: Array) -> Array:
+        """Logarithm (n,) of the density of particles (n, p), but for a constant."""
+        inside = np.all((counted >= self.lower) & (counted <= self.upper), axis=1)
+        log = -0.5 * (FREEDOM + 1.0) * np.log1p(counted**2 / FREEDOM).sum(axis=1)
+        return np.where(inside, log, -np.inf)
+
+    def values(self, counted: Array) -> dict[str, float]:
+        """Values of one particle (p,) by name, SI."""
+        return {
+            one.name: float(one.value(number))
+            for one, number in zip(self.parameters, counted, strict=True)
+        }
+
+
+def with_wear(problem: Problem) -> Problem:
+    """Problem with wear where tests are at several cutting times and the case declares none."""
+    times = cut_times(problem.measurement)
+    if not times.size:
+        return problem
+    wear = GradualWear(times)
+    return problem.with_effect(wear) if wear.applies(problem.measurement) else problem
+
+
+def prior_of(problem: Problem) -> Prior:
+    """Prior of the declared values of a problem, of its effects, and of the scatter of limits."""
+    parameters = [_with_prior(one) for one in problem.parameters()]
+    parameters.append(KnownByFactor(SCATTER_OF_LIMITS, SCATTER, _SCATTER_SIZE))
+    lower = np.array([_counted(one, one.lower, -np.inf) for one in parameters])
+    upper = np.array([_counted(one, one.upper, np.inf) for one in parameters])
+    return Prior(tuple(parameters), lower, upper)
+
+
+def _with_prior(one: Parameter) -> Parameter:
+    """Parameter of wear with its typical growth as what is known before; others as they are."""
+    return one if one.prior else replace(one, prior=True, lower=max(one.lower, _LEAST_GROWTH))
+
+
+def _counted(one: Parameter, bound: float, unbounded: float) -> float:
+    return one.counted(bound) if np.isfinite(bound) else unbounded
