@@ -386,12 +386,12 @@ def test_a_lost_scheduler_is_told(tmp_path):
 COMMAND = [sys.executable, "-c", "from chatter.cli import main; main()"]
 
 
-class Resumed(Exception):
+class ResumedError(Exception):
     """What a study has before it goes on."""
 
 
 def stop_at_once(before, total):
-    raise Resumed(before, total)
+    raise ResumedError(before, total)
 
 
 @pytest.mark.skipif(os.name != "posix", reason="Ctrl-C is sent as a signal")
@@ -426,6 +426,6 @@ def test_ctrl_c_on_the_command_line_and_resumption(tmp_path):
     kept = len(records_in(out))
     assert kept > 0
     # workers finish in any order: only the whole study is sure to ask for what was kept
-    with pytest.raises(Resumed) as resumed:
+    with pytest.raises(ResumedError) as resumed:
         chatter.uncertainty(chatter.load(case), 3000, speeds=9, folder=out, resumed=stop_at_once)
     assert resumed.value.args == (kept, 3000)
