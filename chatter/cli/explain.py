@@ -54,6 +54,7 @@ def print_checks(checks: list[dict[str, str]]) -> None:
 
 
 def _print_explanation(result: Explanation) -> None:
+    from chatter.explain.next_measurement.proposal import in_words as in_words_next
     from chatter.explain.selection.discriminating_test import in_words
 
     summary = result.summary()
@@ -96,6 +97,8 @@ def _print_explanation(result: Explanation) -> None:
     error = summary["error"]
     rows = [[key, f"{value:.4g}"] for key, value in error.items() if isinstance(value, float)]
     print_table("error, rms over signal", ["", ""], rows)
+    if summary["next_measurement"] is not None:
+        typer.echo(in_words_next(summary["next_measurement"]))
     signature = summary["signature"]
     if signature["refitted"] is None:
         return

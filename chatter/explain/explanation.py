@@ -30,6 +30,7 @@ from chatter.explain.kinds.stability import Stability
 from chatter.explain.lobes_before_after import Added, LobesBeforeAfter, lobes_before_after
 from chatter.explain.measurement import Measurement
 from chatter.explain.measurement_file import read_measurement
+from chatter.explain.next_measurement.proposal import next_measurement
 from chatter.explain.prediction import Predictions
 from chatter.explain.reported_effects import confounded, parameters_of, probability
 from chatter.explain.residuals.residual_dependence import ResidualDependence
@@ -137,6 +138,7 @@ class Explanation:
                 channel: finite_or_none(rms)
                 for channel, rms in self.found.normalised_residual.items()
             },
+            "next_measurement": next_measurement(self.found),
             **entries_on_tests(self.found, self.case),
         }
 
@@ -357,6 +359,7 @@ class Contradiction:
             "candidates": [],
             "signature": {"refitted": None, "repaired_model": None, "residual_dependence": None},
             "normalised_residual": {},
+            "next_measurement": None,
         }
 
     def _error(self) -> float | None:

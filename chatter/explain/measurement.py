@@ -91,6 +91,8 @@ class Measurement:
     tolerances: Mapping[str, float] = field(default_factory=dict)
     idle_power: float | None = None  # that the spindle takes in the air, W
     record: RecordDescription | None = None  # how the runs were recorded, where it is told
+    #: path of the case -> least and largest value, SI, that the next measurement may have
+    limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def in_parts(self, most: int = _PARTS) -> Measurement:
         """Return the measurement with its runs cut in time where there are too few to judge by.

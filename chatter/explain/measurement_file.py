@@ -14,12 +14,24 @@ from chatter.description.formatting import formatted
 from chatter.description.units import QuantityError, parse
 from chatter.explain.kinds.kind_list import KINDS
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.next_measurement.limits import limits_of
 from chatter.explain.records.description import RecordDescription, record_of
 from chatter.io.signals import read_signals
 
 #: keys of [[run]] that are no override of the case
 _OWN_KEYS = ("file", "condition", "direction", "title")
-_KEYS = ("title", "kind", "case", "points", "run", "tolerance", "idle_power", "record", "channels")
+_KEYS = (
+    "title",
+    "kind",
+    "case",
+    "points",
+    "run",
+    "tolerance",
+    "idle_power",
+    "record",
+    "channels",
+    "next_measurement",
+)
 #: sections of a case that a short key of a run may mean
 _SECTIONS = ("cut", "tool", "material", "axis")
 
@@ -63,7 +75,8 @@ def read_measurement(folder: str | Path, case: str | Path | Case | None = None) 
         runs = tuple(_described(path, run, record) for run in runs)
     title = str(content.get("title", path.parent.name))
     idle = _idle_power(path, content)
-    return Measurement(name, title, path.parent, declared, runs, tolerances, idle, record)
+    limits = limits_of(path, content.get("next_measurement", {}), declared)
+    return Measurement(name, title, path.parent, declared, runs, tolerances, idle, record, limits)
 
 
 def _described(path: Path, run: Run, record: RecordDescription) -> Run:

@@ -10,6 +10,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from chatter.explain.data_checks.finding import FOLLOWS
 from chatter.explain.explanation import Contradiction, Explanation
+from chatter.explain.next_measurement.proposal import in_words as measure_next
 from chatter.explain.residuals.finding import Finding
 from chatter.explain.selection.discriminating_test import in_words
 from chatter.plots.explanation import plot_errors, plot_lobes_before_after, plot_terms
@@ -41,6 +42,7 @@ def page_of(explanation: Explanation, summary: dict[str, Any], picture: Figure) 
             learnt=explanation.empirical,
             follows=FOLLOWS,
             in_words=in_words,
+            measure_next=measure_next(summary["next_measurement"]),
         )
     )
 

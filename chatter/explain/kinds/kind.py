@@ -16,6 +16,7 @@ from chatter.explain.criteria import AT_NOISE, FIRST_NOISE, LEAST_GAIN, LEAST_GA
 from chatter.explain.data_checks.finding import Check, SignalFinding
 from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.next_measurement.information import information_of_signals
 from chatter.explain.residuals.channel_residual import ChannelResidual, white_level
 from chatter.explain.residuals.finding import Finding
 from chatter.explain.residuals.variables import Condition, Form, Measure, Variable
@@ -205,6 +206,12 @@ class Kind(ABC):
     def trials(self, measurement: Measurement, noise: Noise) -> Sequence[Trial]:
         """Measurements that might tell apart cases that fit alike; none by default."""
         return ()
+
+    def information(
+        self, trial: Trial, channel: str, weights: Array, predicted: Sequence[Array]
+    ) -> float:
+        """Information, bit, that a channel of a trial is expected to give of weighted cases."""
+        return information_of_signals(weights, predicted, trial.noise[channel])
 
     def cuts(self, measurement: Measurement) -> Cuts:
         """Cuts to draw among lobes; that of the declared case by default."""

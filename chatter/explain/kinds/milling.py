@@ -171,9 +171,9 @@ class Milling(Kind):
                     components={},
                 )
                 name = path.partition(".")[2].replace("_", " ")
-                words = (
-                    f"a cut like {run.name} with a {name} of {value * factor * scale:.4g} {unit}"
-                )
+                number = value * factor * scale
+                digits = f"{number:.0f}" if unit == "rpm" else f"{number:.3g}"
+                words = f"a cut like {run.name} with a {name} of {digits} {unit}"
                 trials.append(Trial(words, trial, levels))
         return trials
 

@@ -29,6 +29,7 @@ from chatter.explain.kinds.kind import (
 )
 from chatter.explain.kinds.milling import cutting_paths
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.next_measurement.information import information_of_verdicts
 from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.misclassified_tests import misclassified, over_depth, over_speed
 from chatter.explain.stability_margin import (
@@ -188,6 +189,16 @@ class Stability(Kind):
             for name in ("spindle_speed", "axial_depth", "stable")
         )
         return Cuts(speed, depth, stable > 0.5)
+
+    def information(
+        self,
+        trial: Trial,
+        channel: str,
+        weights: Array,
+        predicted: Sequence[Array],
+    ) -> float:
+        """Information, bit, that the verdict of a test is expected to give."""
+        return information_of_verdicts(weights, np.array([float(one[0]) for one in predicted]))
 
     def trials(self, measurement: Measurement, noise: Noise) -> list[Trial]:
         """Verdicts at single points over the speeds and depths that were tested."""
