@@ -55,6 +55,7 @@ def test_example_runs_and_reports(name, effect, numbers, lobes, tmp_path, capsys
     assert all(path.is_file() for path in written)
     summary = json.loads((tmp_path / "explanation.json").read_text())
     assert summary["verdict"] == "explained"
+    assert summary["next_measurement"]["between"][0]["model"] == effect
     (found,) = summary["effects"]
     for key, true in numbers.items():  # as the generator drew them
         assert found["parameters"][key]["value"] == pytest.approx(true, rel=0.05)
