@@ -11,9 +11,13 @@ import typer
 from chatter.cli import options
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
+from chatter.description.assignments import parse_assignments
+from chatter.description.bare_speeds import refuse_bare_speed_assignments
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.path import field_at, parse_path
+from chatter.description.ranges import without_count
+from chatter.description.usual_units import usual_unit
 
 if TYPE_CHECKING:
     from chatter.studies.bifurcation import BifurcationDiagram
@@ -24,10 +28,12 @@ def bifurcation(
     vary: Annotated[
         str,
         typer.Option(
-            "--vary", metavar="PATH=FROM..TO", help='Such as cut.axial_depth="1 mm..4 mm".'
+            "--vary", metavar="PATH=FROM..TO:COUNT", help='Such as cut.axial_depth="1 mm..4 mm:60".'
         ),
     ],
-    count: Annotated[int, typer.Option("--count", help="Number of cuts.")] = 60,
+    count: Annotated[
+        int, typer.Option("--count", help="Number of cuts where the range gives none.")
+    ] = 60,
     assignments: options.Assignments = None,
     out: options.OutputFolder = None,
     json: options.Json = False,
@@ -45,17 +51,23 @@ def bifurcation(
 
 def _range(vary: str, count: int) -> tuple[str, list[float]]:
     path, equals, span = vary.partition("=")
+    span, own = without_count(span)
+    count = count if own is None else own
     low, dots, high = span.partition("..")
     if not (equals and dots and path.strip()):
         raise InputError(
-            f'--vary "{vary}": PATH=FROM..TO is required, such as cut.axial_depth="1 mm..4 mm"'
+            f'--vary "{vary}": PATH=FROM..TO:COUNT is required, such as '
+            'cut.axial_depth="1 mm..4 mm:60"'
         )
     if not 2 <= count <= 100_000:
-        raise InputError(f"--count {count}: a number from 2 to 100000 is required")
+        raise InputError(f"--vary {vary}: a count of {count} is given; 2 to 100000 is required")
     path = path.strip()
     field = field_at(Case, parse_path(path))
     if field is None:
         raise InputError(f"--vary {path}: there is no such quantity in a case")
+    if field.dimension == "angular_speed":
+        for end in (low, high):
+            refuse_bare_speed_assignments(Case, parse_assignments([f"{path}={end}"]), "--vary")
     try:
         ends = [field.read(end.strip().strip('"')) for end in (low, high)]
     except ValueError as error:
@@ -65,10 +77,14 @@ def _range(vary: str, count: int) -> tuple[str, list[float]]:
 
 def _print_onsets(diagram: BifurcationDiagram) -> None:
     """Print every change of verdict along the range."""
-    points = diagram.summary()["points"]
-    typer.echo(f"{points[0]['value']:.6g}: {points[0]['verdict']}")
+    points, unit = diagram.summary()["points"], usual_unit(Case, diagram.path)
+
+    def shown(point: dict) -> str:
+        return f"{point['value'] * unit.factor:.5g} {unit.name}".rstrip()
+
+    typer.echo(f"{shown(points[0])}: {points[0]['verdict']}")
     for before, point in itertools.pairwise(points):
         if point["verdict"] != before["verdict"]:
             frequency = point["chatter_frequency_Hz"]
             at = f" at {frequency:.1f} Hz ({point['bifurcation']})" if frequency else ""
-            typer.echo(f"from {point['value']:.6g}: {point['verdict']}{at}")
+            typer.echo(f"from {shown(point)}: {point['verdict']}{at}")

@@ -1,8 +1,24 @@
-"""`chatter check CASE`: verdict on the operating point, as JSON."""
+"""`chatter check CASE`: verdict on the operating point, in words or as JSON."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
 
 from chatter.cli import options
 from chatter.cli.progress import announce_compilation
-from chatter.report.console import print_json, print_notes, print_written
+from chatter.report.console import print_json, print_line, print_notes, print_table, print_written
+
+if TYPE_CHECKING:
+    from chatter.stability.check import StabilityCheck
+
+#: of `--exit-code`, where the cut chatters
+EXIT_CHATTER = 3
+
+ExitCode = Annotated[
+    bool, typer.Option("--exit-code", help=f"Leave with {EXIT_CHATTER} where the cut chatters.")
+]
 
 
 def check(
@@ -10,7 +26,8 @@ def check(
     assignments: options.Assignments = None,
     method: options.Method = None,
     out: options.OutputFolder = None,
-    json: options.Json = True,  # noqa: ARG001  (the output is JSON either way; scripts pass the option)
+    json: options.Json = False,
+    exit_code: ExitCode = False,
 ) -> None:
     """Judge the operating point of a case: stable or chatter, and the critical depth."""
     description = options.patched_case(case, assignments)
@@ -18,7 +35,18 @@ def check(
 
     announce_compilation()
     result = run_check(description, method)
-    print_json(result.summary())
+    if json:
+        print_json(result.summary())
+    else:
+        _print_verdict(result)
     print_notes(result.notes)
     if out is not None:
         print_written(result.save(out))
+    if exit_code and not result.stable:
+        raise typer.Exit(EXIT_CHATTER)
+
+
+def _print_verdict(result: StabilityCheck) -> None:
+    for line in result.sentences():
+        print_line(line)
+    print_table("", ["quantity", "value"], result.rows())

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, TypeVar
 import typer
 
 from chatter.description.assignments import parse_assignments
+from chatter.description.bare_speeds import refuse_bare_speed_assignments
 from chatter.description.case import Case, load
 from chatter.description.patchable import Description
 from chatter.report.console import print_notes
@@ -58,7 +59,9 @@ def patched_machine(path: Path, assignments: list[str] | None) -> MachineFile:
 
 
 def _patched(described: Described, assignments: list[str] | None) -> Described:
-    patched = described.patch(parse_assignments(assignments)) if assignments else described
+    values = parse_assignments(assignments or [])
+    refuse_bare_speed_assignments(type(described), values)
+    patched = described.patch(values) if values else described
     print_notes(patched.notes)
     return patched
 

@@ -8,12 +8,15 @@ import tomlkit
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
 
+#: takes a key away
+NONE = "none"
+
 
 def parse_assignments(assignments: Sequence[str]) -> dict[str, Any]:
     """Read ``PATH=VALUE`` texts of the command line.
 
-    A value is what TOML makes of it (number, true, list, table, quoted text); anything else is
-    text, so that quantities need no quotes of their own.
+    A value is what TOML makes of it (number, true, list, table, quoted text); ``none`` takes the
+    key away; anything else is text, so that quantities need no quotes of their own.
 
     Raises
     ------
@@ -38,6 +41,8 @@ def parse_assignments(assignments: Sequence[str]) -> dict[str, Any]:
 
 
 def _toml_value(text: str) -> Any:
+    if text == NONE:
+        return None
     try:
         read = tomlkit.parse(f"value = {text}").unwrap()
     except Exception:

@@ -44,6 +44,9 @@ if TYPE_CHECKING:
     from chatter.description.machine.machine_file import MachineFile
 
 
+_MODE, _WIDTH = "cut.mode", "cut.radial_depth"
+
+
 class Case(Description):
     """A tool, a material, a cut and a structure, in SI.
 
@@ -157,7 +160,12 @@ class Case(Description):
         return moved
 
     def patch(self, values: Mapping[str, Any]) -> Case:
-        """Return the case with some values changed, on the same machine; see `Description`."""
+        """Return the case with some values changed, on the same machine; see `Description`.
+
+        A cut that becomes a slot is as wide as the tool.
+        """
+        if values.get(_MODE) == "slot" and self.cut is not None and self.cut.radial_depth:
+            values = {_WIDTH: None, **values}
         patched = super().patch(values)
         named = None if patched.structure is None else patched.structure.machine
         if self._machine is not None and named == self.structure.machine:

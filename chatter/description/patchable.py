@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import tomlkit
 from pydantic import PrivateAttr, ValidationError
 
+from chatter.description.bare_speeds import refuse_bare_speeds
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
 from chatter.description.magnitudes import long_lists
@@ -147,6 +148,7 @@ class Description(Section):
         """
         path = Path(path)
         document = parse_document(read_text(path, cls.NOUN), str(path))
+        refuse_bare_speeds(cls, document.unwrap(), str(path))
         return cls._of_document(document, str(path), path.parent)
 
     @classmethod
@@ -159,7 +161,9 @@ class Description(Section):
             If the text describes nothing; all problems found are in it.
         """
         name = name or cls.NOUN
-        return cls._of_document(parse_document(text, name), name, Path(folder))
+        document = parse_document(text, name)
+        refuse_bare_speeds(cls, document.unwrap(), name)
+        return cls._of_document(document, name, Path(folder))
 
     @classmethod
     def _of_document(cls, document: Any, name: str, folder: Path) -> Self:

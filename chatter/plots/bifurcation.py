@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from chatter.description.case import Case
-from chatter.description.path import field_at, parse_path
-from chatter.description.units import rpm
+from chatter.description.usual_units import usual_unit
 from chatter.plots.style import BLUE, GREY, RED, finish, new_figure
 
 if TYPE_CHECKING:
@@ -17,15 +15,6 @@ if TYPE_CHECKING:
 
     from chatter.studies.bifurcation import BifurcationDiagram
 
-#: dimension -> unit of the axis and factor from SI
-_UNITS = {
-    "length": ("mm", 1e3),
-    "angular_speed": ("rpm", rpm(1.0)),
-    "angle": ("deg", 180.0 / math.pi),
-    "frequency": ("Hz", 1.0),
-    "line_force": ("N/mm", 1e-3),
-    "pressure": ("MPa", 1e-6),
-}
 _COLOURS = {"stable": BLUE, "chatter": RED}
 #: axes of less motion than this share of the other are left out
 _STILL = 1e-3
@@ -33,7 +22,7 @@ _STILL = 1e-3
 
 def plot_bifurcation(diagram: BifurcationDiagram) -> Figure:
     """Plot Poincaré sections of the displacement over the value that varies."""
-    unit, factor = _axis_unit(diagram.path)
+    unit, factor = usual_unit(Case, diagram.path)
     sizes = [
         max(np.abs(point.poincare_section[:, axis]).max(initial=0.0) for point in diagram.points)
         for axis in range(3)
@@ -58,12 +47,9 @@ def plot_bifurcation(diagram: BifurcationDiagram) -> Figure:
         panels[0].plot([], [], linestyle="none", marker=".", color=colour, label=verdict)
     panels[0].legend(frameon=False, fontsize=9, loc="upper left")
     name = diagram.path.split(".")[-1].replace("_", " ")
+    values = [point.value * factor for point in diagram.points]
+    panels[-1].set_xlim(min(values), max(values))
     panels[-1].set_xlabel(f"{name} [{unit}]" if unit else name)
     if diagram.case.title:
         panels[0].set_title(diagram.case.title)
     return figure
-
-
-def _axis_unit(path: str) -> tuple[str, float]:
-    field = field_at(Case, parse_path(path))
-    return _UNITS.get(field.dimension, ("SI", 1.0)) if field else ("", 1.0)

@@ -25,6 +25,9 @@ from chatter.stability.search_range import depths_at_one_speed
 from chatter.stability.stability_method import Multiplier
 from chatter.stability.steady_flank import about_steady_motion
 
+#: bifurcation -> words
+_KINDS = {"hopf": "quasi-periodic", "flip": "period doubling", "fold": "cyclic fold"}
+
 
 @dataclass(frozen=True)
 class StabilityCheck:
@@ -102,9 +105,42 @@ class StabilityCheck:
             "notes": list(self.notes),
         }
 
+    def sentences(self) -> list[str]:
+        """Verdict in words."""
+        cut = self.case.cut
+        point = f"{cut.axial_depth * 1e3:.4g} mm at {rpm(cut.spindle_speed):.6g} rpm"
+        if self.stable:
+            return [f"stable: {point}"]
+        at = f", {self.chatter_frequency:.0f} Hz" if np.isfinite(self.chatter_frequency) else ""
+        return [f"chatter: {point}{at} ({_KINDS[self.bifurcation]})"]
+
+    def rows(self) -> list[list[str]]:
+        """Table of the verdict: what, and how much."""
+        cut, tool = self.case.cut, self.case.tool
+        speed = cut.spindle_speed * tool.diameter / 2.0
+        feed = cut.feed_per_tooth * tool.teeth * cut.spindle_speed / (2.0 * np.pi)
+        return [
+            ["critical depth", _depth(self.critical_depth, self.max_depth)],
+            ["chatter frequency at the limit", _hertz(float(self.limit.chatter_frequency[0]))],
+            ["spectral radius", f"{self.spectral_radius:.4g} (below 1: stable)"],
+            ["cutting speed", f"{60.0 * speed:.4g} m/min"],
+            ["feed rate", f"{60e3 * feed:.4g} mm/min"],
+            ["method", self.method],
+        ]
+
     def save(self, folder: str | Path) -> list[Path]:
         """Write check.json and return its path in a list."""
         return write_results(folder, {"check.json": as_json(self.summary())}, {})
+
+
+def _depth(depth: float, searched: float) -> str:
+    if np.isfinite(depth):
+        return f"{1e3 * depth:.4g} mm"
+    return f"no limit up to {1e3 * searched:.4g} mm"
+
+
+def _hertz(frequency: float) -> str:
+    return f"{frequency:.1f} Hz" if np.isfinite(frequency) else "none"
 
 
 def check(case: Case, method: str | None = None) -> StabilityCheck:

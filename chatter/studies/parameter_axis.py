@@ -1,7 +1,6 @@
 """Axis of a diagram over any path of a case: `PATH=FROM..TO[:COUNT]`, or values of Python."""
 
 import math
-import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -10,6 +9,7 @@ import numpy as np
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
+from chatter.description.ranges import without_count
 from chatter.description.units import rpm, unit_factor
 from chatter.stability.search_range import spindle_speeds
 from chatter.studies.model import field_of, value_of
@@ -17,7 +17,6 @@ from chatter.studies.whatif.variation import Value, Variation, read_variation, v
 
 SPEED_PATH, DEPTH_PATH = "cut.spindle_speed", "cut.axial_depth"
 _MOST_VALUES = 2000
-_COUNT = re.compile(r":\s*([+-]?\d+)\s*$")
 _EXAMPLE = 'such as cut.radial_depth="0.5 mm..10 mm:40"'
 
 #: text of the command line, or a path and its values
@@ -56,9 +55,8 @@ def _read(given: AxisGiven, case: Case, option: str, count: int) -> Variation:
             f"{option} {formatted(given)}: PATH=FROM..TO[:COUNT] is required, {_EXAMPLE}"
         )
     _require_quantity(case, path.strip(), option)
-    wanted = _COUNT.search(span)
-    if wanted:
-        count, span = int(wanted[1]), span[: wanted.start()]
+    span, own = without_count(span)
+    count = count if own is None else own
     if not 2 <= count <= _MOST_VALUES:
         raise InputError(
             f"{option} {path.strip()}: a count of {count} is given; 2 to {_MOST_VALUES} is required"

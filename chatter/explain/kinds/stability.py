@@ -191,11 +191,7 @@ class Stability(Kind):
         return Cuts(speed, depth, stable > 0.5)
 
     def information(
-        self,
-        trial: Trial,
-        channel: str,
-        weights: Array,
-        predicted: Sequence[Array],
+        self, trial: Trial, channel: str, weights: Array, predicted: Sequence[Array]
     ) -> float:
         """Information, bit, that the verdict of a test is expected to give."""
         return information_of_verdicts(weights, np.array([float(one[0]) for one in predicted]))

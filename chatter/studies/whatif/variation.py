@@ -1,22 +1,24 @@
 """Values of a path, as the command line gives them.
 
-``PATH=v1,v2,...``, ``PATH=from..to`` with a count, or ``PATH=+-10%`` about the value that stands.
+``PATH=v1,v2,...``, ``PATH=from..to:count``, or ``PATH=+-10%`` about the value that stands.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from chatter.description.assignments import parse_assignments
+from chatter.description.bare_speeds import refuse_bare_speed_assignments
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted, printable
 from chatter.description.quantities import QuantityField
+from chatter.description.ranges import without_count
 from chatter.description.units import DIMENSIONS, NUMBER, parse, unit_factor
 from chatter.studies.model import PREFIX, field_of, value_of
 
@@ -28,8 +30,6 @@ DEFAULT_COUNT = 5
 _MOST_VALUES = 2000
 _RELATIVE = re.compile(rf"^\s*(?:\+-|\+/-|±)\s*({NUMBER})\s*%\s*$")
 _PLAIN = str.maketrans("", "", '"[]{}')
-#: takes a key away
-_NONE = "none"
 _EXAMPLE = 'such as cut.axial_depth="1 mm, 2 mm" or cut.spindle_speed="3000 rpm..9000 rpm"'
 
 
@@ -63,7 +63,7 @@ class Variation:
 
 
 def read_variation(text: str, model: Model, count: int | None = None) -> Variation:
-    """Read a variation of the command line; a range has `count` values.
+    """Read a variation of the command line; a range has `count` values where it says no other.
 
     InputError if it is none: no path, no values, mixed units.
     """
@@ -84,7 +84,8 @@ def read_variation(text: str, model: Model, count: int | None = None) -> Variati
         raise InputError(f"--vary {path}: a value is empty in {formatted(given)}")
     if len(parts) == 1 and ".." in parts[0] and kind is not None:
         return _range(path, parts[0], kind, count)
-    values = {part: _value(path, part) for part in parts}
+    values = {part: parse_assignments([f"{path}={part}"])[path] for part in parts}
+    _refuse_bare_speeds(path, values.values(), kind)
     _refuse_mixed(path, values, kind)
     return _listed(path, list(values.items()), kind)
 
@@ -115,10 +116,11 @@ def _split(text: str) -> list[str]:
     return [*parts, part.strip()] if text.strip() else []
 
 
-def _value(path: str, text: str) -> Any:
-    if text == _NONE:
-        return None
-    return parse_assignments([f"{path}={text}"])[path]
+def _refuse_bare_speeds(path: str, values: Iterable[Any], kind: QuantityField | None) -> None:
+    """Refuse 14000, which may be meant in rpm or in rad/s."""
+    if kind is not None and kind.dimension == "angular_speed":
+        for value in values:
+            refuse_bare_speed_assignments(Case, {path: value}, "--vary")
 
 
 def _refuse_mixed(path: str, values: Mapping[str, Any], kind: QuantityField | None) -> None:
@@ -181,15 +183,19 @@ def _unit(path: str, given: list[Any], kind: QuantityField | None) -> str:
 
 
 def _range(path: str, text: str, kind: QuantityField, count: int | None) -> Variation:
-    count = DEFAULT_COUNT if count is None else count
+    text, own = without_count(text)
+    count = next(one for one in (own, count, DEFAULT_COUNT) if one is not None)
     if not 2 <= count <= _MOST_VALUES:
-        raise InputError(f"--count {count}: a number from 2 to {_MOST_VALUES} is required")
+        raise InputError(
+            f"--vary {path}: a count of {count} is given; 2 to {_MOST_VALUES} is required"
+        )
     low, _, high = (part.strip().strip('"') for part in text.partition(".."))
     # "1..4 mm" is meant as 1 mm..4 mm
     unit = re.sub(rf"^\s*{NUMBER}", "", high).strip()
     if re.fullmatch(NUMBER, low) and unit:
         low = f"{low} {unit}"
     ends = [end if not re.fullmatch(NUMBER, end) else float(end) for end in (low, high)]
+    _refuse_bare_speeds(path, ends, kind)
     pair = _listed(path, list(zip((low, high), ends, strict=True)), kind)
     first, last = (value.number for value in pair.values)
     values = tuple(
