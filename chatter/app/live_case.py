@@ -20,7 +20,7 @@ from chatter.stability.methods.collocation.varying_speed import LOOSE_FIT
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.registry import chosen_method, fixed_steps
-from chatter.stability.search_range import maximum_depth, spindle_speeds
+from chatter.stability.search_range import beyond_the_cut, maximum_depth, spindle_speeds
 from dynamics.modal.modes import inside_band
 
 #: stage -> speeds, depths of the grid
@@ -97,7 +97,7 @@ class LiveCase:
         limits_of = _coarse_limits if follows else self._method.limits
         curve = limits_of(model, speeds, depths, steps, progress)
         cut = case.cut
-        to_operating = np.linspace(0.0, 1.02 * max(cut.axial_depth, max_depth), depth_count + 1)[1:]
+        to_operating = np.linspace(0.0, beyond_the_cut(case, 1.02 * max_depth), depth_count + 1)[1:]
         at = np.array([cut.spindle_speed])
         operating = limits_of(model, at, to_operating, steps, progress)
         below = int((operating.crossings[0] < cut.axial_depth).sum())

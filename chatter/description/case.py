@@ -10,6 +10,7 @@ from pydantic import Field, PrivateAttr, model_validator
 
 from chatter.description import renamed
 from chatter.description.case_checks import (
+    depth_problems,
     engagement_problems,
     engagement_problems_of_draft,
     friction_problems,
@@ -37,6 +38,7 @@ from chatter.description.sections.process import (
 )
 from chatter.description.sections.structure import StructureSection
 from chatter.description.sections.tool import Tool
+from chatter.description.stated_cut import ALTERNATIVES, with_stated_cut
 from chatter.description.toml_document import move_references
 from chatter.description.toml_editing import Layout
 
@@ -68,6 +70,7 @@ class Case(Description):
             "stiffness": "mass",
             "duration": "revolutions",
             "revolutions": "duration",
+            **ALTERNATIVES,
         },
     )
 
@@ -93,6 +96,11 @@ class Case(Description):
     #: takes the place of the file that structure.machine names; no file holds it
     _machine: Any = PrivateAttr(default=None)
 
+    @model_validator(mode="before")
+    @classmethod
+    def _read_stated_cut(cls, data: Any) -> Any:
+        return with_stated_cut(data)
+
     @model_validator(mode="after")
     def _check_engagement(self) -> Case:
         if self.tool is not None and self.cut is not None:
@@ -107,6 +115,7 @@ class Case(Description):
     def _further_problems(self, data: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
         del data
         return [
+            *depth_problems(self.cut, self.tool),
             *friction_problems(self.structure, self.friction),
             *optimum_problems(self.optimum, self.cut, self.tool),
             *problems_of_terms(self.empirical),

@@ -31,6 +31,17 @@ def engagement_problems(
     return []
 
 
+def depth_problems(cut: Cut | None, tool: Tool | None) -> list[tuple[str, str]]:
+    """Check the axial depth against what the tool can cut.
+
+    Path and sentence of what is wrong are returned.
+    """
+    if cut is None or tool is None or cut.axial_depth <= tool.deepest_cut * (1.0 + 1e-9):
+        return []
+    depth, deepest = f"{cut.axial_depth * 1e3:g} mm", f"{tool.deepest_cut * 1e3:g} mm"
+    return [("cut.axial_depth", f"{depth} is more than tool.{tool.what_limits_depth}, {deepest}")]
+
+
 def engagement_problems_of_draft(data: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Make the same check on a case that has other faults, as far as its values can be read."""
     tool, cut = data.get("tool"), data.get("cut")

@@ -120,7 +120,7 @@ class StabilityCheck:
         speed = cut.spindle_speed * tool.diameter / 2.0
         feed = cut.feed_per_tooth * tool.teeth * cut.spindle_speed / (2.0 * np.pi)
         return [
-            ["critical depth", _depth(self.critical_depth, self.max_depth)],
+            ["critical depth", self._depth()],
             ["chatter frequency at the limit", _hertz(float(self.limit.chatter_frequency[0]))],
             ["spectral radius", f"{self.spectral_radius:.4g} (below 1: stable)"],
             ["cutting speed", f"{60.0 * speed:.4g} m/min"],
@@ -128,15 +128,17 @@ class StabilityCheck:
             ["method", self.method],
         ]
 
+    def _depth(self) -> str:
+        if np.isfinite(self.critical_depth):
+            return f"{1e3 * self.critical_depth:.4g} mm"
+        tool = self.case.tool
+        reached = self.max_depth >= tool.deepest_cut * (1.0 - 1e-9)
+        why = f", tool.{tool.what_limits_depth}" if reached else ""
+        return f"no limit up to {1e3 * self.max_depth:.4g} mm{why}"
+
     def save(self, folder: str | Path) -> list[Path]:
         """Write check.json and return its path in a list."""
         return write_results(folder, {"check.json": as_json(self.summary())}, {})
-
-
-def _depth(depth: float, searched: float) -> str:
-    if np.isfinite(depth):
-        return f"{1e3 * depth:.4g} mm"
-    return f"no limit up to {1e3 * searched:.4g} mm"
 
 
 def _hertz(frequency: float) -> str:

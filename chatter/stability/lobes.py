@@ -17,7 +17,12 @@ from chatter.stability.pockets import find_pockets
 from chatter.stability.reference_speeds import natural_frequencies
 from chatter.stability.registry import chosen_method, fixed_steps, with_radius
 from chatter.stability.resting_friction import notes_on_resting_friction
-from chatter.stability.search_range import axial_depths, maximum_depth, spindle_speeds
+from chatter.stability.search_range import (
+    axial_depths,
+    beyond_the_cut,
+    maximum_depth,
+    spindle_speeds,
+)
 from chatter.stability.stability_method import StabilityMethod
 
 
@@ -103,6 +108,6 @@ def notes_on_tolerance(model: MillingModel, limits: LimitCurve) -> tuple[str, ..
 def _operating_limit(model: MillingModel, method: StabilityMethod, max_depth: float) -> LimitCurve:
     """Limits at the operating speed, searched at least to the operating depth."""
     case = model.case
-    depths = axial_depths(case, max(max_depth, 1.02 * case.cut.axial_depth))
+    depths = axial_depths(case, beyond_the_cut(case, max_depth))
     speeds = np.array([case.cut.spindle_speed])
     return method.limits(model, speeds, depths, fixed_steps(case), no_progress)

@@ -9,6 +9,8 @@ from chatter.description.case import Case
 from chatter.stability.methods.zeroth_order.uniform_pitch import ZeroOrderLimit
 
 _SPEED_COUNT = 400
+#: depth searched over that of the cut, at the least
+_BEYOND = 1.02
 #: depths evaluated for the limit at one speed, and the share of the lowest zeroth-order limit
 #: between them
 _DEPTHS_AT_ONE_SPEED = 200
@@ -31,17 +33,22 @@ def spindle_speeds(case: Case) -> Array:
 
 
 def maximum_depth(case: Case, zero_order: ZeroOrderLimit) -> float:
-    """Depth to which limits are searched, m."""
+    """Depth to which limits are searched, m: no deeper than the tool can cut."""
     wanted = case.lobes.depths if case.lobes else None
     if wanted is not None:
-        return wanted.to
+        return min(wanted.to, case.tool.deepest_cut)
     candidates = [_MAX_DEPTH_IN_OPERATING_DEPTHS * case.cut.axial_depth]
     if math.isfinite(zero_order.lowest_depth):
         candidates.append(_MAX_DEPTH_IN_LOWEST_LIMITS * zero_order.lowest_depth)
         finite = zero_order.critical_depth[np.isfinite(zero_order.critical_depth)]
         if finite.size:
             candidates.append(min(float(finite.max()), 4.0 * candidates[-1]))
-    return max(candidates)
+    return min(max(candidates), case.tool.deepest_cut)
+
+
+def beyond_the_cut(case: Case, max_depth: float) -> float:
+    """Depth to search that reaches a little beyond the cut, m, as far as the tool can cut."""
+    return min(max(max_depth, _BEYOND * case.cut.axial_depth), case.tool.deepest_cut)
 
 
 def axial_depths(case: Case, max_depth: float) -> Array:
@@ -53,7 +60,7 @@ def axial_depths(case: Case, max_depth: float) -> Array:
 
 def depths_at_one_speed(case: Case, zero_order: ZeroOrderLimit) -> Array:
     """Depths of the grid for the limit at the operating speed, m, beyond the operating depth."""
-    max_depth = max(maximum_depth(case, zero_order), 1.02 * case.cut.axial_depth)
+    max_depth = beyond_the_cut(case, maximum_depth(case, zero_order))
     spacing = min(
         max_depth / _DEPTHS_AT_ONE_SPEED, _SHARE_OF_LOWEST_LIMIT * zero_order.lowest_depth
     )

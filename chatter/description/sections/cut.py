@@ -11,6 +11,9 @@ from chatter.description.units import rpm
 #: no tooth takes a thicker chip, so that a number meant in mm is not taken for one in m
 LARGEST_FEED = 0.02
 
+#: no edge and no table moves faster, so that m/min is not taken for m/s
+FASTEST_CUT, FASTEST_FEED = 200.0, 5.0
+
 
 class SpeedVariation(Section):
     """Spindle speed that is made to vary around its mean."""
@@ -28,6 +31,12 @@ class Cut(Section):
     mode: Literal["up", "down", "slot"]
     spindle_speed: quantity("angular_speed", above=0.0)
     feed_per_tooth: quantity("length", above=0.0, at_most=LARGEST_FEED)
+    cutting_speed: quantity("velocity", above=0.0, at_most=FASTEST_CUT) | None = Field(
+        None, description="at the diameter of the tool, in place of spindle_speed"
+    )
+    feed_rate: quantity("velocity", above=0.0, at_most=FASTEST_FEED) | None = Field(
+        None, description="of the tool, in place of feed_per_tooth"
+    )
     axial_depth: PositiveLength
     radial_depth: PositiveLength | None = Field(
         None, validate_default=True, description="width of cut; a slot is as wide as the tool"

@@ -106,6 +106,29 @@ class Tool(Section):
         None, description="of the flank; ploughing needs it"
     )
     flank_wear: Length = Field(0.0, description="length of the worn land")
+    flute_length: PositiveLength | None = Field(
+        None, description="of the cutting edges along the axis; no cut is deeper"
+    )
+    stick_out: PositiveLength | None = Field(
+        None, description="of the tool from its holder; no cut is deeper"
+    )
+    maximum_depth: PositiveLength | None = Field(
+        None, description="axial depth that its maker allows; no cut is deeper"
+    )
+
+    @property
+    def deepest_cut(self) -> float:
+        """Axial depth that no cut exceeds, m; inf where the tool says nothing."""
+        return min((depth for depth, _ in self._depths()), default=math.inf)
+
+    @property
+    def what_limits_depth(self) -> str:
+        """Key of the shortest of the lengths that limit the depth; empty where there is none."""
+        return min(self._depths(), default=(0.0, ""))[1]
+
+    def _depths(self) -> list[tuple[float, str]]:
+        keys = ("flute_length", "stick_out", "maximum_depth")
+        return [(length, key) for key in keys if (length := getattr(self, key)) is not None]
 
     @field_validator("helix", "pitch", "radial_error", "axial_error")
     @classmethod

@@ -114,10 +114,12 @@ def _speeds(case: Case, section: Optimum, margin: float) -> Array:
 
 
 def _depths(case: Case, section: Optimum, model: MillingModel) -> Array:
+    deepest = case.tool.deepest_cut
     if section.depths is not None and section.depths.from_ is not None:
-        return np.linspace(section.depths.from_, section.depths.to, section.depths.count)
+        ends = min(section.depths.from_, deepest), min(section.depths.to, deepest)
+        return np.linspace(*ends, section.depths.count)
     if section.depths is not None:
-        max_depth, count = section.depths.to, section.depths.count
+        max_depth, count = min(section.depths.to, deepest), section.depths.count
     else:
         max_depth, count = maximum_depth(case, zero_order_of(model, spindle_speeds(case))), _DEPTHS
     even = np.linspace(0.0, max_depth, count + 1)[1:]

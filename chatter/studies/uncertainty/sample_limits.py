@@ -11,7 +11,7 @@ from chatter.description.progress import no_progress
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import milling_model
 from chatter.stability.registry import chosen_method, fixed_steps
-from chatter.stability.search_range import maximum_depth, spindle_speeds
+from chatter.stability.search_range import beyond_the_cut, maximum_depth, spindle_speeds
 
 #: depths of the grid on which limits are bracketed
 _DEPTHS = 32
@@ -55,7 +55,7 @@ def sample_limits(case: Case, grid: Grid, method: str | None) -> SampleLimits:
     cut = case.cut
     depths = grid.depths
     if cut.axial_depth > 0.98 * depths[-1]:
-        depths = np.linspace(0.0, 1.02 * cut.axial_depth, _DEPTHS + 1)[1:]
+        depths = np.linspace(0.0, beyond_the_cut(case, 0.0), _DEPTHS + 1)[1:]
     operating = chosen.limits(model, np.array([cut.spindle_speed]), depths, steps, no_progress)
     below = operating.crossings[0] < cut.axial_depth
     return SampleLimits(

@@ -1,0 +1,70 @@
+"""Speed and feed of a cut as a shop states them: m/min at the edge, mm/min of the table.
+
+cutting_speed = pi D n, feed_rate = f_z z n (ISO 3002-1; n in revolutions per time).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from chatter.description.path import field_at
+from chatter.description.sections.cut import Cut
+from chatter.description.sections.tool import Tool
+
+#: key as a shop states it -> key that it stands for
+STATED = {"cutting_speed": "spindle_speed", "feed_rate": "feed_per_tooth"}
+#: keys of [cut] of which one takes the other away
+ALTERNATIVES = {**STATED, **{own: stated for stated, own in STATED.items()}}
+
+
+def with_stated_cut(data: Any) -> Any:
+    """Content of a case with spindle speed and feed per tooth where [cut] states the others.
+
+    What cannot be read is left for the sections to tell. ValueError with a sentence where both of
+    a pair are given.
+    """
+    if not isinstance(data, Mapping) or not isinstance(data.get("cut"), Mapping):
+        return data
+    cut, tool = dict(data["cut"]), data.get("tool")
+    for stated, own in STATED.items():
+        if cut.get(stated) is None:
+            continue
+        if cut.get(own) is not None:
+            raise ValueError(f"cut.{stated}: cut.{own} is given as well; give one of the two")
+        value = _SOLVED[stated](cut, tool)
+        if value is not None:
+            cut[own] = value
+    return {**data, "cut": cut}
+
+
+def _spindle_speed(cut: Mapping[str, Any], tool: Any) -> float | None:
+    speed, diameter = _read(Cut, cut, "cutting_speed"), _read(Tool, tool, "diameter")
+    return None if speed is None or not diameter else 2.0 * speed / diameter
+
+
+def _feed_per_tooth(cut: Mapping[str, Any], tool: Any) -> float | None:
+    feed, speed = _read(Cut, cut, "feed_rate"), _read(Cut, cut, "spindle_speed")
+    teeth = tool.get("teeth") if isinstance(tool, Mapping) else getattr(tool, "teeth", None)
+    if feed is None or not speed or not isinstance(teeth, int) or teeth < 1:
+        return None
+    return feed * 2.0 * math.pi / (speed * teeth)
+
+
+_SOLVED: dict[str, Callable[[Mapping[str, Any], Any], float | None]] = {
+    "cutting_speed": _spindle_speed,
+    "feed_rate": _feed_per_tooth,
+}
+
+
+def _read(section: type, table: Any, key: str) -> float | None:
+    given = table.get(key) if isinstance(table, Mapping) else getattr(table, key, None)
+    field = field_at(section, (key,))
+    if given is None or field is None:
+        return None
+    try:
+        return field.read(given)
+    except ValueError:
+        # told by the section itself
+        return None
