@@ -60,7 +60,7 @@ def _range(vary: str, count: int) -> tuple[str, list[float]]:
             'cut.axial_depth="1 mm..4 mm:60"'
         )
     if not 2 <= count <= 100_000:
-        raise InputError(f"--vary {vary}: a count of {count} is given; 2 to 100000 is required")
+        raise InputError(f"--count {count}: a number from 2 to 100000 is required")
     path = path.strip()
     field = field_at(Case, parse_path(path))
     if field is None:
@@ -79,12 +79,12 @@ def _print_onsets(diagram: BifurcationDiagram) -> None:
     """Print every change of verdict along the range."""
     points, unit = diagram.summary()["points"], usual_unit(Case, diagram.path)
 
-    def shown(point: dict) -> str:
+    def value_of(point: dict) -> str:
         return f"{point['value'] * unit.factor:.5g} {unit.name}".rstrip()
 
-    typer.echo(f"{shown(points[0])}: {points[0]['verdict']}")
+    typer.echo(f"{value_of(points[0])}: {points[0]['verdict']}")
     for before, point in itertools.pairwise(points):
         if point["verdict"] != before["verdict"]:
             frequency = point["chatter_frequency_Hz"]
             at = f" at {frequency:.1f} Hz ({point['bifurcation']})" if frequency else ""
-            typer.echo(f"from {shown(point)}: {point['verdict']}{at}")
+            typer.echo(f"from {value_of(point)}: {point['verdict']}{at}")

@@ -26,6 +26,16 @@ def refuse_bare_speeds(kind: type[BaseModel], data: Any, name: str) -> None:
         raise InputError(problems)
 
 
+def give_speeds_their_unit(kind: type[BaseModel], document: Any) -> None:
+    """Write bare spindle speeds of a document, which came from Python, with their unit."""
+    for steps, value in list(_numbers(document, ())):
+        if value != 0 and _is_speed(kind, steps):
+            table = document
+            for step in steps[:-1]:
+                table = table[step]
+            table[steps[-1]] = f"{float(value)!r} rad/s"
+
+
 def refuse_bare_speed_assignments(
     kind: type[BaseModel], values: Mapping[str, Any], option: str = "--set"
 ) -> None:

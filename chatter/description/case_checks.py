@@ -36,10 +36,10 @@ def depth_problems(cut: Cut | None, tool: Tool | None) -> list[tuple[str, str]]:
 
     Path and sentence of what is wrong are returned.
     """
-    if cut is None or tool is None or cut.axial_depth <= tool.deepest_cut * (1.0 + 1e-9):
+    if cut is None or tool is None or cut.axial_depth <= tool.depth_that_tool_allows * (1.0 + 1e-9):
         return []
-    depth, deepest = f"{cut.axial_depth * 1e3:g} mm", f"{tool.deepest_cut * 1e3:g} mm"
-    return [("cut.axial_depth", f"{depth} is more than tool.{tool.what_limits_depth}, {deepest}")]
+    depth, deepest = f"{cut.axial_depth * 1e3:g} mm", f"{tool.depth_that_tool_allows * 1e3:g} mm"
+    return [("cut.axial_depth", f"{depth} is more than tool.{tool.limiting_length}, {deepest}")]
 
 
 def engagement_problems_of_draft(data: Mapping[str, Any]) -> list[tuple[str, str]]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import tomlkit
 from pydantic import PrivateAttr, ValidationError
 
-from chatter.description.bare_speeds import refuse_bare_speeds
+from chatter.description.bare_speeds import give_speeds_their_unit, refuse_bare_speeds
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
 from chatter.description.magnitudes import long_lists
@@ -317,11 +317,14 @@ class Description(Section):
     def _source(self) -> Any:
         """Document with all that was set in it."""
         if self._document is None:
-            return tomlkit.item(copied(self._plain()))
+            content = copied(self._plain())
+            give_speeds_their_unit(type(self), content)
+            return tomlkit.item(content)
         # only what is written needs it, so that patches do not carry its comments about
         document = copy.deepcopy(self._document)
         for steps, value in self._edits:
             set_value(document, steps, copied(value), self.LAYOUT)
+        give_speeds_their_unit(type(self), document)
         return document
 
     @classmethod

@@ -175,7 +175,7 @@ def unit_factor(unit: str, dimension: str) -> float:
     As in ``"N*s/m"``, empty for a bare number, for a key of `DIMENSIONS`. QuantityError if the unit
     is unknown or of another dimension; the message does not name the value.
     """
-    if not unit:
+    if not unit or unit == DIMENSIONS[dimension].unit:
         return 1.0
     parsed, one = _parsed_unit(unit, dimension)
     if dimension == "number":

@@ -132,8 +132,8 @@ class StabilityCheck:
         if np.isfinite(self.critical_depth):
             return f"{1e3 * self.critical_depth:.4g} mm"
         tool = self.case.tool
-        reached = self.max_depth >= tool.deepest_cut * (1.0 - 1e-9)
-        why = f", tool.{tool.what_limits_depth}" if reached else ""
+        reached = self.max_depth >= tool.depth_that_tool_allows * (1.0 - 1e-9)
+        why = f", tool.{tool.limiting_length}" if reached else ""
         return f"no limit up to {1e3 * self.max_depth:.4g} mm{why}"
 
     def save(self, folder: str | Path) -> list[Path]:

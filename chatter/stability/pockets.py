@@ -13,7 +13,7 @@ SPEED_MARGIN = 0.015
 
 
 class Pocket(NamedTuple):
-    """A index worth using.
+    """A speed and depth worth using.
 
     The depth is the lowest limit within the speed margin on either side, less the depth margin.
     """

@@ -36,19 +36,19 @@ def maximum_depth(case: Case, zero_order: ZeroOrderLimit) -> float:
     """Depth to which limits are searched, m: no deeper than the tool can cut."""
     wanted = case.lobes.depths if case.lobes else None
     if wanted is not None:
-        return min(wanted.to, case.tool.deepest_cut)
+        return min(wanted.to, case.tool.depth_that_tool_allows)
     candidates = [_MAX_DEPTH_IN_OPERATING_DEPTHS * case.cut.axial_depth]
     if math.isfinite(zero_order.lowest_depth):
         candidates.append(_MAX_DEPTH_IN_LOWEST_LIMITS * zero_order.lowest_depth)
         finite = zero_order.critical_depth[np.isfinite(zero_order.critical_depth)]
         if finite.size:
             candidates.append(min(float(finite.max()), 4.0 * candidates[-1]))
-    return min(max(candidates), case.tool.deepest_cut)
+    return min(max(candidates), case.tool.depth_that_tool_allows)
 
 
 def beyond_the_cut(case: Case, max_depth: float) -> float:
     """Depth to search that reaches a little beyond the cut, m, as far as the tool can cut."""
-    return min(max(max_depth, _BEYOND * case.cut.axial_depth), case.tool.deepest_cut)
+    return min(max(max_depth, _BEYOND * case.cut.axial_depth), case.tool.depth_that_tool_allows)
 
 
 def axial_depths(case: Case, max_depth: float) -> Array:

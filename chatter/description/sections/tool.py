@@ -117,12 +117,12 @@ class Tool(Section):
     )
 
     @property
-    def deepest_cut(self) -> float:
+    def depth_that_tool_allows(self) -> float:
         """Axial depth that no cut exceeds, m; inf where the tool says nothing."""
         return min((depth for depth, _ in self._depths()), default=math.inf)
 
     @property
-    def what_limits_depth(self) -> str:
+    def limiting_length(self) -> str:
         """Key of the shortest of the lengths that limit the depth; empty where there is none."""
         return min(self._depths(), default=(0.0, ""))[1]
 

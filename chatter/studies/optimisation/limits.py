@@ -114,7 +114,7 @@ def _speeds(case: Case, section: Optimum, margin: float) -> Array:
 
 
 def _depths(case: Case, section: Optimum, model: MillingModel) -> Array:
-    deepest = case.tool.deepest_cut
+    deepest = case.tool.depth_that_tool_allows
     if section.depths is not None and section.depths.from_ is not None:
         ends = min(section.depths.from_, deepest), min(section.depths.to, deepest)
         return np.linspace(*ends, section.depths.count)

@@ -186,9 +186,7 @@ def _range(path: str, text: str, kind: QuantityField, count: int | None) -> Vari
     text, own = without_count(text)
     count = next(one for one in (own, count, DEFAULT_COUNT) if one is not None)
     if not 2 <= count <= _MOST_VALUES:
-        raise InputError(
-            f"--vary {path}: a count of {count} is given; 2 to {_MOST_VALUES} is required"
-        )
+        raise InputError(f"--count {count}: a number from 2 to {_MOST_VALUES} is required")
     low, _, high = (part.strip().strip('"') for part in text.partition(".."))
     # "1..4 mm" is meant as 1 mm..4 mm
     unit = re.sub(rf"^\s*{NUMBER}", "", high).strip()

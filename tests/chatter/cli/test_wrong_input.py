@@ -36,7 +36,7 @@ def write(tmp_path, text, name="case.toml"):
 
 
 def test_the_good_case_is_good(tmp_path):
-    result = run("check", write(tmp_path, GOOD))
+    result = run("check", write(tmp_path, GOOD), "--json")
     assert result.exit_code == 0, result.output
     summary = json.loads(result.stdout)
     # validation 2.3: first limit 2.104690 mm, a flip

@@ -174,7 +174,7 @@ def test_one_clear_sentence(old, new, expected):
             'material.name: "Al7075-T6" has coefficients of the linear law, not of law = "oblique"',
         ),
         (
-            "[lobes]\nspeeds = { from = 1, to = 2, count = 20000 }\n"
+            '[lobes]\nspeeds = { from = "1 rpm", to = "2 rpm", count = 20000 }\n'
             "depths = { to = 0.1, count = 20000 }",
             "lobes: 400000000 points in all; at most 20000000 are allowed",
         ),

@@ -182,20 +182,27 @@ def test_a_simulation_takes_the_modes_of_its_speed():
 @pytest.mark.parametrize(
     ("more", "said"),
     [
-        ("speed_dependence = { speeds = [1, 2], frequency = [900] }", "frequency: [900] is given"),
         (
-            "speed_dependence = { speeds = [1, 2, 3], frequency = [900, 800] }",
+            'speed_dependence = { speeds = ["1 rpm", "2 rpm"], frequency = [900] }',
+            "frequency: [900] is given",
+        ),
+        (
+            'speed_dependence = { speeds = ["1 rpm", "2 rpm", "3 rpm"], frequency = [900, 800] }',
             "frequency: has 2 values for 3 speeds",
         ),
-        ("speed_dependence = { speeds = [2, 1], frequency = [900, 800] }", "speeds: must ascend"),
-        ("speed_dependence = { speeds = [1, 2] }", "says nothing"),
-        ("speed_dependence = { speeds = [1, 2], damping = [0.1, 1.5] }", "less than 1"),
         (
-            "speed_dependence = { speeds = [1, 2], mass = [1, 1], stiffness = [1, 1] }",
+            'speed_dependence = { speeds = ["2 rpm", "1 rpm"], frequency = [900, 800] }',
+            "speeds: must ascend",
+        ),
+        ('speed_dependence = { speeds = ["1 rpm", "2 rpm"] }', "says nothing"),
+        ('speed_dependence = { speeds = ["1 rpm", "2 rpm"], damping = [0.1, 1.5] }', "less than 1"),
+        (
+            'speed_dependence = { speeds = ["1 rpm", "2 rpm"], mass = [1, 1], stiffness = [1, 1] }',
             "mass or stiffness, not both",
         ),
         (
-            "frequency_slope = 1e-5\nspeed_dependence = { speeds = [1, 2], frequency = [1, 2] }",
+            "frequency_slope = 1e-5\n"
+            'speed_dependence = { speeds = ["1 rpm", "2 rpm"], frequency = [1, 2] }',
             "frequency_slope: and speed_dependence.frequency",
         ),
     ],
