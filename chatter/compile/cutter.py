@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from chatter.compile.empirical import speed_factor
+from chatter.compile.worn_flank import land_forces
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from cutting.force.law import ForceLaw
@@ -53,7 +54,12 @@ def cutter_of(case: Case) -> Cutter:
 def force_law(case: Case, helix: float) -> ForceLaw:
     """Force law of a case after its cutting time, for an edge inclined by the helix, rad."""
     law = case.material.force_law(helix).scaled(speed_factor(case))
-    if case.wear is None or case.cut is None:
+    if case.cut is None:
+        return law
+    if case.tool is not None and case.tool.flank_wear:
+        land = land_forces(case, law)
+        law = law.worn(0.0, [land.tangential, land.radial, 0.0])
+    if case.wear is None:
         return law
     wear, time = case.wear, case.cut.cut_time
     edges = [wear.increase(key, time) for key in ("edge_tangential", "edge_radial")]

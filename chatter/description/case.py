@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -143,6 +144,11 @@ class Case(Description):
         """
         given = self.cut.radial_depth
         return self.tool.diameter if given is None else min(given, self.tool.diameter)
+
+    @property
+    def feed_speed(self) -> float:
+        """Speed of the tool over the workpiece, m/s."""
+        return self.cut.feed_per_tooth * self.tool.teeth * self.cut.spindle_speed / (2.0 * math.pi)
 
     def empirical_over(self, variable: str) -> Empirical | None:
         """Term learnt over a variable; None where there is none."""

@@ -101,13 +101,42 @@ class SimulationResult:
 
     @cached_property
     def peak_force(self) -> NDArray[np.float64]:
-        """Largest size (3,) of each force on the tool, N, between rows as well."""
+        """Largest size (3,) of each force on the tool in the settled cut, N, between rows too."""
+        return self._peaks(self.judged)
+
+    def _peaks(self, rows: slice) -> NDArray[np.float64]:
+        """Largest size (3,) of each force over some rows, N, between rows too."""
         if self.case.dynamometer is not None:
-            return np.abs(self.force).max(axis=0)
-        largest = self.between[:, 4:7].max(axis=0)
+            return np.abs(self.force[rows]).max(axis=0)
+        largest = self.between[rows, 4:7].max(axis=0)
         if self.setup.resolution.stride > 1:
             return largest
-        return np.maximum(largest, largest_between_steps(self.force))
+        return np.maximum(largest, largest_between_steps(self.force[rows]))
+
+    @property
+    def judged(self) -> slice:
+        """Rows that peaks are taken over: the settled cut; all where the engagement changes."""
+        simulation = self.case.simulation
+        moves = self.case.stock is not None or (simulation is not None and simulation.path)
+        return slice(0, len(self.rows)) if moves else self.settled
+
+    def _largest(self, rows: slice) -> dict:
+        """Largest forces, displacement and power over some rows."""
+        names = ("Fx", "Fy", "Fz")
+        force, moved = self.force[rows], self.displacement[rows]
+        return {
+            "peak_force_N": dict(zip(names, map(float, self._peaks(rows)), strict=True)),
+            "peak_resultant_N": float(np.linalg.norm(force, axis=1).max()),
+            "peak_displacement_um": float(np.linalg.norm(moved, axis=1).max() * 1e6),
+            "peak_W": float(self.power[rows].max()),
+        }
+
+    def _transient(self) -> dict:
+        """Largest values before the settled cut; nothing where all rows count."""
+        begin = self.judged.start
+        if not begin:
+            return {}
+        return {"transient": {"until_s": float(self.time[begin]), **self._largest(slice(0, begin))}}
 
     @property
     def displacement(self) -> NDArray[np.float64]:
@@ -176,22 +205,25 @@ class SimulationResult:
 
     def summary(self) -> dict:
         """Return the content of summary.json."""
-        cut = self.case.cut
-        names = ("Fx", "Fy", "Fz")
+        cut, names = self.case.cut, ("Fx", "Fy", "Fz")
+        largest = self._largest(self.judged)
         return {
             "title": self.case.title,
             **self._verdict(),
             "spindle_speed_rpm": rpm(cut.spindle_speed),
             "axial_depth_mm": cut.axial_depth * 1e3,
-            "peak_force_N": dict(zip(names, map(float, self.peak_force), strict=True)),
+            "cutting_speed_m_per_min": 30.0 * self.case.tool.diameter * cut.spindle_speed,
+            "feed_rate_mm_per_min": 60e3 * self.case.feed_speed,
+            "peak_force_N": largest["peak_force_N"],
             "mean_force_N": dict(zip(names, map(float, self.mean_force), strict=True)),
-            "peak_resultant_N": float(np.linalg.norm(self.force, axis=1).max()),
-            "peak_displacement_um": float(np.linalg.norm(self.displacement, axis=1).max() * 1e6),
+            "peak_resultant_N": largest["peak_resultant_N"],
+            "peak_displacement_um": largest["peak_displacement_um"],
             "power": {
                 "mean_W": self.mean_power,
-                "peak_W": float(self.power.max()),
+                "peak_W": largest["peak_W"],
                 "mean_torque_Nm": self.mean_torque,
             },
+            **self._transient(),
             **self.finish.summary(),
             "energy_J": self.energy,
             "revolutions": self.revolutions,

@@ -5,9 +5,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from chatter.compile.cutter import cutter_of, edge_law, flank_table
+from chatter.compile.cutter import cutter_of, edge_law, flank_table, force_law, helix_angles
 from chatter.compile.empirical import force_factor
 from chatter.compile.machine_cut import MachineCut
+from chatter.compile.worn_flank import notes_on_worn_flank
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.plausibility import check_plausible
@@ -154,6 +155,7 @@ def _compiled(case: Case, cutter: Cutter, structure: StructureInTime) -> Setup:
         notes += ("tool.axial_error changes no force: the edge is parallel to the tool axis",)
     if case.stock is not None:
         notes += ("the engagement changes along the path; the verdict is that of the whole record",)
+    notes += tuple(notes_on_worn_flank(case, force_law(case, helix_angles(case)[0])))
     chip = case.simulation.chip if case.simulation else "delay"
     groups: tuple = (CHIPS[chip](case, cutter, slices, structure.modes, resolution, spindle, path),)
     if isinstance(groups[0], DiscreteCut):

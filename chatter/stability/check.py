@@ -91,6 +91,8 @@ class StabilityCheck:
             "critical_depth_mm": finite_or_none(self.critical_depth * 1e3),
             "spindle_speed_rpm": rpm(cut.spindle_speed),
             "axial_depth_mm": cut.axial_depth * 1e3,
+            "cutting_speed_m_per_min": 30.0 * self.case.tool.diameter * cut.spindle_speed,
+            "feed_rate_mm_per_min": 60e3 * self.case.feed_speed,
             "limit": {
                 "chatter_frequency_Hz": finite_or_none(float(self.limit.chatter_frequency[0])),
                 "bifurcation": self.limit.bifurcation[0],
@@ -118,13 +120,12 @@ class StabilityCheck:
         """Table of the verdict: what, and how much."""
         cut, tool = self.case.cut, self.case.tool
         speed = cut.spindle_speed * tool.diameter / 2.0
-        feed = cut.feed_per_tooth * tool.teeth * cut.spindle_speed / (2.0 * np.pi)
         return [
             ["critical depth", self._depth()],
             ["chatter frequency at the limit", _hertz(float(self.limit.chatter_frequency[0]))],
             ["spectral radius", f"{self.spectral_radius:.4g} (below 1: stable)"],
             ["cutting speed", f"{60.0 * speed:.4g} m/min"],
-            ["feed rate", f"{60e3 * feed:.4g} mm/min"],
+            ["feed rate", f"{60e3 * self.case.feed_speed:.4g} mm/min"],
             ["method", self.method],
         ]
 

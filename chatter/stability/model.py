@@ -11,6 +11,7 @@ import numpy as np
 
 from chatter.compile.cutter import cutter_of, force_law, helix_angles, process_damping_of
 from chatter.compile.structure import Structure, depends_on_speed, structure_at, structure_of
+from chatter.compile.worn_flank import notes_on_limits, notes_on_worn_flank
 from chatter.description.arrays import Array, ComplexArray
 from chatter.description.case import Case
 from chatter.description.errors import InputError
@@ -278,7 +279,8 @@ def milling_model(case: Case, structure: Structure | None = None) -> MillingMode
         notes.append(
             "only the matrix-free and time-domain methods include the contact of tool and work"
         )
-    notes += empirical_notes(case)
+    laws = tuple(force_law(case, helix) for helix in helix_angles(case))
+    notes += [*empirical_notes(case), *notes_on_worn_flank(case, laws[0]), *notes_on_limits(case)]
     if case.structure is not None and any(mode.friction for mode in case.structure.mode):
         notes.append("friction of modes is included in the time domain only")
     model = MillingModel(
@@ -286,7 +288,7 @@ def milling_model(case: Case, structure: Structure | None = None) -> MillingMode
         structure=structure,
         basis=_motion_basis(structure.directions),
         cutter=cutter,
-        laws=tuple(force_law(case, helix) for helix in helix_angles(case)),
+        laws=laws,
         flank=flank,
         notes=tuple(notes),
     )

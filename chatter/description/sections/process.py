@@ -81,7 +81,7 @@ class Chipping(Section):
 
 
 class Wear(Section):
-    """Growth of the force coefficients with the cutting time of the tool."""
+    """Forces of a worn tool: by its worn land, and growing with the cutting time."""
 
     edge_tangential: quantity("line_force_rate") = Field(0.0, description="of Kte per cutting time")
     edge_radial: quantity("line_force_rate") = Field(0.0, description="of Kre per cutting time")
@@ -90,6 +90,12 @@ class Wear(Section):
     )
     process_damping: quantity("rate") = Field(
         0.0, description="of process_damping.coefficient per cutting time, as a share of it"
+    )
+    flank_pressure: quantity("pressure", at_least=0.0) | None = Field(
+        None, description="mean on tool.flank_wear; by default a tenth of the cutting pressure"
+    )
+    flank_friction: quantity("number", at_least=0.0, at_most=1.0) | None = Field(
+        None, description="of tool.flank_wear on the work; 0.3 by default"
     )
     saturation_time: quantity("time", above=0.0) | None = Field(
         None, description="time constant with which the growth ends; without it, it goes on"
