@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
@@ -150,8 +151,9 @@ def _print_diagram(diagram: StabilityDiagram) -> None:
     )
     if lowest["critical_depth_mm"] is not None:
         typer.echo(
-            f"stable at any speed below {lowest['critical_depth_mm']:.4g} mm "
-            f"(lowest limit, at {lowest['spindle_speed_rpm']:.0f} rpm, "
+            f"stable at any of these speeds below {_rounded_down(lowest['critical_depth_mm'])} mm "
+            f"(lowest limit {lowest['critical_depth_mm']:.4g} mm, "
+            f"at {lowest['spindle_speed_rpm']:.0f} rpm, "
             f"chatter at {lowest['chatter_frequency_Hz']:.0f} Hz)"
         )
     limit = operating["critical_depth_mm"]
@@ -168,3 +170,9 @@ def _print_diagram(diagram: StabilityDiagram) -> None:
 
 def _millimetres(depth: float | None, max_depth: float) -> str:
     return f"> {max_depth:.4g}" if depth is None else f"{depth:.4g}"
+
+
+def _rounded_down(depth: float) -> str:
+    """Depth to three digits, none of which is too large."""
+    unit = 10.0 ** (math.floor(math.log10(depth)) - 2)
+    return f"{math.floor(depth / unit) * unit:.3g}"

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from chatter.stability.diagram import StabilityDiagram, StabilityMap
 
 _FILL_ROWS = 1000
+#: depth shown over the highest limit, the same where some speeds have none, and over the cut
+_ABOVE_LIMITS, _ABOVE_GAPS, _ABOVE_CUT = 1.15, 1.25, 1.1
 #: more values than this make a line without markers
 _FEW_VALUES = 150
 #: spectral radii beyond this look the same
@@ -71,6 +73,13 @@ def _draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
             x, np.where(np.isfinite(zero_order), zero_order, math.nan) * 1e3, color=style.GREY,
             linewidth=1.0, linestyle=(0, (4, 2)), label=f"limit, {METHODS['zero-order'].label}",
         )  # fmt: skip
+    none = np.isinf(limits.critical_depth)
+    if none.any():
+        searched = float(np.nanmax(diagram.max_depth)) * 1e3
+        axes.plot(
+            x, np.where(none, 0.985 * top * 1e3, math.nan), marker="^", markersize=4.0,
+            linestyle="none", color=style.BLUE, label=f"no limit up to {searched:.3g} mm",
+        )  # fmt: skip
     flip = np.array(limits.bifurcation) == "flip"
     if flip.any():
         draw(np.where(flip, limits.critical_depth, math.nan), style.RED, 2.0, "limit by flip")
@@ -88,12 +97,17 @@ def _draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
 
 
 def _top(diagram: StabilityDiagram) -> float:
-    """Highest depth shown, m: all of the search over speed, else what the limits reach."""
+    """Highest depth shown, m: a little above the limits and the cut, as far as was searched.
+
+    Where speeds have no limit, the search is shown that far above the others.
+    """
     found = [depth for crossings in diagram.limits.crossings for depth in crossings]
-    highest = float(np.nanmax(diagram.max_depth))
-    if not diagram.is_over_speed and found:
-        highest = 1.15 * max(found)
-    return max(highest, 1.05 * diagram.case.cut.axial_depth)
+    searched = float(np.nanmax(diagram.max_depth))
+    cut = _ABOVE_CUT * diagram.case.cut.axial_depth
+    if not found:
+        return max(searched, cut)
+    above = _ABOVE_GAPS if np.isinf(diagram.limits.critical_depth).any() else _ABOVE_LIMITS
+    return max(min(above * max(found), searched), cut)
 
 
 def _fill(axes: Axes, diagram: StabilityDiagram, top: float) -> None:

@@ -17,6 +17,7 @@ from chatter.description.case import Case
 from chatter.description.units import rpm
 from chatter.io.result_files import SavedResult, csv_of_rows, finite_or_none
 from chatter.stability.limit_curve import LimitCurve
+from chatter.stability.lowest_limit import LowestLimit
 from chatter.stability.methods.zeroth_order.uniform_pitch import ZeroOrderLimit
 from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN, Pocket
 
@@ -176,6 +177,8 @@ class StabilityDiagram(SavedResult):
         Over spindle speed: cuts worth using, highest removal rate first.
     operating : LimitCurve, optional
         Over spindle speed: limits at the speed of the case alone.
+    lowest : LowestLimit, optional
+        Over spindle speed: the lowest limit, between the samples as well.
     natural_frequencies : (k, n) array of float
         Over spindle speed: of the k modes, Hz.
     depth_step : float
@@ -197,6 +200,7 @@ class StabilityDiagram(SavedResult):
     zero_order: ZeroOrderLimit | None = None
     pockets: tuple[Pocket, ...] = ()
     operating: LimitCurve | None = None
+    lowest: LowestLimit | None = None
     natural_frequencies: Array = field(default_factory=lambda: np.empty((0, 0)))
     depth_step: float = math.nan
     grid: StabilityMap | None = None
@@ -241,16 +245,14 @@ class StabilityDiagram(SavedResult):
         """Part of summary.json of a diagram over spindle speed."""
         cut, limits = self.case.cut, self.limits
         depth = limits.critical_depth
-        lowest = int(np.argmin(depth))
-        found = bool(np.isfinite(depth[lowest]))
-        speeds = self.axis.values
+        lowest, speeds = self.lowest, self.axis.values
         return {
             "spindle_speeds_rpm": [float(speeds[0]), float(speeds[-1])],
             "max_axial_depth_mm": float(self.max_depth[0]) * 1e3,
             "lowest_limit": {
-                "critical_depth_mm": depth[lowest] * 1e3 if found else None,
-                "spindle_speed_rpm": speeds[lowest] if found else None,
-                "chatter_frequency_Hz": limits.chatter_frequency[lowest] if found else None,
+                "critical_depth_mm": finite_or_none(lowest.critical_depth * 1e3),
+                "spindle_speed_rpm": finite_or_none(rpm(lowest.spindle_speed)),
+                "chatter_frequency_Hz": finite_or_none(lowest.chatter_frequency),
             },
             "operating_point": {
                 "spindle_speed_rpm": rpm(cut.spindle_speed),

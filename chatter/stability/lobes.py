@@ -11,6 +11,7 @@ from chatter.description.units import rpm
 from chatter.stability.diagram import DiagramAxis, StabilityDiagram, StabilityMap
 from chatter.stability.forced_vibration import notes_on_steady_cut
 from chatter.stability.limit_curve import LimitCurve
+from chatter.stability.lowest_limit import lowest_limit
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.pockets import find_pockets
@@ -77,6 +78,7 @@ def lobes(
         zero_order=zero_order,
         pockets=find_pockets(speeds, limits.critical_depth, max_depth, removal_area),
         operating=_operating_limit(model, chosen, max_depth),
+        lowest=lowest_limit(chosen, model, limits, depths),
         natural_frequencies=natural_frequencies(model, speeds),
         depth_step=max_depth / len(depths),
         grid=None if radius is None else map_over_speed(case, chosen, speeds, depths, radius),

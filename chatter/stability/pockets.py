@@ -35,7 +35,8 @@ def find_pockets(
 
     Critical depths (n,), m, inf where none was found, at speeds (n,), rad/s, ascending; no pocket
     is deeper than `max_depth`, m, to which was searched. The removal rate over depth and speed,
-    m^2, has radial depth, teeth and feed per tooth in it.
+    m^2, has radial depth, teeth and feed per tooth in it. A depth that is stable at every speed
+    is no pocket.
     """
     robust = lowest_within_margin(speeds, np.minimum(limits, max_depth))
     indices = _local_maxima(robust)
@@ -47,6 +48,7 @@ def find_pockets(
             float((1.0 - DEPTH_MARGIN) * robust[i] * speeds[i] * removal_rate_per_depth_and_speed),
         )
         for i in indices
+        if (1.0 - DEPTH_MARGIN) * robust[i] > limits.min()
     ]
     return tuple(sorted(pockets, key=lambda pocket: -pocket.removal_rate)[:most])
 
