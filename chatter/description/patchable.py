@@ -65,6 +65,13 @@ class Description(Section):
         """Compare by content, whatever the files looked like and wherever they lie."""
         return type(other) is type(self) and self._content() == other._content()
 
+    def __repr__(self) -> str:
+        """Name and title: what it holds would fill the screen."""
+        title = getattr(self, "title", "")
+        return f"<{type(self).__name__} {self.name!r}{f': {title}' if title else ''}>"
+
+    __str__ = __repr__
+
     def __hash__(self) -> int:
         """Hash of the content."""
         return hash(self._content())

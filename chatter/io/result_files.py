@@ -66,6 +66,14 @@ def write_results(
     return [folder / name for name in (*texts, *pictures)]
 
 
+def short_repr(result: Any) -> str:
+    """Return a repr that names the case of a result, and its method where it has one."""
+    case, method = getattr(result, "case", None), getattr(result, "method", "")
+    title = getattr(case, "title", "") or getattr(case, "name", "")
+    words = ", ".join(word for word in (f"'{title}'" if title else "", method) if word)
+    return f"<{type(result).__name__} {words}>".replace(" >", ">")
+
+
 class SavedResult:
     """A result that draws itself and writes its files: base of results, which give their tables."""
 
@@ -73,6 +81,10 @@ class SavedResult:
     drawn_by: ClassVar[str]
     #: file name of the picture
     picture: ClassVar[str]
+
+    def __repr__(self) -> str:
+        """What the result is of: its arrays would fill the screen."""
+        return short_repr(self)
 
     def summary(self) -> dict:
         """Content of summary.json."""

@@ -18,7 +18,7 @@ from chatter.explain.measurement import Measurement
 from chatter.explain.prediction import Predictions
 from chatter.explain.selection.problem import Problem
 from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, csv_text, finite_or_none, write_results
+from chatter.io.result_files import as_json, csv_text, finite_or_none, short_repr, write_results
 from chatter.learning.cuts import read_cuts
 from chatter.learning.diagram import ParticleDiagram, diagram_of
 from chatter.learning.likelihood import Likelihood
@@ -39,7 +39,7 @@ _DEEPER, _ABOVE_MEDIAN = 1.4, 1.25
 _LEVELS = (0.05, 0.5, 0.95)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Learnt:
     """What tests leave possible.
 
@@ -101,6 +101,10 @@ class Learnt:
         margins = likelihood.predictions(self.after.counted)
         scatter = likelihood.scatter(self.after.counted)
         return likely_stable(margins, scatter[:, None]).mean(axis=0), runs[0].signals["stable"]
+
+    def __repr__(self) -> str:
+        """What the result is of: its arrays would fill the screen."""
+        return short_repr(self)
 
     def summary(self) -> dict[str, Any]:
         """Content of posterior.json."""

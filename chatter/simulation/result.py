@@ -16,7 +16,7 @@ from chatter.description.units import rpm
 from chatter.detection.chatter_detection import Detection
 from chatter.engine.record import largest_between_steps
 from chatter.io.presentation import presentation
-from chatter.io.result_files import as_json, finite_or_none, write_results
+from chatter.io.result_files import as_json, finite_or_none, short_repr, write_results
 from chatter.simulation.carved_workpiece import carving_notes
 from chatter.simulation.finish import Finish, finish_of
 from chatter.simulation.setup import Setup
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 _SETTLED_SHARE = 0.5
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SimulationResult:
     """Signals of a simulated cut and what follows from them.
 
@@ -202,6 +202,10 @@ class SimulationResult:
             self.spindle_angle, [last - 2.0 * math.pi * kept - 1e-9, last - 1e-9]
         )
         return slice(int(first), int(max(end, first + 1)))
+
+    def __repr__(self) -> str:
+        """What the result is of: its arrays would fill the screen."""
+        return short_repr(self)
 
     def summary(self) -> dict:
         """Return the content of summary.json."""

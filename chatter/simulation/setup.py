@@ -12,6 +12,7 @@ from chatter.compile.worn_flank import notes_on_worn_flank
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.plausibility import check_plausible
+from chatter.description.questioned import questions
 from chatter.simulation.resolution import Resolution
 from chatter.simulation.spindle import (
     Spindle,
@@ -150,7 +151,7 @@ def _compiled(case: Case, cutter: Cutter, structure: StructureInTime) -> Setup:
         raise InputError(
             f"{case.name}: simulation.path: a path of its own needs a [stock] to lead through"
         )
-    notes = structure.notes
+    notes = (*questions(case), *structure.notes)
     if case.tool.axial_error and np.all(slices.immersion > 0.5 * math.pi - 1e-9):
         notes += ("tool.axial_error changes no force: the edge is parallel to the tool axis",)
     if case.stock is not None:

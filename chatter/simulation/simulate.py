@@ -11,6 +11,7 @@ import scipy.signal
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
+from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.errors import InputError, RunError
 from chatter.description.progress import Progress, no_progress
 from chatter.description.units import rpm
@@ -27,6 +28,7 @@ from dynamics.matrix_exponential import exact_step
 _MOST_STEPS = 2_000_000_000
 
 
+@takes_case_or_path
 def simulate(
     case: Case,
     overrides: Mapping[str, Any] | None = None,

@@ -6,10 +6,12 @@ from pathlib import Path
 import numpy as np
 
 from chatter.description.case import Case
+from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.progress import no_progress
+from chatter.description.questioned import question_of_growth
 from chatter.description.units import rpm
 from chatter.detection.bifurcation_type import bifurcation_of_multiplier
-from chatter.io.result_files import as_json, finite_or_none, write_results
+from chatter.io.result_files import as_json, finite_or_none, short_repr, write_results
 from chatter.stability.forced_vibration import notes_on_steady_cut
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
@@ -29,7 +31,7 @@ from chatter.stability.steady_flank import about_steady_motion
 _KINDS = {"hopf": "quasi-periodic", "flip": "period doubling", "fold": "cyclic fold"}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class StabilityCheck:
     """Stability of the operating point of a case.
 
@@ -79,6 +81,10 @@ class StabilityCheck:
     def critical_depth(self) -> float:
         """First limit at the operating speed, m; inf where none was found."""
         return float(self.limit.critical_depth[0])
+
+    def __repr__(self) -> str:
+        """What the result is of: its arrays would fill the screen."""
+        return short_repr(self)
 
     def summary(self) -> dict:
         """Return what `chatter check` prints."""
@@ -146,6 +152,7 @@ def _hertz(frequency: float) -> str:
     return f"{frequency:.1f} Hz" if np.isfinite(frequency) else "none"
 
 
+@takes_case_or_path
 def check(case: Case, method: str | None = None) -> StabilityCheck:
     """Judge the operating point of a case and find the critical depth at its speed.
 
@@ -187,6 +194,7 @@ def check(case: Case, method: str | None = None) -> StabilityCheck:
         max_depth=float(depths[-1]),
         zero_order_depth=float(zero_order.critical_depth[0]),
         notes=(
+            *question_of_growth(abs(multiplier.value)),
             *model.notes,
             *notes_on_resting_friction(model),
             *notes_on_steady_cut(model, chosen),

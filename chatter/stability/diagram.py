@@ -63,7 +63,7 @@ class DiagramAxis:
         }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class StabilityMap(SavedResult):
     """Spectral radius over two axes.
 
@@ -151,7 +151,7 @@ class StabilityMap(SavedResult):
         return path
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class StabilityDiagram(SavedResult):
     """Critical depth over an axis.
 

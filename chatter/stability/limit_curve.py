@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from chatter.description.arrays import Array, IntegerArray
+from chatter.description.units import rpm
 
 #: bifurcations and chatter frequencies (Hz) at limits: (indices of speeds, depths)
 AtLimits = Callable[[IntegerArray, Array], tuple[Sequence[str], Array]]
@@ -21,6 +22,21 @@ class LimitCurve(NamedTuple):
     crossings: tuple[Array, ...]  # m, all: lost at even indices, regained at odd
     steps: IntegerArray  # steps per tooth period (n,), 0 where the method has none
     error: float = np.nan  # estimated, of the critical depths, relative; nan where it was not
+
+    @property
+    def spindle_speed_rpm(self) -> Array:
+        """Spindle speeds (n,), revolutions per minute."""
+        return rpm(self.spindle_speed)
+
+    @property
+    def critical_depth_mm(self) -> Array:
+        """First limits (n,), mm; inf where none was found."""
+        return 1e3 * self.critical_depth
+
+    def __repr__(self) -> str:
+        """How many limits there are: the arrays would fill the screen."""
+        found = int(np.isfinite(self.critical_depth).sum())
+        return f"<LimitCurve of {self.spindle_speed.size} speeds (rad/s), {found} limits (m)>"
 
 
 def first_crossings(crossings: Sequence[Array]) -> Array:

@@ -16,6 +16,7 @@ from chatter.description.arrays import Array, ComplexArray
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.plausibility import check_plausible
+from chatter.description.questioned import questions
 from chatter.description.units import rpm
 from chatter.engine.loop_stability import refuse_unstable_structure
 from chatter.simulation.setup import refuse_teeth_off_the_tool
@@ -265,7 +266,7 @@ def milling_model(case: Case, structure: Structure | None = None) -> MillingMode
         structure = structure_of(case)
         refuse_unstable_structure(structure)
     cutter = cutter_of(case)
-    notes = list(structure.notes)
+    notes = [*questions(case), *structure.notes]
     flank = process_damping_of(case)
     if flank is not None:
         notes.append("the zeroth-order solution leaves out process damping")

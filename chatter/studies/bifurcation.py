@@ -9,6 +9,7 @@ import numpy as np
 
 from chatter.description.arrays import Array
 from chatter.description.case import Case
+from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
 from chatter.engine.parallel import each
@@ -38,7 +39,7 @@ class BifurcationPoint:
     chatter_frequency: float  # Hz; nan where there is none
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class BifurcationDiagram(SavedResult):
     """Points of all cuts.
 
@@ -83,6 +84,7 @@ class BifurcationDiagram(SavedResult):
         return {"bifurcation.csv": "\n".join(lines) + "\n"}
 
 
+@takes_case_or_path
 def bifurcation(
     case: Case, path: str, values: Sequence[Any], progress: Progress = no_progress
 ) -> BifurcationDiagram:

@@ -11,6 +11,7 @@ import numpy as np
 
 from chatter.description.arrays import Array
 from chatter.description.case import Case
+from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
 from chatter.engine.parallel import Executor, each, one_thread
@@ -60,6 +61,7 @@ class _Point(NamedTuple):
     depths: tuple[float, ...] = ()
 
 
+@takes_case_or_path
 def lobes(
     case: Case,
     method: str | None = None,
@@ -103,6 +105,7 @@ def lobes(
     return replace(diagram, grid=computed)
 
 
+@takes_case_or_path
 def lobes_over(
     case: Case,
     x: AxisGiven | None = None,

@@ -25,7 +25,7 @@ _REPORTED = {
 }
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Optimum(SavedResult):
     """Best cuts within the limits of a case.
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from chatter.description.case import Case
+from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
 from chatter.studies.optimisation.candidate import Candidate
@@ -43,6 +44,7 @@ DEFAULT_SAMPLES, DEFAULT_SEED = 200, 1
 _SLICE_WORK, _START_WORK = 100, 40
 
 
+@takes_case_or_path
 def optimum(
     case: Case,
     samples: int = DEFAULT_SAMPLES,

@@ -10,6 +10,7 @@ import numpy as np
 from chatter.compile.cutter import pitch_angles
 from chatter.description.arrays import Array
 from chatter.description.case import Case
+from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
 from chatter.description.sections.optimisation import PitchDesign
@@ -31,6 +32,7 @@ FINER = 5
 _RULE_COUNT = 8
 
 
+@takes_case_or_path
 def pitch(
     case: Case, progress: Progress = no_progress, folder: str | Path | None = None
 ) -> PitchResult:

@@ -31,7 +31,7 @@ class FamilyCurve:
         return max(self.designs, key=lambda one: one.score)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class PitchResult(SavedResult):
     """Pitch angles for a range of speeds.
 

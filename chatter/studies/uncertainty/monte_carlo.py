@@ -11,6 +11,7 @@ import numpy as np
 
 from chatter.description.arrays import Array, BooleanArray, IntegerArray
 from chatter.description.case import Case
+from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.errors import InputError
 from chatter.description.units import rpm
 from chatter.io.result_files import SavedResult, csv_text, finite_or_none
@@ -40,7 +41,7 @@ DEFAULT_SAMPLES, DEFAULT_SPEEDS, DEFAULT_SEED = 200, 31, 1
 _CONVERGENCE_ROWS = 12
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Uncertainty(SavedResult):
     """Limits of all samples.
 
@@ -206,6 +207,7 @@ def _quantiles(limits: Array, levels: Sequence[float]) -> Array:
     return np.where(share == 0.0, low, between)
 
 
+@takes_case_or_path
 def uncertainty(
     case: Case,
     count: int = DEFAULT_SAMPLES,

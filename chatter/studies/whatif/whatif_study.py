@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from chatter.studies.model import Model
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class WhatIf(SavedResult):
     """Result of a study.
 

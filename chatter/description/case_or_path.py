@@ -1,0 +1,25 @@
+"""Calls that take a case, or the path of its file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from pathlib import Path
+from typing import Concatenate, ParamSpec, TypeVar
+
+from chatter.description.case import Case, load
+
+Rest = ParamSpec("Rest")
+Result = TypeVar("Result")
+
+
+def takes_case_or_path(
+    function: Callable[Concatenate[Case, Rest], Result],
+) -> Callable[Concatenate[Case | str | Path, Rest], Result]:
+    """Give a function of a case the path of a case file instead, where that is what is given."""
+
+    @wraps(function)
+    def taking(case: Case | str | Path, *args: Rest.args, **kwargs: Rest.kwargs) -> Result:
+        return function(load(case) if isinstance(case, (str, Path)) else case, *args, **kwargs)
+
+    return taking
