@@ -94,6 +94,30 @@ def stability_margins(case: Case, speeds: Array, depths: Array) -> Array:
     return response_of_tests(case, CuttingTests(speeds, depths, {})).margin
 
 
+def limits_over(case: Case, speeds: Array, depths: Array) -> Array:
+    """Least critical depth (s,), m, at speeds (s,), rad/s, on a grid of depths (d,), m, ascending.
+
+    Inf where a case is stable at all of them.
+    """
+    tests = CuttingTests(np.repeat(speeds, depths.size), np.tile(depths, speeds.size), {})
+    margins = response_of_tests(case, tests).margin.reshape(speeds.size, depths.size)
+    return first_limits(margins, depths)
+
+
+def first_limits(margins: Array, depths: Array) -> Array:
+    """Depth (...) at which margins (..., d) over depths (d,), m, ascending, first reach zero."""
+    unstable = margins <= 0.0
+    first = unstable.argmax(axis=-1)
+    above = np.take_along_axis(margins, first[..., None], axis=-1)[..., 0]
+    before = np.maximum(first - 1, 0)
+    below = np.take_along_axis(margins, before[..., None], axis=-1)[..., 0]
+    upper, lower = depths[first], depths[before]
+    share = np.where(first > 0, below / np.where(first > 0, below - above, 1.0), 0.0)
+    # below the first depth of the grid, margins are shares of the depth
+    crossing = np.where(first > 0, lower + share * (upper - lower), upper * (1.0 + above))
+    return np.where(unstable.any(axis=-1), np.maximum(crossing, 0.0), np.inf)
+
+
 def response_of_tests(case: Case, tests: CuttingTests) -> ResponseOfTests:
     """Margins and multipliers of cutting tests.
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.explain.fitting import WORKERS
-from chatter.explain.stability_margin import CuttingTests, response_of_tests
+from chatter.explain.stability_margin import CuttingTests, first_limits, response_of_tests
 
 Array = NDArray[np.float64]
 
@@ -52,16 +52,7 @@ class ParticleDiagram:
     @property
     def limits(self) -> Array:
         """Least critical depth (n, s) of every particle, m; inf where none is on the grid."""
-        unstable = self.margins <= 0.0
-        first = unstable.argmax(axis=2)
-        above = np.take_along_axis(self.margins, first[..., None], axis=2)[..., 0]
-        before = np.maximum(first - 1, 0)
-        below = np.take_along_axis(self.margins, before[..., None], axis=2)[..., 0]
-        upper, lower = self.depths[first], self.depths[before]
-        share = np.where(first > 0, below / np.where(first > 0, below - above, 1.0), 0.0)
-        # below the first depth of the grid, margins are shares of the depth
-        crossing = np.where(first > 0, lower + share * (upper - lower), upper * (1.0 + above))
-        return np.where(unstable.any(axis=2), np.maximum(crossing, 0.0), np.inf)
+        return first_limits(self.margins, self.depths)
 
 
 def diagram_of(

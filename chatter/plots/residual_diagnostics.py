@@ -8,7 +8,7 @@ from itertools import cycle
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from chatter.explain.residuals.finding import Bars, Curves, Finding, Map, Panel, Points
 from chatter.plots import style
@@ -104,6 +104,7 @@ def _scale(axes: Axes, logarithmic: str) -> None:
     for name, axis in (("x", axes.xaxis), ("y", axes.yaxis)):
         if name in logarithmic:
             (axes.set_xscale if name == "x" else axes.set_yscale)("log")
+            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
             axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axis.set_minor_formatter(NullFormatter())
 
@@ -134,10 +135,15 @@ _CLASSES = (
 @draw.register
 def _(panel: Points, axes: Axes) -> None:
     draw_points(panel, axes)
+    if panel.curve is not None:
+        axes.plot(
+            panel.curve.x, panel.curve.y, color="black", lw=1.2, label=panel.curve.label, zorder=1.5
+        )
     _scale(axes, panel.logarithmic)
     axes.set(xlabel=panel.x_label, ylabel=panel.y_label)
     axes.margins(y=0.15)
-    axes.legend(ncols=2, **_LEGEND)
+    # below the axes: within them there are points everywhere
+    axes.legend(ncols=2, loc="upper left", bbox_to_anchor=(0.0, -0.2), **_LEGEND)
 
 
 def draw_points(panel: Points, axes: Axes) -> None:

@@ -65,6 +65,7 @@ class Points:
     x_label: str
     y_label: str
     logarithmic: str = ""
+    curve: Curve | None = None  # among the points
 
 
 Panel = Bars | Curves | Map | Points

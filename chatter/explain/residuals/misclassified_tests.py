@@ -10,7 +10,7 @@ from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.finding import Curve, Curves, Finding, Points
 from chatter.explain.residuals.over_runs import rank_correlation
 from chatter.explain.residuals.residual import Residual
-from chatter.explain.stability_margin import response_of_tests, tests_of
+from chatter.explain.stability_margin import limits_over, response_of_tests, tests_of
 
 Array = NDArray[np.float64]
 
@@ -19,6 +19,8 @@ _BEYOND = 3.0
 #: significance level of a rank correlation
 _SIGNIFICANCE = 5e-3
 _BINS = 8
+#: points of the limit that is drawn among tests, and depths over the shallowest and deepest test
+_SPEEDS, _DEPTHS, _AROUND = 80, 40, (0.5, 1.6)
 
 
 class _Tests:
@@ -30,6 +32,7 @@ class _Tests:
         def column(name: str) -> Array:
             return np.concatenate([part.run.signals[name] for part in parts])
 
+        self.case = parts[0].case
         self.speed, self.depth = column("spindle_speed"), column("axial_depth")
         self.stable = column("stable") > 0.5
         self.likely = np.concatenate([part.predicted for part in parts])
@@ -85,7 +88,17 @@ def _map_of(tests: _Tests) -> Points:
         name: (rpm(tests.speed[chosen]), tests.depth[chosen] * 1e3)
         for name, chosen in classes.items()
     }
-    return Points(points, "spindle speed [rpm]", "axial depth [mm]", logarithmic="y")
+    axes = "spindle speed [rpm]", "axial depth [mm]"
+    return Points(points, *axes, logarithmic="y", curve=_limit_of(tests))
+
+
+def _limit_of(tests: _Tests) -> Curve:
+    """Limit of the case over the speeds and depths of the tests."""
+    speeds = np.linspace(tests.speed.min(), tests.speed.max(), _SPEEDS)
+    depths = np.geomspace(_AROUND[0] * tests.depth.min(), _AROUND[1] * tests.depth.max(), _DEPTHS)
+    limits = limits_over(tests.case, speeds, depths)
+    shown = np.where(np.isfinite(limits), 1e3 * limits, np.nan)
+    return Curve(rpm(speeds), shown, label="limit of the case")
 
 
 def over_speed(residual: Residual) -> Finding:

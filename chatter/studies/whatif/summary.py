@@ -69,7 +69,31 @@ def sentences(study: WhatIf) -> list[str]:
         others = _others(study, index)
         why = f" as {one.path} goes from {one.values[0].label} to {one.values[-1].label}{others}"
         found += _changes(study, study.outcomes[first], study.outcomes[last], why)
-    return found + _extremes(study) + failures(study)
+    return found + _extremes(study) + _without_effect(study) + failures(study)
+
+
+def _without_effect(study: WhatIf) -> list[str]:
+    """Sentences on paths whose values change no number that is computed."""
+    found = []
+    for index, one in enumerate(study.variations):
+        groups: dict[tuple[int | None, ...], list[Outcome]] = {}
+        for point, outcome in zip(study.points, study.outcomes, strict=True):
+            held = (*point.indices[:index], *point.indices[index + 1 :])
+            groups.setdefault(held, []).append(outcome)
+        if len(one.values) > 1 and all(_are_alike(group) for group in groups.values()):
+            found.append(
+                f"{one.path} has no effect on what is computed here ({study.measure.name})"
+            )
+    return found
+
+
+def _are_alike(outcomes: Sequence[Outcome]) -> bool:
+    """Whether outcomes have the same numbers and words."""
+    first = outcomes[0]
+    return all(
+        not one.failure and one.words == first.words and one.numbers == first.numbers
+        for one in outcomes
+    )
 
 
 def failures(study: WhatIf) -> list[str]:

@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 
+import chatter
 from chatter.explain.residuals.dependence import Sample, dependence
 from chatter.explain.residuals.finding import Bars, Curve, Curves, Finding, Map, Points
 from chatter.explain.residuals.residual_dependence import residual_dependence
 from chatter.explain.residuals.signature import diagnosed
+from chatter.explain.stability_margin import limits_over
+from chatter.io.shipped_examples import examples
 from chatter.plots.residual_diagnostics import plot_findings
 
 X = np.array([0.01, 0.1, 1.0, 10.0])
@@ -52,3 +55,16 @@ def test_nothing_is_told_where_nothing_is_predicted():
     assert found.significant
     np.testing.assert_allclose(found.coefficients[:4], [0.0, 0.0, 0.2, 0.0], atol=0.01)
     assert np.isnan(found.coefficients[4])
+
+
+def test_the_limit_among_cutting_tests_is_that_of_another_method():
+    case = chatter.load(examples()["one-degree-of-freedom"].folder / "case.toml")
+    speeds = np.linspace(7000.0, 9500.0, 7) * np.pi / 30.0
+    near = case.patch(
+        {"lobes.speeds": {"from": "7000 rpm", "to": "9500 rpm", "count": 7}, "lobes.depths": None}
+    )
+    other = np.asarray(chatter.lobes(near, method="semi-discretization").limits.critical_depth)
+    found = limits_over(case, speeds, np.geomspace(0.2e-3, 6e-3, 60))
+    np.testing.assert_allclose(found, other, rtol=0.03)
+    # of a grid that ends below it there is none
+    assert np.isinf(limits_over(case, speeds[:1], np.array([0.05e-3, 0.1e-3]))).all()

@@ -207,3 +207,12 @@ def test_ready_studies_fit_their_examples(name):
     for point in points_of(variations, chosen_layout(variations, study.tornado)):
         patched(model, point.patch)
     measures.measure_of(study.result, model)
+
+
+def test_a_value_that_nothing_uses_is_said_to_be_without_effect(case):
+    study = whatif(case, {"tool.clearance_angle": ["5 deg", "9 deg"]}, "critical depth")
+    assert "tool.clearance_angle has no effect on what is computed here (critical depth)" in (
+        study.sentences()
+    )
+    study = whatif(case, {"material.Ktc": ["500 MPa", "900 MPa"]}, "critical depth")
+    assert not any("no effect" in one for one in study.sentences())
