@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from chatter.compile.cutter import cutter_of
 from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.progress import no_progress
@@ -126,11 +127,17 @@ class StabilityCheck:
         """Table of the verdict: what, and how much."""
         cut, tool = self.case.cut, self.case.tool
         speed = cut.spindle_speed * tool.diameter / 2.0
+        cutter, effective = cutter_of(self.case), []
+        if not cutter.is_cylindrical:
+            wide = 2.0 * cutter.radius_at(cut.axial_depth)
+            there = f"{30.0 * wide * cut.spindle_speed:.4g} m/min there"
+            effective = [["effective diameter", f"{1e3 * wide:.4g} mm, {there}"]]
         return [
             ["critical depth", self._depth()],
             ["chatter frequency at the limit", _hertz(float(self.limit.chatter_frequency[0]))],
             ["spectral radius", f"{self.spectral_radius:.4g} (below 1: stable)"],
             ["cutting speed", f"{60.0 * speed:.4g} m/min"],
+            *effective,
             ["feed rate", f"{60e3 * self.case.feed_speed:.4g} mm/min"],
             ["method", self.method],
         ]

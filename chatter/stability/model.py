@@ -316,11 +316,25 @@ def _no_limit(case: Case, cutter: Cutter) -> str:
         return (
             f"{case.name}: cut.radial_depth: down to an axial depth of "
             f"{case.cut.axial_depth * 1e3:g} mm the edge does not reach the work, or the modes "
-            "move along it; there is no stability limit"
+            "move along it; there is no stability limit" + _hint_of_width(case, cutter)
         )
     return (
         f"{case.name}: structure: the modes move along the tool axis alone; with a 90 degree "
         "cutting edge that motion does not change the chip, so there is no stability limit"
+    )
+
+
+def _hint_of_width(case: Case, cutter: Cutter) -> str:
+    """Radial depth that a step over from pass to pass amounts to, where it was meant."""
+    depth, step = case.cut.axial_depth, case.cut.radial_depth
+    effective = cutter.radius_at(depth)
+    if step is None or not step < 2.0 * effective:
+        return ""
+    meant = cutter.radius - effective + step
+    return (
+        f". The radial depth counts from the full radius; at this depth the tool is "
+        f"{2e3 * effective:.4g} mm wide: for a step of {1e3 * step:g} mm from pass to pass write "
+        f'radial_depth = "{1e3 * meant:.4g} mm"'
     )
 
 

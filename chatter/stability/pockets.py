@@ -38,6 +38,9 @@ def find_pockets(
     m^2, has radial depth, teeth and feed per tooth in it. A depth that is stable at every speed
     is no pocket.
     """
+    lowest = limits.min()
+    # of limits that are alike everywhere, any speed is as good
+    anywhere = -np.inf if not lowest < np.max(limits) else lowest
     robust = lowest_within_margin(speeds, np.minimum(limits, max_depth))
     indices = _local_maxima(robust)
     pockets = [
@@ -48,7 +51,7 @@ def find_pockets(
             float((1.0 - DEPTH_MARGIN) * robust[i] * speeds[i] * removal_rate_per_depth_and_speed),
         )
         for i in indices
-        if (1.0 - DEPTH_MARGIN) * robust[i] > limits.min()
+        if (1.0 - DEPTH_MARGIN) * robust[i] > anywhere
     ]
     return tuple(sorted(pockets, key=lambda pocket: -pocket.removal_rate)[:most])
 

@@ -83,6 +83,16 @@ class Cutter:
         """Whether the edge lies on a cylinder down to the tip: no corner, no cone."""
         return self.corner_radius == 0.0 and self.edge_angle >= 0.5 * math.pi - 1e-9
 
+    def radius_at(self, height: float) -> float:
+        """Radius of the nominal edge at a height above the tip, m; for a ball sqrt(h (D - h))."""
+        arc = self.corner_radius * (1.0 - math.cos(self.edge_angle))
+        if height < arc:
+            drop = self.corner_radius - height
+            return self.radius - self.corner_radius + math.sqrt(self.corner_radius**2 - drop**2)
+        slope = 1.0 / math.tan(self.edge_angle) if self.edge_angle < 0.5 * math.pi else 0.0
+        foot = self.radius - self.corner_radius * (1.0 - math.sin(self.edge_angle))
+        return foot + slope * (height - arc)
+
     @property
     def tooth_angles(self) -> NDArray[np.float64]:
         """Angle (N,) of each tooth on the tool, rad; zero for the first."""

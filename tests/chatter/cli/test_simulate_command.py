@@ -82,9 +82,10 @@ def test_numbers_of_a_run(case_file, tmp_path):
     # validation 2.3: stable below 2.104690 mm
     assert summary["verdict"] == "stable"
     assert summary["chatter_frequency_Hz"] is None
+    settled = table[table[:, 1] >= 20 * 2.0 * math.pi - 1e-6]
     for column, name in enumerate(("Fx", "Fy", "Fz"), start=2):
         # the largest force may lie between two rows
-        largest = np.abs(table[:, column]).max()
+        largest = np.abs(settled[:, column]).max()
         assert (1.0 - 1e-5) * largest <= summary["peak_force_N"][name] <= 1.005 * largest
     # a periodic motion of the tool leaves the mean of Ktc h (a tooth after the other) as it is:
     # N b f / (2 pi) times the integrals of K over the immersion from 90 to 180 degrees

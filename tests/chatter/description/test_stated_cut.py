@@ -8,6 +8,7 @@ import pytest
 import chatter
 from chatter import InputError
 from chatter.description.case import loads
+from cutting.tool.cutter import Cutter, edge_slices
 from tests.command_line import chatter_command
 
 CASE = """
@@ -163,3 +164,44 @@ def test_one_syntax_of_ranges(tmp_path):
     assert swept.exit_code == 0, swept.output
     assert swept.stdout.count('"verdict"') == 4
     assert "0.2 mm: " in chatter_command("bifurcation", *asked, "--out", tmp_path / "b").stdout
+
+
+BALL = text().replace('kind = "end mill"', 'kind = "ball"').replace('"16 mm"', '"10 mm"')
+
+
+def test_the_effective_diameter_of_a_ball_is_shown(tmp_path):
+    # D_eff = 2 sqrt(a_p (D - a_p)): 4.359 mm at 0.5 mm of 10 mm; pi D_eff n
+    (tmp_path / "case.toml").write_text(BALL)
+    shown = chatter_command("check", tmp_path / "case.toml").stdout
+    effective = 2.0 * math.sqrt(0.5 * (10.0 - 0.5))
+    assert f"{effective:.4g} mm" in shown
+    assert f"{math.pi * effective * 6.0:.4g} m/min there" in shown
+
+
+def test_a_step_over_of_a_ball_is_told_as_its_radial_depth():
+    case = loads(BALL.replace('radial_depth = "8 mm"', 'radial_depth = "0.4 mm"'))
+    # wall at 4.359/2 - 0.4 mm from the axis: 5 - 2.179 + 0.4
+    with pytest.raises(InputError, match=r'write radial_depth = "3.221 mm"') as refused:
+        chatter.check(case)
+    assert "4.359 mm wide" in str(refused.value)
+    assert chatter.check(case.patch({"cut.radial_depth": "3.221 mm"})).critical_depth > 0.0
+
+
+@pytest.mark.parametrize(
+    ("corner", "edge", "height", "radius"),
+    [
+        # a ball of 10 mm at 0.5 mm; above its corner; a cone of 45 degrees; a bull nose of 2 mm
+        (5e-3, 90.0, 0.5e-3, math.sqrt(0.5 * 9.5) * 1e-3),
+        (5e-3, 90.0, 9e-3, 5e-3),
+        (0.0, 45.0, 2e-3, 7e-3),
+        (2e-3, 90.0, 0.5e-3, 3e-3 + math.sqrt(2.0**2 - 1.5**2) * 1e-3),
+    ],
+)
+def test_radius_at_a_height(corner, edge, height, radius):
+    cutter = Cutter(10e-3, (0.0,), (2.0 * math.pi,), corner, math.radians(edge))
+    assert cutter.radius_at(height) == pytest.approx(radius, rel=1e-12)
+    if height < 5e-3:
+        # as the slices have it
+        slices = edge_slices(cutter, 2.0 * height, (400 if corner else 0, 0 if corner else 400))
+        at = np.interp(height, slices.height, slices.radius)
+        assert at == pytest.approx(radius, rel=1e-4)

@@ -93,6 +93,7 @@ def test_contact_is_part_of_the_force_on_the_tool():
 PLOUGHING = {
     "tool": {"clearance_angle": "6 deg", "flank_wear": "0.1 mm"},
     "process_damping": {"indentation_force": 1e14, "friction": 0.2},
+    "wear": {"flank_pressure": 0.0},  # the flank ploughs, and presses on nothing else
 }
 CUTTING = {"law": "linear", "Ktc": 8e8, "Krc": 3e8}
 

@@ -60,3 +60,13 @@ def test_stable_everywhere_and_few_speeds():
     (pocket,) = find_pockets(SPEEDS, np.full(SPEEDS.size, np.inf), 4e-3, 1e-6)
     assert pocket.axial_depth == pytest.approx((1.0 - DEPTH_MARGIN) * 4e-3)
     assert len(find_pockets(SPEEDS[:2], np.array([1e-3, 1e-3]), 4e-3, 1e-6)) == 1
+
+
+def test_no_pocket_is_shallower_than_what_any_speed_allows():
+    """Shallow lobes: 15 % below a peak is less than the lowest limit."""
+    limits = 1e-3 * (1.05 + 0.05 * np.cos(np.linspace(0.0, 12.0 * np.pi, SPEEDS.size)))
+    assert find_pockets(SPEEDS, limits, 4e-3, 1e-6) == ()
+    deep = 1e-3 * (1.5 + 0.5 * np.cos(np.linspace(0.0, 4.0 * np.pi, SPEEDS.size)))
+    found = find_pockets(SPEEDS, deep, 4e-3, 1e-6)
+    assert found
+    assert all(pocket.axial_depth > deep.min() for pocket in found)

@@ -110,7 +110,8 @@ def case_file(case):
         f"Ktc = {kt!r}\nKrc = {kr!r}\nKac = {ka!r}",
         "[cut]",
         cut,
-        f"spindle_speed = {case.speed!r}\nfeed_per_tooth = 1e-4\naxial_depth = {case.depth!r}",
+        f'spindle_speed = "{case.speed!r} rad/s"\n'
+        f"feed_per_tooth = 1e-4\naxial_depth = {case.depth!r}",
     ]
     if case.process_damping:
         lines.append("[process_damping]")
