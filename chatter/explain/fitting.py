@@ -362,11 +362,13 @@ def with_priors(measurement: Measurement, paths: Sequence[str]) -> list[Paramete
     """Declared values as parameters with a prior.
 
     The standard deviation is that of the measurement's [tolerance], by path or last key, or that
-    written in the case ("1650 +- 80 MPa"), or a few percent by the kind of value.
+    written in the case ("1650 +- 80 MPa"), or a few percent by the kind of value. A value that is
+    named in [tolerance] by its whole path, such as tool.helix, is one of them too.
     """
     declared = measurement.case.deviations()
     found = []
-    for path in paths:
+    named = [path for path in measurement.tolerances if "." in path]
+    for path in dict.fromkeys([*paths, *named]):
         value = float(measurement.case.get(path))
         key = path.rpartition(".")[2]
         share = measurement.tolerances.get(path, measurement.tolerances.get(key))
@@ -377,5 +379,6 @@ def with_priors(measurement: Measurement, paths: Sequence[str]) -> list[Paramete
         else:
             deviation = TOLERANCES.get(key, _OTHERS) * abs(value)
         if deviation > 0.0:
-            found.append(Parameter(path, value, deviation, lower=0.02 * value))
+            lowest = 0.02 * value if value > 0.0 else -np.inf
+            found.append(Parameter(path, value, deviation, lower=lowest))
     return found

@@ -1,7 +1,7 @@
 """Measurement folders: measurement.toml, the declared case, and the signals of every run."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -69,7 +69,7 @@ def read_measurement(folder: str | Path, case: str | Path | Case | None = None) 
     if not runs:
         raise InputError(f"{path}: there is no [[run]]")
     _refuse_names_twice(path, runs)
-    tolerances = _tolerances(path, content.get("tolerance", {}))
+    tolerances = _tolerances(path, content.get("tolerance", {}), declared)
     record = record_of(path, content)
     if record is not None:
         runs = tuple(_described(path, run, record) for run in runs)
@@ -107,16 +107,41 @@ def _refuse_names_twice(path: Path, runs: Sequence[Run]) -> None:
             raise InputError(f"{path}: {name} is the file of {names.count(name)} runs")
 
 
-def _tolerances(path: Path, given: Any) -> dict[str, float]:
+def _tolerances(path: Path, given: Any, declared: Case) -> dict[str, float]:
+    """Shares by last key of a path, or by whole path; InputError where there is no such number."""
     if not isinstance(given, dict):
         raise InputError(f"{path}: tolerance: {formatted(given)} is not a table of keys and shares")
-    for key, value in given.items():
-        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        if not is_number or not 0.0 <= value < 10.0:
+    shares = dict(_flat(given))
+    for key, value in shares.items():
+        if not _is_number(value) or not 0.0 <= value < 10.0:
             raise InputError(
                 f"{path}: tolerance.{key}: {formatted(value)} is not a share such as 0.05"
             )
-    return {key: float(value) for key, value in given.items()}
+        if "." in key and not _is_number(_declared_value(path, key, declared)):
+            raise InputError(
+                f"{path}: tolerance.{key}: the case declares no number there to be uncertain"
+            )
+    return {key: float(value) for key, value in shares.items()}
+
+
+def _flat(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
+    """Values by dotted path, of keys with or without quotation marks."""
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f"{before}{key}.")
+        else:
+            yield f"{before}{key}", value
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _declared_value(path: Path, key: str, declared: Case) -> Any:
+    try:
+        return declared.get(key)
+    except InputError as error:
+        raise InputError(f"{path}: tolerance.{key}: {error}") from error
 
 
 def _idle_power(path: Path, content: Mapping[str, Any]) -> float | None:

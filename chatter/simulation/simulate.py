@@ -132,9 +132,6 @@ def _energy(cut: CutRun) -> dict[str, float]:
     }
 
 
-_FORCES = slice(0, 3)
-
-
 def as_measured(case: Case, rows: NDArray[np.float64], step: float) -> NDArray[np.float64]:
     """Rows of a record whose forces have gone through the dynamometer of a case.
 
@@ -145,9 +142,12 @@ def as_measured(case: Case, rows: NDArray[np.float64], step: float) -> NDArray[n
     if sensor is None or len(rows) < 2:
         return rows
     measured = rows.copy()
-    measured[:, _FORCES] = through_resonance(
-        rows[:, _FORCES], sensor.frequency, sensor.damping, step
-    )
+    for column, axis in enumerate("xyz"):
+        force = rows[:, column]
+        for one in sensor.along(axis):
+            seen = through_resonance(force[:, None], one.frequency, one.damping, step)[:, 0]
+            # static shares: what goes through none is seen as it is
+            measured[:, column] += one.share * (seen - force)
     return measured
 
 

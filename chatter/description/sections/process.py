@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 #: most points a side of a diagram, and in all
 MOST_POINTS_A_SIDE = 20_000
 MOST_POINTS = 20_000_000
+#: by which shares may be more than the whole
+_ROUNDED = 1e-9
 
 
 class ProcessDamping(Section):
@@ -115,11 +117,51 @@ class Wear(Section):
         return grown + (getattr(self.chipping, key) if chipped else 0.0)
 
 
-class Dynamometer(Section):
-    """Resonance of the sensor that measures the forces."""
+class SensorResonance(Section):
+    """One of several resonances of the sensor that measures the forces."""
 
     frequency: quantity("frequency", above=0.0)
     damping: quantity("number", above=0.0, below=1.0) = Field(description="damping ratio")
+    axis: Literal["x", "y", "z"] | None = Field(
+        None, description="of the case, along which it acts; along all where it is left out"
+    )
+    share: quantity("number", above=0.0, at_most=1.0) = Field(
+        1.0, description="of the static force that goes through it; the rest is seen as it is"
+    )
+
+
+class Dynamometer(Section):
+    """Resonance of the sensor that measures the forces, or several."""
+
+    frequency: quantity("frequency", above=0.0) | None = None
+    damping: quantity("number", above=0.0, below=1.0) | None = Field(
+        None, description="damping ratio"
+    )
+    resonance: tuple[SensorResonance, ...] = Field(
+        (), description="several resonances, each by its axis and its share"
+    )
+
+    @model_validator(mode="after")
+    def _check_resonances(self) -> Self:
+        keys = ("frequency", "damping")
+        given = [key for key in keys if getattr(self, key) is not None]
+        problems = []
+        if self.resonance:
+            problems += [(key, "is given beside resonance; give one of them") for key in given]
+        else:
+            missing = [key for key in keys if key not in given]
+            problems += [(key, "is missing; give it, or resonance") for key in missing]
+        for axis in "xyz" if self.resonance else "":
+            if sum(one.share for one in self.along(axis)) > 1.0 + _ROUNDED:
+                problems.append(("resonance", f"has shares of more than 1 together along {axis}"))
+        raise_if_any(problems)
+        return self
+
+    def along(self, axis: str) -> tuple[SensorResonance, ...]:
+        """Resonances through which a force along an axis of the case is seen."""
+        if not self.resonance:
+            return (SensorResonance(frequency=self.frequency, damping=self.damping),)
+        return tuple(one for one in self.resonance if one.axis in (None, axis))
 
 
 class Cogging(Section):

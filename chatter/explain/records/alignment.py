@@ -3,7 +3,8 @@
 Over whole revolutions the harmonics of the revolution are orthogonal, so that start angle and band
 of the anti-alias filter are found from the harmonics of the record alone, by Gauss-Newton steps;
 offset and drift of every channel drop out linearly (variable projection, Golub and Pereyra 1973).
-None of them asks for another simulation.
+None of them asks for another simulation. What the filter lets pass above half the sampling
+frequency is folded back by the sampling, and is predicted as such.
 """
 
 import math
@@ -22,6 +23,9 @@ USUAL_FILTER, _LOWEST_FILTER = 2.5, 6.0
 _FILTER_STEP = 1e-3
 #: angles of the scan, steps of the search, and changes below which it ends
 _SCANNED, _MOST_STEPS, _CONVERGED = 720, 20, 1e-8
+#: highest order that is predicted, over the highest in the band: a usual filter leaves a hundredth
+#: of what is beyond
+_FOLDED = 3.0
 #: points of a revolution for each order of its highest harmonic
 _POINTS_AN_ORDER = 24
 #: widest steps, as a part of a pitch, and of the filter
@@ -50,8 +54,28 @@ class Recorded:
 
     @cached_property
     def orders(self) -> Array:
-        """Harmonics (K,) of the revolution in the band of the record, without the mean."""
-        return np.arange(1, max(int(math.pi * self.sampling / self.speed), 1) + 1)
+        """Harmonics (M,) of the revolution that are predicted, without the mean."""
+        return np.arange(1, int(_FOLDED * self.in_band) + 1)
+
+    @cached_property
+    def in_band(self) -> int:
+        """Number K of harmonics below half the sampling frequency."""
+        return max(int(math.pi * self.sampling / self.speed), 1)
+
+    @cached_property
+    def _folding(self) -> tuple[Complex, Complex]:
+        """Shares (M - K, K) of harmonics above the band, and of their conjugates, within it."""
+        high, low = self.orders[self.in_band :], self.orders[: self.in_band]
+        count = max(float(self.usable.sum()), 1.0)
+        waves = np.exp(-1j * np.outer(self.turned, low)) * (self.usable / count)[:, None]
+        above = np.exp(1j * np.outer(high, self.turned))
+        return above @ waves, np.conj(above) @ waves
+
+    def folded(self, harmonics: Complex) -> Complex:
+        """Harmonics (c, K) that a record shows of a signal of harmonics (c, M)."""
+        direct, mirrored = self._folding
+        above = harmonics[:, self.in_band :]
+        return harmonics[:, : self.in_band] + above @ direct + np.conj(above) @ mirrored
 
     @cached_property
     def middle(self) -> Array:
@@ -67,12 +91,12 @@ class Recorded:
     def content(self) -> Complex:
         """Harmonics (c, K) of the channels over `turned`, over their deviations."""
         flat = (self.signals - self.drift(self.signals)) * self.usable
-        waves = np.exp(-1j * np.outer(self.turned, self.orders))
+        waves = np.exp(-1j * np.outer(self.turned, self.orders[: self.in_band]))
         count = max(float(self.usable.sum()), 1.0)
         return 2.0 / count * (flat @ waves) / self.deviation[:, None]
 
     def filtered(self, corner_ratio: float) -> Complex:
-        """Anti-alias filter (K,) at the harmonics."""
+        """Anti-alias filter (M,) at the harmonics."""
         frequency = self.orders * self.speed / (2.0 * math.pi)
         return low_pass(frequency, corner_ratio, self.sampling)
 
@@ -83,7 +107,7 @@ class Recorded:
         return np.linalg.solve(weighted @ basis.T, weighted @ values.T).T @ basis
 
     def at(self, harmonics: Complex, start: float) -> Array:
-        """Channels (c, n) of harmonics (c, K) where the angle begins at a start angle."""
+        """Channels (c, n) of harmonics (c, M) where the angle begins at a start angle."""
         points = 1 << math.ceil(math.log2(_POINTS_AN_ORDER * self.orders.size))
         padded = np.zeros((len(harmonics), points // 2 + 1), dtype=np.complex128)
         padded[:, 1 : self.orders.size + 1] = 0.5 * points * harmonics
@@ -110,7 +134,7 @@ def low_pass(frequency: Array, corner_ratio: float, sampling: float) -> Complex:
 
 
 def aligned(harmonics: Complex, recorded: Recorded) -> Alignment:
-    """Lay harmonics (c, K) of channels over the angle, from the first order on, beside a record."""
+    """Lay harmonics (c, M) of channels over the angle, from the first order on, beside a record."""
     start, ratio = _found(harmonics, recorded)
     predicted = recorded.at(harmonics * recorded.filtered(ratio), start)
     predicted += recorded.drift(recorded.signals - predicted)
@@ -119,7 +143,7 @@ def aligned(harmonics: Complex, recorded: Recorded) -> Alignment:
 
 
 def _found(harmonics: Complex, recorded: Recorded) -> tuple[float, float]:
-    """Start angle, rad, and sampling over corner frequency, at which harmonics (c, K) fit best."""
+    """Start angle, rad, and sampling over corner frequency, at which harmonics (c, M) fit best."""
     scaled = harmonics / recorded.deviation[:, None]
     unknown = np.array([0.0, USUAL_FILTER])
     if recorded.angle is None:
@@ -146,16 +170,16 @@ class _Step:
 
 
 def _step_from(scaled: Complex, recorded: Recorded, unknown: Array) -> _Step:
-    """Gauss-Newton step of scaled harmonics (c, K)."""
+    """Gauss-Newton step of scaled harmonics (c, M)."""
     turn = np.exp(1j * recorded.orders * unknown[0])
     now, above, below = (
         scaled * recorded.filtered(unknown[1] + step) * turn
         for step in (0.0, _FILTER_STEP, -_FILTER_STEP)
     )
-    slopes = np.array([1j * recorded.orders * now, (above - below) / (2.0 * _FILTER_STEP)])
-    slopes[0] *= recorded.angle is None
-    matrix = slopes.reshape(2, -1)
-    residual = (recorded.content - now).ravel()
+    slopes = [1j * recorded.orders * now, (above - below) / (2.0 * _FILTER_STEP)]
+    matrix = np.array([recorded.folded(one).ravel() for one in slopes])
+    matrix[0] *= recorded.angle is None
+    residual = (recorded.content - recorded.folded(now)).ravel()
     normal = np.real(np.conj(matrix) @ matrix.T)
     normal += _DAMPING * (np.trace(normal) + 1e-300) * np.eye(2)
     step = np.linalg.solve(normal, np.real(np.conj(matrix) @ residual))
@@ -165,11 +189,12 @@ def _step_from(scaled: Complex, recorded: Recorded, unknown: Array) -> _Step:
 
 
 def _scanned(scaled: Complex, recorded: Recorded) -> float:
-    """Angle in the middle of the record at which scaled harmonics (c, K) fit best."""
-    product = np.sum(np.conj(scaled) * recorded.content, axis=0)
+    """Angle in the middle of the record at which scaled harmonics (c, M) fit best."""
+    orders = recorded.orders[: recorded.in_band]
+    product = np.sum(np.conj(scaled[:, : orders.size]) * recorded.content, axis=0)
     angles = np.arange(_SCANNED) / _SCANNED * 2.0 * math.pi
     if recorded.expected is not None:
         span = recorded.pitch * (np.arange(_SCANNED) / _SCANNED - 0.5)
         angles = recorded.expected + span
-    fits = np.real(np.exp(-1j * np.outer(angles, recorded.orders)) @ product)
+    fits = np.real(np.exp(-1j * np.outer(angles, orders)) @ product)
     return float(angles[int(np.argmax(fits))])

@@ -17,9 +17,9 @@ Array = NDArray[np.float64]
 
 #: runs that are looked at
 _MOST_RUNS = 4
-#: error as a settled cut over that from rest below which a run did not begin from rest, and error
-#: from rest below which it did
-_BETTER, _FITS = 0.6, 0.35
+#: error as a settled cut over that from rest below which a run did not begin from rest (a runout
+#: that is missing leaves 0.6 of it to both), and error from rest below which it did
+_BETTER, _FITS = 0.7, 0.35
 #: displacement at the first sample, over its rms, up to which a tool is at rest
 _AT_REST = 0.1
 #: speeds that are sought around the declared one where nothing is told

@@ -107,13 +107,12 @@ def _turned(names: Sequence[str]) -> list[dict[str, Array]]:
 
 
 def _content(channels: Mapping[str, Channel], recorded: Recorded, cut: SteadyCut) -> _Content:
-    filtered = recorded.filtered(USUAL_FILTER)
+    orders = recorded.orders[: recorded.in_band]
+    filtered = recorded.filtered(USUAL_FILTER)[: orders.size]
     predicted = np.array(
         [
             [
-                cut.harmonics(Component(one.quantity, tuple(axis)), recorded.orders)
-                * filtered
-                / level
+                cut.harmonics(Component(one.quantity, tuple(axis)), orders) * filtered / level
                 for axis in np.eye(3)
             ]
             for one, level in zip(channels.values(), recorded.deviation, strict=True)

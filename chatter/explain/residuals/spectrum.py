@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 
 from chatter.compile.structure import structure_of
+from chatter.description.case import Case
 from chatter.explain.criteria import AT_NOISE
 from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.finding import Curve, Curves, Finding
@@ -89,12 +90,17 @@ def spectrum(residual: Residual) -> Finding:
     return Finding("frequency", description, bool(reported), numbers, _panel(pooled))
 
 
+def _natural(case: Case) -> Sequence[Mode]:
+    """Modes of a case; none of a rigid tool."""
+    return structure_of(case).modes if case.structure is not None else ()
+
+
 def _shares(residual: ChannelResidual, split: Split) -> Shares:
     teeth = residual.case.tool.teeth
     tooth = split.orders % teeth == 0
     spacing = float(split.frequency[1])
     near = np.zeros(split.frequency.size, dtype=bool)
-    for mode in structure_of(residual.case).modes:
+    for mode in _natural(residual.case):
         width = max(_NEAR * mode.damping * mode.frequency, _NEAR_LINES * spacing)
         near |= np.abs(split.frequency - mode.frequency) <= width
     lines, filled = _lines(split, near)
@@ -241,9 +247,9 @@ class _Pooled(NamedTuple):
 
 def _pooled(channel: str, by_channel: dict[str, list[Shares]]) -> _Pooled:
     found = by_channel[channel]
-    modes = structure_of(found[0].residual.case).modes
+    modes = _natural(found[0].residual.case)
     highest = min(float(one.split.frequency[-1]) for one in found)
-    highest = min(highest, 4.0 * max(mode.frequency for mode in modes))
+    highest = min(highest, 4.0 * max((mode.frequency for mode in modes), default=math.inf))
     grid = np.linspace(highest / _GRID, highest, _GRID)
     whole, between = (
         np.sqrt(
@@ -262,6 +268,8 @@ def _strongest(pooled: _Pooled) -> str:
     squares = np.convolve(pooled.whole**2, np.ones(_BAND) / _BAND, mode="same")
     at = float(pooled.frequency[int(np.argmax(squares))])
     width = _BAND * float(pooled.frequency[1] - pooled.frequency[0])
+    if not pooled.modes:
+        return f" It is largest around {at:.0f} Hz; the tool of the case is rigid."
     nearest = min(pooled.modes, key=lambda mode: abs(mode.frequency - at))
     apart = abs(nearest.frequency - at)
     if apart <= max(width, _NEAR * nearest.damping * nearest.frequency):

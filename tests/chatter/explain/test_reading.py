@@ -206,6 +206,8 @@ def test_two_columns_of_one_name_are_refused(tmp_path):
     [
         ('colour = "red"', "colour is not a key; there are"),
         ('[[run]]\nfile = "a.csv"\n[tolerance]\nKtc = "few"', 'tolerance.Ktc: "few"'),
+        ('[[run]]\nfile = "a.csv"\n[tolerance]\ntool.helx = 0.2', r"tolerance.tool.helx: .*helix"),
+        ('[[run]]\nfile = "a.csv"\n[tolerance]\n"tool.runout" = 0.2', "no number there"),
         ('[[run]]\nfile = "a.csv"\nspeed = 3', r"run 1 \(a.csv\): speed is not a key"),
         ('[[run]]\nfile = "a.csv"\nspindle_speed = "3 mm"', r"run 1 \(a.csv\): .*spindle_speed"),
         ('[[run]]\nfile = "a.csv"\n[[run]]\nfile = "a.csv"', "a.csv is the file of 2 runs"),

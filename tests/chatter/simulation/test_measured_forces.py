@@ -8,7 +8,8 @@ import pytest
 import chatter
 from chatter.compile.structure import structure_of
 from chatter.description.case import loads
-from chatter.simulation.simulate import through_resonance
+from chatter.description.errors import InputError
+from chatter.simulation.simulate import as_measured, through_resonance
 
 CASE = """
 [tool]
@@ -30,6 +31,7 @@ axial_depth = "1 mm"
 [simulation]
 revolutions = 3
 """
+RESONANCE = {"frequency": 800.0, "damping": 0.1}
 
 
 def test_a_sine_through_a_resonance_has_its_amplitude_and_phase():
@@ -74,3 +76,38 @@ def test_a_frequency_moves_with_the_spindle_speed():
     (mode,) = structure_of(case).modes
     assert mode.frequency == pytest.approx(500.0 * (1.0 - 1e-4 * 2.0 * np.pi * 100.0))
     assert mode.mass == pytest.approx(1.0)
+
+
+def test_axes_of_a_sensor_have_resonances_of_their_own():
+    """Two along x share the static force, one along y takes all of it, z is seen as it is."""
+    rng = np.random.default_rng(2)
+    rows = np.zeros((4000, 7))
+    rows[:, :3] = np.cumsum(rng.normal(size=(4000, 3)), axis=0)
+    resonance = [
+        {"frequency": "800 Hz", "damping": 0.05, "axis": "x", "share": 0.7},
+        {"frequency": "3 kHz", "damping": 0.02, "axis": "x", "share": 0.3},
+        {"frequency": "1000 Hz", "damping": 0.04, "axis": "y"},
+    ]
+    case = loads(CASE).patch({"dynamometer": {"resonance": resonance}})
+    seen = as_measured(case, rows, 1e-4)
+    x, y = rows[:, :1], rows[:, 1:2]
+    both = 0.7 * through_resonance(x, 800.0, 0.05, 1e-4)
+    both += 0.3 * through_resonance(x, 3000.0, 0.02, 1e-4)
+    np.testing.assert_allclose(seen[:, :1], both, atol=1e-9)
+    np.testing.assert_allclose(seen[:, 1:2], through_resonance(y, 1000.0, 0.04, 1e-4), atol=1e-9)
+    np.testing.assert_array_equal(seen[:, 2:], rows[:, 2:])
+
+
+@pytest.mark.parametrize(
+    ("section", "words"),
+    [
+        ({"frequency": "900 Hz"}, "dynamometer.damping: is missing"),
+        ({"frequency": "900 Hz", "damping": 0.1, "resonance": [RESONANCE]},
+         "dynamometer.frequency: is given beside resonance"),
+        ({"resonance": [RESONANCE] * 2}, "more than 1 together along x"),
+    ],
+)  # fmt: skip
+def test_resonances_that_contradict_each_other_are_refused(section, words):
+    with pytest.raises(InputError) as refused:
+        loads(CASE).patch({"dynamometer": section})
+    assert words in str(refused.value)

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.signal
 
 from benchmarks.blind_sets.milling_physics import SAMPLING, TURN, Cut, Plant, arc_of, run
 from chatter.description.case import loads
@@ -15,6 +16,7 @@ from chatter.explain.checking import checked
 from chatter.explain.comparison import compare
 from chatter.explain.data_checks.finding import NOTE, RUN
 from chatter.explain.measurement import Measurement, Run
+from chatter.explain.records.alignment import Recorded, aligned
 from chatter.explain.records.case_axes import in_case_axes
 from chatter.explain.records.description import Channel, RecordDescription, record_of
 from chatter.explain.records.spindle import speed_by_repetition, tacho_reading
@@ -274,3 +276,29 @@ def test_notes_tell_the_stages(case, cut_off, tmp_path):
     usable = checked(measurement(case, cut_off, tmp_path, as_in_the_case, record))
     told = [one.description for one in usable.findings if one.severity == NOTE]
     assert any("settled from" in one and "rpm by what repeats" in one for one in told)
+
+
+def test_what_the_filter_lets_pass_above_the_band_is_predicted():
+    """A tooth passing at 450 Hz behind a Butterworth filter at 0.4 of the sampling frequency.
+
+    Its twelfth harmonic lies at 5.4 kHz and is recorded at 4.6 kHz.
+    """
+    sampling, speed, corner = 1e4, 450.0 * TURN / 2.0, 4e3
+    orders = np.arange(1, 67)
+    harmonics = np.where(orders % 2 == 0, 1.0 / orders**0.3, 0.02) * np.exp(1j * orders)
+    time = np.arange(1500) / sampling
+    b, a = scipy.signal.butter(4, TURN * corner, analog=True)
+    filtered = harmonics * scipy.signal.freqs(b, a, orders * speed)[1]
+    signal = np.real(filtered @ np.exp(1j * np.outer(orders, speed * time + 0.3)))
+    one = np.ones(1)
+    recorded = Recorded(time, signal[None, :], one, np.ones(time.size), speed, TURN)
+    known = np.zeros((1, recorded.orders.size), dtype=np.complex128)
+    known[0, : orders.size] = harmonics
+    found = aligned(known, recorded)
+    # the record does not end with a revolution
+    assert found.corner == pytest.approx(corner, rel=0.01)
+    assert np.std(found.predicted[0] - signal) < 0.01 * np.std(signal)
+    # without what is folded back a tenth is missing
+    in_band = filtered * (orders <= recorded.in_band)
+    missed = np.real(in_band @ np.exp(1j * np.outer(orders, speed * time + 0.3))) - signal
+    assert np.std(missed) > 0.1 * np.std(signal)
