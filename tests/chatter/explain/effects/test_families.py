@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from chatter.description.case import loads
+from chatter.explain.effects.cutting_force import DynamometerOfAxes
 from chatter.explain.effects.effect_list import candidates
 from chatter.explain.effects.missing_mode import MissingMode
 from chatter.explain.effects.structure import ModeShift, ModeShiftOf, ModeShiftOfEach
@@ -130,3 +131,23 @@ def test_evidence_of_what_a_spectrum_hides_is_small():
     # a change at the ripple's own frequency is not
     assert abs(whittle(noise + 1.01 * ripple) - alone) < 1.0
     assert probabilities([0.0, -np.log(3.0)]) == pytest.approx([0.75, 0.25])
+
+
+def test_a_sensor_has_a_resonance_along_each_axis_that_is_measured():
+    time = 1e-4 * np.arange(10)
+    signals = {"time": time, "Fx": time, "Fy": time}
+    measured = cuts().with_runs([replace(run, signals=signals) for run in cuts().runs])
+    members = [one for one in candidates(measured) if one.name == "dynamometer"]
+    assert [type(one).__name__ for one in members] == ["Dynamometer", "DynamometerOfAxes"]
+    effect = members[1]
+    names = [one.name for one in effect.parameters(measured)]
+    assert names == ["frequency_x", "damping_x", "frequency_y", "damping_y"]
+    case = CASE.patch(effect.patch(CASE, dict(zip(names, (780.0, 0.05, 990.0, 0.04), strict=True))))
+    (along_x,), (along_y,) = case.dynamometer.along("x"), case.dynamometer.along("y")
+    assert (along_x.frequency, along_x.damping, along_x.share) == (780.0, 0.05, 1.0)
+    assert (along_y.frequency, along_y.damping) == (990.0, 0.04)
+    assert case.dynamometer.along("z") == ()
+    # both orders of any two frequencies are tried
+    starts = {(one["frequency_x"], one["frequency_y"]) for one in effect.starts(measured)}
+    assert {(y, x) for x, y in starts} == starts
+    assert not DynamometerOfAxes().applies(measured.with_case(case))
