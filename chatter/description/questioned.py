@@ -51,7 +51,7 @@ def _question(name: str, value: float, usual: _Usual) -> list[str]:
     return [f"{name}: is {given} meant? {usual.of} have {ends}"]
 
 
-def question_of_growth(spectral_radius: float) -> list[str]:
+def question_of_spectral_radius(spectral_radius: float) -> list[str]:
     """Sentence on a vibration that grows faster than any cut lets it."""
     if spectral_radius <= _MOST_GROWTH:
         return []

@@ -9,7 +9,7 @@ from chatter.compile.cutter import cutter_of
 from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.progress import no_progress
-from chatter.description.questioned import question_of_growth
+from chatter.description.questioned import question_of_spectral_radius
 from chatter.description.units import rpm
 from chatter.detection.bifurcation_type import bifurcation_of_multiplier
 from chatter.io.result_files import as_json, finite_or_none, short_repr, write_results
@@ -201,7 +201,7 @@ def check(case: Case, method: str | None = None) -> StabilityCheck:
         max_depth=float(depths[-1]),
         zero_order_depth=float(zero_order.critical_depth[0]),
         notes=(
-            *question_of_growth(abs(multiplier.value)),
+            *question_of_spectral_radius(abs(multiplier.value)),
             *model.notes,
             *notes_on_resting_friction(model),
             *notes_on_steady_cut(model, chosen),

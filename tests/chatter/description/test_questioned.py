@@ -4,7 +4,7 @@ import pytest
 
 import chatter
 from chatter.description.case import loads
-from chatter.description.questioned import question_of_growth, questions
+from chatter.description.questioned import question_of_spectral_radius, questions
 from tests.chatter.simulation.test_worn_flank import CASE
 
 
@@ -35,6 +35,6 @@ def test_no_example_is_asked_about(name):
 
 
 def test_growth_is_told_in_words():
-    assert question_of_growth(2.0) == []
-    (asked,) = question_of_growth(7e11)
+    assert question_of_spectral_radius(2.0) == []
+    (asked,) = question_of_spectral_radius(7e11)
     assert "7e+11 times from tooth to tooth" in asked
