@@ -175,7 +175,9 @@ class Stability(Kind):
         coefficients = ("Ktc", "Krc", "Kte") if has_power(measurement) else ("Ktc", "Krc")
         declared = measurement.case.deviations()
         tolerances = dict(measurement.tolerances)
-        if _DAMPING not in declared and "coefficient" not in tolerances:
+        damped = measurement.case.process_damping
+        known = _DAMPING in declared or "coefficient" in tolerances
+        if damped is not None and damped.coefficient and not known:
             tolerances.setdefault(_DAMPING, _DAMPING_TOLERANCE)
         with_damping = replace(measurement, tolerances=tolerances)
         found = with_priors(with_damping, cutting_paths(measurement.case, coefficients))
