@@ -100,8 +100,8 @@ def test_lobes_and_check_take_the_method(run, folder):
     assert found["method"] == "cautious-zero-order"
     ours, theirs = found["lowest_limit"], plain["lowest_limit"]
     assert ours["critical_depth_mm"] == pytest.approx(0.8 * theirs["critical_depth_mm"])
-    checked = json.loads(run(folder, "check", "case.toml"))
-    plain = json.loads(run(folder, "check", "case.toml", "--method", "zero-order"))
+    checked = json.loads(run(folder, "check", "case.toml", "--json"))
+    plain = json.loads(run(folder, "check", "case.toml", "--method", "zero-order", "--json"))
     assert checked["critical_depth_mm"] == pytest.approx(0.8 * plain["critical_depth_mm"])
 
 
@@ -112,7 +112,7 @@ def test_the_force_law_is_that_of_the_package(run, folder):
     (folder / "exponential.toml").write_text(text)
     method = ("--method", "collocation")
     found, expected = (
-        json.loads(run(folder, "check", name, *method))["critical_depth_mm"]
+        json.loads(run(folder, "check", name, *method, "--json"))["critical_depth_mm"]
         for name in ("case.toml", "exponential.toml")
     )
     assert found == pytest.approx(expected, rel=1e-6)
