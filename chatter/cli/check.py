@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from chatter.cli import options
-from chatter.cli.progress import announce_compilation
+from chatter.cli.progress import progress_bar
 from chatter.report.console import print_json, print_line, print_notes, print_table, print_written
 
 if TYPE_CHECKING:
@@ -33,8 +33,8 @@ def check(
     description = options.patched_case(case, assignments)
     from chatter.stability.check import check as run_check
 
-    announce_compilation()
-    result = run_check(description, method)
+    with progress_bar("critical depth") as progress:
+        result = run_check(description, method, progress)
     if json:
         print_json(result.summary())
     else:

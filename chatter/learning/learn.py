@@ -23,8 +23,9 @@ from chatter.learning.cuts import read_cuts
 from chatter.learning.diagram import ParticleDiagram, diagram_of
 from chatter.learning.likelihood import Likelihood
 from chatter.learning.next_cut import AIMS, INFORMATION, LEAST_INFORMATION, NextCut, next_cut
-from chatter.learning.posterior import Particles, Progress, prior_particles, updated
+from chatter.learning.posterior import Particles, Progress, prior_particles
 from chatter.learning.prior import SCATTER_OF_LIMITS, prior_of, with_wear
+from chatter.learning.with_or_without_wear import learnt_particles
 from chatter.stability.search_range import spindle_speeds
 
 if TYPE_CHECKING:
@@ -250,7 +251,7 @@ def learn(
     prior = prior_of(problem)
     generator = np.random.default_rng(seed)
     before = prior_particles(prior, particles, generator)
-    after = updated(before, Likelihood(problem, prior), generator, progress)
+    after = learnt_particles(problem, prior, particles, generator, progress)
     progress("stability of all particles", 1.0)
     speeds, depths = _ranges(measurement, problem, after)
     last = _diagram(problem, after, speeds, depths, None)

@@ -45,11 +45,14 @@ class Particles:
         Values, in sizes of the parameters from where they start.
     tests : int
         That they have learnt from, in the order of the table.
+    log_evidence : float
+        Logarithm of the probability of what was read in the tests, by the model of the particles.
     """
 
     prior: Prior
     counted: Array
     tests: int = 0
+    log_evidence: float = 0.0
 
     def values(self) -> list[dict[str, float]]:
         """Values of every particle by name, SI."""
@@ -77,7 +80,8 @@ def updated(
     while chains.share < 1.0:
         chains.step()
         progress("learning from the tests", chains.share)
-    return Particles(before.prior, chains.counted, 1 + int(likelihood.test.max()))
+    evidence = before.log_evidence + chains.log_evidence
+    return Particles(before.prior, chains.counted, 1 + int(likelihood.test.max()), evidence)
 
 
 class _Chains:
@@ -88,7 +92,7 @@ class _Chains:
     ) -> None:
         self.prior, self.likelihood, self.generator = before.prior, likelihood, generator
         self.first = likelihood.test < before.tests
-        self.share = 0.0
+        self.share, self.log_evidence = 0.0, 0.0
         self.counted = before.counted
         self.predictions = likelihood.predictions(self.counted)
 
@@ -102,6 +106,7 @@ class _Chains:
                 scipy.optimize.brentq(lambda b: _effective(b * change) - _EFFECTIVE, 0.0, rest)
             )
         self.share = 1.0 if part == rest else self.share + part
+        self.log_evidence += _log_mean(part * change)
         chosen = self._drawn(part * change)
         self.counted, self.predictions = self.counted[chosen], self.predictions[chosen]
         accepted = 0.0
@@ -171,6 +176,12 @@ class _Regression:
     def _rows(self, counted: Array) -> Array:
         scaled = (counted - self.middle) / self.width
         return np.hstack([np.ones((len(scaled), 1)), scaled])
+
+
+def _log_mean(log_weight: Array) -> float:
+    """Logarithm of the mean of weights."""
+    largest = float(log_weight.max())
+    return largest + math.log(float(np.mean(np.exp(log_weight - largest))))
 
 
 def _effective(log_weight: Array) -> float:

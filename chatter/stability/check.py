@@ -8,7 +8,7 @@ import numpy as np
 from chatter.compile.cutter import cutter_of
 from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
-from chatter.description.progress import no_progress
+from chatter.description.progress import Progress, no_progress
 from chatter.description.questioned import question_of_spectral_radius
 from chatter.description.units import rpm
 from chatter.detection.bifurcation_type import bifurcation_of_multiplier
@@ -160,7 +160,9 @@ def _hertz(frequency: float) -> str:
 
 
 @takes_case_or_path
-def check(case: Case, method: str | None = None) -> StabilityCheck:
+def check(
+    case: Case, method: str | None = None, progress: Progress = no_progress
+) -> StabilityCheck:
     """Judge the operating point of a case and find the critical depth at its speed.
 
     Parameters
@@ -169,6 +171,8 @@ def check(case: Case, method: str | None = None) -> StabilityCheck:
     method : str, optional
         Gives the critical depth: name in `chatter.stability.registry.METHODS`, or "auto". The
         spectral radius is that of the method where it gives one, else of collocation.
+    progress : callable, optional
+        Called with (done, total) points of the search for the critical depth.
 
     Returns
     -------
@@ -186,7 +190,7 @@ def check(case: Case, method: str | None = None) -> StabilityCheck:
     speeds = np.array([case.cut.spindle_speed])
     zero_order = zero_order_of(model, speeds)
     depths = depths_at_one_speed(case, zero_order)
-    limit = chosen.limits(model, speeds, depths, steps, no_progress)
+    limit = chosen.limits(model, speeds, depths, steps, progress)
     beside = about_steady_motion(model, *model.operating_point, float(limit.chatter_frequency[0]))
     multiplier = with_multiplier(chosen).multiplier(beside, steps)
     frequency = np.nan

@@ -131,3 +131,11 @@ def test_limits_of_particles_are_interpolated_between_depths():
     # margins are shares of the depth: between 1 mm (+0.5) and 2 mm (-0.25), two thirds of the way
     assert limits[0] == pytest.approx([1e-3 + 2e-3 / 3.0] * 2)
     assert np.all(np.isfinite(limits))
+
+
+def test_the_evidence_is_the_integral_of_the_likelihood_over_the_prior():
+    """A flat prior over 60 by 60: the integral of the normal density of two readings."""
+    likelihood = GaussianReadings(SLOPES[:2], MEASURED[:2], SCATTER[:2], [0, 1])
+    found = updated(spread_particles(6000), likelihood, np.random.default_rng(1))
+    volume = 2.0 * np.pi * np.prod(SCATTER[:2]) / abs(np.linalg.det(SLOPES[:2]))
+    assert found.log_evidence == pytest.approx(np.log(volume / 3600.0), abs=0.12)
