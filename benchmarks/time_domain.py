@@ -154,9 +154,7 @@ def delayed_case(mode: str, immersion: float, law: str) -> Case:
 def engaged_share(setup: Setup) -> float:
     """Share of the tooth-slice-steps whose slice has its middle in the arc of the cut."""
     angle = setup.slices.angle
-    entry, leave = slice_engagement(
-        setup.case.cut.mode, setup.case.width_of_cut, setup.cutter.radius, setup.slices.radius
-    )
+    entry, leave = slice_engagement(setup.case.uncut_band, setup.slices.radius)
     bins = setup.resolution.steps_per_revolution
     turn = np.arange(bins)[:, None, None] * 2 * math.pi / bins
     place = np.mod(turn + angle - entry, 2 * math.pi)

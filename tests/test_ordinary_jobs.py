@@ -49,9 +49,14 @@ def test_numbers_of_the_page_are_those_of_the_textbook():
     assert f"power {cutting + edge + 0.3 * 200e6 * 0.3e-3 * 0.5e-3:.2f} W mean" in PAGE
     effective = 2.0 * math.sqrt(0.5 * 9.5)
     assert f"= {effective:.3f} mm" in PAGE
-    assert f'"{5.0 - 0.5 * effective + 0.4:.3f} mm"' in PAGE
+    assert f"{math.degrees(math.acos(1.0 - 0.4 / (0.5 * effective))):.1f}° at the depth" in PAGE
+    assert f"{90.0 - math.degrees(math.asin(30 / 40)):.2f}° to" in PAGE
+    angles = [math.degrees(math.acos(y / 40)) for y in (25, -35)]
+    assert f"{angles[0]:.2f}° to acos(-35/40) = {angles[1]:.2f}°" in PAGE
+    width = 8.0 * (math.cos(math.radians(30.0)) - math.cos(math.radians(100.0)))
+    assert f"= {width:.3f} mm across" in PAGE
     assert f"{math.pi * effective * 60.0 / (math.pi * 0.01) * 1e-3:.2f} m/min there" in PAGE
 
 
 def test_there_are_jobs():
-    assert len(JOBS) >= 13
+    assert len(JOBS) >= 16

@@ -72,7 +72,7 @@ def _of_cut(case: Case) -> Iterator[Slider]:
         "cut.spindle_speed", group, "spindle speed", "rpm", speed, 0.1 * speed, 4.0 * speed
     )
     yield Slider("cut.axial_depth", group, "axial depth", "mm", depth, 0.02 * depth, 8.0 * depth)
-    if cut.mode != "slot":
+    if cut.radial_depth is not None:
         width, widest = _rounded(cut.radial_depth * 1e3), _rounded(case.tool.diameter * 1e3)
         yield Slider("cut.radial_depth", group, "radial depth", "mm", width, 0.01 * widest, widest)
     if _feed_matters(case):

@@ -10,13 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from pydantic import Field, PrivateAttr, model_validator
 
 from chatter.description import renamed
-from chatter.description.case_checks import (
-    depth_problems,
-    engagement_problems,
-    engagement_problems_of_draft,
-    friction_problems,
-    optimum_problems,
-)
+from chatter.description.case_checks import depth_problems, friction_problems, optimum_problems
 from chatter.description.errors import InputError
 from chatter.description.patchable import Description
 from chatter.description.renamed import Renamed
@@ -40,14 +34,22 @@ from chatter.description.sections.process import (
 from chatter.description.sections.structure import StructureSection
 from chatter.description.sections.tool import Tool
 from chatter.description.stated_cut import ALTERNATIVES, with_stated_cut
+from chatter.description.stated_engagement import (
+    ALTERNATIVE_ENGAGEMENTS,
+    ENGAGEMENT_KEYS,
+    engagement_problems,
+    engagement_problems_of_draft,
+    uncut_band,
+)
 from chatter.description.toml_document import move_references
 from chatter.description.toml_editing import Layout
+from cutting.engagement.uncut_band import UncutBand
 
 if TYPE_CHECKING:
     from chatter.description.machine.machine_file import MachineFile
 
 
-_MODE, _WIDTH = "cut.mode", "cut.radial_depth"
+_MODE = "cut.mode"
 
 
 class Case(Description):
@@ -72,6 +74,7 @@ class Case(Description):
             "duration": "revolutions",
             "revolutions": "duration",
             **ALTERNATIVES,
+            **ALTERNATIVE_ENGAGEMENTS,
         },
     )
 
@@ -105,8 +108,7 @@ class Case(Description):
     @model_validator(mode="after")
     def _check_engagement(self) -> Case:
         if self.tool is not None and self.cut is not None:
-            cut = self.cut
-            raise_if_any(engagement_problems(cut.mode, cut.radial_depth, self.tool.diameter))
+            raise_if_any(engagement_problems(self.cut, self.tool.diameter))
         return self
 
     @classmethod
@@ -137,13 +139,14 @@ class Case(Description):
         move_references(document, old, new)
 
     @property
-    def width_of_cut(self) -> float:
-        """Radial depth of cut, m: the diameter where a slot does not give it.
+    def uncut_band(self) -> UncutBand:
+        """Uncut work across the feed, as [cut] states it."""
+        return uncut_band(self.cut, self.tool)
 
-        A conversion of units may have rounded it to a hair more than the diameter.
-        """
-        given = self.cut.radial_depth
-        return self.tool.diameter if given is None else min(given, self.tool.diameter)
+    @property
+    def width_of_cut(self) -> float:
+        """Width of cut at the full radius of the tool, m, seen along the feed."""
+        return float(self.uncut_band.width(0.5 * self.tool.diameter))
 
     @property
     def feed_speed(self) -> float:
@@ -179,8 +182,9 @@ class Case(Description):
 
         A cut that becomes a slot is as wide as the tool.
         """
-        if values.get(_MODE) == "slot" and self.cut is not None and self.cut.radial_depth:
-            values = {_WIDTH: None, **values}
+        if values.get(_MODE) == "slot" and self.cut is not None:
+            given = [key for key in ENGAGEMENT_KEYS if getattr(self.cut, key) is not None]
+            values = {**{f"cut.{key}": None for key in given}, **values}
         patched = super().patch(values)
         named = None if patched.structure is None else patched.structure.machine
         if self._machine is not None and named == self.structure.machine:

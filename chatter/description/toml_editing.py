@@ -17,12 +17,12 @@ class Layout(NamedTuple):
     headed : frozenset of tuple of str
         Paths of tables, below the first level, that have a header of their own; ``"*"`` stands
         for any name. Other tables are written in one line.
-    alternatives : mapping of str to str
-        Giving one of these keys takes the other away.
+    alternatives : mapping of str to str or tuple of str
+        Giving one of these keys takes the other, or the others, away.
     """
 
     headed: frozenset[tuple[str, ...]]
-    alternatives: Mapping[str, str]
+    alternatives: Mapping[str, str | tuple[str, ...]]
 
 
 class Containers(NamedTuple):
@@ -131,8 +131,9 @@ def _assign_key(
     if value is None:
         item.pop(key, None)
         return
-    if key in layout.alternatives:
-        item.pop(layout.alternatives[key], None)
+    others = layout.alternatives.get(key, ())
+    for other in (others,) if isinstance(others, str) else others:
+        item.pop(other, None)
     in_one_line = isinstance(value, dict) and not _is_headed(steps, layout)
     item[key] = _filled(containers.inline_table(), value) if in_one_line else value
 

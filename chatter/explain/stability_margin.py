@@ -181,7 +181,7 @@ def _model_of(case: Case) -> MillingModel:
     directions = tuple(mode.direction for mode in case.structure.mode)
     if not directions or _ploughs(case):
         return milling_model(case)
-    key = (case.tool, case.cut.mode, case.cut.radial_depth, directions)
+    key = (case.tool, case.uncut_band, directions)
     with _LOCK:
         like = _MODELS.get(key)
     if like is None:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.simulation.reconstruction import WALLS, WallProfiles
+from chatter.simulation.reconstruction import WallProfiles
 from chatter.simulation.setup import Setup, set_up_in_stock, with_start_cleared
 from chatter.simulation.workpiece import DISCRETE_CHIPS
 from cutting.chip.discrete_chip import DiscreteCut
@@ -48,7 +48,7 @@ class FollowingStock:
         self.cut = cut
         self.left_behind: list[WallPiece] = []
         self._kind = DISCRETE_CHIPS[case.simulation.chip]
-        self._sides = WALLS[case.cut.mode]
+        self._sides = case.uncut_band.walls(0.5 * case.tool.diameter)
         self._reach = reach
 
     def follow(self, x: float) -> DiscreteCut:
@@ -100,7 +100,10 @@ def carved_walls(result: SimulationResult) -> list[WallProfiles]:
     if count < _LEAST_POINTS:
         return []
     x = np.linspace(low, high, count)
-    walls = (_wall(result, cut, side, x) for side in WALLS[result.case.cut.mode])
+    walls = (
+        _wall(result, cut, side, x)
+        for side in result.case.uncut_band.walls(result.setup.cutter.radius)
+    )
     return [wall for wall in walls if wall is not None]
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cutting.engagement.immersion import slice_engagement
+from cutting.engagement.uncut_band import UncutBand
 from cutting.surface.envelope import (
     ToolMotion,
     WallPasses,
@@ -27,8 +28,6 @@ Array = NDArray[np.float64]
 _TURN = 2.0 * math.pi
 #: direction in which an edge points at the wall, by the side of the wall
 _WALL_ANGLE = {"+y": 0.0, "-y": math.pi}
-#: sides of the walls that stay, by the mode of the cut
-WALLS = {"up": ("+y",), "down": ("-y",), "slot": ("+y", "-y")}
 #: turns, points along the feed, points a tooth and heights that are evaluated
 _MOST_TURNS = 60.0
 _MOST_POINTS = 4000
@@ -78,7 +77,9 @@ def surface_profiles(
     record = _record(result)
     if record is None:
         return [], None, ["surface: the run is too short for it to be evaluated"]
-    found = [_wall(result, record, side) for side in WALLS[case.cut.mode]]
+    found = [
+        _wall(result, record, side) for side in case.uncut_band.walls(result.setup.cutter.radius)
+    ]
     walls = [wall for wall in found if wall is not None]
     notes = [] if walls else ["wall: the run is too short for it to be evaluated"]
     floor, reason = _floor(result, record)
@@ -123,8 +124,7 @@ def _surface_slices(cutter: Cutter, depth: float) -> EdgeSlices:
 
 def _levels(result: SimulationResult, slices: EdgeSlices) -> NDArray:
     """Slices that make the wall: the straight edge, or the corner where nothing else cuts."""
-    cut, radius = result.case.cut, result.setup.cutter.radius
-    entry, leave = slice_engagement(cut.mode, result.case.width_of_cut, radius, slices.radius)
+    entry, leave = slice_engagement(result.case.uncut_band, slices.radius)
     cutting = entry < leave
     straight = cutting & (slices.immersion >= result.setup.cutter.edge_angle - 1e-9)
     return np.flatnonzero(straight if straight.any() else cutting)
@@ -188,12 +188,11 @@ def _floor(result: SimulationResult, record: _Record) -> tuple[FloorProfile | No
     """Floor along a line in the middle of the cut, or why there is none."""
     cutter, slices, case = result.setup.cutter, result.setup.slices, result.case
     tip_radius = cutter.radius - cutter.corner_radius
-    crossing = _crossing(tip_radius, cutter.radius, result.case.width_of_cut)
-    if crossing is None:
+    direction = _crossing(tip_radius, case.uncut_band.middle(cutter.radius), case.uncut_band)
+    if direction is None:
         return None, "floor: the tip of the tool is not within the width of the cut"
-    direction = crossing if case.cut.mode != "down" else math.pi - crossing
     angle, edge = record.longer.passes(slices.angle[:, 0], direction, _MARGIN)
-    steep = math.sin(crossing)
+    steep = math.sin(direction)
     position = record.longer.at(angle)
     at = position[:, 0] + (tip_radius + cutter.radial_offsets[edge]) * steep
     lowest = position[:, 2] - cutter.axial_offsets[edge]
@@ -215,12 +214,11 @@ def _floor(result: SimulationResult, record: _Record) -> tuple[FloorProfile | No
     return FloorProfile(x, profile), ""
 
 
-def _crossing(tip_radius: float, radius: float, width: float) -> float | None:
+def _crossing(tip_radius: float, middle: float, band: UncutBand) -> float | None:
     """Angle at which the deepest points of the edges cross the middle of the cut, rad.
 
     A ball has one such point, on its axis.
     """
-    middle = max(radius - 0.5 * width, 0.0)
     if tip_radius <= 0.0:
-        return 0.5 * math.pi if width >= radius else None
-    return math.acos(middle / tip_radius) if middle < tip_radius else None
+        return 0.5 * math.pi if band.side == 0 else None
+    return math.acos(middle / tip_radius) if abs(middle) < tip_radius else None

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from cutting.engagement.immersion import slice_engagement
+from cutting.engagement.slice_bounds import SliceLimits, slice_bounds
 from cutting.tool.cutter import Cutter, slices_between
-from cutting.tool.slice_bounds import SliceLimits, slice_bounds
 from dynamics.modal.modes import Mode
 
 #: steps within a period of the highest mode: where it leaves the chip, the moment counts
@@ -68,14 +68,12 @@ class Resolution:
 
 def shortest_arc(case: Case, cutter: Cutter, radius: float) -> float:
     """Angle within which an edge at a radius, m, crosses the cut, with its lag, rad."""
-    return max(_arc_at(case, cutter, radius) + _least_lag(case, cutter), 1e-3)
+    return max(_arc_at(case, radius) + _least_lag(case, cutter), 1e-3)
 
 
-def _arc_at(case: Case, cutter: Cutter, radius: float) -> float:
+def _arc_at(case: Case, radius: float) -> float:
     """Angle from entry to exit of an edge at a radius, m, in the cut of [cut], rad."""
-    entry, leave = slice_engagement(
-        case.cut.mode, case.width_of_cut, cutter.radius, np.array([radius])
-    )
+    entry, leave = slice_engagement(case.uncut_band, np.array([radius]))
     return float(leave[0] - entry[0])
 
 
@@ -145,20 +143,16 @@ def bounds_of(case: Case, cutter: Cutter) -> NDArray[np.float64]:
     """
     section = case.simulation
     chip = section.chip if section else "delay"
-    wall = None
-    if case.cut.mode != "slot" and case.stock is None:
-        wall = cutter.radius - case.width_of_cut
+    band = case.uncut_band if case.stock is None else None
     limits = _LIMITS[chip]
     if chip != "delay":
         # the upper end of a layer leaves the chip before its middle does
-        limits = replace(
-            limits, lag=min(limits.lag, _LAG_OF_ARC * _arc_at(case, cutter, cutter.radius))
-        )
+        limits = replace(limits, lag=min(limits.lag, _LAG_OF_ARC * _arc_at(case, cutter.radius)))
     boxes = () if case.stock is None else case.stock.box
     bounds = slice_bounds(
         cutter,
         case.cut.axial_depth,
-        wall,
+        band,
         replace(limits, wavelength=_part_of_a_wave(case)).refined(_refinement(case)),
         section.slices if section else None,
         [height for box in boxes for height in (box.z[0], box.z[1])],

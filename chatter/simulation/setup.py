@@ -217,23 +217,22 @@ def _refuse_crossing_flutes(case: Case, slices: EdgeSlices) -> None:
 
 
 def _refuse_out_of_reach(case: Case, slices: EdgeSlices) -> None:
-    """Refuse a radial depth that no slice of the edge reaches."""
-    radius = 0.5 * case.tool.diameter
-    entry, leave = slice_engagement(case.cut.mode, case.width_of_cut, radius, slices.radius)
+    """Refuse a cut that no slice of the edge reaches."""
+    entry, leave = slice_engagement(case.uncut_band, slices.radius)
     if np.all(entry >= leave):
         raise InputError(
-            f"{case.name}: cut.radial_depth: down to an axial depth of "
-            f"{case.cut.axial_depth * 1e3:g} mm the edge is nowhere wider than "
-            f"{slices.radius.max() * 2e3:.4g} mm; a radial depth of "
-            f"{case.width_of_cut * 1e3:g} mm is not reached"
+            f"{case.name}: cut: down to an axial depth of {case.cut.axial_depth * 1e3:g} mm the "
+            f"edge is nowhere wider than {slices.radius.max() * 2e3:.4g} mm; the work is not "
+            "reached. A radial depth counts from the full radius of the tool; a step from pass to "
+            "pass is stated by stepover"
         )
 
 
 def _delayed(
     case: Case,
-    cutter: Cutter,
+    cutter: Cutter,  # noqa: ARG001  (every chip has the same signature)
     slices: EdgeSlices,
-    modes: tuple[Mode, ...],  # noqa: ARG001  (every chip has the same signature)
+    modes: tuple[Mode, ...],  # noqa: ARG001
     resolution: Resolution,
     spindle: Spindle,
     path: ToolPath,
@@ -246,12 +245,7 @@ def _delayed(
     bins = resolution.steps_per_revolution
     return delayed_cut(
         slices,
-        slice_arcs(
-            case.cut.mode,
-            case.width_of_cut,
-            cutter.radius,
-            np.stack([slices.lower_radius, slices.upper_radius], axis=1),
-        ),
+        slice_arcs(case.uncut_band, np.stack([slices.lower_radius, slices.upper_radius], axis=1)),
         edge_law(case),
         flank_table(case, slices.radius, 2.0 * math.pi / bins),
         bins,

@@ -25,6 +25,8 @@ from cutting.dexel.stock import (
     dexel_stock,
     dexel_wall_profile,
 )
+from cutting.engagement.immersion import slice_engagement
+from cutting.engagement.uncut_band import UncutBand
 from cutting.tool.cutter import Cutter, EdgeSlices
 from cutting.tool.edge_table import edge_table
 from cutting.voxel.stock import (
@@ -107,11 +109,13 @@ def _voxel_size(case: Case, _: Cutter, modes: tuple[Mode, ...]) -> float:
 
 def _thickest_chip(case: Case, cutter: Cutter) -> float:
     """Thickest chip of a cut, m; that of a wide one where a stock may be anywhere."""
-    if case.stock is not None or case.cut.mode == "slot":
+    if case.stock is not None or case.uncut_band.side == 0:
         return case.cut.feed_per_tooth
-    wall = max(cutter.radius - case.width_of_cut, 0.0)
-    arc = math.acos(min(wall / outermost_radius(case, cutter), 1.0))
-    return case.cut.feed_per_tooth * math.sin(max(arc, _LEAST_ARC))
+    # one that cuts beside its axis has its thickest chip where it is nearest to it
+    radius = np.array([outermost_radius(case, cutter)])
+    entry, leave = (float(angle[0]) for angle in slice_engagement(case.uncut_band, radius))
+    inner = leave if case.uncut_band.side > 0 else math.pi - entry
+    return case.cut.feed_per_tooth * math.sin(max(inner, _LEAST_ARC))
 
 
 def reading_notes(case: Case, cutter: Cutter, cut: DiscreteCut) -> tuple[str, ...]:
@@ -119,7 +123,7 @@ def reading_notes(case: Case, cutter: Cutter, cut: DiscreteCut) -> tuple[str, ..
 
     The error of voxels was measured on rigid cuts over the cells in their thickest chip.
     """
-    notes = _tip_notes(case, cutter, cut)
+    notes = _tip_notes(case, cut)
     if not isinstance(cut.stock, VoxelStock):
         return notes
     cells = _thickest_chip(case, cutter) / cut.stock.spacing
@@ -131,12 +135,12 @@ def reading_notes(case: Case, cutter: Cutter, cut: DiscreteCut) -> tuple[str, ..
     )
 
 
-def _tip_notes(case: Case, cutter: Cutter, cut: DiscreteCut) -> tuple[str, ...]:
+def _tip_notes(case: Case, cut: DiscreteCut) -> tuple[str, ...]:
     """Note of a tip so narrow that the feed is no small part of its radius."""
     narrow = _FEEDS_A_RADIUS * case.cut.feed_per_tooth
     inner = 0.0
-    if case.stock is None and case.cut.mode != "slot":
-        inner = max(cutter.radius - case.width_of_cut, 0.0)
+    if case.stock is None and case.uncut_band.side != 0:
+        inner = min(border.tangent_radius for border in case.uncut_band.borders)
     inner, outer = max(inner, float(cut.edges.radius.min())), float(cut.edges.radius.max())
     if not inner < narrow < outer:
         return ()
@@ -201,7 +205,7 @@ def discrete_cut(
     kind = DISCRETE_CHIPS[case.simulation.chip]
     size = case.simulation.resolution or kind.resolution(case, cutter, modes)
     ends = _ends(case, cutter, slices, resolution, spindle, path, size)
-    boxes = _boxes(case, cutter, slices, ends, size)
+    boxes = _boxes(case, slices, ends, size)
     _refuse_too_coarse(case, size)
     _refuse_too_large(case, kind, boxes, size)
     stock = kind.build(boxes, len(slices.height), size, cutter.teeth, _window(case, cutter))
@@ -280,7 +284,7 @@ def _swept(resolution: Resolution, spindle: Spindle, path: ToolPath) -> NDArray[
 
 
 def _boxes(
-    case: Case, cutter: Cutter, slices: EdgeSlices, ends: tuple[float, float], size: float
+    case: Case, slices: EdgeSlices, ends: tuple[float, float], size: float
 ) -> list[list[tuple[Rectangle, bool]]]:
     """Rectangles of every layer: those of the case, else a stock of the radial depth of cut."""
     if case.stock is not None:
@@ -298,21 +302,23 @@ def _boxes(
                 f"{case.cut.axial_depth * 1e3:g} mm above the tip at z = 0"
             )
         return layers
-    radius = float(slices.radius.max())
-    margin = _MARGIN * radius
-    low, high = -radius - margin, radius + margin
-    width = case.cut.radial_depth
-    if case.cut.mode == "up":
-        low = cutter.radius - width
-    elif case.cut.mode == "down":
-        high = width - cutter.radius
-    # whole cells, from the border where the teeth come in
-    height = math.ceil((high - low) / size - 1e-9) * size
-    if case.cut.mode == "down":
-        low = high - height
-    else:
-        high = low + height
-    return [[((*ends, low, high), True)] for _ in slices.height]
+    return [
+        [((*ends, *_across(case.uncut_band, radius, slices.radius.max(), size)), True)]
+        for radius in slices.radius
+    ]
+
+
+def _across(band: UncutBand, radius: float, widest: float, size: float) -> tuple[float, float]:
+    """Ends of the stock across the feed at a height where the edge has a radius, m.
+
+    Whole cells, from the border that is within the reach of the tool.
+    """
+    far = (1.0 + _MARGIN) * widest
+    low, high = max(band.lower.at(radius), -far), min(band.upper.at(radius), far)
+    height = max(math.ceil((high - low) / size - 1e-9), 1) * size
+    if high < far:
+        return high - height, high
+    return low, low + height
 
 
 def _refuse_too_coarse(case: Case, size: float) -> None:

@@ -27,6 +27,7 @@ from chatter.stability.resting_friction import notes_on_resting_friction
 from chatter.stability.search_range import depths_at_one_speed
 from chatter.stability.stability_method import Multiplier
 from chatter.stability.steady_flank import about_steady_motion
+from cutting.engagement.immersion import slice_engagement
 
 #: bifurcation -> words
 _KINDS = {"hopf": "quasi-periodic", "flip": "period doubling", "fold": "cyclic fold"}
@@ -138,8 +139,19 @@ class StabilityCheck:
             ["spectral radius", f"{self.spectral_radius:.4g} (below 1: stable)"],
             ["cutting speed", f"{60.0 * speed:.4g} m/min"],
             *effective,
+            *self._engagement(),
             ["feed rate", f"{60e3 * self.case.feed_speed:.4g} mm/min"],
             ["method", self.method],
+        ]
+
+    def _engagement(self) -> list[list[str]]:
+        """Width and angles where the edge is at the depth of the cut."""
+        radius = np.array([cutter_of(self.case).radius_at(self.case.cut.axial_depth)])
+        band = self.case.uncut_band
+        entry, leave = np.degrees(slice_engagement(band, radius))[:, 0]
+        return [
+            ["width of cut", f"{1e3 * band.width(radius)[0]:.4g} mm"],
+            ["tooth in the cut", f"{entry:.4g} to {leave:.4g} deg from +y"],
         ]
 
     def _depth(self) -> str:

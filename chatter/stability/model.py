@@ -114,7 +114,7 @@ class MillingModel:
     def table(self) -> DirectionalTable:
         """Directional matrix of a straight cylindrical edge over the engaged arc."""
         case = self.case
-        arc = engagement(case.cut.mode, case.width_of_cut, case.tool.diameter)
+        arc = engagement(case.uncut_band, self.cutter.radius)
         return directional_table(
             arc, self.laws[0], case.cut.feed_per_tooth, self.basis, self.dashpot,
             None if self.steady_path is None else self._pressed_over_angle,
@@ -219,8 +219,7 @@ class MillingModel:
         segments = _segments_of(
             self.cutter,
             self.laws,
-            case.cut.mode,
-            case.width_of_cut,
+            case.uncut_band,
             case.cut.feed_per_tooth * self.teeth,
             max_depth,
             self.flank,
@@ -316,7 +315,7 @@ def _no_limit(case: Case, cutter: Cutter) -> str:
         return (
             f"{case.name}: cut.radial_depth: down to an axial depth of "
             f"{case.cut.axial_depth * 1e3:g} mm the edge does not reach the work, or the modes "
-            "move along it; there is no stability limit" + _hint_of_width(case, cutter)
+            "move along it; there is no stability limit" + _hint_of_stepover(case)
         )
     return (
         f"{case.name}: structure: the modes move along the tool axis alone; with a 90 degree "
@@ -324,17 +323,14 @@ def _no_limit(case: Case, cutter: Cutter) -> str:
     )
 
 
-def _hint_of_width(case: Case, cutter: Cutter) -> str:
-    """Radial depth that a step over from pass to pass amounts to, where it was meant."""
-    depth, step = case.cut.axial_depth, case.cut.radial_depth
-    effective = cutter.radius_at(depth)
-    if step is None or not step < 2.0 * effective:
+def _hint_of_stepover(case: Case) -> str:
+    """Say how a step from pass to pass is stated, where it was hardly a radial depth."""
+    step = case.cut.radial_depth
+    if step is None:
         return ""
-    meant = cutter.radius - effective + step
     return (
-        f". The radial depth counts from the full radius; at this depth the tool is "
-        f"{2e3 * effective:.4g} mm wide: for a step of {1e3 * step:g} mm from pass to pass write "
-        f'radial_depth = "{1e3 * meant:.4g} mm"'
+        ". The radial depth counts from the full radius of the tool; a step from pass to pass is "
+        f'stated by stepover = "{1e3 * step:.4g} mm" in its place'
     )
 
 

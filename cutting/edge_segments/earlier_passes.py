@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cutting.engagement.immersion import MillingMode, slice_engagement
+from cutting.engagement.immersion import slice_engagement
+from cutting.engagement.uncut_band import UncutBand
 from cutting.tool.cutter import Cutter
 
 Array = NDArray[np.float64]
@@ -68,16 +69,14 @@ class Edges:
     Parameters
     ----------
     cutter : Cutter
-    mode : {"up", "down", "slot"}
-    radial_depth, feed_per_revolution : float
+    band : UncutBand
+    feed_per_revolution : float
         m.
     """
 
-    def __init__(
-        self, cutter: Cutter, mode: MillingMode, radial_depth: float, feed_per_revolution: float
-    ) -> None:
-        self.cutter, self.mode = cutter, mode
-        self.radial_depth, self.feed_per_revolution = radial_depth, feed_per_revolution
+    def __init__(self, cutter: Cutter, band: UncutBand, feed_per_revolution: float) -> None:
+        self.cutter, self.band = cutter, band
+        self.feed_per_revolution = feed_per_revolution
         self.on_corner = cutter.corner_radius * cutter.edge_angle
         self.lag = np.tan(np.asarray(cutter.helix)) / cutter.radius
         self.start = cutter.tooth_angles
@@ -131,9 +130,7 @@ class Edges:
         out = sine * self.radial(profile.height) + cosine * self._axial
         radial_offset = out - np.take_along_axis(out, tooth[:, None], axis=1)
         rise = sine * self.feed_per_revolution / _REVOLUTION * self.ahead(tooth, profile.height)
-        entry, leave = slice_engagement(
-            self.mode, self.radial_depth, self.cutter.radius, np.maximum(profile.radius, 1e-12)
-        )
+        entry, leave = slice_engagement(self.band, np.maximum(profile.radius, 1e-12))
         stock = entry < leave
         return _arcs(rise, radial_offset, np.where(stock, entry, 0.0), np.where(stock, leave, 0.0))
 

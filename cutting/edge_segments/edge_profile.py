@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cutting.engagement.immersion import MillingMode
+from cutting.engagement.uncut_band import Border, UncutBand
 from cutting.tool.cutter import Cutter, corner_height
 
 _REVOLUTION = 2.0 * math.pi
@@ -26,47 +26,41 @@ class EdgeLine(NamedTuple):
     length: NDArray[np.float64]  # (L,)
 
 
-def _radii_of_even_arcs(
-    cutter: Cutter, mode: MillingMode, radial_depth: float, arc_step: float
-) -> NDArray[np.float64]:
-    """Radii at which the arc has grown by even steps, from none to half a revolution.
+def _radii_of_even_arcs(cutter: Cutter, band: UncutBand, arc_step: float) -> NDArray[np.float64]:
+    """Radii at which a border is crossed at even steps of angle, over half a revolution.
 
     Where the edge first meets the stock its arc grows steeply, and again where it is no more cut
     all around; the steps are halved towards these.
     """
-    reach = cutter.radius - radial_depth
-    if mode == "slot" or abs(reach) >= cutter.radius:
-        return np.empty(0)
     arcs = np.linspace(0.0, math.pi, math.ceil(math.pi / arc_step) + 1)
     graded = arcs[1] * _HALVED
     arcs = np.unique(np.concatenate([arcs, graded, math.pi - graded]))
-    with np.errstate(divide="ignore"):
-        radius = reach / np.cos(arcs)
-    return radius[radius > 0.0]
+    crossed = [border.radii(arcs) for border in _borders_in_reach(cutter, band)]
+    return np.concatenate([np.empty(0), *crossed])
 
 
-def _cone_heights(
-    cutter: Cutter, mode: MillingMode, radial_depth: float, arc_step: float
-) -> list[float]:
+def _borders_in_reach(cutter: Cutter, band: UncutBand) -> list[Border]:
+    return [border for border in band.borders if border.tangent_radius < cutter.radius]
+
+
+def _cone_heights(cutter: Cutter, band: UncutBand, arc_step: float) -> list[float]:
     """Heights of even arcs on a cone whose edge first meets the stock on it, or nearly so.
 
     As it is cut all around at its tip but for a little, or hardly touches: the arc is then steep.
     """
     top, slope = corner_height(cutter), math.tan(cutter.edge_angle)
     start = cutter.radius - cutter.corner_radius * (1.0 - math.sin(cutter.edge_angle))
-    if abs(cutter.radius - radial_depth) * (1.0 + _SEGMENT_LAG) <= start:
+    if all(one.tangent_radius * (1.0 + _SEGMENT_LAG) <= start for one in band.borders):
         return []
-    radius = _radii_of_even_arcs(cutter, mode, radial_depth, arc_step)
+    radius = _radii_of_even_arcs(cutter, band, arc_step)
     return list(top + (radius[radius > start] - start) * slope)
 
 
-def _corner_angles(
-    cutter: Cutter, mode: MillingMode, radial_depth: float, arc_step: float
-) -> NDArray[np.float64]:
+def _corner_angles(cutter: Cutter, band: UncutBand, arc_step: float) -> NDArray[np.float64]:
     """Immersion angles of the segment borders within the corner, rad."""
     count = max(1, math.ceil(cutter.edge_angle / arc_step))
     angles = np.linspace(0.0, cutter.edge_angle, count + 1)
-    radius = _radii_of_even_arcs(cutter, mode, radial_depth, arc_step)
+    radius = _radii_of_even_arcs(cutter, band, arc_step)
     sine = (radius - cutter.radius + cutter.corner_radius) / cutter.corner_radius
     inside = (sine > 0.0) & (sine < math.sin(cutter.edge_angle))
     angles = np.append(angles, np.arcsin(sine[inside]))
@@ -75,16 +69,11 @@ def _corner_angles(
 
 
 def edge_line(
-    cutter: Cutter,
-    max_depth: float,
-    mode: MillingMode,
-    radial_depth: float,
-    heights: list[float],
-    arc_step: float,
+    cutter: Cutter, max_depth: float, band: UncutBand, heights: list[float], arc_step: float
 ) -> EdgeLine:
     """Profile of the nominal edge from the tip to a height.
 
-    Depths in m; `heights` are borders of segments above the corner, m; by `arc_step`, rad, a corner
+    Depth in m; `heights` are borders of segments above the corner, m; by `arc_step`, rad, a corner
     turns within a segment, and its arc changes.
     """
     corner = cutter.corner_radius
@@ -92,7 +81,7 @@ def edge_line(
     immersion: list[tuple[float, float]] = []
     length: list[float] = []
     if corner > 0.0:
-        angles = _corner_angles(cutter, mode, radial_depth, arc_step)
+        angles = _corner_angles(cutter, band, arc_step)
         height = list(corner * (1.0 - np.cos(angles)))
         radius = list(cutter.radius - corner + corner * np.sin(angles))
         immersion = list(itertools.pairwise(angles))
@@ -148,8 +137,7 @@ def crossing_heights(cutter: Cutter, max_depth: float) -> list[float]:
 def straight_borders(
     cutter: Cutter,
     max_depth: float,
-    mode: MillingMode,
-    radial_depth: float,
+    band: UncutBand,
     own_passes: bool,
     arc_step: float,
     relative_length: float,
@@ -167,5 +155,5 @@ def straight_borders(
     if cutter.edge_angle < 0.5 * math.pi - 1e-9:
         # the radius, and with it the arc, changes along a cone
         heights += _cone_borders(cutter, max_depth, relative_length * _SEGMENT_LAG, slope)
-        heights += _cone_heights(cutter, mode, radial_depth, arc_step)
+        heights += _cone_heights(cutter, band, arc_step)
     return heights

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from cutting.edge_segments.earlier_passes import GAUSS, Edges, segment_borders
 from cutting.edge_segments.edge_profile import EdgeLine
-from cutting.engagement.immersion import MillingMode, slice_engagement
+from cutting.engagement.immersion import slice_engagement
+from cutting.engagement.uncut_band import UncutBand
 from cutting.tool.cutter import Cutter
 from cutting.tool.tooth_passes import earlier_passes
 
@@ -46,27 +47,23 @@ class Owner(NamedTuple):
 
 
 def segments_of_one_pass(
-    cutter: Cutter,
-    line: EdgeLine,
-    mode: MillingMode,
-    radial_depth: float,
-    slopes: list[NDArray[np.float64]],
+    cutter: Cutter, line: EdgeLine, band: UncutBand, slopes: list[NDArray[np.float64]]
 ) -> tuple[list[Segment], list[Owner]]:
     """Segments of teeth that each cut what the one before them has left.
 
-    Radial depth in m; slopes (3,) of the force law of each tooth at the reference chip, N/m^2.
+    Slopes (3,) of the force law of each tooth at the reference chip, N/m^2.
     Returned with the owner of each segment.
     """
     lag = np.tan(np.asarray(cutter.helix)) / cutter.radius
     segments: list[Segment] = []
     owners: list[Owner] = []
-    entry, leave = _arcs_at_borders(cutter, line, mode, radial_depth)
+    entry, leave = _arcs_at_borders(cutter, line, band)
     for segment in range(line.length.size):
         ends = slice(segment, segment + 2)
         middle = 0.5 * (line.height[segment] + line.height[segment + 1])
         angle = cutter.tooth_angles[:, None] - np.outer(lag, [*line.height[ends], middle])
         kappa = line.immersion[segment]
-        arc = _arc_of_segment(entry[ends], leave[ends])
+        arc = _arc_of_segment(entry[ends], leave[ends], band)
         if arc is None:
             continue
         earlier, ahead = earlier_passes(angle[:, 2:])
@@ -177,7 +174,7 @@ def _through(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np
 
 
 def _arcs_at_borders(
-    cutter: Cutter, line: EdgeLine, mode: MillingMode, radial_depth: float
+    cutter: Cutter, line: EdgeLine, band: UncutBand
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Entry and exit (L + 1,) at the borders of segments, rad, whose mean each segment has.
 
@@ -187,7 +184,7 @@ def _arcs_at_borders(
     """
 
     def arcs(radius: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        return slice_engagement(mode, radial_depth, cutter.radius, np.maximum(radius, 1e-12))
+        return slice_engagement(band, np.maximum(radius, 1e-12))
 
     bent = line.immersion[:, 0] < line.immersion[:, 1]
     on_corner = cutter.corner_radius * (1.0 - np.sin(line.immersion.mean(axis=1)))
@@ -207,15 +204,14 @@ def _arcs_at_borders(
 
 
 def _arc_of_segment(
-    entry: NDArray[np.float64], leave: NDArray[np.float64]
+    entry: NDArray[np.float64], leave: NDArray[np.float64], band: UncutBand
 ) -> NDArray[np.float64] | None:
     """Entry and exit at both ends (2, 2); where one end is out of the stock its arc is a point."""
     cuts = entry < leave
     if not cuts.any():
         return None
     if not cuts.all():
-        inside = int(np.argmax(cuts))
-        # down-milling ends at pi, up-milling starts at 0: the arc shrinks towards that side
-        position = leave[inside] if leave[inside] > math.pi - 1e-12 else entry[inside]
+        # the arc shrinks towards the side on which the band lies
+        position = math.pi if band.side < 0 else 0.0
         entry, leave = np.where(cuts, entry, position), np.where(cuts, leave, position)
     return np.stack([entry, leave])

@@ -23,7 +23,7 @@ from cutting.edge_segments.engagement_arcs import (
     segments_of_one_pass,
     segments_of_passes,
 )
-from cutting.engagement.immersion import MillingMode
+from cutting.engagement.uncut_band import UncutBand
 from cutting.force.law import ForceLaw, SlopePower
 from cutting.process_damping.flank import ProcessDampingLaw
 from cutting.process_damping.linear_flank import LinearFlank, bare_flank
@@ -69,8 +69,7 @@ class EdgeSegments(NamedTuple):
 def edge_segments(
     cutter: Cutter,
     laws: list[ForceLaw],
-    mode: MillingMode,
-    radial_depth: float,
+    band: UncutBand,
     feed_per_revolution: float,
     max_depth: float,
     flank: ProcessDampingLaw | None = None,
@@ -83,8 +82,8 @@ def edge_segments(
     cutter : Cutter
     laws : list of ForceLaw
         One for each tooth.
-    mode : {"up", "down", "slot"}
-    radial_depth, feed_per_revolution, max_depth : float
+    band : UncutBand
+    feed_per_revolution, max_depth : float
         m.
     flank : ProcessDampingLaw, optional
         Ploughing is taken about a still tool; see `ProcessDampingLaw.linear`.
@@ -94,16 +93,14 @@ def edge_segments(
     wave = cutter.serration is not None
     own_passes = wave or np.ptp(cutter.radial_offsets) > 0.0 or np.ptp(cutter.axial_offsets) > 0.0
     arc_step = relative_length * (_SEGMENT_TURN_OF_PASSES if own_passes else _SEGMENT_TURN)
-    heights = straight_borders(
-        cutter, max_depth, mode, radial_depth, own_passes, arc_step, relative_length
-    )
-    line = edge_line(cutter, max_depth, mode, radial_depth, heights, arc_step)
+    heights = straight_borders(cutter, max_depth, band, own_passes, arc_step, relative_length)
+    line = edge_line(cutter, max_depth, band, heights, arc_step)
     slopes = [law.slope_power.cutting for law in laws]
     if own_passes:
-        edges = Edges(cutter, mode, radial_depth, feed_per_revolution)
+        edges = Edges(cutter, band, feed_per_revolution)
         segments, owners = segments_of_passes(edges, line, max_depth, slopes, relative_length)
     else:
-        segments, owners = segments_of_one_pass(cutter, line, mode, radial_depth, slopes)
+        segments, owners = segments_of_one_pass(cutter, line, band, slopes)
     turning = turning_ends(segments, owners, wave)
     power = laws[0].slope_power
     sized = power.exponent != 0.0

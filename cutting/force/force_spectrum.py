@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from cutting.engagement.immersion import MillingMode, slice_engagement
+from cutting.engagement.immersion import slice_engagement
+from cutting.engagement.uncut_band import UncutBand
 from cutting.force.law import ForceLaw
 from cutting.process_damping.viscous import ViscousProcessDamping
 from cutting.tool.cutter import Cutter, EdgeSlices, edge_slices, slice_counts
@@ -58,8 +59,8 @@ class RigidCut:
     cutter : Cutter
     laws : sequence of ForceLaw
         One for each tooth.
-    mode : {"up", "down", "slot"}
-    radial_depth, feed_per_tooth, axial_depth : float
+    band : UncutBand
+    feed_per_tooth, axial_depth : float
         m.
     highest : int
         Highest harmonic of the turn that is wanted.
@@ -69,15 +70,14 @@ class RigidCut:
         self,
         cutter: Cutter,
         laws: Sequence[ForceLaw],
-        mode: MillingMode,
-        radial_depth: float,
+        band: UncutBand,
         feed_per_tooth: float,
         axial_depth: float,
         highest: int,
     ) -> None:
         self.cutter, self.laws = cutter, tuple(laws)
         slices = _slices(cutter, axial_depth)
-        entry, leave = slice_engagement(mode, radial_depth, cutter.radius, slices.radius)
+        entry, leave = slice_engagement(band, slices.radius)
         cuts = np.flatnonzero(entry < leave)
         self.slices = slices_at(slices, cuts)
         entry, leave = entry[cuts], leave[cuts]

@@ -47,8 +47,7 @@ def cutting_power(case: Case, tests: CuttingTests) -> Array:
 
 def mean_line_force(case: Case, feeds: Array) -> Array:
     """Tangential force (n,) of all teeth per axial depth, mean over a turn, N/m, at n feeds, m."""
-    cut, tool = case.cut, case.tool
-    arc = engagement(cut.mode, cut.radial_depth or tool.diameter, tool.diameter)
+    arc = engagement(case.uncut_band, 0.5 * case.tool.diameter)
     angle = arc.entry + 0.5 * (arc.exit - arc.entry) * (_NODES + 1.0)
     chip = np.multiply.outer(feeds, np.maximum(np.sin(angle), 1e-9))
     share = 0.5 * (arc.exit - arc.entry) / (2.0 * math.pi)

@@ -219,7 +219,8 @@ def _others(declared: Cut, measurement: Measurement, runs: Sequence[Run]) -> lis
             f"{_TURNED[mode]}-milling, not {mode}-milling" for mode in sorted(modes)
         )
         found.append(_cut(f"it was {description}", measurement, runs, _other_mode))
-        for factor in _WIDTHS:
+        stated = all(run.of(measurement.case).cut.radial_depth for run in runs)
+        for factor in _WIDTHS if stated else ():
             description = f"the radial depth was about {factor:g} times the declared one"
             found.append(_cut(description, measurement, runs, partial(_of_width, factor)))
     return found

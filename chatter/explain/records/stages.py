@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.explain.records.description import AIR
+from cutting.engagement.immersion import engagement
 
 Array = NDArray[np.float64]
 
@@ -88,10 +89,12 @@ def _swing(row: Array, window: int) -> Array:
 def _entry_travel(case: Case) -> float:
     """Travel of the tool from the first touch of a straight front edge to full immersion, m."""
     radius = 0.5 * case.tool.diameter
-    width = case.width_of_cut
-    if case.cut.mode == "slot" or width >= radius:
-        return radius
-    return math.sqrt(max(width * (2.0 * radius - width), 0.0))
+    arc = engagement(case.uncut_band, radius)
+    # the edge at phi is R sin(phi) ahead of the axis
+    ahead = [math.sin(arc.entry), math.sin(arc.exit)]
+    middle = 0.5 * math.pi
+    foremost = 1.0 if arc.entry <= middle <= arc.exit else max(ahead)
+    return radius * (foremost - min(ahead))
 
 
 def _feed_speed(case: Case) -> float:

@@ -175,7 +175,7 @@ MILLING_CONDITIONS = (
     Condition("spindle speed", "rpm", rpm(1.0), lambda r: r.case.cut.spindle_speed),
     Condition("feed per tooth", "mm", 1e3, lambda r: r.case.cut.feed_per_tooth),
     Condition("axial depth", "mm", 1e3, lambda r: r.case.cut.axial_depth),
-    Condition("radial depth", "mm", 1e3, lambda r: r.case.cut.radial_depth or 0.0),
+    Condition("radial depth", "mm", 1e3, lambda r: r.case.width_of_cut),
     Condition("cut time", "s", 1.0, lambda r: r.run.cut_time),
 )
 MILLING_MEASURES = (

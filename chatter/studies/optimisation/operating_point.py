@@ -39,7 +39,7 @@ def rounded(point: OperatingPoint) -> OperatingPoint:
 def case_with(case: Case, radial_depth: float, feed: float) -> Case:
     """Case with another radial depth and feed per tooth, m."""
     values = {"cut.feed_per_tooth": feed}
-    if case.cut.mode != "slot":
+    if case.cut.radial_depth is not None:
         values["cut.radial_depth"] = radial_depth
     return case.patch({path: value for path, value in values.items() if value != case.get(path)})
 

@@ -62,7 +62,7 @@ class SpeedDepthSlice:
 def removal_rates(model: MillingModel, speeds: Array, depths: Array) -> Array:
     """Volume removed per time (m, n), m^3/s, at depths (m,), m, and speeds (n,), rad/s."""
     case, cutter = model.case, model.cutter
-    area = removed_section(cutter, case.cut.mode, case.width_of_cut, depths)
+    area = removed_section(cutter, case.uncut_band, depths)
     return np.outer(area, speeds) * case.cut.feed_per_tooth * cutter.teeth / _REVOLUTION
 
 
@@ -117,7 +117,7 @@ def settled_at(
 
 def _reached(model: MillingModel, depths: Array) -> BooleanArray:
     case = model.case
-    return removed_section(model.cutter, case.cut.mode, case.width_of_cut, depths) > 0.0
+    return removed_section(model.cutter, case.uncut_band, depths) > 0.0
 
 
 def with_margins(depths: Array, margin: float) -> Array:

@@ -17,7 +17,6 @@ from typing import NamedTuple
 import numpy as np
 
 from chatter.description.arrays import Array, ComplexArray, IntegerArray
-from chatter.simulation.reconstruction import WALLS
 from chatter.stability.model import MillingModel
 from cutting.edge_segments.segments import period_angle
 from cutting.engagement.immersion import slice_engagement
@@ -76,13 +75,7 @@ class SteadyModel:
         """Chip of the rigid tool at an axial depth, m."""
         case, model = self.model.case, self.model
         return RigidCut(
-            model.cutter,
-            model.laws,
-            case.cut.mode,
-            case.width_of_cut,
-            case.cut.feed_per_tooth,
-            depth,
-            highest,
+            model.cutter, model.laws, case.uncut_band, case.cut.feed_per_tooth, depth, highest
         )
 
     def cuts(self, speeds: Array, depth: float) -> SteadyCuts:
@@ -173,7 +166,10 @@ class SteadyModel:
     def _surface_error(self, motion: ComplexArray, depth: float) -> Array:
         """Location error (n,) of the walls at the height where it is largest, m."""
         slices = self._wall_slices(depth)
-        walls = [self._wall(motion, slices, side) for side in WALLS[self.model.case.cut.mode]]
+        sides = self.model.case.uncut_band.walls(self.model.cutter.radius)
+        if not sides:
+            return np.zeros(len(motion))
+        walls = [self._wall(motion, slices, side) for side in sides]
         error = np.concatenate(walls, axis=1)
         return error[np.arange(len(error)), np.abs(error).argmax(axis=1)]
 
@@ -186,10 +182,7 @@ class SteadyModel:
             chosen = slices.immersion >= cutter.edge_angle - 1e-9
         else:
             slices = edge_slices(cutter, depth, (_HEIGHTS, 0))
-            cut = self.model.case
-            entry, leave = slice_engagement(
-                cut.cut.mode, cut.width_of_cut, cutter.radius, slices.radius
-            )
+            entry, leave = slice_engagement(self.model.case.uncut_band, slices.radius)
             chosen = entry < leave
         levels = np.flatnonzero(chosen)
         return slices_at(slices, np.unique(np.append(levels[::_EVERY], levels[-1])))

@@ -118,9 +118,9 @@ def test_the_good_case_is_good():
         ("[1, 0, 0]", "[nan, 0, 0]", "structure.mode[0].direction: [nan, 0, 0] is not a direction; three numbers are required, such as [1, 0, 0]"),
         # what is missing, what is too much
         ('axial_depth = "2 mm"\n', "", 'cut.axial_depth: is missing; a length is required, such as "2 mm"'),
-        ('mode = "up"\n', "", 'cut.mode: is missing; allowed are "up", "down", "slot"'),
+        ('mode = "up"\n', "", 'cut.mode: is missing; allowed are "up", "down", "slot", "face"'),
         ("teeth = 4\n", "", "tool.teeth: is missing; give, for example, 4"),
-        ('radial_depth = "5 mm"\n', "", 'cut.radial_depth: is missing; mode = "up" needs a length, such as radial_depth = "4 mm"'),
+        ('radial_depth = "5 mm"\n', "", 'cut.radial_depth: is missing; mode = "up" needs a length, such as radial_depth = "4 mm", or a stepover'),
         ('mass = "0.5 kg"\n', "", "structure.mode[0]: either mass or stiffness is needed"),
         ('mass = "0.5 kg"', 'mass = "0.5 kg"\nstiffness = "5 N/um"', "structure.mode[0]: give mass or stiffness, not both"),
         ('Ktc = "1650 MPa"\n', "", 'material.Ktc: is missing; law = "linear" needs it; a pressure (force per area), such as "1650 MPa"'),
@@ -130,7 +130,7 @@ def test_the_good_case_is_good():
         ("[lobes]", '[friction.guide]\nlaw = "coulomb-stribeck"\ncoulomb = 1\nbristle_stiffness = 3\n[lobes]', 'friction.guide.bristle_stiffness: does not belong to law = "coulomb-stribeck"; known are coulomb, static, stribeck_velocity, viscous, stribeck_shape'),
         # choices
         ('"end mill"', '"endmill"', 'tool.kind: "endmill" is not allowed; allowed are "end mill", "ball", "bull nose", "taper" or "inserted"'),
-        ('mode = "up"', 'mode = "climb"', 'cut.mode: "climb" is not allowed; allowed are "up", "down" or "slot"'),
+        ('mode = "up"', 'mode = "climb"', 'cut.mode: "climb" is not allowed; allowed are "up", "down", "slot" or "face"'),
         # types
         ('title = "good"', "title = 3", "title: 3 is given, text in quotes is required"),
         ('{ to = "5 mm", count = 20 }', '"5 mm"', 'lobes.depths: "5 mm" is given, a table is required'),

@@ -178,15 +178,6 @@ def test_the_effective_diameter_of_a_ball_is_shown(tmp_path):
     assert f"{math.pi * effective * 6.0:.4g} m/min there" in shown
 
 
-def test_a_step_over_of_a_ball_is_told_as_its_radial_depth():
-    case = loads(BALL.replace('radial_depth = "8 mm"', 'radial_depth = "0.4 mm"'))
-    # wall at 4.359/2 - 0.4 mm from the axis: 5 - 2.179 + 0.4
-    with pytest.raises(InputError, match=r'write radial_depth = "3.221 mm"') as refused:
-        chatter.check(case)
-    assert "4.359 mm wide" in str(refused.value)
-    assert chatter.check(case.patch({"cut.radial_depth": "3.221 mm"})).critical_depth > 0.0
-
-
 @pytest.mark.parametrize(
     ("corner", "edge", "height", "radius"),
     [

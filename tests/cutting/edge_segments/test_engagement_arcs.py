@@ -8,6 +8,7 @@ from scipy.integrate import quad
 
 from cutting.edge_segments.coupling import coupling_at, part_below
 from cutting.edge_segments.segments import edge_segments
+from cutting.engagement.uncut_band import band_beside_wall
 from cutting.force.exponential import ExponentialLaw
 from cutting.force.linear import LinearLaw
 from cutting.tool.cutter import Cutter
@@ -17,8 +18,9 @@ ONE_TOOTH = (2.0 * RADIUS, (math.radians(30.0),), (2.0 * math.pi,))
 
 
 def pieces_of(width, law=None, mode="down", **shape):
+    band = band_beside_wall(mode, width, RADIUS)
     law = law or LinearLaw((6e8, 2e8, 0.0))
-    return edge_segments(Cutter(*ONE_TOOTH, **shape), [law], mode, width, 1e-4, DEPTH)
+    return edge_segments(Cutter(*ONE_TOOTH, **shape), [law], band, 1e-4, DEPTH)
 
 
 def arc_along_the_edge(width, radius_at, length):

@@ -7,6 +7,7 @@ import pytest
 from numba import njit
 
 from cutting.engagement.immersion import engagement
+from cutting.engagement.uncut_band import SLOT, band_beside_wall
 from cutting.force.directional_coefficients import (
     directional_matrix,
     directional_table,
@@ -23,7 +24,7 @@ PLANE = np.eye(3)[:, :2]
 
 
 def table_of(mode="down", ratio=0.3, law=LAW, directions=PLANE, damping=None):
-    arc = engagement(mode, ratio * 10e-3, 10e-3)
+    arc = engagement(band_beside_wall(mode, ratio * 10e-3, 5e-3), 5e-3)
     return directional_table(arc, law, 0.1e-3, directions, damping)
 
 
@@ -68,7 +69,7 @@ def test_sign_against_force_of_a_displaced_tooth():
 @pytest.mark.parametrize(("mode", "ratio"), [("up", 0.05), ("down", 0.5), ("slot", 1.0)])
 def test_mean_over_turn_is_altintas_and_budak(mode, ratio):
     # Altintas and Budak 1995, eq. 15: alpha_xx = [cos 2phi - 2 Kr phi + Kr sin 2phi]/2, ...
-    arc = engagement(mode, ratio * 10e-3, 10e-3)
+    arc = engagement(band_beside_wall(mode, ratio * 10e-3, 5e-3), 5e-3)
     k = KR / KT
 
     def primitive(phi):
@@ -95,7 +96,7 @@ def test_mean_over_turn_is_altintas_and_budak(mode, ratio):
 @pytest.mark.parametrize("teeth", [1, 2, 5])
 @pytest.mark.parametrize("lag", [0.0, 5e-4, 0.02, 0.7, 4.0])
 def test_means_against_brute_quadrature(teeth, lag):
-    arc = engagement("down", 3e-3, 10e-3)
+    arc = engagement(band_beside_wall("down", 3e-3, 5e-3), 5e-3)
     table = table_of("down", 0.3, directions=np.eye(3))
     for start, end in [(0.0, 0.1), (0.9, 1.25), (0.2, 2.0)]:
         got = mean(table, teeth, start, end, lag)[0]
@@ -135,7 +136,7 @@ def test_size_effect_slope_is_integrable():
 
     p, feed, h0 = 0.7, 0.1e-3, 0.1e-3
     law = ExponentialLaw((KT, 0.0, 0.0), h0, p)
-    table = directional_table(engagement("slot", 0.0, 10e-3), law, feed, PLANE)
+    table = directional_table(engagement(SLOT, 5e-3), law, feed, PLANE)
     # H_yx = -Kt' sin^2: integral of sin^(p+1) over (0, pi) is B((p+2)/2, 1/2)
     expected = -p * KT * beta((p + 2) / 2, 0.5)
     assert table.first_integral[0, -1, 1, 0] == pytest.approx(expected, rel=1e-6)
@@ -145,7 +146,7 @@ def test_process_damping_is_a_radial_dashpot():
     # F_r = C (b/V) r_dot with r_dot = x_dot sin + y_dot cos: the mean over a turn of a slot
     # cutter with mu = 0 is N/(2 pi) C (pi/2) on the diagonal, and it takes energy away
     damping = ViscousProcessDamping(2e4)
-    table = directional_table(engagement("slot", 0.0, 10e-3), LAW, 1e-4, PLANE, damping)
+    table = directional_table(engagement(SLOT, 5e-3), LAW, 1e-4, PLANE, damping)
     got = mean_over_revolution(table, 4)[1]
     assert got == pytest.approx(2e4 * np.eye(2), abs=1e-6)
 

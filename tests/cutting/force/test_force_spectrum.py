@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from cutting.engagement.uncut_band import band_beside_wall
 from cutting.force.exponential import ExponentialLaw
 from cutting.force.force_spectrum import RigidCut
 from cutting.force.linear import LinearLaw
@@ -20,7 +21,8 @@ def cutter(teeth=3, helix_deg=30.0, pitch=None, **more):
 
 
 def rigid(tool, mode="down", width=5e-3, feed=1e-4, depth=4e-3, highest=40, law=LAW):
-    return RigidCut(tool, [law] * tool.teeth, mode, width, feed, depth, highest)
+    band = band_beside_wall(mode, width, tool.radius)
+    return RigidCut(tool, [law] * tool.teeth, band, feed, depth, highest)
 
 
 def direct(tool, theta, entry, leave, feed, depth, law=LAW, slices=4000):

@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from cutting.engagement.slice_bounds import SliceLimits, slice_bounds
+from cutting.engagement.uncut_band import band_beside_wall
 from cutting.tool.cutter import Cutter, Serration, edge_slices, slice_counts, slices_between
 from cutting.tool.edge_table import force_on_tool
-from cutting.tool.slice_bounds import SliceLimits, slice_bounds
 from cutting.tool.tooth_passes import earlier_passes
 
 TURN = 2.0 * math.pi
@@ -224,7 +225,8 @@ def test_forces_on_an_edge_are_orthogonal_and_keep_their_size(kappa_deg, phi_deg
 def test_slices_are_graded_over_what_is_engaged():
     ball = Cutter(20e-3, (0.0, 0.0), (0.5 * TURN, 0.5 * TURN), corner_radius=10e-3)
     limits = SliceLimits(lag=0.05, tilt=math.radians(5.0), arc=1.0 / 16.0)
-    bounds = slice_bounds(ball, 1e-3, 2e-3, limits)
+    band = band_beside_wall("up", 8e-3, 10e-3)
+    bounds = slice_bounds(ball, 1e-3, band, limits)
     # the edge is 2 mm from the axis at this height; below it nothing cuts
     lowest = 10e-3 - math.sqrt(10e-3**2 - 2e-3**2)
     assert bounds[:2] == pytest.approx([0.0, lowest])
@@ -234,5 +236,5 @@ def test_slices_are_graded_over_what_is_engaged():
     assert np.all(radius > 0.0)
     arc = np.arccos(np.clip(2e-3 / np.sqrt(10e-3**2 - (10e-3 - bounds[1:]) ** 2), 0.0, 1.0))
     assert np.diff(arc).max() < 1.02 * arc.max() / 16.0
-    assert slice_bounds(ball, 1e-3, 2e-3, limits, 5).size - 2 == 5
+    assert slice_bounds(ball, 1e-3, band, limits, 5).size - 2 == 5
     assert slice_bounds(ball, 1e-3, None, limits, borders=[0.5e-3]).tolist().count(0.5e-3) == 1

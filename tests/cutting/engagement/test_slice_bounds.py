@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 
+from cutting.engagement.slice_bounds import SliceLimits, slice_bounds
+from cutting.engagement.uncut_band import band_beside_wall
 from cutting.tool.cutter import Cutter
-from cutting.tool.slice_bounds import SliceLimits, slice_bounds
 
 
 def test_full_width_whatever_rounding_makes_of_the_corner():
@@ -18,7 +19,8 @@ def test_full_width_whatever_rounding_makes_of_the_corner():
             diameter=2.0 * radius, helix=(0.0, 0.0), pitch=(math.pi, math.pi),
             corner_radius=share * radius,
         )  # fmt: skip
-        bounds = slice_bounds(cutter, 1.2 * radius, -radius, SliceLimits(0.1, 0.1, 0.1))
+        wide = band_beside_wall("up", 2.0 * radius, radius)
+        bounds = slice_bounds(cutter, 1.2 * radius, wide, SliceLimits(0.1, 0.1, 0.1))
         assert bounds[0] == 0.0
         assert bounds[-1] == 1.2 * radius
         assert np.all(np.diff(bounds) > 0.0)

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from cutting.engagement.immersion import slice_engagement
+from cutting.engagement.uncut_band import UncutBand
 from cutting.tool.cutter import Cutter, corner_height
 
 #: points at which a part of the edge is looked at
@@ -58,7 +60,7 @@ class SliceLimits:
 def slice_bounds(
     cutter: Cutter,
     depth: float,
-    wall: float | None,
+    band: UncutBand | None,
     limits: SliceLimits,
     count: int | None = None,
     borders: Sequence[float] = (),
@@ -70,9 +72,8 @@ def slice_bounds(
     cutter : Cutter
     depth : float
         Axial depth, m.
-    wall : float or None
-        Distance from the tool axis beyond which the stock of a partial immersion lies, R - a_e,
-        m; None for a slot, or where nothing is known of it.
+    band : UncutBand or None
+        Uncut work; None where it may be anywhere.
     limits : SliceLimits
     count : int, optional
         Slices of what is engaged; by default they follow from the limits.
@@ -84,8 +85,8 @@ def slice_bounds(
     (L + 1,) array of float
         Rising from 0 to the depth, m; what lies lower than the engaged part is one slice.
     """
-    knots = _knots(cutter, depth, wall, borders)
-    parts = [_Part(cutter, low, high, wall, limits) for low, high in itertools.pairwise(knots)]
+    knots = _knots(cutter, depth, band, borders)
+    parts = [_Part(cutter, low, high, band, limits) for low, high in itertools.pairwise(knots)]
     needed = np.array([part.slices for part in parts])
     if count is not None:
         # what needs none at all is shared by its height
@@ -98,14 +99,14 @@ def slice_bounds(
 
 
 def _knots(
-    cutter: Cutter, depth: float, wall: float | None, borders: Sequence[float]
+    cutter: Cutter, depth: float, band: UncutBand | None, borders: Sequence[float]
 ) -> list[float]:
     """Heights at which something about the edge changes its kind, m."""
     knots = [0.0, depth]
     top = corner_height(cutter)
     between = [top, *borders]
-    if wall is not None:
-        between.append(_height_of(cutter, abs(wall)))
+    if band is not None:
+        between += [_height_of(cutter, border.tangent_radius) for border in band.borders]
     near = _LEAST_SHARE * depth
     for height in sorted(between):
         if all(abs(height - knot) > near for knot in knots) and 0.0 < height < depth:
@@ -133,7 +134,7 @@ class _Part:
     """Part of an edge of one kind, from a height to another, and the slices it needs."""
 
     def __init__(
-        self, cutter: Cutter, low: float, high: float, wall: float | None, limits: SliceLimits
+        self, cutter: Cutter, low: float, high: float, band: UncutBand | None, limits: SliceLimits
     ) -> None:
         self._low, self._high = low, high
         on_corner = high <= corner_height(cutter) * (1.0 + _LEAST_SHARE)
@@ -152,8 +153,9 @@ class _Part:
             radius = start + (self._height - corner_height(cutter)) / math.tan(cutter.edge_angle)
         lag = max(abs(math.tan(helix)) for helix in cutter.helix) / cutter.radius
         needed = [np.diff(self._height) * lag / limits.lag, np.diff(tilted) / limits.tilt]
-        if wall is not None:
-            arc = np.arccos(np.clip(wall / np.maximum(radius, 1e-300), -1.0, 1.0))
+        if band is not None and band.borders:
+            entry, leave = slice_engagement(band, radius)
+            arc = np.where(entry < leave, leave - entry, 0.0)
             if arc.max() <= _LEAST_ARC:
                 # never in the cut but for rounding
                 needed = []

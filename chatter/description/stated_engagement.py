@@ -1,0 +1,98 @@
+"""Engagement as a shop states it: radial depth, stepover, place of the workpiece, or angles."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from chatter.description.path import field_at
+from chatter.description.sections.cut import ENGAGEMENTS, Cut
+from chatter.description.sections.tool import Tool
+from cutting.engagement.uncut_band import (
+    SLOT,
+    UncutBand,
+    band_beside_pass,
+    band_beside_wall,
+    band_between_angles,
+    band_of_workpiece,
+)
+
+#: keys that state the engagement beside the mode
+ENGAGEMENT_KEYS = tuple(key for keys in ENGAGEMENTS for key in keys)
+#: keys of [cut] that take others away
+ALTERNATIVE_ENGAGEMENTS = {
+    key: tuple(other for other in ENGAGEMENT_KEYS if other not in keys)
+    for keys in ENGAGEMENTS
+    for key in keys
+}
+
+
+def uncut_band(cut: Cut, tool: Tool) -> UncutBand:
+    """Uncut work across the feed of a cut, beside the axis of a tool."""
+    radius = 0.5 * tool.diameter
+    if cut.workpiece_width is not None:
+        return band_of_workpiece(cut.workpiece_width, cut.tool_offset or 0.0)
+    if cut.entry_angle is not None:
+        return band_between_angles(cut.entry_angle, cut.exit_angle, radius)
+    if cut.stepover is not None:
+        return band_beside_pass(cut.mode, cut.stepover)
+    if cut.radial_depth is None:
+        return SLOT
+    # a conversion of units may have rounded it to a hair more than the diameter
+    return band_beside_wall(cut.mode, min(cut.radial_depth, tool.diameter), radius)
+
+
+def engagement_problems(cut: Cut, diameter: float) -> list[tuple[str, str]]:
+    """Check the engagement against the diameter (m) of the tool.
+
+    Path and sentence of what is wrong are returned.
+    """
+    if cut.workpiece_width is not None:
+        return _place_problems(cut.workpiece_width, cut.tool_offset or 0.0, diameter)
+    widths = {"radial_depth": cut.radial_depth, "stepover": cut.stepover}
+    return [
+        problem
+        for key, width in widths.items()
+        if width is not None
+        for problem in _width_problems(key, cut.mode, width, diameter)
+    ]
+
+
+def _width_problems(key: str, mode: str, width: float, diameter: float) -> list[tuple[str, str]]:
+    given, size = f"{width * 1e3:g} mm", f"{diameter * 1e3:g} mm"
+    if width > diameter * (1.0 + 1e-9):
+        return [(f"cut.{key}", f"{given} is more than the diameter of the tool, {size}")]
+    if mode == "slot" and width < diameter * (1.0 - 1e-6):
+        text = f'{given} is not the diameter, {size}, that mode = "slot" cuts; '
+        return [(f"cut.{key}", text + 'leave it out, or choose "up" or "down"')]
+    return []
+
+
+def _place_problems(width: float, offset: float, diameter: float) -> list[tuple[str, str]]:
+    nearest = abs(offset) - 0.5 * width
+    if nearest < 0.5 * diameter * (1.0 - 1e-9):
+        return []
+    text = (
+        f"{offset * 1e3:g} mm from the middle of a workpiece {width * 1e3:g} mm wide the tool of "
+        f"{diameter * 1e3:g} mm does not reach it"
+    )
+    return [("cut.tool_offset", text)]
+
+
+def engagement_problems_of_draft(data: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Check the radial depth of a case that has other faults, as far as its values can be read."""
+    tool, cut = data.get("tool"), data.get("cut")
+    width, diameter = _length(Cut, cut, "radial_depth"), _length(Tool, tool, "diameter")
+    if width is None or diameter is None:
+        return []
+    return _width_problems("radial_depth", str(cut.get("mode")), width, diameter)
+
+
+def _length(section: type, table: Any, key: str) -> float | None:
+    if not isinstance(table, Mapping) or key not in table:
+        return None
+    try:
+        return field_at(section, (key,)).read(table[key])
+    except ValueError:
+        # told by the section itself
+        return None
