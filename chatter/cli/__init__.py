@@ -37,6 +37,7 @@ COMMANDS = (
     "learn",
     "frf",
     "move",
+    "materials",
     "examples",
     "schema",
 )

@@ -46,6 +46,7 @@ def bifurcation(
 
     with progress_bar("cuts", run) as progress:
         diagram = run_bifurcation(description, path, values, progress)
+    options.print_coefficients(description)
     present(diagram, options.output_folder(out, case.stem), json=json, words=_print_onsets)
 
 

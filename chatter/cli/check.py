@@ -35,6 +35,7 @@ def check(
 
     with progress_bar("critical depth") as progress:
         result = run_check(description, method, progress)
+    options.print_coefficients(description)
     if json:
         print_json(result.summary())
     else:

@@ -29,6 +29,7 @@ def compare(
     announce_compilation()
     result = run_compare(declared)
     folder = options.output_folder(out, measurement.resolve().stem)
+    options.print_coefficients(declared.case)
     present(result, folder, json=json, words=partial(_print_errors, declared.title))
 
 

@@ -41,6 +41,7 @@ def explain(
 
         result = run_explain(declared, progress=progress)
     folder = options.output_folder(out, measurement.resolve().stem)
+    options.print_coefficients(declared.case)
     present(result, folder, json=json, words=_print_explanation)
 
 

@@ -15,6 +15,7 @@ from chatter.cli.options import (
     OutputFolder,
     output_folder,
     patched_case,
+    print_coefficients,
 )
 from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import progress_bar
@@ -64,6 +65,7 @@ def learn(options: LearnOptions) -> None:
             progress=lambda _, share: bar(round(100 * share), 100),
         )
     folder = output_folder(options.out, options.case.stem)
+    print_coefficients(description)
     present(found, folder, json=options.json, words=_print_learnt)
 
 

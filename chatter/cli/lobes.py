@@ -17,6 +17,7 @@ from chatter.cli.options import (
     OutputFolder,
     output_folder,
     patched_case,
+    print_coefficients,
 )
 from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import announce_compilation, progress_bar
@@ -93,6 +94,7 @@ def lobes(options: LobesOptions) -> None:
     folder = output_folder(options.out, options.case.stem)
     with progress_bar("stability limits") as progress:
         diagram = run_lobes(description, options.method, grid, progress, options.cluster, folder)
+    print_coefficients(description)
     present(diagram, folder, json=options.json, words=_print_diagram, notes=diagram.notes)
 
 
@@ -105,6 +107,7 @@ def _over_paths(case: Case, options: LobesOptions) -> None:
         diagram = lobes_over(
             case, options.x, options.y, options.method, progress, options.cluster, folder
         )
+    print_coefficients(case)
     present(diagram, folder, json=options.json, words=print_sentences, notes=diagram.notes)
 
 

@@ -27,6 +27,7 @@ def optimum(
     folder = options.output_folder(out, case.stem)
     with progress_bar("search") as progress:
         found = run_optimum(description, samples, seed, progress, folder)
+    options.print_coefficients(description)
     present(found, folder, json=json, words=print_sentences, notes=found.notes)
     if found.why_nothing:
         raise RunError(f"{found.case.name}: {found.why_nothing}")

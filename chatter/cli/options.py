@@ -10,8 +10,9 @@ import typer
 from chatter.description.assignments import parse_assignments
 from chatter.description.bare_speeds import refuse_bare_speed_assignments
 from chatter.description.case import Case, load
+from chatter.description.material_words import coefficients_in_words, notes_on_material
 from chatter.description.patchable import Description
-from chatter.report.console import print_notes
+from chatter.report.console import print_message, print_notes
 from chatter.stability.registry import AUTO, METHODS
 
 if TYPE_CHECKING:
@@ -49,6 +50,14 @@ Method = Annotated[
 def patched_case(path: Path, assignments: list[str] | None) -> Case:
     """Load a case file and apply the assignments of the command line."""
     return _patched(load(path), assignments)
+
+
+def print_coefficients(case: Case) -> None:
+    """Print the coefficients of a case on stderr, with the source of a named material."""
+    sentence = coefficients_in_words(case)
+    if sentence is not None:
+        print_message(sentence)
+    print_notes(notes_on_material(case))
 
 
 def patched_machine(path: Path, assignments: list[str] | None) -> MachineFile:

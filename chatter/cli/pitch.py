@@ -18,4 +18,5 @@ def pitch(
     folder = options.output_folder(out, case.stem)
     with progress_bar("designs") as progress:
         found = run_pitch(description, progress, folder)
+    options.print_coefficients(description)
     present(found, folder, json=json, words=print_sentences, notes=found.notes)

@@ -37,6 +37,7 @@ def simulate(
 
     with progress_bar("time steps", run) as progress:
         result = run_simulation(description, progress=progress)
+    options.print_coefficients(description)
     present(
         result,
         options.output_folder(out, case.stem),

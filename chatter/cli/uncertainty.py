@@ -17,6 +17,7 @@ from chatter.cli.options import (
     OutputFolder,
     output_folder,
     patched_case,
+    print_coefficients,
 )
 from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import announce_resumed, progress_bar
@@ -60,6 +61,7 @@ def uncertainty(options: UncertaintyOptions) -> None:
             resumed=partial(announce_resumed, "samples"),
             cluster=options.cluster,
         )
+    print_coefficients(description)
     present(found, folder, json=options.json, words=_print_probability)
 
 

@@ -9,11 +9,20 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from chatter.cli.options import Assignments, Cluster, Json, Method, OutputFolder, output_folder
+from chatter.cli.options import (
+    Assignments,
+    Cluster,
+    Json,
+    Method,
+    OutputFolder,
+    output_folder,
+    print_coefficients,
+)
 from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import announce_resumed, progress_bar
 from chatter.cli.results import present, print_sentences
 from chatter.description.assignments import parse_assignments
+from chatter.description.case import Case
 from chatter.description.errors import InputError
 
 if TYPE_CHECKING:
@@ -100,6 +109,8 @@ def whatif(options: WhatIfOptions) -> None:
                 cluster=options.cluster,
             ),
         )
+    if isinstance(model, Case):
+        print_coefficients(model)
     present(found, folder, json=options.json, words=print_sentences)
 
 

@@ -125,6 +125,8 @@ class Case(Description):
         ]
 
     def _resolve_files(self, content: dict[str, Any]) -> None:
+        if self.material is not None and self.material.table is not None:
+            content["material"]["table"] = str(self.material.table.resolve())
         if self.structure is None:
             return
         for entry in content["structure"]["frf"]:

@@ -126,13 +126,16 @@ def moved_reference(name: str, old: Path, new: Path) -> str:
 
 def move_references(document: Any, old: Path, new: Path) -> None:
     """Rewrite file names of a case relative to one folder so that they hold in another."""
-    structure = document.get("structure")
-    if not isinstance(structure, dict):
-        return
 
     def moved(name: str) -> str:
         return moved_reference(name, old, new)
 
+    material = document.get("material")
+    if isinstance(material, dict) and isinstance(material.get("table"), str):
+        material["table"] = moved(material["table"])
+    structure = document.get("structure")
+    if not isinstance(structure, dict):
+        return
     frf = structure.get("frf")
     if isinstance(frf, str):
         structure["frf"] = moved(frf)

@@ -33,4 +33,9 @@ def usual_unit(kind: type[BaseModel], path: str) -> UsualUnit:
     field = field_at(kind, parse_path(path))
     if field is None:
         return UsualUnit("", 1.0)
-    return _USUAL.get(field.dimension, UsualUnit(DIMENSIONS[field.dimension].unit, 1.0))
+    return of_dimension(field.dimension)
+
+
+def of_dimension(dimension: str) -> UsualUnit:
+    """Unit that people read a dimension in, a key of `DIMENSIONS`."""
+    return _USUAL.get(dimension, UsualUnit(DIMENSIONS[dimension].unit, 1.0))

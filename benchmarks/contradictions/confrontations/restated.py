@@ -79,9 +79,7 @@ def _halved(quantity: str) -> str:
 def _material(document: Document) -> Document:
     material = document["material"]
     if "name" in material:
-        row = MATERIALS[material["name"]]
-        keys = ("Ktc", "Krc", "Kac", "Kte", "Kre", "Kae")
-        return {"law": "linear", **dict(zip(keys, (*row.cutting, *row.edge), strict=True))}
+        return MATERIALS[material["name"]].keys()
     helix = document["tool"]["helix"]
     if material["law"] != "oblique" or isinstance(helix, list):
         return material

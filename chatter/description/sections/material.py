@@ -1,23 +1,22 @@
-"""[material]: force law and coefficients, or the name of a row of the table of materials."""
+"""[material]: force law and coefficients, or the name of a row of a table of materials."""
 
-import difflib
+from __future__ import annotations
+
+from collections.abc import Mapping
 from typing import Any
 
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, model_validator
 
+from chatter.description.errors import InputError
+from chatter.description.file_name import FileName, in_case_folder
 from chatter.description.formatting import formatted
 from chatter.description.law_section import FORCE_LAWS, LawSection, law_section
+from chatter.description.material_table import read_material_table, row_named
 from chatter.description.quantities import quantity
 from chatter.description.section import SectionError
 from cutting.force.law import ForceLaw
+from cutting.material.row import MaterialRow
 from cutting.material.table import MATERIALS
-
-
-def _no_such_row(name: str) -> str:
-    near = difflib.get_close_matches(name[:60], MATERIALS, n=1, cutoff=0.4)
-    known = ", ".join(f'"{row}"' for row in MATERIALS)
-    hint = f'did you mean "{near[0]}"? There are {known}' if near else f"there are {known}"
-    return f"{formatted(name)} is not in the table of materials; {hint}"
 
 
 class _ForceLawSection(LawSection):
@@ -32,23 +31,58 @@ class Material(_Keys):
 
     name: str | None = Field(
         None,
-        description="row of the table of materials; coefficients given beside it override its own",
-        json_schema_extra={"enum": list(MATERIALS)},
+        description="row of the table of materials (`chatter materials` lists it), or of `table`; "
+        "coefficients given beside it override its own",
+        examples=list(MATERIALS)[:3],
     )
+    table: FileName | None = Field(None, description="file with a table of materials of your own")
 
     @model_validator(mode="before")
     @classmethod
-    def _take_named_row(cls, data: Any) -> Any:
-        if not isinstance(data, dict) or not isinstance(data.get("name"), str):
-            return data
-        row = MATERIALS.get(data["name"])
+    def _take_named_row(cls, data: Any, info: ValidationInfo) -> Any:
+        row = _row_of(data, info)
         if row is None:
-            raise SectionError([("name", _no_such_row(data["name"]))])
-        if data.get("law", "linear") != "linear":
-            text = f"has coefficients of the linear law, not of law = {formatted(data['law'])}"
+            return data
+        if data.get("law", row.law) != row.law:
+            text = f"has coefficients of the {row.law} law, not of law = {formatted(data['law'])}"
             raise SectionError([("name", f"{formatted(data['name'])} {text}")])
-        return {**row.coefficients(), **data}
+        return {**row.keys(), **data}
+
+    @property
+    def row(self) -> MaterialRow | None:
+        """Row of the table that the section names; None where it names none."""
+        if self.name is None:
+            return None
+        rows = MATERIALS if self.table is None else read_material_table(self.table)
+        return rows.get(self.name)
 
     def force_law(self, helix: float) -> ForceLaw:
         """Force law of an edge inclined by the helix, rad."""
         return self.LAWS[self.law].of(self.values, helix)
+
+
+def _row_of(data: Any, info: ValidationInfo) -> MaterialRow | None:
+    """Row that the keys of a section name; SectionError where there is none such."""
+    if not isinstance(data, Mapping):
+        return None
+    name, table = data.get("name"), data.get("table")
+    if table is not None and name is None:
+        raise SectionError([("table", "is given without name, the row that is meant")])
+    if not isinstance(name, str):
+        return None
+    if table is None:
+        return _named(name, MATERIALS)
+    try:
+        rows = read_material_table(in_case_folder(table, info))
+    except ValueError as error:
+        raise SectionError([("table", str(error))]) from None
+    except InputError as error:
+        raise SectionError([("table", text) for text in error.messages]) from None
+    return _named(name, rows)
+
+
+def _named(name: str, rows: Mapping[str, MaterialRow]) -> MaterialRow:
+    try:
+        return row_named(name, rows)
+    except ValueError as error:
+        raise SectionError([("name", str(error))]) from None

@@ -6,19 +6,18 @@ import math
 import re
 from bisect import bisect
 from itertools import pairwise
-from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
-    ValidationInfo,
     WithJsonSchema,
     field_validator,
     model_validator,
 )
 
+from chatter.description.file_name import FileName
 from chatter.description.formatting import formatted
 from chatter.description.quantities import quantity, quantity_list
 from chatter.description.section import Section, raise_if_any
@@ -175,20 +174,6 @@ class ModeSection(Section):
         if self.mass is not None:
             return self.mass
         return self.stiffness / (2.0 * math.pi * self.frequency) ** 2
-
-
-def _in_case_folder(given: Any, info: ValidationInfo) -> Path:
-    if not isinstance(given, (str, Path)) or not str(given) or not str(given).isprintable():
-        raise ValueError(
-            f'{formatted(given)} is not a file name; one is required, such as "tap.uff"'
-        )
-    return (info.context or {}).get("folder", Path()) / given
-
-
-#: a file named relative to the folder of the case file
-FileName = Annotated[
-    Path, BeforeValidator(_in_case_folder), WithJsonSchema({"type": "string", "minLength": 1})
-]
 
 
 class MeasuredFrf(Section):

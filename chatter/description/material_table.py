@@ -1,0 +1,167 @@
+"""A user's own table of materials: a TOML file with a table a row, checked like a case."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from chatter.description.errors import InputError
+from chatter.description.formatting import formatted
+from chatter.description.law_section import FORCE_LAWS
+from chatter.description.toml_document import parse_document, read_text
+from chatter.description.units import QuantityError, parse
+from cutting.keys import Key, with_defaults
+from cutting.material.row import MaterialRow
+from cutting.material.table import MATERIALS
+
+#: texts that a row may have beside the keys of its law
+_TEXTS = ("source", "iso_group", "condition", "validity", "assumption")
+_RANGE = "chip_thickness"
+_GRADES = "examples"
+_ISO_GROUPS = ("P", "M", "K", "N", "S", "H")
+
+
+def read_material_table(path: str | Path) -> dict[str, MaterialRow]:
+    """Read a table of materials: a table a row, named as a case names it.
+
+    Parameters
+    ----------
+    path : str or Path
+        TOML; a row has the keys of its `law` ("linear" without one) and a `source`, and may have
+        `iso_group`, `condition`, `examples`, `validity`, `chip_thickness` (from, to), `assumption`.
+
+    Returns
+    -------
+    dict of str to MaterialRow
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read or a row is wrong; all problems found are in it.
+    """
+    path = Path(path)
+    data = parse_document(read_text(path, "table of materials"), str(path)).unwrap()
+    problems: list[str] = []
+    rows = {}
+    for name, given in data.items():
+        if not isinstance(given, Mapping):
+            problems.append(f"{name}: {formatted(given)} is given, a table of a row is required")
+            continue
+        row = _Row(name, given)
+        rows[name] = row.read()
+        problems += row.problems
+    if not data:
+        problems.append("has no rows")
+    if problems:
+        raise InputError([f"{path}: {problem}" for problem in problems])
+    return rows
+
+
+def row_named(name: str, rows: Mapping[str, MaterialRow] = MATERIALS) -> MaterialRow:
+    """Row of a table; ValueError with the nearest names where there is none."""
+    row = rows.get(name)
+    if row is not None:
+        return row
+    near = difflib.get_close_matches(name[:60], rows, n=1, cutoff=0.4)
+    hint = f'did you mean "{near[0]}"? ' if near else ""
+    raise ValueError(
+        f"{formatted(name)} is not in the table of materials; {hint}"
+        f"`chatter materials` lists all {len(rows)}, `chatter materials WORD` searches"
+    )
+
+
+class _Row:
+    """A row as it is read, with what is wrong with it."""
+
+    def __init__(self, name: str, given: Mapping[str, Any]) -> None:
+        self.name = name
+        self.given = given
+        self.problems: list[str] = []
+
+    def read(self) -> MaterialRow:
+        """Return the row; where there are problems it is not to be used."""
+        law = self.given.get("law", "linear")
+        if law not in FORCE_LAWS.names():
+            self._problem("law", f"{formatted(law)} is no force law; there are {self._laws()}")
+            law = "linear"
+        keys = FORCE_LAWS[law].keys
+        self._refuse_unknown(law, [key.name for key in keys])
+        values = {key.name: self._value(key) for key in keys}
+        found = {name: value for name, value in values.items() if value is not None}
+        texts = {key: self._text(key) for key in _TEXTS}
+        if not texts["source"]:
+            self._problem("source", "is missing; a row says where its coefficients come from")
+        if texts["iso_group"] not in ("", *_ISO_GROUPS):
+            self._problem("iso_group", f"must be one of {', '.join(_ISO_GROUPS)}")
+        return MaterialRow(
+            law,
+            with_defaults(keys, found),
+            chip_thickness=self._chip_thickness(),
+            examples=self._examples(),
+            **texts,
+        )
+
+    def _problem(self, key: str, text: str) -> None:
+        self.problems.append(f"{self.name}.{key}: {text}")
+
+    @staticmethod
+    def _laws() -> str:
+        return ", ".join(f'"{law}"' for law in FORCE_LAWS.names())
+
+    def _refuse_unknown(self, law: str, keys: Iterable[str]) -> None:
+        known = ("law", *keys, *_TEXTS, _RANGE, _GRADES)
+        for key in self.given:
+            if key not in known:
+                listed = ", ".join(known)
+                self._problem(key, f'unknown key of a row with law = "{law}"; there are {listed}')
+
+    def _value(self, key: Key) -> float | None:
+        given = self.given.get(key.name)
+        if given is None:
+            if key.needed:
+                self._problem(key.name, "is missing")
+            return None
+        return self._quantity(key.name, given, key.dimension, key)
+
+    def _quantity(
+        self, name: str, given: Any, dimension: str, key: Key | None = None
+    ) -> float | None:
+        try:
+            value = parse(given, dimension).value
+        except QuantityError as error:
+            self._problem(name, str(error))
+            return None
+        problem = "" if key is None else key.problem(value)
+        if problem:
+            self._problem(name, problem)
+        return value
+
+    def _text(self, key: str) -> str:
+        given = self.given.get(key, "")
+        if not isinstance(given, str):
+            self._problem(key, f"{formatted(given)} is given, a text is required")
+            return ""
+        return given
+
+    def _examples(self) -> tuple[str, ...]:
+        given = self.given.get(_GRADES, [])
+        if not isinstance(given, list) or not all(isinstance(one, str) for one in given):
+            self._problem(_GRADES, f"{formatted(given)} is given, a list of texts is required")
+            return ()
+        return tuple(given)
+
+    def _chip_thickness(self) -> tuple[float, float] | None:
+        given = self.given.get(_RANGE)
+        if given is None:
+            return None
+        if not isinstance(given, list) or len(given) != 2:
+            self._problem(_RANGE, f'{formatted(given)} is given, ["0.02 mm", "0.2 mm"] is required')
+            return None
+        low, high = (self._quantity(_RANGE, one, "length") for one in given)
+        if low is None or high is None:
+            return None
+        if not 0.0 <= low < high:
+            self._problem(_RANGE, f"{formatted(given)} does not go from a smaller to a larger one")
+        return low, high

@@ -1,0 +1,81 @@
+"""The coefficients of a case in words: which law, which numbers, where they come from."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from chatter.description.law_section import FORCE_LAWS
+from chatter.description.usual_units import of_dimension
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from chatter.description.case import Case
+    from cutting.material.row import MaterialRow
+
+
+def values_in_words(law: str, values: Mapping[str, float]) -> str:
+    """Law and its coefficients, SI, in units that people read; those that are zero left out."""
+    parts = []
+    for key in FORCE_LAWS[law].keys:
+        value = values.get(key.name)
+        if not value:
+            continue
+        unit = of_dimension(key.dimension)
+        parts.append(f"{key.name} {value * unit.factor:.4g} {unit.name}".rstrip())
+    return f"{FORCE_LAWS[law].label}, {', '.join(parts)}"
+
+
+def coefficients_in_words(case: Case) -> str | None:
+    """Sentence on the coefficients that a case cuts with; None where it has no material."""
+    material = case.material
+    if material is None:
+        return None
+    named = f"{material.name}: " if material.name else ""
+    return f"coefficients: {named}{values_in_words(material.law, material.values)}"
+
+
+def notes_on_material(case: Case) -> list[str]:
+    """Source, assumptions and range of the row that a case names; empty where it names none."""
+    row = None if case.material is None else case.material.row
+    if row is None:
+        return []
+    given = [key for key, value in case.material.values.items() if value != row.values.get(key, 0)]
+    own = f"; {', '.join(given)} as in the case" if given else ""
+    notes = [f"material.name: source: {row.source}{own}; {range_in_words(row)}"]
+    if row.assumption:
+        notes.append(f"material.name: {row.assumption}")
+    return [*notes, *_out_of_range(case, row)]
+
+
+def range_in_words(row: MaterialRow) -> str:
+    """Range of the chip thickness that a row holds for."""
+    if row.chip_thickness is None:
+        return "no range of the chip thickness is stated there"
+    low, high = (1e3 * end for end in row.chip_thickness)
+    return f"chip thickness {low:g} to {high:g} mm"
+
+
+def _out_of_range(case: Case, row: MaterialRow) -> list[str]:
+    """Note where the thickest chip of the cut is out of the range of the row."""
+    if row.chip_thickness is None or case.cut is None or case.tool is None:
+        return []
+    thickest = thickest_chip(case)
+    low, high = row.chip_thickness
+    if low <= thickest <= high:
+        return []
+    return [
+        f"material.name: the thickest chip is {1e3 * thickest:.3g} mm, out of the range of the "
+        f"row, {1e3 * low:g} to {1e3 * high:g} mm"
+    ]
+
+
+def thickest_chip(case: Case) -> float:
+    """Thickest chip of the rigid cut at the full radius, m.
+
+    h = f_z sin(phi) with cos(phi) = 1 - 2 a_e/D, f_z from the half diameter on (Altintas,
+    Manufacturing Automation, 2012, section 2.6).
+    """
+    share = min(case.width_of_cut / case.tool.diameter, 0.5)
+    return case.cut.feed_per_tooth * 2.0 * math.sqrt(share * (1.0 - share))

@@ -1,0 +1,141 @@
+"""A user's own table of materials, and what is printed of the coefficients of a case."""
+
+import pytest
+
+from chatter.description.case import load, loads
+from chatter.description.errors import InputError
+from chatter.description.material_table import read_material_table
+from chatter.description.material_words import (
+    coefficients_in_words,
+    notes_on_material,
+    thickest_chip,
+)
+
+OWN = """
+["our steel"]
+Ktc = "1800 MPa"
+Krc = "700 MPa"
+Kte = "25 N/mm"
+source = "own tests, 2026-03-02"
+chip_thickness = ["0.02 mm", "0.2 mm"]
+examples = ["1.2343"]
+
+["our titanium"]
+law = "exponential"
+Ktc = "1300 MPa"
+h0 = "1 mm"
+exponent = 0.76
+source = "own tests, 2026-03-04"
+"""
+CASE = """
+[tool]
+kind = "end mill"
+teeth = 2
+diameter = "10 mm"
+[material]
+name = "our steel"
+table = "materials.toml"
+[cut]
+mode = "down"
+spindle_speed = "3000 rpm"
+feed_per_tooth = "0.3 mm"
+axial_depth = "1 mm"
+radial_depth = "1 mm"
+"""
+
+
+@pytest.fixture
+def own(tmp_path):
+    (tmp_path / "materials.toml").write_text(OWN, encoding="utf-8")
+    (tmp_path / "case.toml").write_text(CASE, encoding="utf-8")
+    return tmp_path
+
+
+def test_rows_of_an_own_table(own):
+    case = load(own / "case.toml")
+    assert case.material.values["Ktc"] == 1.8e9
+    assert case.material.values["Kte"] == 25e3
+    assert case.material.law == "linear"
+    titanium = case.patch({"material.name": "our titanium"}).material
+    assert (titanium.law, titanium.h0, titanium.exponent) == ("exponential", 1e-3, 0.76)
+
+
+def test_a_case_that_is_saved_elsewhere_finds_its_table(own):
+    case = load(own / "case.toml")
+    case.save(own / "below" / "case.toml")
+    assert load(own / "below" / "case.toml") == case
+
+
+def test_values_beside_the_name_override_the_row(own):
+    case = load(own / "case.toml").patch({"material.Krc": "900 MPa"})
+    assert case.material.Krc == 9e8
+    assert "Krc as in the case" in notes_on_material(case)[0]
+
+
+def test_the_range_of_a_row_is_checked_against_the_thickest_chip(own):
+    case = load(own / "case.toml")
+    # h = f_z sin(phi), cos(phi) = 1 - 2/10: sin = 0.6
+    assert thickest_chip(case) == pytest.approx(0.18e-3, rel=1e-12)
+    assert len(notes_on_material(case)) == 1
+    wide = case.patch({"cut.radial_depth": "6 mm"})
+    assert thickest_chip(wide) == pytest.approx(0.3e-3, rel=1e-12)
+    assert notes_on_material(wide)[-1] == (
+        "material.name: the thickest chip is 0.3 mm, out of the range of the row, 0.02 to 0.2 mm"
+    )
+
+
+def test_coefficients_in_words():
+    case = loads('[material]\nKtc = "1900 MPa"\nKre = "40 N/mm"')
+    assert coefficients_in_words(case) == "coefficients: linear law, Ktc 1900 MPa, Kre 40 N/mm"
+    assert notes_on_material(case) == []
+    named = loads('[material]\nname = "brass (VDI 27)"')
+    assert coefficients_in_words(named) == (
+        "coefficients: brass (VDI 27): exponential law, Ktc 700 MPa, Krc 282.8 MPa, h0 1 mm, "
+        "exponent 0.73"
+    )
+    source, assumption = notes_on_material(named)
+    assert "ISCAR" in source
+    assert "no range of the chip thickness is stated there" in source
+    assert "assumption" in assumption
+    assert coefficients_in_words(loads("title = 'no material'")) is None
+
+
+@pytest.mark.parametrize(
+    ("row", "problem"),
+    [
+        ('Ktc = "1800 MPa"', "x.source: is missing"),
+        ('source = "s"', "x.Ktc: is missing"),
+        ('source = "s"\nKtc = "1800 mm"', 'x.Ktc: "1800 mm" is a length'),
+        ('source = "s"\nKtc = -1', "x.Ktc: must be above 0"),
+        ('source = "s"\nKtc = "1 MPa"\nKtd = 1', "x.Ktd: unknown key"),
+        ('source = "s"\nlaw = "cubic"\nKtc = "1 MPa"', 'x.law: "cubic" is no force law'),
+        ('source = "s"\nKtc = "1 MPa"\niso_group = "Q"', "x.iso_group: must be one of P, M"),
+        ('source = "s"\nKtc = "1 MPa"\nchip_thickness = ["2 mm", "1 mm"]', "x.chip_thickness:"),
+        ('source = "s"\nKtc = "1 MPa"\nchip_thickness = "2 mm"', "x.chip_thickness:"),
+        ('source = "s"\nKtc = "1 MPa"\nexamples = 3', "x.examples:"),
+        ('source = 3\nKtc = "1 MPa"', "x.source: 3 is given, a text is required"),
+    ],
+)
+def test_wrong_rows_are_named(tmp_path, row, problem):
+    path = tmp_path / "own.toml"
+    path.write_text(f"[x]\n{row}\n", encoding="utf-8")
+    with pytest.raises(InputError) as wrong:
+        read_material_table(path)
+    assert any(text.startswith(f"{path}: {problem}") for text in wrong.value.messages)
+
+
+def test_wrong_tables_are_named(tmp_path):
+    def messages(text):
+        with pytest.raises(InputError) as wrong:
+            loads(text, "case.toml", tmp_path)
+        return " ".join(wrong.value.messages)
+
+    assert "there is no such file" in messages('[material]\nname = "x"\ntable = "none.toml"')
+    assert "is given without name" in messages('[material]\ntable = "none.toml"')
+    assert "is not a file name" in messages('[material]\nname = "x"\ntable = 3')
+    (tmp_path / "own.toml").write_text('x = 3\n["y"]\nKtc = 1e9\nsource = "s"\n', encoding="utf-8")
+    assert "x: 3 is given, a table of a row" in messages(
+        '[material]\nname = "y"\ntable = "own.toml"'
+    )
+    (tmp_path / "own.toml").write_text('["yy"]\nKtc = 1e9\nsource = "s"\n', encoding="utf-8")
+    assert 'did you mean "yy"?' in messages('[material]\nname = "y"\ntable = "own.toml"')

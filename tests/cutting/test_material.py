@@ -1,0 +1,78 @@
+"""The table of materials: numbers as printed in their sources, the law that they are of, search."""
+
+import math
+
+import numpy as np
+import pytest
+
+from chatter.description.case import loads
+from cutting.force.exponential import ExponentialLaw
+from cutting.material.specific_cutting_force import RADIAL_RATIO
+from cutting.material.table import MATERIALS, found_rows
+
+#: kc1.1 in MPa and mc by group, typed from the catalogue page apart from the table
+PRINTED = {
+    1: (1350, 0.21), 2: (1500, 0.22), 3: (1675, 0.24), 4: (1700, 0.24), 5: (1900, 0.24),
+    6: (1775, 0.24), 7: (1675, 0.24), 8: (1725, 0.24), 9: (1800, 0.24), 10: (2450, 0.23),
+    11: (2500, 0.23), 12: (1875, 0.21), 13: (1875, 0.21), 14: (2150, 0.20), 15: (1150, 0.20),
+    16: (1350, 0.28), 17: (1225, 0.25), 18: (1350, 0.28), 19: (1225, 0.25), 20: (1420, 0.30),
+    21: (700, 0.25), 22: (800, 0.25), 23: (700, 0.25), 24: (700, 0.25), 25: (750, 0.25),
+    26: (700, 0.27), 27: (700, 0.27), 28: (700, 0.27), 31: (2600, 0.24), 32: (3100, 0.24),
+    33: (3300, 0.24), 34: (3300, 0.24), 35: (3300, 0.24), 36: (1160, 0.24), 37: (1245, 0.24),
+}  # fmt: skip
+
+
+def row_of_group(group):
+    (row,) = [row for name, row in MATERIALS.items() if name.endswith(f"(VDI {group})")]
+    return row
+
+
+@pytest.mark.parametrize("group", PRINTED)
+def test_specific_cutting_forces_as_printed(group):
+    specific, mc = PRINTED[group]
+    row = row_of_group(group)
+    assert row.law == "exponential"
+    assert row.values["Ktc"] == pytest.approx(specific * 1e6, rel=1e-14)
+    assert row.values["exponent"] == pytest.approx(1.0 - mc, rel=1e-14)
+    assert row.values["h0"] == 1e-3
+
+
+def test_the_force_is_that_of_kienzle():
+    # Fc = kc1.1 b h^(1 - mc), h and b in mm: steel of group 7, b = 2 mm, h = 0.1 mm
+    by_hand = 1675.0 * 2.0 * 0.1**0.76
+    material = loads('[material]\nname = "low-alloy and cast steel, hardened to 275 HB (VDI 7)"')
+    law = material.material.force_law(0.0)
+    tangential, radial, axial = ExponentialLaw.leaf(ExponentialLaw.table([law]), 0, 1e-4)
+    assert tangential * 2e-3 == pytest.approx(by_hand, rel=1e-12)
+    assert radial / tangential == pytest.approx(1.0 / math.tan(math.radians(68.0)), rel=1e-12)
+    assert axial == 0.0
+
+
+def test_there_are_materials_of_every_group():
+    assert len(MATERIALS) >= 40
+    groups = {row.iso_group for row in MATERIALS.values()}
+    assert groups == {"P", "M", "K", "N", "S"}
+    for word in ("titanium", "nickel", "stainless", "tool steel", "cast iron", "aluminium"):
+        assert found_rows([word]), word
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+def test_every_row_names_its_source_and_what_it_assumes(name):
+    row = MATERIALS[name]
+    assert row.source
+    # a catalogue has the cutting force alone: the rest of such a row is an assumption, and said
+    assert bool(row.assumption) == (row.law == "exponential")
+    assert all(np.isfinite(list(row.values.values())))
+
+
+def test_the_ratio_of_the_assumption_is_among_those_of_tests():
+    ratios = [row.cutting[1] / row.cutting[0] for row in MATERIALS.values() if row.law == "linear"]
+    assert f"{min(ratios):.2f} to {max(ratios):.2f}" in row_of_group(7).assumption
+    assert min(ratios) < RADIAL_RATIO < max(ratios)
+
+
+def test_search_needs_all_words_in_any_case():
+    assert list(found_rows(["INCONEL", "718"])) == ["nickel or cobalt alloy, hardened (VDI 34)"]
+    assert len(found_rows(["4140"])) == 3
+    assert not found_rows(["inconel", "aluminium"])
+    assert found_rows([]) == MATERIALS
