@@ -74,8 +74,11 @@ def _out_of_range(case: Case, row: MaterialRow) -> list[str]:
 def thickest_chip(case: Case) -> float:
     """Thickest chip of the rigid cut at the full radius, m.
 
-    h = f_z sin(phi) with cos(phi) = 1 - 2 a_e/D, f_z from the half diameter on (Altintas,
-    Manufacturing Automation, 2012, section 2.6).
+    h = f_z sin(phi), largest where the arc of the cut comes nearest to the feed axis, phi = pi/2
+    (Altintas, Manufacturing Automation, 2012, section 2.6).
     """
-    share = min(case.width_of_cut / case.tool.diameter, 0.5)
-    return case.cut.feed_per_tooth * 2.0 * math.sqrt(share * (1.0 - share))
+    radius = 0.5 * case.tool.diameter
+    band = case.uncut_band
+    lowest, highest = (float(border.at(radius)) / radius for border in (band.lower, band.upper))
+    nearest = min(max(0.0, lowest, -1.0), highest, 1.0)
+    return case.cut.feed_per_tooth * math.sqrt(max(0.0, 1.0 - nearest**2))
