@@ -44,7 +44,7 @@ def bifurcation(
     from chatter.engine.loop import run
     from chatter.studies.bifurcation import bifurcation as run_bifurcation
 
-    with progress_bar("cuts", run) as progress:
+    with progress_bar("cuts of the bifurcation diagram, step by step", run) as progress:
         diagram = run_bifurcation(description, path, values, progress)
     options.print_coefficients(description)
     present(diagram, options.output_folder(out, case.stem), json=json, words=_print_onsets)

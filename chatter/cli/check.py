@@ -33,7 +33,7 @@ def check(
     description = options.patched_case(case, assignments)
     from chatter.stability.check import check as run_check
 
-    with progress_bar("critical depth") as progress:
+    with progress_bar("critical depth at this speed") as progress:
         result = run_check(description, method, progress)
     options.print_coefficients(description)
     if json:

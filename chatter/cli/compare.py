@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from chatter.cli import options
 from chatter.cli.explain import DeclaredCase, MeasurementPath, print_checks, print_diagnostics
-from chatter.cli.progress import announce_compilation
+from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
 from chatter.report.console import print_table
 
@@ -26,8 +26,8 @@ def compare(
     from chatter.explain.measurement_file import read_measurement
 
     declared = read_measurement(measurement, case)
-    announce_compilation()
-    result = run_compare(declared)
+    with progress_bar("predicting the runs"):
+        result = run_compare(declared)
     folder = options.output_folder(out, measurement.resolve().stem)
     options.print_coefficients(declared.case)
     present(result, folder, json=json, words=partial(_print_errors, declared.title))

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from chatter.cli import options
-from chatter.cli.progress import announce_compilation
+from chatter.cli.progress import progress_bar
 from chatter.report.console import print_table, print_written
 
 
@@ -31,8 +31,8 @@ def examples(
     if not run:
         print_written([chosen.copy(out if out is not None else Path(name))])
         return
-    announce_compilation()
-    written = chosen.run(out if out is not None else Path(f"{name}-out"))
+    with progress_bar(f"running {name}"):
+        written = chosen.run(out if out is not None else Path(f"{name}-out"))
     print_written(written)
     pictures = [path for path in written if path.suffix == ".png"]
     if open_picture and pictures and has_desktop():

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from chatter.cli import options
-from chatter.cli.progress import progress_bar
+from chatter.cli.progress import progress_bar, report_stage
 from chatter.cli.results import present
 from chatter.report.console import print_table
 
@@ -34,12 +35,8 @@ def explain(
     from chatter.explain.measurement_file import read_measurement
 
     declared = read_measurement(measurement, case)
-    with progress_bar("searching, %") as bar:
-
-        def progress(_: str, share: float) -> None:
-            bar(round(100 * share), 100)
-
-        result = run_explain(declared, progress=progress)
+    with progress_bar("reading the signals") as work:
+        result = run_explain(declared, progress=partial(report_stage, work))
     folder = options.output_folder(out, measurement.resolve().stem)
     options.print_coefficients(declared.case)
     present(result, folder, json=json, words=_print_explanation)

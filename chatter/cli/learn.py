@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,7 +19,7 @@ from chatter.cli.options import (
     print_coefficients,
 )
 from chatter.cli.options_as_one import takes_options
-from chatter.cli.progress import progress_bar
+from chatter.cli.progress import progress_bar, report_stage
 from chatter.cli.results import present
 from chatter.report.console import print_table
 
@@ -54,7 +55,7 @@ def learn(options: LearnOptions) -> None:
     description = patched_case(options.case, options.assignments)
     from chatter.learning.learn import learn as run_learn
 
-    with progress_bar("learning from the tests, %") as bar:
+    with progress_bar("learning from the tests") as work:
         found = run_learn(
             description,
             options.cuts,
@@ -62,7 +63,7 @@ def learn(options: LearnOptions) -> None:
             risk=options.risk,
             particles=options.particles,
             seed=options.seed,
-            progress=lambda _, share: bar(round(100 * share), 100),
+            progress=partial(report_stage, work),
         )
     folder = output_folder(options.out, options.case.stem)
     print_coefficients(description)

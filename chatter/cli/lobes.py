@@ -20,7 +20,7 @@ from chatter.cli.options import (
     print_coefficients,
 )
 from chatter.cli.options_as_one import takes_options
-from chatter.cli.progress import announce_compilation, progress_bar
+from chatter.cli.progress import progress_bar
 from chatter.cli.results import present, print_sentences
 from chatter.description.case import Case
 from chatter.description.errors import InputError
@@ -92,7 +92,7 @@ def lobes(options: LobesOptions) -> None:
     from chatter.studies.diagram_over_axes import lobes as run_lobes
 
     folder = output_folder(options.out, options.case.stem)
-    with progress_bar("stability limits") as progress:
+    with progress_bar("stability limits at all speeds") as progress:
         diagram = run_lobes(description, options.method, grid, progress, options.cluster, folder)
     print_coefficients(description)
     present(diagram, folder, json=options.json, words=_print_diagram, notes=diagram.notes)
@@ -103,7 +103,7 @@ def _over_paths(case: Case, options: LobesOptions) -> None:
     from chatter.studies.diagram_over_axes import lobes_over
 
     folder = output_folder(options.out, options.case.stem)
-    with progress_bar("stability") as progress:
+    with progress_bar("stability at the points of the diagram") as progress:
         diagram = lobes_over(
             case, options.x, options.y, options.method, progress, options.cluster, folder
         )
@@ -115,11 +115,10 @@ def _serve(description: Case, options: LobesOptions) -> None:
     """Serve the page until Ctrl-C."""
     from chatter.app.live_case import LiveCase
     from chatter.app.server import LiveServer
-    from chatter.description.progress import no_progress
 
-    announce_compilation()
     page = LiveCase(description, options.method)
-    page.diagram({}, "coarse", no_progress)
+    with progress_bar("first diagram") as progress:
+        page.diagram({}, "coarse", progress)
     server = LiveServer(page, options.port)
     typer.echo(f"{server.url}  (Ctrl-C ends)")
     if not options.no_browser:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from chatter.cli import options
+from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
 from chatter.report.console import print_table
 
@@ -41,9 +42,10 @@ def modes(
     """Identify modal parameters from measured FRFs or hammer records."""
     from chatter.studies.modal_test import modes as run_modes
 
-    result = run_modes(
-        files, keep=keep or (), direction=direction, side=side, band=band, mode_count=mode_count
-    )
+    with progress_bar("fitting modes to the responses"):
+        result = run_modes(
+            files, keep=keep or (), direction=direction, side=side, band=band, mode_count=mode_count
+        )
     present(
         result,
         options.output_folder(out, files[0].stem or "modes"),

@@ -25,7 +25,7 @@ def optimum(
     from chatter.studies.optimisation.process_optimisation import optimum as run_optimum
 
     folder = options.output_folder(out, case.stem)
-    with progress_bar("search") as progress:
+    with progress_bar("cuts of the search") as progress:
         found = run_optimum(description, samples, seed, progress, folder)
     options.print_coefficients(description)
     present(found, folder, json=json, words=print_sentences, notes=found.notes)

@@ -16,7 +16,7 @@ def pitch(
     from chatter.studies.pitch_design.pitch_design import pitch as run_pitch
 
     folder = options.output_folder(out, case.stem)
-    with progress_bar("designs") as progress:
+    with progress_bar("pitch designs") as progress:
         found = run_pitch(description, progress, folder)
     options.print_coefficients(description)
     present(found, folder, json=json, words=print_sentences, notes=found.notes)

@@ -1,30 +1,161 @@
-"""Progress of long work on the terminal, and what the first use takes."""
+"""Progress of long work: what is being done, how far, and how long it will take."""
 
-from collections.abc import Iterator
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 
-from chatter.description import progress
 from chatter.report.console import MESSAGES, print_message
+
+#: s without a word after which a line is printed where there is no terminal to draw a bar on
+FIRST_LINE = 2.0
+#: s from line to line
+NEXT_LINE = 15.0
+#: s of work from which on its duration is announced
+LONG = 60.0
+#: s of work from which its pace is known
+_PACE = 1.0
+
+
+class RunningWork:
+    """Work under way: called with (done, total) as it goes on, in whatever thread.
+
+    Parameters
+    ----------
+    description : str
+        What is being done.
+    clock : callable, optional
+        s, that never goes back.
+    """
+
+    def __init__(self, description: str, clock: Callable[[], float] = time.monotonic) -> None:
+        self.description = description
+        self._clock = clock
+        self._begun = clock()
+        self._first: tuple[float, int] | None = None  # time and parts at the first report
+        self._newest: tuple[float, int, int] | None = None
+        self._announced = False
+
+    def __call__(self, done: int, total: int) -> None:
+        """Report how many of all parts are done."""
+        now = self._clock()
+        if self._first is None:
+            # what is reported at once was finished before, by an earlier run
+            at_once = now - self._begun < _PACE
+            self._first = (now, done) if at_once else (self._begun, 0)
+        self._newest = (now, done, total)
+
+    def stage(self, description: str) -> None:
+        """Report that another part of the work has begun, under its own description."""
+        self.description = description
+
+    @property
+    def counts(self) -> tuple[int, int | None]:
+        """Parts that are done, and all; None where that is not known yet."""
+        return (0, None) if self._newest is None else self._newest[1:]
+
+    @property
+    def elapsed(self) -> float:
+        """Time since the work began, s."""
+        return self._clock() - self._begun
+
+    def remaining(self) -> float | None:
+        """Time that the rest takes at the pace so far, s; None before there is one."""
+        if self._first is None or self._newest is None:
+            return None
+        begun, before = self._first
+        at, done, total = self._newest
+        if done <= before or at - begun < _PACE:
+            return None
+        expected_end = begun + (at - begun) * (total - before) / (done - before)
+        return max(expected_end - self._clock(), 0.0)
+
+    def line(self) -> str:
+        """Line on what is being done and how far it is."""
+        done, total = self.counts
+        if not total:
+            return f"{self.description}: {in_words(self.elapsed)} so far"
+        left = self.remaining()
+        rest = "" if left is None else f", about {in_words(left)} left"
+        return f"{self.description}: {done} of {total} ({done / total:.0%}){rest}"
+
+    def announcement(self) -> str | None:
+        """Sentence, once, that the work takes minutes, as soon as its pace shows it."""
+        left = self.remaining()
+        if self._announced or left is None or self.elapsed + left < LONG:
+            return None
+        self._announced = True
+        return f"{self.description}: about {in_words(self.elapsed + left)} in all; Ctrl-C ends it"
+
+
+def report_stage(work: RunningWork, description: str, share: float) -> None:
+    """Report a part of the work by its name and the share of the whole that is done."""
+    work.stage(description)
+    work(round(100.0 * share), 100)
+
+
+def in_words(seconds: float) -> str:
+    """Duration in the unit that people say it in."""
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    minutes = seconds / 60.0
+    return f"{minutes:.0f} min" if minutes < 90.0 else f"{minutes / 60.0:.1f} h"
 
 
 @contextmanager
-def progress_bar(description: str, driver: object | None = None) -> Iterator[progress.Progress]:
-    """Announce what the first use takes, and show a progress bar on stderr.
+def progress_bar(description: str, driver: object | None = None) -> Iterator[RunningWork]:
+    """Announce what the first use takes, and show on stderr what is being done and how far.
 
-    Yields a function of (done, total); `driver` is as for `announce_compilation`.
+    A bar on a terminal, else a line after two seconds and one every quarter of a minute. Yields a
+    function of (done, total); `driver` is as for `announce_compilation`.
     """
     announce_compilation(driver)
+    work = RunningWork(description)
+    ended = threading.Event()
+    shown = _on_terminal if MESSAGES.is_terminal else _in_lines
+    thread = threading.Thread(target=shown, args=(work, ended), daemon=True)
+    thread.start()
+    try:
+        yield work
+    finally:
+        ended.set()
+        thread.join()
+
+
+def _on_terminal(work: RunningWork, ended: threading.Event) -> None:
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
         MofNCompleteColumn(),
+        TimeElapsedColumn(),
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=MESSAGES, transient=True) as bar:
-        task = bar.add_task(description, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
+        task = bar.add_task(work.description, total=None)
+        while not ended.wait(0.1):
+            done, total = work.counts
+            bar.update(task, description=work.description, completed=done, total=total)
+            sentence = work.announcement()
+            if sentence is not None:
+                bar.console.print(sentence, markup=False)
+
+
+def _in_lines(work: RunningWork, ended: threading.Event) -> None:
+    pause = FIRST_LINE
+    while not ended.wait(pause):
+        print_message(work.announcement() or work.line())
+        pause = NEXT_LINE
 
 
 def announce_compilation(driver: object | None = None) -> None:

@@ -35,7 +35,7 @@ def simulate(
     from chatter.engine.loop import run
     from chatter.simulation.simulate import simulate as run_simulation
 
-    with progress_bar("time steps", run) as progress:
+    with progress_bar("time steps of the cut", run) as progress:
         result = run_simulation(description, progress=progress)
     options.print_coefficients(description)
     present(

@@ -49,7 +49,7 @@ def uncertainty(options: UncertaintyOptions) -> None:
     from chatter.studies.uncertainty.monte_carlo import uncertainty as run_uncertainty
 
     folder = output_folder(options.out, options.case.stem)
-    with progress_bar("samples") as progress:
+    with progress_bar("samples of the uncertain values") as progress:
         found = run_uncertainty(
             description,
             options.samples,

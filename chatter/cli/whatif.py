@@ -91,7 +91,7 @@ def whatif(options: WhatIfOptions) -> None:
         model = _fitted(chosen, lambda: patched(model, chosen.settings))
     from chatter.studies.whatif.whatif_study import whatif as run_whatif
 
-    with progress_bar("points") as progress:
+    with progress_bar("points of the study") as progress:
         found = _fitted(
             chosen,
             lambda: run_whatif(

@@ -1,0 +1,112 @@
+"""Progress: what is being done, how far, how long; nothing is silent for more than two seconds."""
+
+import ast
+import time
+
+import pytest
+
+from chatter.cli import COMMANDS, progress
+from chatter.cli.progress import RunningWork, in_words, progress_bar
+from tests.places import ROOT
+
+#: commands that compute nothing
+AT_ONCE = {"materials", "schema"}
+
+
+class Clock:
+    """A clock that is set by hand."""
+
+    now = 100.0
+
+    def __call__(self):
+        return self.now
+
+
+@pytest.fixture
+def clock():
+    return Clock()
+
+
+def test_the_time_left_is_that_of_the_pace_so_far(clock):
+    work = RunningWork("limits", clock)
+    assert work.remaining() is None
+    assert work.line() == "limits: 0 s so far"
+    work(0, 200)
+    clock.now += 10.0
+    assert work.line() == "limits: 0 of 200 (0%)"
+    work(50, 200)
+    # 50 parts in 10 s: 150 more take 30 s
+    assert work.remaining() == pytest.approx(30.0)
+    assert work.line() == "limits: 50 of 200 (25%), about 30 s left"
+    # between two reports it goes down with time, never below zero
+    clock.now += 4.0
+    assert work.remaining() == pytest.approx(26.0)
+    clock.now += 40.0
+    assert work.remaining() == 0.0
+
+
+def test_what_an_earlier_run_has_finished_is_not_pace(clock):
+    work = RunningWork("points", clock)
+    clock.now += 0.1
+    work(900, 1000)
+    clock.now += 10.0
+    work(910, 1000)
+    assert work.remaining() == pytest.approx(90.0)
+
+
+def test_a_first_part_that_took_long_is_pace(clock):
+    work = RunningWork("points", clock)
+    clock.now += 20.0
+    work(1, 10)
+    assert work.remaining() == pytest.approx(180.0)
+
+
+def test_minutes_are_announced_once(clock):
+    work = RunningWork("samples", clock)
+    work(0, 100)
+    clock.now += 5.0
+    work(10, 100)
+    assert work.announcement() is None  # 50 s in all
+    work.stage("more samples")
+    clock.now += 5.0
+    work(11, 100)
+    # 11 parts in 10 s: 89 more take 81 s, 91 s in all
+    assert work.announcement() == "more samples: about 2 min in all; Ctrl-C ends it"
+    assert work.announcement() is None
+
+
+def test_durations_in_words():
+    assert in_words(42.4) == "42 s"
+    assert in_words(125.0) == "2 min"
+    assert in_words(2.5 * 3600.0) == "2.5 h"
+
+
+def test_lines_where_there_is_no_terminal(monkeypatch, capsys):
+    monkeypatch.setattr(progress, "FIRST_LINE", 0.05)
+    monkeypatch.setattr(progress, "NEXT_LINE", 0.05)
+    with progress_bar("critical depth") as work:
+        time.sleep(0.2)
+        work.stage("another part")
+        work(3, 4)
+        time.sleep(0.2)
+    printed = capsys.readouterr().err
+    assert "critical depth: 0 s so far" in printed
+    assert "another part: 3 of 4 (75%)" in printed
+
+
+def test_short_work_prints_nothing(capsys):
+    with progress_bar("critical depth") as work:
+        work(1, 2)
+    assert capsys.readouterr().err == ""
+
+
+def test_an_error_ends_the_lines():
+    with pytest.raises(ValueError, match="no"), progress_bar("critical depth"):
+        raise ValueError("no")
+
+
+@pytest.mark.parametrize("command", sorted(set(COMMANDS) - AT_ONCE))
+def test_every_command_that_computes_shows_its_progress(command):
+    tree = ast.parse((ROOT / "chatter" / "cli" / f"{command}.py").read_text(encoding="utf-8"))
+    used = [node for node in ast.walk(tree) if isinstance(node, ast.With)]
+    assert any("progress_bar(" in ast.unparse(node.items[0]) for node in used)
