@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
 #: peak at the start over that of the settled cut from which on it is worth a line
 _NOTABLE = 1.02
+#: cutting edge angle from which on an edge makes a wall, deg
+_UPRIGHT = 89.0
 
 
 def simulate(
@@ -33,10 +36,18 @@ def simulate(
     if chip is not None:
         description = description.patch({"simulation.chip": chip})
     from chatter.engine.loop import run
+    from chatter.simulation.displaced_too_far import DisplacedTooFarError
     from chatter.simulation.simulate import simulate as run_simulation
+    from chatter.stability.verdict_of_displaced import with_linear_verdict
 
-    with progress_bar("time steps of the cut", run) as progress:
-        result = run_simulation(description, progress=progress)
+    failure = None
+    with progress_bar("time steps of the cut", run) as work:
+        try:
+            result = run_simulation(description, progress=work)
+        except DisplacedTooFarError as error:
+            failure = error
+            work.stage("critical depth, for a verdict")
+            result = with_linear_verdict(error)
     options.print_coefficients(description)
     present(
         result,
@@ -45,6 +56,8 @@ def simulate(
         words=_print_summary,
         notes=result.summary()["notes"],
     )
+    if failure is not None:
+        raise failure
     if result.interrupted:
         raise typer.Exit(EXIT_RUN_FAILED)
 
@@ -65,12 +78,32 @@ def _print_summary(result: SimulationResult) -> None:
         f"displacement {summary['peak_displacement_um']:.3g} um peak"
     )
     _print_transient(summary)
-    error = summary.get("surface_location_error_um")
-    if error is not None:
-        typer.echo(f"surface location error {error:.3g} um")
+    for line in _surface(summary, math.degrees(result.setup.cutter.edge_angle)):
+        typer.echo(line)
     frequency = summary["chatter_frequency_Hz"]
     at = "" if frequency is None else f" at {frequency:.1f} Hz"
     typer.echo(f"{summary['verdict']}{at}: {summary['reason']}")
+
+
+def _surface(summary: dict, edge_angle: float) -> list[str]:
+    """Lines on what the cut leaves behind: wall and floor, each where it makes one."""
+    location, rough = summary["surface_location"], summary["roughness"]
+    wall, floor = summary["surface_location_error_um"], location["floor_um"]
+    # an inclined edge leaves a shoulder, which is the work of the next pass
+    name = "wall" if edge_angle > _UPRIGHT else f"shoulder at {edge_angle:.3g} deg"
+    lines = []
+    if wall is not None:
+        error = f"surface location error {wall:.3g} um (positive: too much removed)"
+        lines.append(f"{name}: {error}{_roughness(rough['wall'])}")
+    if floor is not None:
+        lines.append(f"floor: {floor:.3g} um too deep{_roughness(rough['floor'])}")
+    return lines if edge_angle > _UPRIGHT else lines[::-1]
+
+
+def _roughness(heights: dict) -> str:
+    if heights["Ra_um"] is None:
+        return ""
+    return f", Ra {heights['Ra_um']:.3g} um, Rz {heights['Rz_um']:.3g} um"
 
 
 def _print_transient(summary: dict) -> None:

@@ -297,7 +297,8 @@ def draw_profiles(axes: Axes, result: SimulationResult) -> None:
         _draw_profile(axes, wall.profiles.x, -middle, shown, colour, _wall_label(wall))
     if finish.floor is not None:
         floor = finish.floor
-        label = f"floor: Ra {round(floor.texture.roughness.mean * 1e6, 6):.3g} µm"
+        rough = f"Ra {round(floor.texture.roughness.mean * 1e6, 6):.3g} µm"
+        label = f"floor: {'without feed marks' if floor.profile.sharp else rough}"
         _draw_profile(axes, floor.profile.x, floor.profile.height, shown, style.GREEN, label)
     style.finish(axes)
     axes.margins(x=0.0)

@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 
 #: sampling lengths that ISO 4288 wants
 _SAMPLING_LENGTHS = 5.0
+SHARP_CORNER = (
+    "floor: its roughness is not evaluated, since a sharp corner leaves feed marks that depend on "
+    "the minor cutting edge; tool.corner_radius gives them"
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +70,7 @@ class Finish:
     def summary(self) -> dict:
         """Return the numbers of the surface for summary.json; None for what is not known."""
         wall = [one.texture for one in self.walls]
-        floor = [self.floor.texture] if self.floor else []
+        floor = [self.floor.texture] if self.floor and not self.floor.profile.sharp else []
         return {
             "surface_location_error_um": _micrometres(self.location_error),
             "surface_location": {
@@ -147,7 +151,8 @@ def finish_from_profiles(
     evaluated = [wall.texture for wall in found]
     if below is not None:
         evaluated.append(below.texture)
-    return Finish(found, below, (*notes, *_length_notes(evaluated, cut_off)))
+    marks = (SHARP_CORNER,) if floor is not None and floor.sharp else ()
+    return Finish(found, below, (*notes, *marks, *_length_notes(evaluated, cut_off)))
 
 
 def _wall_finish(wall: WallProfiles, cut_off: float) -> WallFinish:

@@ -62,6 +62,8 @@ class FloorProfile:
 
     x: Array  # (n,), evenly spaced, m
     height: Array  # (n,), over the nominal floor, m
+    #: a sharp corner: its feed marks depend on a minor cutting edge, which no case states
+    sharp: bool = False
 
 
 def surface_profiles(
@@ -211,7 +213,7 @@ def _floor(result: SimulationResult, record: _Record) -> tuple[FloorProfile | No
     profile = floor_height(x, at, lowest, cutter.corner_radius / steep**2, feed_per_revolution)
     if not np.all(np.isfinite(profile)):
         return None, "floor: the tool moves too far for its corners to meet"
-    return FloorProfile(x, profile), ""
+    return FloorProfile(x, profile, sharp=cutter.corner_radius == 0.0), ""
 
 
 def _crossing(tip_radius: float, middle: float, band: UncutBand) -> float | None:

@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
-from chatter.description.errors import InputError, RunError
+from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
 from chatter.description.units import rpm
 from chatter.simulation.carved_workpiece import after_run, set_up_on
 from chatter.simulation.cut_run import CutRun
+from chatter.simulation.displaced_too_far import DisplacedTooFarError
 from chatter.simulation.result import SimulationResult
 from chatter.simulation.setup import Setup, set_up
 from chatter.simulation.verdict import with_verdict
@@ -63,8 +64,8 @@ def simulate(
     InputError
         If the case lacks something or asks for what cannot be simulated, cannot cut the workpiece
         given, or its machine cannot make the cut.
-    RunError
-        If the tool moves so far that the model no longer holds.
+    DisplacedTooFarError
+        If the tool moves so far that the model no longer holds; its `result` is the run until then.
 
     Notes
     -----
@@ -73,14 +74,9 @@ def simulate(
     if overrides:
         case = case.patch(overrides)
     setup = set_up(case) if workpiece is None else set_up_on(case, workpiece)
-    result, done = run_setup(setup, progress)
+    result, _ = run_setup(setup, progress)
     if not result.complete and not result.interrupted:
-        body = "machine" if setup.on_machine is not None else "structure"
-        raise RunError(
-            f"{case.name}: after {done * setup.step:.4g} s the tool is displaced by more than "
-            f"{setup.furthest * 1e3:.3g} mm, a share of its radius at which the model of the cut "
-            f"no longer holds; the cut is far from stable, or the {body} too soft"
-        )
+        raise DisplacedTooFarError(result)
     return with_verdict(result)
 
 
