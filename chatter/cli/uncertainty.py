@@ -79,6 +79,21 @@ def _print_probability(found: Uncertainty) -> None:
         for key in ("5_percent", "50_percent", "95_percent")
     ]
     typer.echo(f"critical depth there: median {ends[1]}, 5 % below {ends[0]}, 5 % above {ends[2]}")
-    for one in sorted(summary["parameters"], key=lambda p: -(p["share_of_variance"] or 0.0)):
-        if one["share_of_variance"] is not None:
-            typer.echo(f"{one['path']}: {one['share_of_variance']:.0%} of its variance")
+    for line in _lines_on_variance(found.shares()):
+        typer.echo(line)
+
+
+def _lines_on_variance(shares: dict[str, float | None]) -> list[str]:
+    """Shares of the variance in whole per cent that add up to 100, the largest first."""
+    from chatter.studies.uncertainty.shares_of_variance import whole_percentages
+
+    known = {path: share for path, share in shares.items() if share is not None}
+    if not known:
+        return []
+    rest = max(0.0, 1.0 - sum(known.values()))
+    percent = whole_percentages([*known.values(), rest])
+    lines = [
+        f"{path}: {share} % of its variance"
+        for path, share in sorted(zip(known, percent, strict=False), key=lambda pair: -pair[1])
+    ]
+    return [*lines, f"curvature and joint influence: {percent[-1]} %"]

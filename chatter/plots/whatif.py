@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
 import numpy as np
@@ -21,6 +21,15 @@ if TYPE_CHECKING:
 _LONGEST_LABEL = 60
 _MOST_TICKS = 10
 _MOST_WRITTEN = 150
+#: height of what has no value, as a share of the axes, and rows of it below each other
+_TOP, _ROW, _ROWS = 0.95, 0.035, 6
+_NONE_FOUND: dict[str, Any] = {
+    "marker": "^", "linestyle": "none", "color": "white", "markeredgecolor": "black",
+    "markersize": 8,
+}  # fmt: skip
+_FAILED: dict[str, Any] = {
+    "marker": "x", "linestyle": "none", "color": style.RED, "markersize": 8,
+}  # fmt: skip
 
 
 def plot_whatif(study: WhatIf) -> Figure:
@@ -67,24 +76,44 @@ def _overlay(study: WhatIf) -> Figure:
 
 
 def _draw_curves(axes: Axes, study: WhatIf, panel: str, name: str, colours: list) -> None:
-    across = ""
-    for outcome, point, colour in zip(study.outcomes, study.points, colours, strict=True):
+    across, without = "", 0
+    for row, (outcome, point) in enumerate(zip(study.outcomes, study.points, strict=True)):
+        label = point.labels[0][:_LONGEST_LABEL]
+        if outcome.failure:
+            axes.plot([], [], **_FAILED, label=f"{label}: failed")
         for curve in outcome.curves:
             if (curve.panel, curve.name) != (panel, name):
                 continue
             across = curve.across
             x, y = (np.array(part, dtype=np.float64) for part in (curve.x, curve.y))
-            label = point.labels[0][:_LONGEST_LABEL]
-            axes.plot(x, y, color=colour, linewidth=1.3, label=label)
+            none = np.isnan(y)
+            look = {"marker": "^", "label": f"{label}: none found"} if none.all() else {}
+            axes.plot(x, y, color=colours[row], linewidth=1.3, **{"label": label, **look})
+            _draw_none_found(axes, x[none], colours[row], row)
+            without = max(without, min(row + 1, _ROWS) if none.any() else 0)
     if study.measure.logarithmic:
         axes.set_yscale("log")
     else:
-        axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
+        low, high = min(0.0, axes.get_ylim()[0]), axes.get_ylim()[1]
+        # marks of what has no value stand above every curve
+        room = 1.0 - _TOP + _ROW * without if without else 0.0
+        axes.set_ylim(low, low + (high - low) / (1.0 - room))
     if study.measure.name == "lobes" and isinstance(study.model, Case):
         style.mark_cut(axes, study.model.cut, "operating point", color="black", markersize=6)
     axes.margins(x=0.0)
     axes.set(xlabel=across, ylabel=panel if not name else f"{name}\n{panel}")
     style.finish(axes)
+
+
+def _draw_none_found(axes: Axes, x: np.ndarray, colour: object, row: int) -> None:
+    """Mark where a curve has no value at the top of the axes, each curve in a row of its own."""
+    if not x.size:
+        return
+    height = _TOP - _ROW * (row % _ROWS)
+    axes.plot(
+        x, np.full(x.size, height), transform=axes.get_xaxis_transform(), marker="^",
+        linestyle="none", markersize=4.0, color=colour,
+    )  # fmt: skip
 
 
 def _draw_numbers(axes: Axes, study: WhatIf, colours: list) -> None:
@@ -97,13 +126,16 @@ def _draw_numbers(axes: Axes, study: WhatIf, colours: list) -> None:
     for index, colour in enumerate(colours):
         axes.plot(x[index], y[index], "o", color=colour, markeredgecolor="black", markersize=7)
     missing = np.isnan(y)
+    failed = np.array([bool(outcome.failure) for outcome in study.outcomes])
+    for where, look, label in (
+        (missing & ~failed, _NONE_FOUND, none_found(study)),
+        (failed, _FAILED, "failed"),
+    ):
+        if where.any():
+            height = np.full(int(where.sum()), _TOP)
+            axes.plot(x[where], height, transform=axes.get_xaxis_transform(), **look, label=label)
     if missing.any():
-        top = np.nanmax(y) if not missing.all() else 1.0
-        axes.plot(
-            x[missing], np.full(missing.sum(), top), "^", color="white", markeredgecolor="black",
-            markersize=8, label="none found, or no result",
-        )  # fmt: skip
-        axes.legend(fontsize=8.0, frameon=False)
+        axes.legend(fontsize=8.0, frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
     if numbers is None:
         axes.set_xticks(x, [_wrapped(value.label[:_LONGEST_LABEL], 16) for value in one.values])
     if not missing.all():
@@ -112,6 +144,17 @@ def _draw_numbers(axes: Axes, study: WhatIf, colours: list) -> None:
     axes.set(xlabel=one.axis_label, ylabel=_wrapped(_quantity_label(study)))
     axes.ticklabel_format(axis="y", scilimits=(-3, 5), useOffset=False)
     style.finish(axes)
+
+
+def none_found(study: WhatIf) -> str:
+    """Label of points without a number: how far it was searched, where that is one number."""
+    beyond = study.measure.quantities[study.quantity].beyond
+    found = [one.numbers.get(beyond) for one in study.outcomes] if beyond else []
+    searched = {value for value in found if value is not None}
+    if len(searched) != 1:
+        return "none found"
+    (farthest,) = searched
+    return f"no limit up to {farthest:.3g} mm"
 
 
 def _mark_verdicts(axes: Axes, study: WhatIf, x: np.ndarray, y: np.ndarray) -> None:

@@ -26,6 +26,7 @@ from chatter.studies.uncertainty.sample_limits import (
     sample_limits,
     shared_grid,
 )
+from chatter.studies.uncertainty.shares_of_variance import shares_of_variance
 from chatter.studies.uncertainty.uncertain_parameters import (
     UncertainParameter,
     correlation_of,
@@ -108,16 +109,14 @@ class Uncertainty(SavedResult):
     def shares(self) -> dict[str, float | None]:
         """Share of each parameter in the variance of the limit of the cut, to first order.
 
-        Square of the correlation; what is missing to 1 is bent or joint influence.
+        They add up to less than 1; what is missing is curvature and joint influence.
         """
         known = np.isfinite(self.operating)
         limit = self.operating[known]
         if known.sum() < 3 or np.ptp(limit) == 0.0:
             return {one.path: None for one in self.parameters}
-        return {
-            one.path: float(np.corrcoef(column, limit)[0, 1] ** 2) if np.ptp(column) else 0.0
-            for one, column in zip(self.parameters, self.values[known].T, strict=True)
-        }
+        shares = shares_of_variance(self.values[known], limit)
+        return {one.path: float(s) for one, s in zip(self.parameters, shares, strict=True)}
 
     def summary(self) -> dict:
         """Return the content of summary.json."""

@@ -183,7 +183,7 @@ def test_the_command(tmp_path):
     assert result.exit_code == 0, result.output
     assert "is stable with a probability of" in result.stdout
     # 1 / Ktc is nearly straight
-    assert re.search(r"material.Ktc: (9\d|100)% of its variance", result.stdout)
+    assert re.search(r"material.Ktc: (9\d|100) % of its variance", result.stdout)
     wrong = chatter_command("uncertainty", path, "--set", "material.Ktc=600 MPa", "--out", tmp_path)
     assert wrong.exit_code == 2
     assert "no value is uncertain" in wrong.stderr
