@@ -7,7 +7,8 @@ import typer
 
 from chatter.cli import options
 from chatter.cli.progress import progress_bar
-from chatter.report.console import print_table, print_written
+from chatter.description.errors import InputError
+from chatter.report.console import print_json, print_table, print_written
 
 
 def examples(
@@ -17,16 +18,21 @@ def examples(
         bool, typer.Option("--open", help="Show the first picture on the desktop.")
     ] = False,
     out: options.OutputFolder = None,
+    json: options.Json = False,
 ) -> None:
     """List the shipped examples, copy one here, or run it."""
     from chatter.io.shipped_examples import example
     from chatter.io.shipped_examples import examples as shipped
 
     if name is None:
-        print_table(
-            "examples", ["name", "shows"], [[e.name, e.summary] for e in shipped().values()]
-        )
+        listed = {one.name: one.summary for one in shipped().values()}
+        if json:
+            print_json(listed)
+        else:
+            print_table("examples", ["name", "shows"], [list(row) for row in listed.items()])
         return
+    if json:
+        raise InputError("--json prints the list of examples; leave NAME or --json out")
     chosen = example(name)
     if not run:
         print_written([chosen.copy(out if out is not None else Path(name))])

@@ -23,6 +23,8 @@ _STIFFNESS = _Usual(0.05e6, 1e10, "N/um", 1e-6, "modes of tools, spindles and th
 _DAMPING = _Usual(5e-4, 0.3, "", 1.0, "damping ratios of machines and tools")
 _PRESSURE = _Usual(50e6, 1e10, "MPa", 1e-6, "metals and plastics")
 _CUTTING_SPEED = _Usual(0.01, 170.0, "m/min", 60.0, "milling")
+#: Young's modulus of cemented carbide, the upper end, Pa; factor beyond which a tool is questioned
+_CARBIDE, _STIFFER = 650e9, 1.5
 #: growth of vibration from tooth to tooth beyond which the input is in doubt
 _MOST_GROWTH = 1e3
 
@@ -35,12 +37,58 @@ def questions(case: Case) -> list[str]:
         stiffness = mode.modal_mass * (2.0 * math.pi * mode.frequency) ** 2
         asked += _question(f"{path}.stiffness", stiffness, _STIFFNESS)
         asked += _question(f"{path}.damping", mode.damping, _DAMPING)
+    asked += _question_of_stiff_tool(case)
     if case.material is not None and case.material.Ktc:
         asked += _question("material.Ktc", case.material.Ktc, _PRESSURE)
     if case.cut is not None and case.tool is not None:
         speed = 0.5 * case.tool.diameter * case.cut.spindle_speed
         asked += _question("cutting speed", speed, _CUTTING_SPEED)
     return asked
+
+
+def _question_of_stiff_tool(case: Case) -> list[str]:
+    """Ask where the modes of the tool are stiffer than its own stick-out as solid carbide."""
+    tool, structure = case.tool, case.structure
+    if tool is None or tool.stick_out is None or structure is None:
+        return []
+    solid = 1.0 / stick_out_compliance(
+        tool.diameter, tool.stick_out, tool.flute_length, tool.shank_diameter
+    )
+    for axis, name in enumerate("xy"):
+        compliance = sum(
+            mode.direction[axis] ** 2 / (mode.modal_mass * (2.0 * math.pi * mode.frequency) ** 2)
+            for mode in structure.mode
+            if mode.side == "tool"
+        )
+        if compliance and 1.0 / compliance > _STIFFER * solid:
+            return [
+                f"structure.mode: are {1e-6 / compliance:.3g} N/um along {name} meant? a solid "
+                f"carbide tool of {1e3 * tool.diameter:g} mm that stands out "
+                f"{1e3 * tool.stick_out:g} mm (tool.stick_out) has at most {1e-6 * solid:.3g} N/um"
+            ]
+    return []
+
+
+def stick_out_compliance(
+    diameter: float,
+    stick_out: float,
+    flute_length: float | None = None,
+    shank_diameter: float | None = None,
+) -> float:
+    """Compliance at the tip of a stepped round cantilever of cemented carbide, m/N.
+
+    1/k = integral of x^2/(E I) from the tip, I = pi d^4/64 (Gere and Goodno, Mechanics of
+    Materials, 2013, section 9.3); the flutes are taken as solid, so that a tool is softer.
+
+    Parameters
+    ----------
+    diameter, stick_out, flute_length, shank_diameter : float
+        m; without a flute length or a shank the diameter goes all along.
+    """
+    flutes = stick_out if flute_length is None else min(flute_length, stick_out)
+    shank = diameter if shank_diameter is None else shank_diameter
+    thirds = flutes**3 / diameter**4 + (stick_out**3 - flutes**3) / shank**4
+    return 64.0 * thirds / (3.0 * math.pi * _CARBIDE)
 
 
 def _question(name: str, value: float, usual: _Usual) -> list[str]:

@@ -112,6 +112,9 @@ class Tool(Section):
     stick_out: PositiveLength | None = Field(
         None, description="of the tool from its holder; no cut is deeper"
     )
+    shank_diameter: PositiveLength | None = Field(
+        None, description="above the flutes; the diameter by default"
+    )
     maximum_depth: PositiveLength | None = Field(
         None, description="axial depth that its maker allows; no cut is deeper"
     )

@@ -1,10 +1,16 @@
 """Values that no machine has are asked about; those of every example are not."""
 
+import math
+
 import pytest
 
 import chatter
 from chatter.description.case import loads
-from chatter.description.questioned import question_of_spectral_radius, questions
+from chatter.description.questioned import (
+    question_of_spectral_radius,
+    questions,
+    stick_out_compliance,
+)
 from tests.chatter.simulation.test_worn_flank import CASE
 
 
@@ -32,6 +38,26 @@ def test_what_is_usual_is_not_asked_about():
 def test_no_example_is_asked_about(name):
     for path in chatter.examples()[name].folder.glob("case*.toml"):
         assert questions(chatter.load(path)) == [], path
+
+
+def test_a_tool_is_no_stiffer_than_its_stick_out():
+    # k = 3 E I / L^3 with I = pi d^4 / 64: 650 GPa, 10 mm, 50 mm
+    solid = 3.0 * 650e9 * math.pi * 0.01**4 / 64.0 / 0.05**3
+    assert 1.0 / stick_out_compliance(0.01, 0.05) == pytest.approx(solid, rel=1e-12)
+    assert 1.0 / stick_out_compliance(0.01, 0.05, 0.02, 0.01) == pytest.approx(solid, rel=1e-12)
+    # a shank of twice the diameter above flutes of 20 mm: 8/125 of the flutes stay, the rest / 16
+    share = 8.0 / 125.0 + (1.0 - 8.0 / 125.0) / 16.0
+    stepped = stick_out_compliance(0.01, 0.05, 0.02, 0.02)
+    assert stepped == pytest.approx(share / solid, rel=1e-12)
+    case = loads(CASE).patch({"tool.stick_out": "80 mm", "structure.mode[0].stiffness": "400 N/um"})
+    (asked,) = questions(case)
+    # 3 pi E d^4 / (64 L^3) of 16 mm over 80 mm is 12.3 N/um
+    assert "are 400 N/um along" in asked
+    assert "has at most 12.3 N/um" in asked
+    assert questions(case.patch({"tool.stick_out": "20 mm"})) == []
+    assert (
+        questions(case.patch({"tool.shank_diameter": "40 mm", "tool.flute_length": "20 mm"})) == []
+    )
 
 
 def test_growth_is_told_in_words():
