@@ -4,6 +4,7 @@ import math
 import re
 import shlex
 
+import numpy as np
 import pytest
 
 from tests.command_line import chatter_command
@@ -12,6 +13,8 @@ from tests.places import ROOT
 PAGE = (ROOT / "docs" / "ordinary-jobs.md").read_text(encoding="utf-8")
 #: lines of a job that are indented: its command, and what is printed
 JOB = re.compile(r"^    (chatter .+)\n((?:    > .+\n)*)", re.MULTILINE)
+#: further files of the page: their name in a comment, and their lines
+FILES = re.findall(r"^    # (\S+\.toml)\n((?:    .*\n)+)", PAGE, re.MULTILINE)
 JOBS = [
     (command, [line.removeprefix("    > ") for line in printed.splitlines()])
     for command, printed in JOB.findall(PAGE)
@@ -23,6 +26,9 @@ def case_file(folder):
     begin, end = PAGE.index("    title ="), PAGE.index("\n## ")
     lines = [line.removeprefix("    ") for line in PAGE[begin:end].splitlines()]
     (folder / "job.toml").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    for name, content in FILES:
+        text = re.sub(r"^    ", "", content, flags=re.MULTILINE)
+        (folder / name).write_text(text, encoding="utf-8")
 
 
 @pytest.mark.parametrize(("command", "printed"), JOBS, ids=[command for command, _ in JOBS])
@@ -58,5 +64,62 @@ def test_numbers_of_the_page_are_those_of_the_textbook():
     assert f"{math.pi * effective * 60.0 / (math.pi * 0.01) * 1e-3:.2f} m/min there" in PAGE
 
 
+def test_numbers_of_chips_and_power_by_hand():
+    speed = 1.0  # m/s, 60 m/min
+    chip = 380.0 / (4.0 * 60e3 / (math.pi * 16.0))  # mm
+    # Kienzle, the integral of sin^p over a quarter of a revolution
+    p = 0.76
+    arc = 0.5 * math.sqrt(math.pi) * math.gamma(0.5 * (p + 1.0)) / math.gamma(0.5 * p + 1.0)
+    assert f"= {arc:.3f} rad" in PAGE
+    kienzle = 4.0 / (2.0 * math.pi) * 1245.0 * chip**p * 0.5 * arc * speed
+    assert f"power {kienzle:.2f} W mean" in PAGE
+    assert f"power {1850.0 * 0.5 * 8.0 * 0.38 / 60.0:.2f} W mean" in PAGE
+    assert f"= {0.1 * 4.0 * 60e3 / (math.pi * 16.0):.1f} mm/min" in PAGE
+    assert f"= {(1900.0 * chip + 25.0) * 0.5:.1f} W, less" in PAGE
+    assert f"= {(1900.0 * (chip + 0.01) + 25.0) * 0.5:.1f} W" in PAGE
+    first, second = 80.0 / 90.0 * chip, 100.0 / 90.0 * chip
+    both = 1900.0 * (first + second * math.sin(math.radians(170.0))) + 50.0
+    assert f"{both * 0.5:.1f} W peak" in PAGE
+    arc = math.acos(1.0 - 2.0 * 2.0 / 16.0)
+    edges = 12.5 * 4.0 * arc / (2.0 * math.pi)
+    assert f"power {1900.0 * 0.5 * 2.0 * 0.38 / 60.0 + edges:.2f} W mean" in PAGE
+    assert f"torque {(1900.0 * 4.0 * 0.38 / 60.0 + 12.5) / 125.0:.3f} N m mean" in PAGE
+
+
+def test_forces_and_surfaces_by_hand():
+    chip = 380.0 / (4.0 * 60e3 / (math.pi * 16.0))  # mm
+    # Altintas 2012, 2.52: N a_p = 0.8 mm
+    assert f"> {-0.8 * (chip * 700.0 / 4.0 + 40.0 / math.pi):.2f}\n" in PAGE
+    assert f"> {0.8 * (chip * 1900.0 / 4.0 + 25.0 / math.pi):.2f}\n" in PAGE
+    assert f"> {4.0 / (2.0 * math.pi) * 500.0 * chip * 0.5:.2f}\n" in PAGE
+    assert f"Rz {1e3 * chip**2 / 8.0:.3f} um" in PAGE
+    cusp = 1e3 * chip**2 / (4.0 * 16.0)
+    assert f"= {cusp:.4f} um" in PAGE
+    assert f"of it, {cusp * 4.0 / (9.0 * math.sqrt(3.0)):.4f} um" in PAGE
+    wide, fast = 48.1333 * 8.25 / 8.0, 12.5 * math.sqrt(2.0) * 8.25 / 8.0
+    assert f"8.25/8 = {wide:.1f} W" in PAGE
+    assert f"1.031 = {fast:.1f} W" in PAGE
+    # 67.87 W as simulated, in slices of the inclined edge
+    assert wide + fast == pytest.approx(67.87, rel=2e-3)
+
+
+def test_limits_by_hand():
+    stiffness, damping = 12e3, 0.03  # N/mm
+    ratio = np.linspace(0.9, 1.3, 400001)
+    response = 1.0 / stiffness / (1.0 - ratio**2 + 2j * damping * ratio)
+    lowest = math.inf
+    for sign in (1j, -1j):
+        eigenvalue = -1.0 / (math.pi * (-700.0 / 1900.0 + sign) * response)
+        share = eigenvalue.imag / eigenvalue.real
+        depth = -2.0 * math.pi * eigenvalue.real * (1.0 + share**2) / (4.0 * 1900.0)
+        lowest = min(lowest, depth[depth > 0.0].min())
+    assert f"lowest limit {lowest:.4g} mm" in PAGE
+    assert f"= {60 * 900 // 4} rpm" in PAGE
+    assert f"1.1 mm -> {1.1 / 8.0:.4g} mm" in PAGE
+    tool = 3.0 * math.pi * 650e9 * 0.016**4 / (64.0 * 0.08**3)
+    assert f"= {1e-6 * tool:.1f} N/um" in PAGE
+
+
 def test_there_are_jobs():
-    assert len(JOBS) >= 16
+    assert len(JOBS) >= 43
+    assert PAGE.count("\n## ") >= 30
