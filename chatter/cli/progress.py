@@ -24,6 +24,8 @@ FIRST_LINE = 2.0
 NEXT_LINE = 15.0
 #: s of work from which on its duration is announced
 LONG = 60.0
+#: s of work before it ends within which its duration is no news
+_REST = 20.0
 #: s of work from which its pace is known
 _PACE = 1.0
 
@@ -86,6 +88,9 @@ class RunningWork:
         done, total = self.counts
         if not total:
             return f"{self.description}: {in_words(self.elapsed)} so far"
+        if done >= total and self._newest is not None:
+            since = in_words(self._clock() - self._newest[0])
+            return f"{self.description}: all {total} done, evaluating the result for {since}"
         left = self.remaining()
         rest = "" if left is None else f", about {in_words(left)} left"
         return f"{self.description}: {done} of {total} ({done / total:.0%}){rest}"
@@ -93,7 +98,7 @@ class RunningWork:
     def announcement(self) -> str | None:
         """Sentence, once, that the work takes minutes, as soon as its pace shows it."""
         left = self.remaining()
-        if self._announced or left is None or self.elapsed + left < LONG:
+        if self._announced or left is None or left < max(LONG - self.elapsed, _REST):
             return None
         self._announced = True
         return f"{self.description}: about {in_words(self.elapsed + left)} in all; Ctrl-C ends it"
@@ -121,6 +126,13 @@ def progress_bar(description: str, driver: object | None = None) -> Iterator[Run
     function of (done, total); `driver` is as for `announce_compilation`.
     """
     announce_compilation(driver)
+    with running(description) as work:
+        yield work
+
+
+@contextmanager
+def running(description: str) -> Iterator[RunningWork]:
+    """Show on stderr what is being done and how far, without compiled code."""
     work = RunningWork(description)
     ended = threading.Event()
     shown = _on_terminal if MESSAGES.is_terminal else _in_lines

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Protocol, TypeVar
 
+from chatter.cli.progress import running
 from chatter.report.console import print_json, print_line, print_notes, print_written
 
 
@@ -31,7 +32,8 @@ def present(
     notes: Sequence[str] = (),
 ) -> None:
     """Write the files of a result and print it, as JSON or in words; notes follow on stderr."""
-    written = result.save(folder)
+    with running("writing the results"):
+        written = result.save(folder)
     if json:
         print_json(result.summary())
     else:

@@ -8,7 +8,7 @@ be sent to other processes, go through an `Executor`; that of a Dask cluster is 
 import os
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor, wait
+from concurrent.futures import ThreadPoolExecutor, as_completed, wait
 from contextlib import contextmanager
 from typing import Protocol, TypeVar
 
@@ -162,9 +162,15 @@ def sweep(
     with _threads() as pool:
         futures = [pool.submit(function, chunk) for chunk in chunks]
         try:
-            for chunk, future in zip(chunks, futures, strict=True):
-                results.append(future.result())
-                progress(int(chunk[-1]) + 1, count)
+            # counted as they finish, whichever they are; results and errors in order
+            sizes = dict(zip(futures, map(len, chunks), strict=True))
+            done = 0
+            for future in as_completed(futures):
+                if future.exception() is not None:
+                    break
+                done += sizes[future]
+                progress(done, count)
+            results += [future.result() for future in futures]
         except BaseException:
             for future in futures:
                 future.cancel()

@@ -75,6 +75,16 @@ def test_minutes_are_announced_once(clock):
     assert work.announcement() is None
 
 
+def test_what_comes_after_the_last_part_is_told(clock):
+    work = RunningWork("time steps", clock)
+    work(0, 10)
+    clock.now += 65.0
+    work(10, 10)
+    clock.now += 30.0
+    assert work.line() == "time steps: all 10 done, evaluating the result for 30 s"
+    assert work.announcement() is None
+
+
 def test_durations_in_words():
     assert in_words(42.4) == "42 s"
     assert in_words(125.0) == "2 min"
