@@ -96,6 +96,7 @@ def test_forces_and_surfaces_by_hand():
     cusp = 1e3 * chip**2 / (4.0 * 16.0)
     assert f"= {cusp:.4f} um" in PAGE
     assert f"of it, {cusp * 4.0 / (9.0 * math.sqrt(3.0)):.4f} um" in PAGE
+    assert f"= {1e3 * (5.0 - math.sqrt(25.0 - 0.2**2)):.2f} um" in PAGE
     wide, fast = 48.1333 * 8.25 / 8.0, 12.5 * math.sqrt(2.0) * 8.25 / 8.0
     assert f"8.25/8 = {wide:.1f} W" in PAGE
     assert f"1.031 = {fast:.1f} W" in PAGE

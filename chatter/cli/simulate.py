@@ -97,6 +97,9 @@ def _surface(summary: dict, edge_angle: float) -> list[str]:
         lines.append(f"{name}: {error}{_roughness(rough['wall'])}")
     if floor is not None:
         lines.append(f"floor: {floor:.3g} um too deep{_roughness(rough['floor'])}")
+    scallops = summary.get("scallop_height_um")
+    if scallops is not None:
+        lines.append(f"between passes: scallops of {scallops:.3g} um")
     return lines if edge_angle > _UPRIGHT else lines[::-1]
 
 

@@ -123,6 +123,15 @@ def _heights(letter: str, found: Sequence[HeightParameters | None]) -> dict[str,
     }
 
 
+def scallop_height(diameter: float, stepover: float) -> float:
+    """Height of what a ball leaves between two straight passes, m.
+
+    R - sqrt(R^2 - s^2/4), where two circles of the radius R, a stepover s apart, cross.
+    """
+    radius = 0.5 * diameter
+    return radius - math.sqrt(max(radius**2 - 0.25 * stepover**2, 0.0))
+
+
 def finish_of(result: SimulationResult) -> Finish:
     """Evaluate the surface that a cut leaves behind over its last settled turns."""
     walls, floor, notes = surface_profiles(result)

@@ -18,7 +18,7 @@ from chatter.engine.record import largest_between_steps
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, short_repr, write_results
 from chatter.simulation.carved_workpiece import carving_notes
-from chatter.simulation.finish import Finish, finish_of
+from chatter.simulation.finish import Finish, finish_of, scallop_height
 from chatter.simulation.setup import Setup
 from cutting.chip.discrete_chip import DiscreteCut
 
@@ -229,6 +229,7 @@ class SimulationResult:
             },
             **self._transient(),
             **self.finish.summary(),
+            **self._scallops(),
             "energy_J": self.energy,
             "revolutions": self.revolutions,
             "resolution": {
@@ -266,6 +267,13 @@ class SimulationResult:
                 / 1e6,
             }
         }
+
+    def _scallops(self) -> dict:
+        """Height of what a ball leaves between passes; nothing for other tools and cuts."""
+        tool, stepover = self.case.tool, self.case.cut.stepover
+        if tool.kind != "ball" or stepover is None:
+            return {}
+        return {"scallop_height_um": 1e6 * scallop_height(tool.diameter, stepover)}
 
     def _verdict(self) -> dict:
         found = self.detection

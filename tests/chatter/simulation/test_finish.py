@@ -9,7 +9,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 import chatter
-from chatter.simulation.finish import finish_from_profiles, finish_of
+from chatter.simulation.finish import finish_from_profiles, finish_of, scallop_height
 from chatter.simulation.reconstruction import WallProfiles
 from chatter.simulation.simulate import simulate
 
@@ -88,6 +88,21 @@ def test_ball_leaves_scallops_on_the_floor():
     floor = numbers["roughness"]["floor"]
     assert floor["Rz_um"] == pytest.approx(CUSP * 1e6, rel=0.02)
     assert numbers["surface_location"]["floor_um"] == pytest.approx(-CUSP / 3.0 * 1e6, rel=0.02)
+
+
+def test_scallops_between_passes_are_where_two_circles_cross():
+    # a triangle of 3, 4 and 5: the scallop of a ball of radius 5 at a stepover of 8 is 2 high
+    assert scallop_height(10.0, 8.0) == pytest.approx(2.0, rel=1e-12)
+    assert scallop_height(10.0, 10.0) == pytest.approx(5.0, rel=1e-12)
+
+
+def test_a_sharp_corner_has_a_location_of_the_floor_and_no_roughness():
+    modes = [{**MODES[0], "direction": [0, 0, 1]}]
+    result = cut(modes, tool={"kind": "end mill"}, material={"Kac": "300 MPa"})
+    numbers = finish_of(result).summary()
+    assert numbers["surface_location"]["floor_um"] is not None
+    assert numbers["roughness"]["floor"]["Ra_um"] is None
+    assert any("minor cutting edge" in note for note in numbers["surface_evaluation"]["notes"])
 
 
 def test_bull_nose_leaves_the_scallops_of_its_corner():
