@@ -48,7 +48,7 @@ class LinearisedMachine:
         """Names of the frictions that hold as springs: none moves, and no amplitude is stated."""
         if self.case.structure.friction_amplitude is not None:
             return ()
-        moving = _moving(self.case, self.cut)
+        moving = moving_axes(self.case, self.cut)
         motion = rigid_motion(self.cut.machine, moving) if moving else None
         return tuple(
             one.name
@@ -151,13 +151,13 @@ def tool_receptance(
     excluded : tuple of str, optional
         Names of frictions that are excluded.
     """
-    moving = _moving(case, cut)
-    frictions = linearised_frictions(cut.machine, moving, _amplitudes(case, cut))
+    moving = moving_axes(case, cut)
+    frictions = linearised_frictions(cut.machine, moving, friction_amplitudes(case, cut))
     frictions = {name: how for name, how in frictions.items() if name not in excluded}
     return receptance(cut.machine, frequency, cut.tool, cut.file.step, frictions)
 
 
-def _amplitudes(case: Case, cut: MachineCut) -> dict[str, float] | None:
+def friction_amplitudes(case: Case, cut: MachineCut) -> dict[str, float] | None:
     """Amplitude at every friction for the one along the axes, m; at motors by the transmission."""
     along = case.structure.friction_amplitude
     if along is None:
@@ -174,7 +174,8 @@ def _amplitudes(case: Case, cut: MachineCut) -> dict[str, float] | None:
     return found
 
 
-def _moving(case: Case, cut: MachineCut) -> dict[str, float]:
+def moving_axes(case: Case, cut: MachineCut) -> dict[str, float]:
+    """Velocity of the axes that move in the cut, m/s or rad/s, by name."""
     teeth, speed = case.tool.teeth, case.cut.spindle_speed
     feed = case.cut.feed_per_tooth * teeth * speed / (2.0 * math.pi)
     return cut.velocities(feed, speed)

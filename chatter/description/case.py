@@ -50,6 +50,8 @@ if TYPE_CHECKING:
 
 
 _MODE = "cut.mode"
+#: beginning of paths into the machine of a case
+MACHINE_PATH = "machine."
 
 
 class Case(Description):
@@ -161,9 +163,60 @@ class Case(Description):
 
     def machine_file(self) -> MachineFile:
         """Machine of [structure]: the one that was put in its place, else that of the file."""
+        return self._read_machine() if self._machine is None else self._machine
+
+    def _read_machine(self) -> MachineFile:
         from chatter.description.machine.machine_file import load_machine
 
-        return load_machine(self.structure.machine) if self._machine is None else self._machine
+        return load_machine(self.structure.machine)
+
+    @property
+    def on_machine(self) -> bool:
+        """Whether the structure is that of a machine."""
+        return self.structure is not None and self.structure.machine is not None
+
+    def require_machine(self, path: str) -> None:
+        """Raise InputError where a path leads into a machine and the case is on none."""
+        if not self.on_machine:
+            raise InputError(
+                f"{self.name}: {MACHINE_PATH}{path}: the case is on no machine; [structure] "
+                'machine = "machine.toml" puts it on one'
+            )
+
+    def get(self, path: str) -> Any:
+        """Return the value at a dotted path, in SI, "machine." leading into the machine.
+
+        See `Description`.
+        """
+        if not path.startswith(MACHINE_PATH):
+            return super().get(path)
+        inside = path.removeprefix(MACHINE_PATH)
+        self.require_machine(inside)
+        return self.machine_file().get(inside)
+
+    def deviations(self) -> dict[str, float]:
+        """Standard deviations (SI) of all values given with one, by path, the machine's too."""
+        found = super().deviations()
+        if self.on_machine:
+            of_machine = self.machine_file().deviations()
+            found |= {MACHINE_PATH + path: one for path, one in of_machine.items()}
+        return found
+
+    def save(self, path: str | Path) -> None:
+        """Write the file, and beside it the machine where it is not that of the file it names.
+
+        See `Description`.
+        """
+        path = Path(path)
+        if self._machine is None or self._machine == self._read_machine():
+            super().save(path)
+            return
+        beside = path.with_name(f"{path.stem}-machine.toml")
+        self._machine.save(beside)
+        moved = self.patch({"structure.machine": str(beside.resolve())})
+        super(Case, moved).save(path)
+        text = path.read_text(encoding="utf-8").replace(beside.resolve().as_posix(), beside.name)
+        path.write_text(text, encoding="utf-8", newline="")
 
     def with_machine(self, machine: MachineFile) -> Case:
         """Return the case on another machine than that of the file that it names.
@@ -173,7 +226,7 @@ class Case(Description):
         InputError
             If the case is on no machine.
         """
-        if self.structure is None or self.structure.machine is None:
+        if not self.on_machine:
             raise InputError(f"{self.name}: structure.machine is missing; it is on no machine")
         moved = self.model_copy()
         moved._machine = machine
@@ -182,8 +235,19 @@ class Case(Description):
     def patch(self, values: Mapping[str, Any]) -> Case:
         """Return the case with some values changed, on the same machine; see `Description`.
 
-        A cut that becomes a slot is as wide as the tool.
+        Paths that begin with "machine." lead into the machine. A cut that becomes a slot is as wide
+        as the tool.
         """
+        of_machine = {
+            path.removeprefix(MACHINE_PATH): value
+            for path, value in values.items()
+            if path.startswith(MACHINE_PATH)
+        }
+        if of_machine:
+            own = {key: value for key, value in values.items() if not key.startswith(MACHINE_PATH)}
+            moved = self.patch(own) if own else self
+            moved.require_machine(next(iter(of_machine)))
+            return moved.with_machine(moved.machine_file().patch(of_machine))
         if values.get(_MODE) == "slot" and self.cut is not None:
             given = [key for key in ENGAGEMENT_KEYS if getattr(self.cut, key) is not None]
             values = {**{f"cut.{key}": None for key in given}, **values}

@@ -19,7 +19,7 @@ from chatter.explain.records.description import RecordDescription, record_of
 from chatter.io.signals import read_signals
 
 #: keys of [[run]] that are no override of the case
-_OWN_KEYS = ("file", "condition", "direction", "title")
+_OWN_KEYS = ("file", "condition", "direction", "excite", "read", "title")
 _KEYS = (
     "title",
     "kind",
@@ -54,6 +54,9 @@ def read_measurement(folder: str | Path, case: str | Path | Case | None = None) 
     if name not in KINDS:
         raise InputError(f"{path}: kind: {formatted(name)} is none of {', '.join(KINDS)}")
     declared = case if isinstance(case, Case) else load(case or _file(path, content, "case"))
+    if declared.on_machine:
+        # read once, not at every prediction
+        declared = declared.with_machine(declared.machine_file())
     table = KINDS[name].table_key
     if table:
         file = _file(path, content, table)
@@ -182,10 +185,25 @@ def _run(path: Path, kind: str, number: int, entry: Mapping[str, Any], declared:
         raise InputError([f"{where}: {message}" for message in error.messages]) from error
     except QuantityError as error:
         raise InputError(f"{where}: cut_time: {error}") from error
-    direction = str(entry.get("direction", ""))
+    direction = _direction(where, entry)
     condition = str(entry.get("condition", ""))
     signals = read_signals(file, kind, direction)
     return Run(file.name, overrides, signals, cut_time, condition, direction)
+
+
+def _direction(where: str, entry: Mapping[str, Any]) -> str:
+    """Direction of an FRF at the tool point, or two places of a machine, such as "table:y, tool:x".
+
+    The first is read, the second excited.
+    """
+    excite, read = entry.get("excite"), entry.get("read")
+    if excite is None and read is None:
+        return str(entry.get("direction", ""))
+    if "direction" in entry:
+        raise InputError(f"{where}: direction and excite are given; one of the two is enough")
+    if excite is None:
+        raise InputError(f'{where}: excite is missing; read = "{read}" needs it')
+    return f"{excite if read is None else read}, {excite}"
 
 
 def _path_of(where: str, key: str, declared: Case) -> str:

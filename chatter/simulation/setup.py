@@ -13,6 +13,7 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.description.plausibility import check_plausible
 from chatter.description.questioned import questions
+from chatter.description.stated_engagement import ENGAGEMENT_KEYS
 from chatter.simulation.resolution import Resolution
 from chatter.simulation.spindle import (
     Spindle,
@@ -221,11 +222,16 @@ def _refuse_out_of_reach(case: Case, slices: EdgeSlices) -> None:
     entry, leave = slice_engagement(case.uncut_band, slices.radius)
     if np.all(entry >= leave):
         raise InputError(
-            f"{case.name}: cut: down to an axial depth of {case.cut.axial_depth * 1e3:g} mm the "
-            f"edge is nowhere wider than {slices.radius.max() * 2e3:.4g} mm; the work is not "
-            "reached. A radial depth counts from the full radius of the tool; a step from pass to "
-            "pass is stated by stepover"
+            f"{case.name}: cut.{_stated(case)}: down to an axial depth of "
+            f"{case.cut.axial_depth * 1e3:g} mm the edge is nowhere wider than "
+            f"{slices.radius.max() * 2e3:.4g} mm; the work is not reached. A radial depth counts "
+            "from the full radius of the tool; a step from pass to pass is stated by stepover"
         )
+
+
+def _stated(case: Case) -> str:
+    """Key that states the engagement."""
+    return next((key for key in ENGAGEMENT_KEYS if getattr(case.cut, key) is not None), "mode")
 
 
 def _delayed(

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
-from chatter.description.case import Case
+from chatter.description.case import MACHINE_PATH, Case
 from chatter.description.errors import InputError
 from chatter.description.path import field_at, parse_path
 from chatter.description.quantities import QuantityField
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     AnyModel = TypeVar("AnyModel", bound=Model)
 
 #: beginning of paths into the machine of a case
-PREFIX = "machine."
+PREFIX = MACHINE_PATH
 #: tables that only a machine file has
 _OF_MACHINES = ("body", "beam", "imported", "connector")
 
@@ -43,8 +43,7 @@ def machine_of(model: Model) -> MachineFile | None:
     """Machine of a case, or the machine that the model is; None where there is none."""
     if not isinstance(model, Case):
         return model
-    on_machine = model.structure is not None and model.structure.machine is not None
-    return model.machine_file() if on_machine else None
+    return model.machine_file() if model.on_machine else None
 
 
 def patched(model: AnyModel, values: Mapping[str, Any]) -> AnyModel:
@@ -52,18 +51,11 @@ def patched(model: AnyModel, values: Mapping[str, Any]) -> AnyModel:
 
     InputError if a path is unknown, there is no machine for it, or what comes of it is wrong.
     """
-    of_machine = {
-        path.removeprefix(PREFIX): value
-        for path, value in values.items()
-        if path.startswith(PREFIX)
-    }
-    own = {path: value for path, value in values.items() if not path.startswith(PREFIX)}
-    if not isinstance(model, Case):
-        return model.patch({**own, **of_machine}) if values else model
-    changed = model.patch(own) if own else model
-    if not of_machine:
-        return changed
-    return changed.with_machine(_machine(changed, next(iter(of_machine))).patch(of_machine))
+    if not values:
+        return model
+    if isinstance(model, Case):
+        return model.patch(values)
+    return model.patch({path.removeprefix(PREFIX): value for path, value in values.items()})
 
 
 def value_of(model: Model, path: str) -> Any:
@@ -83,11 +75,7 @@ def field_of(model: Model, path: str) -> QuantityField | None:
 
 def standard_deviations(model: Model) -> dict[str, float]:
     """Standard deviations (SI) of all values given with one, by path, the machine's too."""
-    found = dict(model.deviations())
-    machine = machine_of(model)
-    if machine is not None and machine is not model:
-        found.update({PREFIX + path: one for path, one in machine.deviations().items()})
-    return found
+    return model.deviations()
 
 
 def fingerprint(model: Model) -> str:
@@ -125,10 +113,6 @@ def _into(model: Model, path: str) -> tuple[Model, str]:
 
 
 def _machine(model: Model, path: str) -> MachineFile:
-    machine = machine_of(model)
-    if machine is None:
-        raise InputError(
-            f"{model.name}: {PREFIX}{path}: the case is on no machine; [structure] machine = "
-            '"machine.toml" puts it on one'
-        )
-    return machine
+    if isinstance(model, Case):
+        model.require_machine(path)
+    return machine_of(model)

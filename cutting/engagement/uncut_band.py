@@ -68,9 +68,9 @@ class UncutBand(NamedTuple):
     def walls(self, radius: float) -> tuple[Side, ...]:
         """Sides on which a tool of a radius (m) leaves a wall, as the work goes on beyond it."""
         sides: list[Side] = []
-        if self.upper.at(radius) >= radius * (1.0 - 1e-9):
+        if self.upper.at(radius) > radius * (1.0 + 1e-9):
             sides.append("+y")
-        if self.lower.at(radius) <= -radius * (1.0 - 1e-9):
+        if self.lower.at(radius) < -radius * (1.0 + 1e-9):
             sides.append("-y")
         return tuple(sides)
 

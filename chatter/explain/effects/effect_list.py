@@ -22,6 +22,7 @@ from chatter.explain.effects.cutting_force import (
     ProcessDamping,
 )
 from chatter.explain.effects.effect import Effect
+from chatter.explain.effects.machine import AxisFriction, ControlGain, JointStiffness
 from chatter.explain.effects.missing_mode import MissingMode
 from chatter.explain.effects.structure import Contact, ModeShift, SlideFriction
 from chatter.explain.effects.tool import Pitch, Runout, Wear
@@ -52,6 +53,9 @@ EFFECTS: Registry[Effect] = Registry(
         Cogging(),
         Backlash(),
         WarmUp(),
+        AxisFriction(),
+        JointStiffness(),
+        ControlGain(),
     ),
 )
 

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from chatter.compile.machine_cut import machine_cut
 from chatter.description.case import Case
 from chatter.explain.effects.effect import Effect, Patch, Reported, Values, free
 from chatter.explain.fitting import Parameter
@@ -162,18 +163,29 @@ class Contact(Effect):
         return (self, ContactAtOnce(1e-3))
 
     def applies(self, measurement: Measurement) -> bool:
-        """Of modes without a contact."""
-        return has_modes(measurement) and measurement.case.contact is None
+        """Of modes, or a machine, without a contact."""
+        case = measurement.case
+        if case.on_machine:
+            return case.contact is None and case.machine_file().contact is None
+        return has_modes(measurement) and case.contact is None
 
     def parameters(self, measurement: Measurement) -> list[Parameter]:
         """Stiffness and damping."""
-        modes = measurement.case.structure.mode
-        stiffness = min(stiffness_of(m.frequency, m.modal_mass) for m in modes)
-        damping = 0.01 * stiffness / (2.0 * math.pi * min(m.frequency for m in modes))
+        stiffness, lowest = self._softest(measurement.case)
+        damping = 0.01 * stiffness / (2.0 * math.pi * lowest)
         return [
             free("stiffness", 0.0, 0.01 * stiffness, "N/m", lower=0.0),
             free("damping", 0.0, damping, "N*s/m", lower=0.0),
         ]
+
+    def _softest(self, case: Case) -> tuple[float, float]:
+        """Least modal stiffness at the tool point, N/m, and lowest frequency, Hz."""
+        if case.on_machine:
+            modes = machine_cut(case).modes()
+            return min(one.stiffness for one in modes), min(one.frequency for one in modes)
+        given = case.structure.mode
+        stiffness = min(stiffness_of(one.frequency, one.modal_mass) for one in given)
+        return stiffness, min(one.frequency for one in given)
 
     def patch(self, case: Case, values: Values) -> Patch:
         """The contact."""

@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from chatter.compile.machine_response import machine_response
 from chatter.compile.structure import structure_of
-from chatter.description.case import Case
+from chatter.description.case import MACHINE_PATH, Case
 from chatter.description.errors import InputError
 from chatter.explain.data_checks.responses import disagreeing_responses, wrong_responses
 from chatter.explain.data_checks.samples import Columns, sample_checks
@@ -18,6 +19,8 @@ from chatter.explain.residuals.over_lines import by_condition, over_lines
 from dynamics.modal.modes import receptance_matrix
 
 IN_CUT = "in_cut"
+#: between what is read and what is excited, as measurement.toml gives them
+_BETWEEN = ", "
 _CHANNELS = ("real", "imag")
 _AXES = "xyz"
 #: lines over which the scatter is taken for one
@@ -56,8 +59,7 @@ class FrequencyResponse(Kind):
         """
         runs = []
         for run in measurement.runs:
-            if not run.direction or any(axis not in _AXES for axis in run.direction):
-                raise InputError(f'{run.name}: direction: "{run.direction}" is none; x, y, z or xy')
+            _refuse_unknown_place(measurement.case, run)
             alike = [
                 other
                 for other in measurement.runs
@@ -68,8 +70,12 @@ class FrequencyResponse(Kind):
         return measurement.with_runs(runs)
 
     def predict(self, case: Case, run: Run) -> Signals:
-        """Receptance of the modes, with the contact where the tool is in the cut."""
+        """Receptance of the modes or the machine, with the contact where the tool is in the cut."""
         frequency = run.signals["frequency"]
+        if case.on_machine:
+            read, excite = places_of(run)
+            found = machine_response(case, run.condition, read, excite, frequency)
+            return {"real": found.real, "imag": found.imag}
         free = receptance_matrix(structure_of(case).modes, frequency)
         if run.condition == IN_CUT and case.contact is not None:
             free = touching(free, frequency, case.contact.stiffness, case.contact.damping)
@@ -94,9 +100,36 @@ class FrequencyResponse(Kind):
         scatter = run.record.scatter
         return Deviation(scatter, float(np.sqrt(np.mean(scatter**2))))
 
+    def searches_start(self, measurement: Measurement) -> bool:
+        """Of a machine, whose resonances move farther than they are wide."""
+        return measurement.case.on_machine
+
     def nuisance_parameters(self, measurement: Measurement) -> list[Parameter]:
-        """Modal parameters."""
-        return with_priors(measurement, structural_paths(measurement.case))
+        """Modal parameters, or what of the machine is declared as uncertain."""
+        uncertain = [
+            path for path in measurement.case.deviations() if path.startswith(MACHINE_PATH)
+        ]
+        return with_priors(measurement, [*structural_paths(measurement.case), *uncertain])
+
+
+def places_of(run: Run) -> tuple[str, str]:
+    """Where the response is read and where the structure is excited."""
+    if _BETWEEN in run.direction:
+        read, _, excite = run.direction.partition(_BETWEEN)
+        return read, excite
+    return run.direction[0], run.direction[-1]
+
+
+def _refuse_unknown_place(case: Case, run: Run) -> None:
+    if _BETWEEN in run.direction:
+        if not case.on_machine:
+            raise InputError(f"{run.name}: excite: the case is on no machine; give a direction")
+        # the machine tells what it does not know
+        frequency = np.maximum(run.signals["frequency"][:1], 1.0)
+        machine_response(case, run.condition, *places_of(run), frequency)
+        return
+    if not run.direction or any(axis not in _AXES for axis in run.direction):
+        raise InputError(f'{run.name}: direction: "{run.direction}" is none; x, y, z or xy')
 
 
 def touching(free: Array, frequency: Array, stiffness: float, damping: float) -> Array:

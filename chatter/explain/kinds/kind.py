@@ -139,6 +139,11 @@ class Kind(ABC):
         """
         return measurement
 
+    def searches_start(self, measurement: Measurement) -> bool:
+        """Whether declared values are looked at around before they are refitted; not by default."""
+        del measurement
+        return False
+
     def screening(self, measurement: Measurement) -> Measurement:
         """Return the measurement as predicted to rank candidates by; unchanged by default."""
         return measurement

@@ -80,9 +80,11 @@ def _drawn(problem: Problem, fit: Fit, names: tuple[str, ...], probability: floa
     random = np.random.default_rng(_SEED)
     spread = np.sqrt(np.clip(np.diag(fit.covariance), 0.0, None))
     correlation = fit.covariance / np.outer(spread + 1e-300, spread + 1e-300)
-    steps = random.multivariate_normal(
-        np.zeros(spread.size), correlation, _DRAWS, check_valid="ignore", method="eigh"
-    )
+    steps = np.zeros((0, 0))
+    if spread.size:
+        steps = random.multivariate_normal(
+            np.zeros(spread.size), correlation, _DRAWS, check_valid="ignore", method="eigh"
+        )
     lower = np.array([one.lower for one in fit.parameters])
     upper = np.array([one.upper for one in fit.parameters])
     cases = []

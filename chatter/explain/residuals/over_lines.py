@@ -5,10 +5,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.compile.structure import structure_of
 from chatter.explain.criteria import AT_NOISE
 from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.finding import Bars, Curve, Curves, Finding
+from chatter.explain.residuals.natural_modes import natural_modes
 from chatter.explain.residuals.residual import Residual, over_noise
 
 Array = NDArray[np.float64]
@@ -56,7 +56,7 @@ def by_condition(residual: Residual) -> Finding:
 def over_lines(residual: Residual) -> Finding:
     """Where over the frequency FRFs are above their scatter."""
     curves, listed, numbers = [], [], {}
-    modes = structure_of(residual.case).modes
+    modes = natural_modes(residual.case)
     for (condition, direction), parts in _groups(residual).items():
         frequency = parts[0].run.signals["frequency"]
         alike = [p for p in parts if p.normalised.size == frequency.size]

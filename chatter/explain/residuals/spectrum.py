@@ -10,11 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 
-from chatter.compile.structure import structure_of
-from chatter.description.case import Case
 from chatter.explain.criteria import AT_NOISE
 from chatter.explain.residuals.channel_residual import ChannelResidual
 from chatter.explain.residuals.finding import Curve, Curves, Finding
+from chatter.explain.residuals.natural_modes import natural_modes
 from chatter.explain.residuals.residual import Residual
 from chatter.explain.residuals.variables import spindle_angle
 from dynamics.modal.modes import Mode
@@ -90,17 +89,12 @@ def spectrum(residual: Residual) -> Finding:
     return Finding("frequency", description, bool(reported), numbers, _panel(pooled))
 
 
-def _natural(case: Case) -> Sequence[Mode]:
-    """Modes of a case; none of a rigid tool."""
-    return structure_of(case).modes if case.structure is not None else ()
-
-
 def _shares(residual: ChannelResidual, split: Split) -> Shares:
     teeth = residual.case.tool.teeth
     tooth = split.orders % teeth == 0
     spacing = float(split.frequency[1])
     near = np.zeros(split.frequency.size, dtype=bool)
-    for mode in _natural(residual.case):
+    for mode in natural_modes(residual.case):
         width = max(_NEAR * mode.damping * mode.frequency, _NEAR_LINES * spacing)
         near |= np.abs(split.frequency - mode.frequency) <= width
     lines, filled = _lines(split, near)
@@ -247,7 +241,7 @@ class _Pooled(NamedTuple):
 
 def _pooled(channel: str, by_channel: dict[str, list[Shares]]) -> _Pooled:
     found = by_channel[channel]
-    modes = _natural(found[0].residual.case)
+    modes = natural_modes(found[0].residual.case)
     highest = min(float(one.split.frequency[-1]) for one in found)
     highest = min(highest, 4.0 * max((mode.frequency for mode in modes), default=math.inf))
     grid = np.linspace(highest / _GRID, highest, _GRID)

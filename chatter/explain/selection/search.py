@@ -16,6 +16,9 @@ from chatter.explain.selection.path import Path, best_path, richer, tried_again
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.split import Split, split_runs
 
+#: tolerances of a declared value at which it is looked at before it is refitted
+_STEPS = (-2.0, -1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0)
+
 
 @dataclass(frozen=True, eq=False)
 class Search:
@@ -90,7 +93,8 @@ def search(measurement: Measurement, predictions: Predictions, progress: Progres
     noise = {run.name: kind.first_noise(run) for run in measurement.runs}
     problem = Problem(measurement, predictions, noise)
     progress("refitting the nuisance parameters", 0.0)
-    now = problem.fit(split.fitted, {})
+    begin = _nearest_start(problem, split) if kind.searches_start(measurement) else {}
+    now = problem.fit(split.fitted, begin)
     problem = problem.with_noise_beside(now.by_name)
     now = problem.fit(split.fitted, now.by_name)
     base_values = now.by_name
@@ -113,6 +117,16 @@ def search(measurement: Measurement, predictions: Predictions, progress: Progres
     return Search(
         split, first, tuple(path.stages), tuple(helping), path.problem, path.now, final, base
     )
+
+
+def _nearest_start(problem: Problem, split: Split) -> dict[str, float]:
+    """Values within two tolerances of the declared ones that fit best, looked at one by one."""
+    found = {one.name: one.start for one in problem.parameters()}
+    for one in problem.parameters():
+        steps = np.clip([one.value(step) for step in _STEPS], one.lower, one.upper)
+        costs = [problem.cost({**found, one.name: float(v)}, split.fitted) for v in steps]
+        found[one.name] = float(steps[int(np.argmin(costs))])
+    return found
 
 
 def _to_all_runs(path: Path, split: Split, progress: Progress) -> tuple[Path, Split, Fit]:

@@ -1,0 +1,226 @@
+"""Effects of a machine: friction of an axis, joints and gains that are not as declared."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from chatter.description.case import MACHINE_PATH, Case
+from chatter.description.machine.drive import DriveSection
+from chatter.description.machine.machine_file import MachineFile
+from chatter.explain.effects.effect import Effect, Patch, Reported, Values, free
+from chatter.explain.fitting import Parameter
+from chatter.explain.measurement import Measurement
+
+#: joints, and axes, of which each may be the one
+_MOST_JOINTS, _MOST_AXES = 24, 6
+#: a factor that is tried, and its bounds
+_FACTOR, _LEAST_FACTOR, _MOST_FACTOR = 0.05, 0.02, 50.0
+_STARTS, _STARTS_OF_CUTS = np.geomspace(0.25, 4.0, 17), (0.7, 1.0, 1.4)
+#: slope of the hysteresis of a guide, 1/m: its friction is built up within some tenths of a mm
+_HYSTERESIS_SLOPE = 1e4
+#: Coulomb friction, N, and viscous friction, N s/m, of a typical guide
+_COULOMB, _VISCOUS = 20.0, 200.0
+#: keys of drives and loops that say how stiff they are
+_STIFFNESS, _GAINS = "stiffness", ("position.gain", "velocity.proportional_gain")
+
+
+class Joint(NamedTuple):
+    """Stiffness of a machine that one factor may change."""
+
+    name: str  # of the connector, or of the axis and the key of its drive
+    values: dict[str, float]  # by path into the machine file
+
+
+def joints(file: MachineFile) -> list[Joint]:
+    """Connectors, and whatever of the drives has a stiffness."""
+    found = []
+    for name, connector in file.connector.items():
+        values = connector.stiffness.model_dump(exclude_none=True)
+        stiff = {f"connector.{name}.stiffness.{k}": v for k, v in values.items() if v}
+        if stiff:
+            found.append(Joint(name, stiff))
+    for name, axis in file.axis.items():
+        for key, value in _of_drive(axis.drive):
+            found.append(Joint(f"{name}_{key}", {f"axis.{name}.drive.{key}": value}))
+    return found
+
+
+def _of_drive(drive: DriveSection | None) -> Iterator[tuple[str, float]]:
+    for key, value in drive or ():
+        if key.endswith(_STIFFNESS) and isinstance(value, float):
+            yield key, value
+
+
+def gains(file: MachineFile) -> list[Joint]:
+    """Gains of the position and velocity loops of all axes."""
+    return [
+        Joint(f"{name}_{key.partition('.')[0]}", {f"axis.{name}.control.{key}": value})
+        for name, axis in file.axis.items()
+        if axis.control is not None
+        for key in _GAINS
+        if isinstance(value := file.get(f"axis.{name}.control.{key}"), float)
+    ]
+
+
+class _Factor(Effect):
+    """Values of the machine that are a factor off what is declared."""
+
+    kinds = ("frf", "milling")
+    most = _MOST_JOINTS
+
+    def __init__(self, number: int = 0) -> None:
+        self.number = number
+
+    @property
+    def variants(self) -> tuple[Effect, ...]:
+        """One of them."""
+        return tuple(type(self)(number) for number in range(self.most))
+
+    def listed(self, file: MachineFile) -> Sequence[Joint]:
+        """What may be another."""
+        raise NotImplementedError
+
+    def applies(self, measurement: Measurement) -> bool:
+        """Of a machine that has so many, where none of the values is uncertain as declared."""
+        case = measurement.case
+        if not case.on_machine:
+            return False
+        listed = self.listed(case.machine_file())
+        uncertain = {*measurement.tolerances, *case.deviations()}
+        return self.number < len(listed) and not any(
+            MACHINE_PATH + path in uncertain for path in listed[self.number].values
+        )
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """Factor on the declared values, named by what they belong to."""
+        one = self.listed(measurement.case.machine_file())[self.number]
+        bounds = {"lower": _LEAST_FACTOR, "upper": _MOST_FACTOR}
+        return [free(one.name, 1.0, _FACTOR, "", **bounds)]
+
+    def nothing(self, measurement: Measurement) -> Values:
+        """The declared values."""
+        return {one.name: 1.0 for one in self.parameters(measurement)}
+
+    def starts(self, measurement: Measurement) -> list[Values]:
+        """From a quarter to four times: a resonance must be met before a step leads to it.
+
+        A cut is simulated from few of them.
+        """
+        (one,) = self.parameters(measurement)
+        factors = _STARTS if measurement.kind == "frf" else _STARTS_OF_CUTS
+        return [{one.name: float(factor)} for factor in factors]
+
+    def patch(self, case: Case, values: Values) -> Patch:
+        """Values times the factor."""
+        ((name, factor),) = values.items()
+        one = next(one for one in self.listed(case.machine_file()) if one.name == name)
+        return {MACHINE_PATH + path: float(factor) * v for path, v in one.values.items()}
+
+
+class JointStiffness(_Factor):
+    """A guide, bearing, nut or belt that is softer or stiffer than declared."""
+
+    name = "joint_stiffness"
+    label = "stiffness of a joint"
+    help = "a guide, bearing, nut or foundation of the machine is softer or stiffer than declared"
+
+    def listed(self, file: MachineFile) -> Sequence[Joint]:
+        """Connectors and drives."""
+        return joints(file)
+
+
+class ControlGain(_Factor):
+    """A gain of a control loop that is not as declared."""
+
+    name = "control_gain"
+    label = "gain of a control loop"
+    help = "a control loop of the machine has another gain than declared"
+
+    def listed(self, file: MachineFile) -> Sequence[Joint]:
+        """Loops of all axes."""
+        return gains(file)
+
+
+class AxisFriction(Effect):
+    """Friction of the guides of an axis for which none is declared."""
+
+    name = "axis_friction"
+    label = "friction of an axis"
+    help = "the guides of an axis of the machine rub: a spring at rest, a damper in motion"
+    kinds = ("frf", "milling")
+
+    def __init__(self, number: int = 0) -> None:
+        self.number = number
+
+    @property
+    def variants(self) -> tuple[Effect, ...]:
+        """Of one of the axes."""
+        return tuple(AxisFriction(number) for number in range(_MOST_AXES))
+
+    def applies(self, measurement: Measurement) -> bool:
+        """Of a machine with so many axes without friction."""
+        case = measurement.case
+        return case.on_machine and self.number < len(self._axes(case.machine_file()))
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """Coulomb and viscous friction, named by the axis."""
+        axis = self._axis(measurement)
+        return [
+            free(f"coulomb_{axis}", 0.0, _COULOMB, "N", lower=0.0),
+            free(f"viscous_{axis}", 0.0, _VISCOUS, "N*s/m", lower=0.0),
+        ]
+
+    def starts(self, measurement: Measurement) -> list[Values]:
+        """Little, and as much as of a sliding guide."""
+        axis = self._axis(measurement)
+        return [
+            {f"coulomb_{axis}": share * _COULOMB, f"viscous_{axis}": share * _VISCOUS}
+            for share in (0.05, 1.0, 5.0)
+        ]
+
+    def patch(self, case: Case, values: Values) -> Patch:
+        """Friction with hysteresis on the travel of the axis; none where it is nothing."""
+        del case
+        axis = _axis_of(values)
+        coulomb = float(values[f"coulomb_{axis}"])
+        if not coulomb > 0.0:
+            return {}
+        law = {
+            "law": "tanh-hysteresis",
+            "on": {"axis": axis},
+            "coulomb": coulomb,
+            "viscous": float(values[f"viscous_{axis}"]),
+            "hysteresis_slope": _HYSTERESIS_SLOPE,
+        }
+        return {f"{MACHINE_PATH}friction.guide_{axis}": law}
+
+    def reported(self, values: Values) -> Reported:
+        """Friction, and its stiffness before it slides."""
+        axis = _axis_of(values)
+        coulomb = values[f"coulomb_{axis}"]
+        return {
+            f"coulomb_{axis}": (coulomb, "N"),
+            f"viscous_{axis}": (values[f"viscous_{axis}"], "N*s/m"),
+            f"presliding_stiffness_{axis}": (coulomb * _HYSTERESIS_SLOPE, "N/m"),
+        }
+
+    def _axis(self, measurement: Measurement) -> str:
+        return self._axes(measurement.case.machine_file())[self.number]
+
+    @staticmethod
+    def _axes(file: MachineFile) -> list[str]:
+        """Axes under control that no friction is declared on."""
+        rubbed = {target for one in file.friction.values() for target in (one.on.axis,)}
+        return [
+            name
+            for name, axis in file.axis.items()
+            if axis.control is not None and name not in rubbed
+        ]
+
+
+def _axis_of(values: Values) -> str:
+    """Axis that the parameters are named by."""
+    return next(key for key in values if key.startswith("coulomb_")).partition("_")[2]

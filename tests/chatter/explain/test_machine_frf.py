@@ -1,0 +1,146 @@
+"""FRFs of a machine at rest, moving and in the cut: predicted, and explained by what it lacks."""
+
+import numpy as np
+import pytest
+
+import chatter
+from chatter.compile.machine_response import machine_response
+from chatter.description.case import load
+from chatter.description.errors import InputError
+from tests.places import ROOT
+
+EXAMPLE = ROOT / "examples" / "face-mill-chatter"
+LINES = np.arange(20.0, 140.0, 1.0)
+CONTACT = {"contact.stiffness": "2.50 N/um", "contact.damping": "3.35 kN*s/m"}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """The face mill, its machine without a contact of its own."""
+    path = tmp_path_factory.mktemp("machine")
+    text = (EXAMPLE / "machine.toml").read_text(encoding="utf-8")
+    bare = text[: text.index("[contact]")]
+    (path / "machine.toml").write_text(bare, encoding="utf-8")
+    (path / "case.toml").write_bytes((EXAMPLE / "case.toml").read_bytes())
+    return path
+
+
+def measured(
+    folder, truth, name, directions=("x", "y"), conditions=("at_rest", "moving", "in_cut")
+):
+    """Folder with FRFs of a case, each with a scatter of 2 % of itself."""
+    random = np.random.default_rng(3)
+    runs = []
+    for condition in conditions:
+        for direction in directions:
+            exact = machine_response(truth, condition, direction, direction, LINES)
+            for repetition in range(2):
+                noise = random.standard_normal((2, LINES.size)) * np.abs(exact) * 0.02 / np.sqrt(2)
+                file = f"{name}_{condition}_{direction}_{repetition}.csv"
+                columns = np.c_[LINES, exact.real + noise[0], exact.imag + noise[1]]
+                head = "frequency [Hz],real [m/N],imag [m/N]"
+                np.savetxt(folder / file, columns, delimiter=",", header=head, comments="")
+                runs.append(
+                    f'[[run]]\nfile = "{file}"\ncondition = "{condition}"\n'
+                    f'direction = "{direction}"\n'
+                )
+    text = 'kind = "frf"\ncase = "case.toml"\n' + "".join(runs)
+    (folder / "measurement.toml").write_text(text, encoding="utf-8")
+    return folder
+
+
+def test_contact_joined_to_frfs_is_that_assembled_in_the_machine():
+    """Two ways: springs between the bodies of the machine, and ports joined afterwards."""
+    case = load(EXAMPLE / "case.toml")
+    machine = case.machine_file()
+    section = {
+        "excite": "table:y", "read": "motor:Y", "by": "linearised",
+        "band": ["20 Hz", "139 Hz"], "lines": LINES.size, "in_cut": True,
+    }  # fmt: skip
+    section |= {"excite": "motor:Y", "read": "table:y"}
+    assembled = chatter.frf(machine.patch({"frf.held": section}), ("held",))["held"].harmonic
+    joined = machine_response(case, "in_cut_at_rest", "table:y", "motor:Y", LINES)
+    free = machine_response(case, "at_rest", "table:y", "motor:Y", LINES)
+    assert joined == pytest.approx(assembled.values, rel=1e-6, abs=1e-9 * np.abs(free).max())
+    assert np.abs(joined - free).max() > 0.2 * np.abs(free).max()
+
+
+def test_missing_contact_is_found(folder):
+    truth = load(folder / "case.toml").patch(CONTACT)
+    found = chatter.explain(measured(folder, truth, "contact", ("y",), ("moving", "in_cut")))
+    summary = found.summary()
+    assert summary["verdict"] == "explained"
+    (effect,) = summary["effects"]
+    assert effect["name"] == "contact"
+    for name, true in (("stiffness", 2.5e6), ("damping", 3.35e3)):
+        one = effect["parameters"][name]
+        assert one["ci95"][0] <= true <= one["ci95"][1]
+        assert one["value"] == pytest.approx(true, rel=0.03)
+    assert summary["error"]["after"] < 0.2 * summary["error"]["before"]
+
+
+def test_nothing_is_missing_where_nothing_is(folder):
+    case = load(folder / "case.toml")
+    found = chatter.explain(measured(folder, case, "nothing", ("y",), ("at_rest", "moving")))
+    assert found.summary()["verdict"] == "nothing-missing"
+
+
+def test_a_softer_nut_is_named(folder, tmp_path):
+    path = "machine.axis.Y.drive.nut_stiffness"
+    case = load(folder / "case.toml")
+    truth = case.patch({path: 0.7 * case.get(path)})
+    found = chatter.explain(measured(folder, truth, "nut", ("y",), ("moving",)))
+    summary = found.summary()
+    (effect,) = summary["effects"]
+    assert effect["name"] == "joint_stiffness"
+    assert effect["parameters"]["Y_nut_stiffness"]["value"] == pytest.approx(0.7, rel=0.02)
+    # the repaired case carries a machine of its own
+    found.save(tmp_path)
+    repaired = load(tmp_path / "case-updated.toml")
+    assert repaired.get(path) == pytest.approx(0.7 * case.get(path), rel=0.02)
+    assert case.get(path) != pytest.approx(repaired.get(path), rel=0.1)
+
+
+def test_values_of_the_machine_have_tolerances(folder):
+    """A nut that is known to 30 % only is refitted, and nothing is missing."""
+    path = "machine.axis.Y.drive.nut_stiffness"
+    case = load(folder / "case.toml")
+    made = measured(folder, case.patch({path: 0.8 * case.get(path)}), "known", ("y",), ("moving",))
+    text = (made / "measurement.toml").read_text(encoding="utf-8")
+    (made / "measurement.toml").write_text(
+        text.replace('case = "case.toml"\n', f'case = "case.toml"\n[tolerance]\n"{path}" = 0.3\n'),
+        encoding="utf-8",
+    )
+    found = chatter.explain(made)
+    assert found.summary()["verdict"] == "nothing-missing"
+    assert found.case.get(path) == pytest.approx(0.8 * case.get(path), rel=0.02)
+
+
+def test_missing_friction_of_an_axis_is_named(folder):
+    """Declared without friction on the guides of Y; FRFs at rest and in motion."""
+    truth = load(folder / "case.toml")
+    machine = truth.machine_file()
+    text = machine.to_toml()
+    begin = text.index("[friction.translation_y]")
+    end = text.index("[friction.rotation_z]")
+    (folder / "rubless.toml").write_text(text[:begin] + text[end:], encoding="utf-8")
+    made = measured(folder, truth, "rub", ("y",), ("at_rest", "moving"))
+    declared = truth.patch({"structure.machine": str(folder / "rubless.toml")})
+    summary = chatter.explain(made, declared).summary()
+    assert [effect["name"] for effect in summary["effects"]] == ["axis_friction"]
+    found = summary["effects"][0]["parameters"]
+    assert found["presliding_stiffness_Y"]["value"] == pytest.approx(99.2 * 1.15e4, rel=0.1)
+
+
+def test_what_a_machine_does_not_know_is_told(folder):
+    case = load(folder / "case.toml")
+    with pytest.raises(InputError, match='condition: "sliding" is none of a machine'):
+        machine_response(case, "sliding", "x", "x", LINES)
+    with pytest.raises(InputError, match="tabel"):
+        machine_response(case, "moving", "tabel:y", "table:y", LINES)
+    with pytest.raises(InputError, match="no control"):
+        machine_response(case, "moving", "table:y", "motor:Q", LINES)
+    with pytest.raises(InputError, match="the case is on no machine"):
+        load(ROOT / "examples" / "two-degrees-of-freedom" / "case.toml").patch(
+            {"machine.axis.Y.drive.nut_stiffness": 1.0}
+        )
