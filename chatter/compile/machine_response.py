@@ -85,11 +85,11 @@ def machine_response(
     names = [*_AXES, *places]
     response = free
     if state.in_cut:
-        response = held(free, _contact(case, frequency, len(names)))
+        response = joined(free, _contact(case, frequency, len(names)))
     return response[:, names.index(read), names.index(excite)]
 
 
-def held(free: ComplexArray, joint: ComplexArray) -> ComplexArray:
+def joined(free: ComplexArray, joint: ComplexArray) -> ComplexArray:
     """Receptance (m, p, p) of ports that a dynamic stiffness (m, p, p) joins."""
     return np.linalg.solve(np.eye(free.shape[1]) + free @ joint, free)
 

@@ -73,7 +73,7 @@ class FrequencyResponse(Kind):
         """Receptance of the modes or the machine, with the contact where the tool is in the cut."""
         frequency = run.signals["frequency"]
         if case.on_machine:
-            read, excite = places_of(run)
+            read, excite = read_and_excited(run)
             found = machine_response(case, run.condition, read, excite, frequency)
             return {"real": found.real, "imag": found.imag}
         free = receptance_matrix(structure_of(case).modes, frequency)
@@ -112,7 +112,7 @@ class FrequencyResponse(Kind):
         return with_priors(measurement, [*structural_paths(measurement.case), *uncertain])
 
 
-def places_of(run: Run) -> tuple[str, str]:
+def read_and_excited(run: Run) -> tuple[str, str]:
     """Where the response is read and where the structure is excited."""
     if _BETWEEN in run.direction:
         read, _, excite = run.direction.partition(_BETWEEN)
@@ -126,7 +126,7 @@ def _refuse_unknown_place(case: Case, run: Run) -> None:
             raise InputError(f"{run.name}: excite: the case is on no machine; give a direction")
         # the machine tells what it does not know
         frequency = np.maximum(run.signals["frequency"][:1], 1.0)
-        machine_response(case, run.condition, *places_of(run), frequency)
+        machine_response(case, run.condition, *read_and_excited(run), frequency)
         return
     if not run.direction or any(axis not in _AXES for axis in run.direction):
         raise InputError(f'{run.name}: direction: "{run.direction}" is none; x, y, z or xy')
