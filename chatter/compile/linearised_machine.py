@@ -46,7 +46,7 @@ class LinearisedMachine:
     @property
     def sticking(self) -> tuple[str, ...]:
         """Names of the frictions that hold as springs: none moves, and no amplitude is stated."""
-        if self.case.structure.friction_amplitude is not None:
+        if self.case.structure.amplitude_at_frictions > 0.0:
             return ()
         moving = moving_axes(self.case, self.cut)
         motion = rigid_motion(self.cut.machine, moving) if moving else None
@@ -58,9 +58,20 @@ class LinearisedMachine:
             and np.real(one.law.stiffness_at_rest(np.array([_LOWEST])))[0] > 0.0
         )
 
-    def without_sticking(self) -> LinearisedMachine:
-        """The same machine with nothing in place of the frictions that stick."""
-        return replace(self, excluded=(*self.excluded, *self.sticking))
+    @property
+    def resting(self) -> tuple[str, ...]:
+        """Names of the frictions that rest and hold, stuck or linearised at an amplitude."""
+        if not self.cut.machine.frictions:
+            return ()
+        return self.with_stuck().sticking
+
+    def with_stuck(self) -> LinearisedMachine:
+        """The same machine with the resting frictions stuck, as under vanishing vibration."""
+        return replace(self, case=self.case.patch({"structure.friction_amplitude": 0.0}))
+
+    def without_resting(self) -> LinearisedMachine:
+        """The same machine with nothing in place of the frictions that rest."""
+        return replace(self, excluded=(*self.excluded, *self.resting))
 
     @cached_property
     def _guess(self) -> tuple[Mode, ...]:
@@ -94,10 +105,10 @@ class LinearisedMachine:
             f"dynamics of {self.cut.file.name}, linearised, its control loops closed",
         ]
         if self.cut.machine.frictions:
-            amplitude = self.case.structure.friction_amplitude
+            amplitude = self.case.structure.amplitude_at_frictions
             others = (
                 "stick"
-                if amplitude is None
+                if amplitude == 0.0
                 else f"are linearised at vibration of {amplitude * 1e6:g} um along their axes"
             )
             notes.append(f"frictions of axes that move slide, those of others {others}")
@@ -159,8 +170,8 @@ def tool_receptance(
 
 def friction_amplitudes(case: Case, cut: MachineCut) -> dict[str, float] | None:
     """Amplitude at every friction for the one along the axes, m; at motors by the transmission."""
-    along = case.structure.friction_amplitude
-    if along is None:
+    along = case.structure.amplitude_at_frictions
+    if along == 0.0:
         return None
     found = {}
     for one in cut.machine.frictions:

@@ -120,7 +120,9 @@ def _responses(case: Case, moving: bool, places: tuple[str, ...], lines: bytes) 
     """Receptance (m, p, p) of the tool in x, y, z and of other places."""
     cut = _machine_cut(case)
     velocity = moving_axes(case, cut) if moving else {}
-    frictions = linearised_frictions(cut.machine, velocity, friction_amplitudes(case, cut))
+    # the vibration of a blow is small: frictions stick unless an amplitude is stated
+    stated = None if case.structure.friction_amplitude is None else friction_amplitudes(case, cut)
+    frictions = linearised_frictions(cut.machine, velocity, stated)
     ports = np.array([*cut.tool, *(_row(case, cut, place) for place in places)])
     return receptance(cut.machine, np.frombuffer(lines), ports, cut.file.step, frictions)
 

@@ -1,4 +1,4 @@
-"""What frictions that stick do to the limits of a machine, for the reader of linear limits."""
+"""What frictions at rest do to the limits of a machine, for the reader of linear limits."""
 
 import math
 from dataclasses import replace
@@ -20,31 +20,32 @@ _LINE, _SLOW = 1.0, 1e-6
 def notes_on_resting_friction(model: MillingModel) -> tuple[str, ...]:
     """Say what the limit at the speed of the case is with resting frictions stuck and without.
 
-    Zeroth-order limits: what is compared is the two structures. None where no friction sticks, or
-    where it makes no difference.
+    Zeroth-order limits: what is compared is the structures. None where no friction rests, or where
+    it makes no difference.
     """
     structure = model.structure
-    if not isinstance(structure, LinearisedMachine) or not structure.sticking:
+    if not isinstance(structure, LinearisedMachine) or not (names := structure.resting):
         return ()
     speed = model.case.cut.spindle_speed
-    freed = replace(model, structure=structure.without_sticking())
-    stuck, free = (
-        float(zero_order_of(one, np.array([speed])).critical_depth[0]) for one in (model, freed)
-    )
-    if math.isclose(stuck, free, rel_tol=_REPORTED):
+    amplitude = model.case.structure.amplitude_at_frictions
+
+    def limit(changed: LinearisedMachine) -> float:
+        own = replace(model, structure=changed)
+        return float(zero_order_of(own, np.array([speed])).critical_depth[0])
+
+    here, stuck, free = map(limit, (structure, structure.with_stuck(), structure.without_resting()))
+    if math.isclose(stuck, free, rel_tol=_REPORTED) and math.isclose(here, free, rel_tol=_REPORTED):
         return ()
     laws = {one.name: one.law for one in structure.cut.machine.frictions}
-    ways = {name: _giving_way(laws[name]) for name in structure.sticking}
-    listed = ", ".join(f"{name} from {way:.2g}" for name, way in ways.items() if way > 0.0)
-    how_far = f" (in m or rad of its own motion: {listed})" if listed else ""
-    names = ", ".join(structure.sticking)
+    ways = {name: _giving_way(laws[name]) for name in names}
+    listed = ", ".join(f"{name} {way:.2g}" for name, way in ways.items() if way > 0.0)
+    how_far = f"; they slide from (m or rad of their own motion): {listed}" if listed else ""
+    taken = "as stuck" if amplitude == 0.0 else f"at vibration of {1e6 * amplitude:g} um"
     return (
-        f"frictions of axes at rest ({names}) are taken as stuck: at {rpm(speed):.0f} rpm the "
-        f"zeroth-order limit is {_shown(stuck)} with them stuck and {_shown(free)} without them; "
-        "the first holds only for vanishing vibration. Where the vibration of the cut, that by the "
-        f"teeth included, makes them give way{how_far}, they dissipate, and the time domain is "
-        f"expected to show about {_shown(free)} or more; structure.friction_amplitude linearises "
-        "them at a stated amplitude",
+        f"frictions of axes at rest ({', '.join(names)}) are taken {taken} "
+        f"(structure.friction_amplitude): at {rpm(speed):.0f} rpm the zeroth-order limit is "
+        f"{_shown(here)} so, {_shown(stuck)} with them stuck, as under vanishing vibration, and "
+        f"{_shown(free)} without them{how_far}",
     )
 
 

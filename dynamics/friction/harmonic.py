@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-_STEPS = 2000
+_STEPS = 400
 _CYCLES = 3
 #: samples of a quarter of a cycle of a law without memory
 _SAMPLES = 4000

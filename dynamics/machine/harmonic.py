@@ -1,6 +1,7 @@
 """Harmonic response of a linearised machine, its control loops closed."""
 
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +15,8 @@ from dynamics.reduction.modal_truncation import undamped_modes
 
 #: cycles of a friction at an amplitude that stand for those at all frequencies
 _CYCLES_GONE_THROUGH = 20
+#: cycles of frictions kept
+_KEPT_CYCLES = 4096
 #: dynamic stiffness, N/m, of a friction at frequencies, Hz
 Linearised = Callable[[FrictionLaw, NDArray[np.float64]], NDArray[np.complex128]]
 
@@ -40,7 +43,7 @@ def at_amplitude(amplitude: float) -> Linearised:
     """
 
     def at(law: FrictionLaw, frequency: NDArray) -> NDArray[np.complex128]:
-        pairs = [law.describing_function(amplitude, float(line)) for line in frequency]
+        pairs = [_gone_through(law, amplitude, float(line)) for line in frequency]
         return np.array(
             [k + 2j * np.pi * f * c for (k, c), f in zip(pairs, frequency, strict=True)]
         )
@@ -57,6 +60,12 @@ def at_amplitude(amplitude: float) -> Linearised:
         )
 
     return describing
+
+
+@lru_cache(_KEPT_CYCLES)
+def _gone_through(law: FrictionLaw, amplitude: float, line: float) -> tuple[float, float]:
+    """Stiffness and damping of a law over a cycle; the same for all that ask."""
+    return law.describing_function(amplitude, line)
 
 
 def receptance(

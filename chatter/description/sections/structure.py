@@ -22,6 +22,8 @@ from chatter.description.formatting import formatted
 from chatter.description.quantities import quantity, quantity_list
 from chatter.description.section import Section, raise_if_any
 
+#: vibration, m, at which resting frictions are linearised: what a cut that is hardly stable has
+DEFAULT_FRICTION_AMPLITUDE = 5e-6
 #: a direction may miss unit length by this much before it is refused rather than normalised
 _UNIT_TOLERANCE = 0.01
 _INERTIA = ("mass", "stiffness")
@@ -271,14 +273,20 @@ class StructureSection(Section):
         None, description="of axes of the machine"
     )
     friction: bool | None = Field(None, description="false: the machine without any")
-    friction_amplitude: quantity("length", above=0.0) | None = Field(
+    friction_amplitude: quantity("length", at_least=0.0) | None = Field(
         None,
-        description="of the vibration along axes whose friction rests: lobes take their describing "
-        "functions at it instead of their stiffness at rest",
+        description="of the vibration along axes whose friction rests: stability takes their "
+        "describing functions at it, 5 um by default; 0 um: their stiffness at rest",
     )
     settling: quantity("time", at_least=0.0) | None = Field(
         None, description="time that the machine runs in the air before the cut; 1 s by default"
     )
+
+    @property
+    def amplitude_at_frictions(self) -> float:
+        """Amplitude along axes whose friction rests, m, as stated or by default."""
+        stated = self.friction_amplitude
+        return DEFAULT_FRICTION_AMPLITUDE if stated is None else stated
 
     @model_validator(mode="after")
     def _check_source(self) -> StructureSection:

@@ -23,10 +23,22 @@ def test_verdicts_of_a_machine_with_friction(case, depth, verdict):
 
 
 def test_note_on_resting_friction(case):
-    (note,) = [one for one in chatter.check(case).notes if "taken as stuck" in one]
-    for said in ("translation_y", "1.46 mm with them stuck", "2.12 mm without them"):
+    (note,) = [one for one in chatter.check(case).notes if "frictions of axes at rest" in one]
+    for said in ("translation_y", "5 um", "1.46 mm with them stuck", "2.12 mm without them"):
         assert said in note
-    assert "structure.friction_amplitude" in note
-    for other in ({"structure.friction": False}, {"structure.friction_amplitude": "3 um"}):
-        notes = chatter.check(case.patch(other)).notes
-        assert not any("taken as stuck" in one for one in notes)
+    stuck = chatter.check(case.patch({"structure.friction_amplitude": "0 um"}))
+    (note,) = [one for one in stuck.notes if "frictions of axes at rest" in one]
+    assert "taken as stuck" in note
+    notes = chatter.check(case.patch({"structure.friction": False})).notes
+    assert not any("frictions of axes at rest" in one for one in notes)
+
+
+@pytest.mark.parametrize("depth", ["2.7 mm"])
+def test_lobes_and_time_say_the_same_of_friction(case, depth):
+    """It raises the limit: stable with it where it chatters without."""
+    with_it = case.patch({"cut.axial_depth": depth, "simulation.duration": "6 s"})
+    without = with_it.patch({"structure.friction": False})
+    assert chatter.check(with_it).stable
+    assert not chatter.check(without).stable
+    assert chatter.simulate(with_it).detection.verdict == "stable"
+    assert chatter.simulate(without).detection.verdict == "chatter"
