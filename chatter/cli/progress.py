@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -26,8 +27,9 @@ NEXT_LINE = 15.0
 LONG = 60.0
 #: s of work before it ends within which its duration is no news
 _REST = 20.0
-#: s of work from which its pace is known
+#: s of work from which its pace is known, and that it is taken over
 _PACE = 1.0
+_OF_LATE = 20.0
 
 
 class RunningWork:
@@ -45,17 +47,23 @@ class RunningWork:
         self.description = description
         self._clock = clock
         self._begun = clock()
-        self._first: tuple[float, int] | None = None  # time and parts at the first report
+        #: times and parts that the pace is of: the newest report last, one a second before it
+        self._reports: deque[tuple[float, int]] = deque()
         self._newest: tuple[float, int, int] | None = None
         self._announced = False
 
     def __call__(self, done: int, total: int) -> None:
         """Report how many of all parts are done."""
         now = self._clock()
-        if self._first is None:
+        if not self._reports:
             # what is reported at once was finished before, by an earlier run
             at_once = now - self._begun < _PACE
-            self._first = (now, done) if at_once else (self._begun, 0)
+            self._reports.append((now, done) if at_once else (self._begun, 0))
+        elif now - self._reports[-1][0] >= _PACE:
+            self._reports.append((now, done))
+        # the pace is that of late: parts of a search differ
+        while len(self._reports) > 1 and now - self._reports[1][0] > _OF_LATE:
+            self._reports.popleft()
         self._newest = (now, done, total)
 
     def stage(self, description: str) -> None:
@@ -74,9 +82,9 @@ class RunningWork:
 
     def remaining(self) -> float | None:
         """Time that the rest takes at the pace so far, s; None before there is one."""
-        if self._first is None or self._newest is None:
+        if not self._reports or self._newest is None:
             return None
-        begun, before = self._first
+        begun, before = self._reports[0]
         at, done, total = self._newest
         if done <= before or at - begun < _PACE:
             return None

@@ -8,6 +8,8 @@ between the columns of the coarse grid, or between two depths where nothing besi
 zero (see `crossings`).
 """
 
+from collections.abc import Callable
+
 import numpy as np
 
 from chatter.description.arrays import Array, BooleanArray, IntegerArray
@@ -19,6 +21,8 @@ from chatter.stability.crossings import find_crossings
 _DEPTH_STRIDE = 4
 #: growth rate of a peak or valley that the columns beside may have above or below zero
 _NEARLY_ZERO = 0.2
+#: share of the time that the coarse grid takes, about
+_SCREENING = 0.6
 
 
 def continued_crossings(
@@ -41,8 +45,15 @@ def continued_crossings(
     values = np.full((speed_count, depths.size), np.nan)
     columns = np.unique(np.append(np.arange(0, speed_count, stride), speed_count - 1))
     evaluated = np.zeros(values.shape, dtype=bool)
-    evaluated[columns] = _screen(values, columns, depths, growth_rate)
-    progress(len(columns), max(speed_count, len(columns) + 1))
+
+    def finished(share: float) -> None:
+        progress(int(share * speed_count), speed_count)
+
+    def screened(share: float) -> None:
+        finished(_SCREENING * share)
+
+    evaluated[columns] = _screen(values, columns, depths, growth_rate, screened)
+    levels = stride.bit_length()
     while stride > 1:
         stride //= 2
         between = np.setdiff1d(np.arange(0, speed_count, stride), columns)
@@ -55,24 +66,29 @@ def continued_crossings(
         _evaluate(values, between, wanted, depths, growth_rate)
         evaluated[between] = _widen(values, between, wanted, depths, growth_rate)
         columns = np.sort(np.append(columns, between))
-        progress(len(columns) - 1, speed_count)
+        finished(_SCREENING + (1.0 - _SCREENING) * (1.0 - stride.bit_length() / levels))
     return find_crossings(values, depths, growth_rate, tolerance, evaluated, refined)
 
 
 def _screen(
-    values: Array, columns: IntegerArray, depths: Array, growth_rate: GrowthRate
+    values: Array,
+    columns: IntegerArray,
+    depths: Array,
+    growth_rate: GrowthRate,
+    screened: Callable[[float], None],
 ) -> BooleanArray:
     """Fill in columns: all depths, but for some of those that lie deep in what is unstable.
 
     Between two of every few depths that are unstable, with a growth rate well above what it changes
-    by from the one to the other, growth rate is taken to follow the line. Returns what has been
-    seen.
+    by from the one to the other, growth rate is taken to follow the line. `screened` is called with
+    the share that is done. Returns what has been seen.
     """
     last = depths.size - 1
     step = _DEPTH_STRIDE
     seen = np.zeros((columns.size, depths.size), dtype=bool)
     seen[:, ::step] = seen[:, last] = True
     _evaluate(values, columns, seen, depths, growth_rate)
+    screened(1.0 / step)
     while step > 1:
         step //= 2
         between = np.arange(step, last, 2 * step)
@@ -86,6 +102,8 @@ def _screen(
         wanted[:, between] = doubtful & ~seen[:, between]
         _evaluate(values, columns, wanted, depths, growth_rate)
         seen |= wanted
+        # every step-th of all depths is known
+        screened(1.0 / step)
     seen |= _widen(values, columns, seen, depths, growth_rate)
     return seen
 

@@ -6,7 +6,7 @@ import time
 import pytest
 
 from chatter.cli import COMMANDS, progress
-from chatter.cli.progress import RunningWork, in_words, progress_bar
+from chatter.cli.progress import RunningWork, in_words, progress_bar, running
 from tests.places import ROOT
 
 #: commands that compute nothing
@@ -52,6 +52,19 @@ def test_what_an_earlier_run_has_finished_is_not_pace(clock):
     clock.now += 10.0
     work(910, 1000)
     assert work.remaining() == pytest.approx(90.0)
+
+
+def test_the_pace_is_that_of_late(clock):
+    work = RunningWork("search", clock)
+    work(0, 1000)
+    for done in range(100, 600, 100):  # a hundred a second
+        clock.now += 1.0
+        work(done, 1000)
+    for done in range(505, 605, 5):  # then five in two seconds
+        clock.now += 2.0
+        work(done, 1000)
+    # 600 of 1000 done: 400 more at 2.5 a second
+    assert work.remaining() == pytest.approx(160.0, rel=0.1)
 
 
 def test_a_first_part_that_took_long_is_pace(clock):
@@ -105,7 +118,7 @@ def test_lines_where_there_is_no_terminal(monkeypatch, capsys):
 
 
 def test_short_work_prints_nothing(capsys):
-    with progress_bar("critical depth") as work:
+    with running("critical depth") as work:
         work(1, 2)
     assert capsys.readouterr().err == ""
 

@@ -61,3 +61,17 @@ def test_miss_rate_of_small_islands():
         middle = round(island[0] * (SPEEDS.size - 1))
         missed += found[middle].size < exact(landscape, SPEEDS[middle]).size
     assert missed == 0
+
+
+def test_progress_goes_up_and_begins_before_the_screening_ends():
+    reported = []
+    landscape = Landscape((0.19, 0.3, 0.06, 0.12))
+    continued_crossings(
+        SPEEDS.size, DEPTHS, landscape, 5e-3, 8, lambda *parts: reported.append(parts)
+    )
+    done = [one for one, _ in reported]
+    assert done == sorted(done)
+    assert 0 < done[0] < 0.3 * SPEEDS.size
+    # the refinement of limits comes after the last level
+    assert 0.8 * SPEEDS.size < done[-1] < SPEEDS.size
+    assert {total for _, total in reported} == {SPEEDS.size}
