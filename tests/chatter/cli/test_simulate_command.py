@@ -191,7 +191,7 @@ def test_a_rigid_tool_does_not_chatter(case_file):
         ),
         (
             ["tool.kind=ball", "cut.axial_depth=0.1 mm", "cut.radial_depth=0.5 mm"],
-            ["cut.radial_depth", "0.5 mm", "0.1 mm"],
+            ["cut.radial_depth", "0.1 mm", "stepover"],
         ),
         (
             ["tool.teeth=3", 'tool.helix=["0 deg", "0 deg", "80 deg"]', "cut.axial_depth=5 mm"],
