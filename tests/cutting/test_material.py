@@ -76,3 +76,12 @@ def test_search_needs_all_words_in_any_case():
     assert len(found_rows(["4140"])) == 3
     assert not found_rows(["inconel", "aluminium"])
     assert found_rows([]) == MATERIALS
+
+
+def test_two_editions_of_a_catalogue_differ_as_the_documents_have_it():
+    # at a chip of 0.08 mm and at 1 mm
+    alloy = [2110.0 * h**-0.22 / (1245.0 * h**-0.24) for h in (0.08, 1.0)]
+    pure = [1700.0 * h**-0.23 / (1160.0 * h**-0.24) for h in (0.08, 1.0)]
+    assert [round(one, 1) for one in (*alloy, *pure)] == [1.6, 1.7, 1.4, 1.5]
+    (old,) = [row for name, row in MATERIALS.items() if name.endswith("(VDI 37, 2017)")]
+    assert (old.values["Ktc"], old.values["exponent"]) == (2110e6, 0.78)
