@@ -15,6 +15,7 @@ package      responsibility
 cli, app     the command line, a module a command; the page in the browser
 plots        pictures of results
 report       pages of results
+cutting_coefficients  coefficients of the force law from the forces of cuts
 learning     what a few cutting tests leave possible, and the next cut
 explain      what a measurement says that its declared case lacks
 studies      what-if, uncertainty, optimisation, pitch design; executor, result cache
@@ -32,6 +33,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from chatter.cutting_coefficients.identify import coefficients as coefficients
     from chatter.description.case import Case as Case
     from chatter.description.case import load as load
     from chatter.description.errors import InputError as InputError
@@ -62,6 +64,7 @@ _PUBLIC = {
     "InputError": "chatter.description.errors",
     "RunError": "chatter.description.errors",
     "bifurcation": "chatter.studies.bifurcation",
+    "coefficients": "chatter.cutting_coefficients.identify",
     "check": "chatter.stability.check",
     "compare": "chatter.explain.comparison",
     "examples": "chatter.io.shipped_examples",

@@ -35,6 +35,7 @@ COMMANDS = (
     "compare",
     "explain",
     "learn",
+    "coefficients",
     "frf",
     "move",
     "materials",

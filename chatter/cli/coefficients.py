@@ -1,0 +1,56 @@
+"""`chatter coefficients RECORDS`: cutting coefficients from the forces of a series of cuts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from chatter.cli import options
+from chatter.cli.progress import progress_bar
+from chatter.cli.results import present
+from chatter.report.console import print_table
+
+if TYPE_CHECKING:
+    from chatter.cutting_coefficients.result import Coefficients
+
+
+def coefficients(
+    records: Annotated[
+        Path, typer.Argument(metavar="RECORDS", help="Measurement folder of kind milling.")
+    ],
+    case: Annotated[
+        Path | None, typer.Option("--case", help="In place of the case of measurement.toml.")
+    ] = None,
+    out: options.OutputFolder = None,
+    json: options.Json = False,
+) -> None:
+    """Find the cutting coefficients of a series of cuts by their mean forces."""
+    from chatter.cutting_coefficients.identify import coefficients as identify
+
+    with progress_bar("mean forces and laws"):
+        found = identify(records, case)
+    folder = options.output_folder(out, records.resolve().name)
+    present(found, folder, json=json, words=_print_coefficients)
+
+
+def _print_coefficients(found: Coefficients) -> None:
+    summary = found.summary()
+    rows = [
+        [one["name"], f"{one['value']:.4g}", f"{one['standard_deviation']:.2g}", one["unit"]]
+        for one in summary["coefficients"]
+    ]
+    rows += [
+        ["exponent", f"{one['value']:.3f}", f"{one['standard_deviation']:.2g}", ""]
+        for one in summary["exponents"]
+    ]
+    title = f"{summary['law']} law, {len(found.measurement.runs)} cuts"
+    print_table(title, ["coefficient", "value", "+-", "unit"], rows)
+    if summary["error_of_cuts_left_out"]:
+        worst = max(summary["error_of_cuts_left_out"].values())
+        typer.echo(f"mean forces of a cut left out are predicted to {worst:.1%} or better")
+    for name, sign in summary["signs"].items():
+        typer.echo(f"{name} is taken {'as it is' if sign > 0.0 else 'with its sign turned'}")
+    for note in summary["notes"]:
+        typer.echo(f"note: {note}", err=True)

@@ -1,0 +1,101 @@
+"""`coefficients`: laws compared by the mean forces of a series of cuts, the one to keep."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from chatter.cutting_coefficients.fit import FittedLaw, fitted_law
+from chatter.cutting_coefficients.laws import BY_DIRECTION, LAWS, TriedLaw
+from chatter.cutting_coefficients.mean_forces import MeanForce, mean_forces
+from chatter.cutting_coefficients.result import Coefficients
+from chatter.description.case import Case
+from chatter.description.errors import InputError
+from chatter.explain.measurement import Measurement
+from chatter.explain.measurement_file import read_measurement
+
+#: cuts of which each can be left out in turn
+_ENOUGH_CUTS = 3
+
+
+def coefficients(
+    records: str | Path | Measurement, case: str | Path | Case | None = None
+) -> Coefficients:
+    """Cutting coefficients from the mean forces of a series of cuts.
+
+    Means over whole revolutions of the rigid tool: start angle, runout that lets no tooth miss, the
+    resonances of a dynamometer and vibration drop out of them (Altintas 2012, Manufacturing
+    Automation, section 2.8). Linear and exponential laws are fitted, with and without edge forces,
+    and that is kept which predicts best the cuts left out one by one (Akaike's criterion where
+    there are too few). Beside it every direction is fitted by a line or a power of its own.
+
+    Parameters
+    ----------
+    records : path or Measurement
+        Measurement folder of kind "milling": a case with tool and cut, and runs that differ by
+        feed, depth or width; forces with known directions, their senses may be unknown.
+    case : path or Case, optional
+        In place of the case that measurement.toml names.
+
+    Returns
+    -------
+    Coefficients
+
+    Raises
+    ------
+    InputError
+        If the records cannot be used, or determine no law.
+    """
+    if not isinstance(records, Measurement):
+        records = read_measurement(records, case)
+    records.case.require("tool", "cut")
+    means = mean_forces(records)
+    cases = {run.name: run.of(records.case) for run in records.runs}
+    fits = _fitted(LAWS, means, cases)
+    if not fits:
+        raise InputError(
+            f"{records.folder}: {len(means)} mean forces of {len(cases)} cuts determine no force "
+            "law; forces along x and y of one cut are the least"
+        )
+    errors = [_left_out(fit, means, cases) for fit in fits]
+    kept = min(range(len(fits)), key=lambda k: _rank(fits[k], errors[k], len(means)))
+    own = min(_fitted(BY_DIRECTION, means, cases), key=lambda one: one.chi_square, default=None)
+    beside = None if own is None else _left_out(own, means, cases)
+    return Coefficients(records, tuple(means), tuple(fits), fits[kept], errors[kept], own, beside)
+
+
+def _fitted(
+    laws: Sequence[TriedLaw], means: Sequence[MeanForce], cases: dict[str, Case]
+) -> list[FittedLaw]:
+    return [fit for law in laws if (fit := fitted_law(law, means, cases)) is not None]
+
+
+def _rank(
+    fit: FittedLaw, left_out: dict[str, float] | None, count: int
+) -> tuple[float, float, int]:
+    """Error of the cuts left out, where there are enough; else the criterion."""
+    error = math.inf if left_out is None else math.hypot(*left_out.values())
+    return error, fit.criterion(count), fit.law.parameters
+
+
+def _left_out(
+    fit: FittedLaw, means: Sequence[MeanForce], cases: dict[str, Case]
+) -> dict[str, float] | None:
+    """Error of the mean forces of each cut by the law fitted to the others, over their size."""
+    if len(cases) < _ENOUGH_CUTS:
+        return None
+    found = {}
+    for name in cases:
+        others = [one for one in means if one.run != name]
+        rest = {key: case for key, case in cases.items() if key != name}
+        again = fitted_law(fit.law, others, rest)
+        if again is None:
+            return None
+        own = [one for one in means if one.run == name]
+        predicted = again.mean_forces_of(own, cases[name])
+        measured = np.array([one.value for one in own])
+        found[name] = float(np.linalg.norm(predicted - measured) / np.linalg.norm(measured))
+    return found

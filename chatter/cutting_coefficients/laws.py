@@ -1,0 +1,120 @@
+"""Force laws that are tried, and the mean forces of a rigid tool that each of them gives.
+
+A straight edge of a linear law gives mean forces that are linear in the feed (Altintas 2012,
+Manufacturing Automation, eqs 2.38 to 2.40); the mean of the rigid cut is taken by quadrature, so
+that tools with corners, unequal teeth and arcs of any kind are as good.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from chatter.compile.cutter import cutter_of
+from chatter.description.arrays import Array
+from chatter.description.case import Case
+from cutting.force.exponential import ExponentialLaw
+from cutting.force.force_spectrum import RigidCut
+from cutting.force.law import ForceLaw
+from cutting.force.linear import LinearLaw
+
+#: chip thickness to which the coefficients of an exponential law belong, m
+REFERENCE_CHIP = 1e-4
+_DIRECTIONS = "tra"
+#: mean forces kept
+_KEPT = 4096
+_CUTTING, _EDGE = ("Ktc", "Krc", "Kac"), ("Kte", "Kre", "Kae")
+
+
+@dataclass(frozen=True)
+class TriedLaw:
+    """A law with the keys of [material] that are fitted.
+
+    Parameters
+    ----------
+    name : str
+        As the report calls it.
+    law : str
+        As [material] calls it; empty where no law of a case file is so.
+    keys : tuple of str
+        Coefficients, in which forces are linear.
+    exponents : tuple of int
+        Of the tangential, radial and axial direction the number of its exponent; -1: a line.
+    """
+
+    name: str
+    law: str
+    keys: tuple[str, ...]
+    exponents: tuple[int, int, int] = (-1, -1, -1)
+
+    @property
+    def exponent_count(self) -> int:
+        """Exponents that are fitted."""
+        return max(self.exponents) + 1
+
+    @property
+    def parameters(self) -> int:
+        """Numbers that are fitted."""
+        return len(self.keys) + self.exponent_count
+
+    def section(self, values: Sequence[float], exponents: Sequence[float]) -> dict[str, object]:
+        """Section [material] in SI."""
+        given: dict[str, object] = {"law": self.law}
+        given |= {key: float(v) for key, v in zip(self.keys, values, strict=True)}
+        if len(exponents):
+            given |= {"exponent": float(exponents[0]), "h0": REFERENCE_CHIP}
+        return given
+
+
+#: laws of case files, from the simplest to the richest
+LAWS = (
+    TriedLaw("linear without edge forces", "linear", _CUTTING),
+    TriedLaw("linear", "linear", _CUTTING + _EDGE),
+    TriedLaw("exponential without edge forces", "exponential", _CUTTING, (0, 0, 0)),
+    TriedLaw("exponential", "exponential", _CUTTING + _EDGE, (0, 0, 0)),
+)
+#: laws of which every direction has its own form: a line with its edge force, or a power
+BY_DIRECTION = (
+    TriedLaw("a line for each", "", _CUTTING + _EDGE),
+    TriedLaw("line, power, line", "", (*_CUTTING, "Kte", "Kae"), (-1, 0, -1)),
+    TriedLaw("line, line, power", "", (*_CUTTING, "Kte", "Kre"), (-1, -1, 0)),
+    TriedLaw("line, power, power", "", (*_CUTTING, "Kte"), (-1, 0, 1)),
+    TriedLaw("power, line, line", "", (*_CUTTING, "Kre", "Kae"), (0, -1, -1)),
+    TriedLaw("power, power, line", "", (*_CUTTING, "Kae"), (0, 1, -1)),
+    TriedLaw("power, line, power", "", (*_CUTTING, "Kre"), (0, -1, 1)),
+    TriedLaw("a power for each", "", _CUTTING, (0, 1, 2)),
+)
+
+
+def unit_forces(law: TriedLaw, case: Case, exponents: Sequence[float]) -> Array:
+    """Mean force (3, n) on the rigid tool of each of n coefficients of 1 (SI), along x, y, z."""
+    columns = []
+    for key in law.keys:
+        number = law.exponents[_DIRECTIONS.index(key[1])]
+        power = float(exponents[number]) if key[2] == "c" and number >= 0 else None
+        columns.append(_unit_force(case, key, power))
+    return np.array(columns).T
+
+
+@lru_cache(_KEPT)
+def _unit_force(case: Case, key: str, exponent: float | None) -> Array:
+    """Mean force (3,) of one coefficient of 1 (SI)."""
+    cutter, values = cutter_of(case), np.zeros(3)
+    values[_DIRECTIONS.index(key[1])] = 1.0
+    nothing, one = [0.0, 0.0, 0.0], values.tolist()
+    law: ForceLaw
+    if key[2] == "e":
+        law = LinearLaw(nothing, one)
+    elif exponent is None:
+        law = LinearLaw(one)
+    else:
+        law = ExponentialLaw(one, REFERENCE_CHIP, exponent)
+    cut = case.cut
+    rigid = RigidCut(
+        cutter, [law] * cutter.teeth, case.uncut_band, cut.feed_per_tooth, cut.axial_depth,
+        cutter.teeth,
+    )  # fmt: skip
+    return rigid.force(np.array([0])).force[0].real

@@ -1,0 +1,232 @@
+"""What the mean forces of cuts say about the force law: table, [material], picture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import scipy.stats
+import tomlkit
+
+from chatter.cutting_coefficients.fit import FittedLaw
+from chatter.cutting_coefficients.mean_forces import MeanForce, channels_of
+from chatter.explain.measurement import Measurement
+from chatter.io.presentation import presentation
+from chatter.io.result_files import as_json, finite_or_none, short_repr, write_results
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: unit of a coefficient in [material], and what makes it of SI
+UNITS = {"c": ("MPa", 1e-6), "e": ("N/mm", 1e-3)}
+_DIRECTIONS = ("tangential", "radial", "axial")
+#: probability that a law that holds leaves more
+_HOLDS = 0.01
+#: share of variance of a channel over the cuts that a straight line leaves, worth telling
+_LINEAR_SHARE = 0.95
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Coefficients:
+    """Cutting coefficients of a series of cuts.
+
+    Parameters
+    ----------
+    measurement : Measurement
+    means : tuple of MeanForce
+    fits : tuple of FittedLaw
+        Of all laws that the cuts determine.
+    kept : FittedLaw
+    left_out : dict of str to float, or None
+        Error of the mean forces of each cut by the law fitted to the others, over their size.
+    by_direction : FittedLaw, optional
+        Law of which every direction has its own form; no law of a case file may be so.
+    left_out_by_direction : dict of str to float, or None
+        Error by that law of each cut, fitted to the others.
+    """
+
+    measurement: Measurement
+    means: tuple[MeanForce, ...]
+    fits: tuple[FittedLaw, ...]
+    kept: FittedLaw
+    left_out: dict[str, float] | None
+    by_direction: FittedLaw | None
+    left_out_by_direction: dict[str, float] | None
+
+    def __repr__(self) -> str:
+        """Short: what it holds would fill the screen."""
+        return short_repr(self)
+
+    @property
+    def material(self) -> dict[str, object]:
+        """Section [material] in SI."""
+        return self.kept.law.section(self.kept.values, self.kept.exponents)
+
+    @property
+    def linear_law_holds(self) -> bool | None:
+        """Whether the linear law leaves no more than the readings scatter; None if not fitted."""
+        linear = next((one for one in self.fits if one.law.name == "linear"), None)
+        freedom = len(self.means) - 6
+        if linear is None or freedom < 1:
+            return None
+        return bool(scipy.stats.chi2.sf(linear.chi_square, freedom) > _HOLDS)
+
+    def summary(self) -> dict[str, Any]:
+        """Content of coefficients.json."""
+        return {
+            "law": self.kept.law.name,
+            "coefficients": self._coefficients(self.kept),
+            "exponents": self._exponents(self.kept),
+            "by_direction": self._by_direction(),
+            "signs": self.kept.signs,
+            "linear_law_holds": self.linear_law_holds,
+            "laws": [self._compared(one) for one in self.fits],
+            "error_of_cuts_left_out": self.left_out,
+            "mean_forces": [
+                {
+                    "run": one.run,
+                    "channel": one.channel,
+                    "measured_N": one.value,
+                    "standard_deviation_N": one.deviation,
+                    "predicted_N": float(predicted),
+                    "revolutions": one.turns,
+                }
+                for one, predicted in zip(self.means, self.kept.predicted, strict=True)
+            ],
+            "notes": self.notes,
+        }
+
+    @property
+    def notes(self) -> list[str]:
+        """What the reader should know."""
+        notes = [
+            "mean forces hold an offset of the dynamometer: zero it in the air, or the edge "
+            "coefficients take it up"
+        ]
+        if self.kept.signs:
+            notes.append(
+                "unknown senses of channels are those that make the coefficients positive and the "
+                "radial one smaller than the tangential one"
+            )
+        if self.linear_law_holds is False:
+            worst = min(self.straightness().items(), key=lambda item: item[1], default=None)
+            text = "the linear law leaves more than the readings scatter"
+            if worst is not None and worst[1] < _LINEAR_SHARE:
+                text += f"; least straight over the cuts is {worst[0]}, r2 {worst[1]:.2f}"
+            notes.append(text)
+            notes += self._bent_directions()
+        if any(value < 0.0 for value in self.kept.values[:3]):
+            notes.append("a cutting coefficient is below zero: a direction or a sense may be wrong")
+        if self.left_out is None:
+            notes.append("too few cuts to judge the law by one left out")
+        return notes
+
+    def _bent_directions(self) -> list[str]:
+        """Directions whose force is no line over the chip, in words."""
+        one = self.by_direction
+        if one is None:
+            return []
+        return [
+            f"the {name} force goes with the power {one.exponents[number]:.2f} of the chip"
+            for name, number in zip(_DIRECTIONS, one.law.exponents, strict=True)
+            if number >= 0
+        ]
+
+    def straightness(self) -> dict[str, float]:
+        """Share r^2 of the variance of each channel over the cuts that the linear law explains."""
+        linear = next((one for one in self.fits if one.law.name == "linear"), None)
+        if linear is None:
+            return {}
+        found = {}
+        for name in channels_of(self.means):
+            chosen = np.array([one.channel == name for one in self.means])
+            measured = np.array([one.value for one in self.means])[chosen]
+            variance = float(np.sum((measured - measured.mean()) ** 2))
+            left = float(np.sum((measured - linear.predicted[chosen]) ** 2))
+            if variance > 0.0:
+                found[name] = 1.0 - left / variance
+        return found
+
+    def _by_direction(self) -> dict[str, Any] | None:
+        one = self.by_direction
+        if one is None:
+            return None
+        forms = {
+            name: "line" if number < 0 else "power"
+            for name, number in zip(_DIRECTIONS, one.law.exponents, strict=True)
+        }
+        return {
+            "forms": forms,
+            "coefficients": self._coefficients(one),
+            "exponents": self._exponents(one),
+            "chi_square": one.chi_square,
+            "error_of_cuts_left_out": self.left_out_by_direction,
+        }
+
+    def _coefficients(self, fit: FittedLaw) -> list[dict[str, Any]]:
+        return [
+            {
+                "name": key,
+                "value": float(value) * UNITS[key[-1]][1],
+                "standard_deviation": float(deviation) * UNITS[key[-1]][1],
+                "unit": UNITS[key[-1]][0],
+            }
+            for key, value, deviation in zip(fit.law.keys, fit.values, fit.deviations, strict=False)
+        ]
+
+    def _exponents(self, fit: FittedLaw) -> list[dict[str, Any]]:
+        deviations = fit.deviations[len(fit.law.keys) :]
+        return [
+            {
+                "of": [
+                    name
+                    for name, own in zip(_DIRECTIONS, fit.law.exponents, strict=True)
+                    if own == number
+                ],
+                "value": float(value),
+                "standard_deviation": float(deviation),
+            }
+            for number, (value, deviation) in enumerate(zip(fit.exponents, deviations, strict=True))
+        ]
+
+    def _compared(self, one: FittedLaw) -> dict[str, Any]:
+        count = len(self.means)
+        freedom = count - one.law.parameters
+        return {
+            "law": one.law.name,
+            "chi_square_over_freedom": finite_or_none(
+                one.chi_square / freedom if freedom > 0 else float("nan")
+            ),
+            "criterion": finite_or_none(one.criterion(count)),
+        }
+
+    def material_toml(self) -> str:
+        """[material] section of a case file."""
+        section = tomlkit.table()
+        section.add("law", self.kept.law.law)
+        for one in self._coefficients(self.kept):
+            section.add(
+                one["name"], f"{one['value']:.5g} +- {one['standard_deviation']:.2g} {one['unit']}"
+            )
+        if self.kept.exponents.size:
+            section.add("exponent", round(float(self.kept.exponents[0]), 5))
+            section.add("h0", "0.1 mm")
+        document = tomlkit.document()
+        runs = len(self.measurement.runs)
+        document.add(tomlkit.comment(f"{self.kept.law.name} law, mean forces of {runs} cuts"))
+        document.add("material", section)
+        return tomlkit.dumps(document)
+
+    def plot(self) -> Figure:
+        """Picture of mean forces over the cuts, and the laws."""
+        return presentation("plots.coefficients").plot_coefficients(self)
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write coefficients.json, material.toml and coefficients.png."""
+        texts = {
+            "coefficients.json": as_json(self.summary()),
+            "material.toml": self.material_toml(),
+        }
+        return write_results(folder, texts, {"coefficients.png": self.plot()})

@@ -1,0 +1,79 @@
+"""Picture of cutting coefficients: mean forces of the cuts beside the laws fitted to them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from chatter.cutting_coefficients.mean_forces import channels_of
+from chatter.plots import style
+
+if TYPE_CHECKING:
+    from chatter.cutting_coefficients.result import Coefficients
+
+#: points of a curve over the feed
+_POINTS = 40
+
+
+def plot_coefficients(found: Coefficients) -> Figure:
+    """Draw the mean forces of every channel over the feed per tooth, and the law that is kept."""
+    names = channels_of(found.means)
+    figure = style.new_figure(3.6 * max(len(names), 2), 3.9)
+    figure.suptitle(
+        f"{found.measurement.title}: {found.kept.law.name} law", fontsize=11.0, x=0.01, ha="left"
+    )
+    for axes, name in zip(figure.subplots(1, len(names), squeeze=False)[0], names, strict=True):
+        _draw_channel(axes, found, name)
+    return figure
+
+
+def _draw_channel(axes: Axes, found: Coefficients, name: str) -> None:
+    own = [one for one in found.means if one.channel == name]
+    cases = {run.name: run.of(found.measurement.case) for run in found.measurement.runs}
+    feeds = np.array([1e3 * cases[one.run].cut.feed_per_tooth for one in own])
+    axes.errorbar(
+        feeds, [one.value for one in own], yerr=[2.0 * one.deviation for one in own], fmt="o",
+        color=style.BLUE, capsize=3.0, label="measured, +- 2 standard deviations",
+    )  # fmt: skip
+    if _differ_by_feed_alone(list(cases.values())):
+        line = np.linspace(0.5 * feeds.min(), 1.1 * feeds.max(), _POINTS)
+        any_case = next(iter(cases.values()))
+        for fit, colour, label in _shown(found):
+            values = [
+                fit.mean_forces_of(own[:1], any_case.patch({"cut.feed_per_tooth": 1e-3 * feed}))[0]
+                for feed in line
+            ]
+            axes.plot(line, values, color=colour, label=label)
+    else:
+        chosen = [one.channel == name for one in found.means]
+        axes.plot(feeds, found.kept.predicted[chosen], "x", color=style.RED, label="fitted")
+    axes.set_title(name, loc="left")
+    axes.set_xlabel("feed per tooth [mm]")
+    axes.set_ylabel("mean force [N]")
+    axes.set_xlim(left=0.0)
+    axes.legend(fontsize=8.0)
+
+
+def _shown(found: Coefficients):
+    """Laws that are drawn: the one kept, and the linear one beside it."""
+    shown = [(found.kept, style.RED, found.kept.law.name)]
+    linear = next((one for one in found.fits if one.law.name == "linear"), None)
+    if linear is not None and linear is not found.kept:
+        shown.append((linear, style.GREY, "linear"))
+    if found.by_direction is not None and found.by_direction.exponents.size:
+        shown.append((found.by_direction, style.GREEN, "each direction by a form of its own"))
+    return shown
+
+
+def _differ_by_feed_alone(cases: list) -> bool:
+    first = cases[0].cut
+    return all(
+        one.cut.model_copy(
+            update={"feed_per_tooth": first.feed_per_tooth, "feed_rate": first.feed_rate}
+        )
+        == first
+        for one in cases
+    )

@@ -1,0 +1,173 @@
+"""Cutting coefficients against records that were made by formulas of their own."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import chatter
+from chatter.description.case import load
+from chatter.description.errors import InputError
+from tests.command_line import chatter_command
+
+TEETH, RADIUS, DEPTH, SPEED = 3, 6e-3, 2e-3, 50.0
+TRUE = {"Ktc": 1100e6, "Krc": 350e6, "Kac": 180e6, "Kte": 18e3, "Kre": 25e3, "Kae": 5e3}
+CASE = """
+[tool]
+kind = "end mill"
+teeth = 3
+diameter = "12 mm"
+helix = "30 deg"
+[cut]
+mode = "{mode}"
+{width}
+spindle_speed = "3000 rpm"
+feed_per_tooth = "0.05 mm"
+axial_depth = "2 mm"
+"""
+
+
+def waveform(time, feed, arc, power=1.0, radial_power=1.0, axial_power=1.0):
+    """Forces on the tool (n, 3), each disc of the edge and each tooth summed; feed in m."""
+    forces = np.zeros((time.size, 3))
+    discs = 200
+    lag = math.tan(math.radians(30.0)) * DEPTH / RADIUS
+    for tooth in range(TEETH):
+        for disc in range(discs):
+            angle = np.mod(
+                2.0 * math.pi * (SPEED * time + tooth / TEETH) - lag * (disc + 0.5) / discs + 0.4,
+                2.0 * math.pi,
+            )
+            cuts = (angle > arc[0]) & (angle < arc[1])
+            chip = np.where(cuts, feed * np.sin(angle), 0.0)
+            h = np.maximum(chip, 1e-12) / 1e-4
+            ft = (TRUE["Ktc"] * 1e-4 * h**power + TRUE["Kte"]) * cuts
+            fr = (TRUE["Krc"] * 1e-4 * h**radial_power + TRUE["Kre"]) * cuts
+            fa = (TRUE["Kac"] * 1e-4 * h**axial_power + TRUE["Kae"]) * cuts
+            width = DEPTH / discs
+            # Altintas 2012, eq. 2.31: feed along x, angle clockwise from +y
+            forces[:, 0] += (-ft * np.cos(angle) - fr * np.sin(angle)) * width
+            forces[:, 1] += (ft * np.sin(angle) - fr * np.cos(angle)) * width
+            forces[:, 2] += fa * width
+    return forces
+
+
+def records(folder, arc, mode, width="", channels="", senses=(1, 1, 1), **law):
+    random = np.random.default_rng(5)
+    (folder / "case.toml").write_text(CASE.format(mode=mode, width=width), encoding="utf-8")
+    runs = []
+    time = np.arange(0.0, 0.4, 1e-4)
+    for feed in (0.03, 0.06, 0.09, 0.12):
+        forces = waveform(time, 1e-3 * feed, arc, **law) * np.array(senses)
+        forces += random.standard_normal(forces.shape) * 3.0
+        file = f"feed_{feed}.csv"
+        np.savetxt(
+            folder / file, np.c_[time, forces], delimiter=",", comments="",
+            header="time [s],Fx [N],Fy [N],Fz [N]",
+        )  # fmt: skip
+        runs.append(f'[[run]]\nfile = "{file}"\nfeed_per_tooth = "{feed} mm"\n')
+    (folder / "measurement.toml").write_text(
+        'kind = "milling"\ncase = "case.toml"\n' + channels + "".join(runs), encoding="utf-8"
+    )
+    return folder
+
+
+UP = (0.0, math.acos(1.0 - 3e-3 / RADIUS))
+UP_CUT = {"arc": UP, "mode": "up", "width": 'radial_depth = "3 mm"'}
+
+
+def in_si(summary):
+    factors = {"MPa": 1e6, "N/mm": 1e3}
+    return {one["name"]: one["value"] * factors[one["unit"]] for one in summary["coefficients"]}
+
+
+@pytest.mark.parametrize(
+    "cut", [{"arc": (0.0, math.pi), "mode": "slot"}, UP_CUT], ids=["slot", "up"]
+)
+def test_coefficients_of_a_linear_law_come_back(tmp_path, cut):
+    found = chatter.coefficients(records(tmp_path, **cut))
+    summary = found.summary()
+    assert summary["law"] == "linear"
+    assert summary["linear_law_holds"]
+    values = in_si(summary)
+    for key, true in TRUE.items():
+        assert values[key] == pytest.approx(true, rel=0.02 if key[2] == "c" else 0.04)
+    assert max(summary["error_of_cuts_left_out"].values()) < 0.02
+
+
+def test_what_is_written_is_a_section_of_a_case(tmp_path):
+    found = chatter.coefficients(records(tmp_path, **UP_CUT))
+    written = {path.name for path in found.save(tmp_path / "out")}
+    assert written == {"coefficients.json", "material.toml", "coefficients.png"}
+    text = (tmp_path / "case.toml").read_text() + (tmp_path / "out" / "material.toml").read_text()
+    (tmp_path / "whole.toml").write_text(text)
+    case = load(tmp_path / "whole.toml")
+    assert case.get("material.Ktc") == pytest.approx(TRUE["Ktc"], rel=0.02)
+    assert 0.0 < case.deviations()["material.Ktc"] < 0.05 * TRUE["Ktc"]
+
+
+def test_unknown_senses_of_a_dynamometer_are_found(tmp_path):
+    channels = "".join(
+        f'[channels.F{axis}]\nquantity = "force"\non = "workpiece"\nsign = "unknown"\n'
+        f"direction = {direction}\n"
+        for axis, direction in (("x", [0, 1, 0]), ("y", [1, 0, 0]), ("z", [0, 0, 1]))
+    )
+    folder = records(tmp_path, **UP_CUT, channels=channels)
+    for file in folder.glob("feed_*.csv"):
+        table = np.loadtxt(file, delimiter=",", skiprows=1)
+        # Fx of the rig is the force on the work against y, Fy the force on it along x
+        table = np.c_[table[:, 0], table[:, 2], -table[:, 1], table[:, 3]]
+        np.savetxt(
+            file, table, delimiter=",", comments="", header="time [s],Fx [N],Fy [N],Fz [N]"
+        )  # fmt: skip
+    summary = chatter.coefficients(folder).summary()
+    assert in_si(summary)["Ktc"] == pytest.approx(TRUE["Ktc"], rel=0.02)
+    assert in_si(summary)["Krc"] == pytest.approx(TRUE["Krc"], rel=0.02)
+    assert summary["signs"] == {"Fx": -1.0, "Fy": 1.0, "Fz": -1.0}
+
+
+def test_a_radial_force_that_levels_off_is_not_forced_onto_a_line(tmp_path):
+    summary = chatter.coefficients(records(tmp_path, **UP_CUT, radial_power=0.3)).summary()
+    assert summary["linear_law_holds"] is False
+    own = summary["by_direction"]
+    assert own["forms"]["tangential"] == "line"
+    values = {one["name"]: one["value"] for one in own["coefficients"]}
+    assert values["Ktc"] == pytest.approx(1100.0, rel=0.03)
+    assert any("linear law leaves more" in note for note in summary["notes"])
+
+
+def test_exponential_law_is_kept_where_it_holds(tmp_path, monkeypatch):
+    for key in ("Kte", "Kre", "Kae"):
+        monkeypatch.setitem(TRUE, key, 0.0)
+    laws = {"power": 0.7, "radial_power": 0.7, "axial_power": 0.7}
+    summary = chatter.coefficients(records(tmp_path, **UP_CUT, **laws)).summary()
+    assert summary["law"].startswith("exponential")
+    assert summary["exponents"][0]["value"] == pytest.approx(0.7, abs=0.02)
+    assert in_si(summary)["Ktc"] == pytest.approx(TRUE["Ktc"], rel=0.03)
+
+
+def test_the_command(tmp_path):
+    folder = records(tmp_path, **UP_CUT)
+    shown = chatter_command("coefficients", folder, "--out", tmp_path / "out")
+    assert "linear law, 4 cuts" in shown.stdout
+    given = json.loads(chatter_command("coefficients", folder, "--json").stdout)
+    assert given["law"] == "linear"
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (("0.06.csv", "none.csv"), "none.csv"),
+        (('spindle_speed = "3000 rpm"', 'spindle_speed = "300 rpm"'), "whole revolutions"),
+        # forces along y and z alone leave tangential and radial ones open
+        (("Fx [N]", "x [m]"), "determine no force law"),
+    ],
+)
+def test_what_is_wrong_is_told(tmp_path, change, told):
+    folder = records(tmp_path, **UP_CUT)
+    for file in folder.iterdir():
+        text = file.read_text()
+        file.write_text(text.replace(*change))
+    with pytest.raises(InputError, match=told):
+        chatter.coefficients(folder)
