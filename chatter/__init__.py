@@ -9,24 +9,24 @@
 
 Layers, each of which imports only those below it:
 
-============ =========================================================================
-package      responsibility
-============ =========================================================================
-cli, app     the command line, a module a command; the page in the browser
-plots        pictures of results
-report       pages of results
-cutting_coefficients  coefficients of the force law from the forces of cuts
-learning     what a few cutting tests leave possible, and the next cut
-explain      what a measurement says that its declared case lacks
-studies      what-if, uncertainty, optimisation, pitch design; executor, result cache
-stability    `lobes`, `check`: diagrams, pockets, a package for each method
-simulation   `simulate`, `frf`, `move`: a cut or a machine in the time domain
-detection    chatter or not, from signals
-engine       the time loop, its dispatch, the presets of compiled code
-compile      from a case to flat arrays: tool, forces, structure, machine
-io           file formats in and out
-description  case, machine and measurement files: keys, units, patches, errors
-============ =========================================================================
+==================== =========================================================================
+package              responsibility
+==================== =========================================================================
+cli, app             the command line, a module a command; the page in the browser
+plots                pictures of results
+report               pages of results
+cutting_coefficients coefficients of the force law from the forces of cuts
+learning             what a few cutting tests leave possible, and the next cut
+explain              what a measurement says that its declared case lacks
+studies              what-if, uncertainty, optimisation, pitch design; executor, result cache
+stability            `lobes`, `check`: diagrams, pockets, a package for each method
+simulation           `simulate`, `frf`, `move`: a cut or a machine in the time domain
+detection            chatter or not, from signals
+engine               the time loop, its dispatch, the presets of compiled code
+compile              from a case to flat arrays: tool, forces, structure, machine
+io                   file formats in and out
+description          case, machine and measurement files: keys, units, patches, errors
+==================== =========================================================================
 """
 
 from importlib import import_module

@@ -47,9 +47,9 @@ def _print_coefficients(found: Coefficients) -> None:
     ]
     title = f"{summary['law']} law, {len(found.measurement.runs)} cuts"
     print_table(title, ["coefficient", "value", "+-", "unit"], rows)
-    if summary["error_of_cuts_left_out"]:
-        worst = max(summary["error_of_cuts_left_out"].values())
-        typer.echo(f"mean forces of a cut left out are predicted to {worst:.1%} or better")
+    if summary["holdout_error"]:
+        worst = max(summary["holdout_error"].values())
+        typer.echo(f"mean forces of a cut held out are predicted to {worst:.1%} or better")
     for name, sign in summary["signs"].items():
         typer.echo(f"{name} is taken {'as it is' if sign > 0.0 else 'with its sign turned'}")
     for note in summary["notes"]:

@@ -29,7 +29,7 @@ def coefficients(
     Means over whole revolutions of the rigid tool: start angle, runout that lets no tooth miss, the
     resonances of a dynamometer and vibration drop out of them (Altintas 2012, Manufacturing
     Automation, section 2.8). Linear and exponential laws are fitted, with and without edge forces,
-    and that is kept which predicts best the cuts left out one by one (Akaike's criterion where
+    and that is kept which predicts best the cuts held out one by one (Akaike's criterion where
     there are too few). Beside it every direction is fitted by a line or a power of its own.
 
     Parameters
@@ -60,10 +60,10 @@ def coefficients(
             f"{records.folder}: {len(means)} mean forces of {len(cases)} cuts determine no force "
             "law; forces along x and y of one cut are the least"
         )
-    errors = [_left_out(fit, means, cases) for fit in fits]
+    errors = [_holdout(fit, means, cases) for fit in fits]
     kept = min(range(len(fits)), key=lambda k: _rank(fits[k], errors[k], len(means)))
     own = min(_fitted(BY_DIRECTION, means, cases), key=lambda one: one.chi_square, default=None)
-    beside = None if own is None else _left_out(own, means, cases)
+    beside = None if own is None else _holdout(own, means, cases)
     return Coefficients(records, tuple(means), tuple(fits), fits[kept], errors[kept], own, beside)
 
 
@@ -73,15 +73,13 @@ def _fitted(
     return [fit for law in laws if (fit := fitted_law(law, means, cases)) is not None]
 
 
-def _rank(
-    fit: FittedLaw, left_out: dict[str, float] | None, count: int
-) -> tuple[float, float, int]:
-    """Error of the cuts left out, where there are enough; else the criterion."""
-    error = math.inf if left_out is None else math.hypot(*left_out.values())
+def _rank(fit: FittedLaw, holdout: dict[str, float] | None, count: int) -> tuple[float, float, int]:
+    """Error of the cuts held out, where there are enough; else the criterion."""
+    error = math.inf if holdout is None else math.hypot(*holdout.values())
     return error, fit.criterion(count), fit.law.parameters
 
 
-def _left_out(
+def _holdout(
     fit: FittedLaw, means: Sequence[MeanForce], cases: dict[str, Case]
 ) -> dict[str, float] | None:
     """Error of the mean forces of each cut by the law fitted to the others, over their size."""

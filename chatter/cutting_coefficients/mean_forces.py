@@ -18,7 +18,7 @@ from chatter.explain.records.description import FORCE, Channel
 #: channels that need no description, along x, y and z of the cut, on the tool
 _USUAL = ("Fx", "Fy", "Fz")
 #: revolutions of which a mean has a scatter
-_FEWEST_TURNS = 4
+_FEWEST_REVOLUTIONS = 4
 #: share of its value by which a mean force is uncertain at the least: gain and crosstalk of a
 #: dynamometer
 _GAIN = 0.01
@@ -33,7 +33,7 @@ class MeanForce(NamedTuple):
     has_sign: bool  # whether the sense of the direction is known
     value: float  # N
     deviation: float  # standard deviation, N
-    turns: int
+    revolutions: int
 
 
 def mean_forces(measurement: Measurement) -> list[MeanForce]:
@@ -59,24 +59,24 @@ def _of_run(measurement: Measurement, run: Run) -> list[MeanForce]:
     if not channels:
         raise InputError(f"{where}: no force has a known direction; [channels.NAME] direction says")
     time = run.signals["time"]
-    count, turns = _whole_turns(own, time)
-    if turns < _FEWEST_TURNS:
+    count, revolutions = _whole_revolutions(own, time)
+    if revolutions < _FEWEST_REVOLUTIONS:
         raise InputError(
-            f"{where}: {turns} whole revolutions at {own.cut.spindle_speed_rpm:.0f} rpm; at least "
-            f"{_FEWEST_TURNS} are required"
+            f"{where}: {revolutions} whole revolutions at {own.cut.spindle_speed_rpm:.0f} rpm; at "
+            f"least {_FEWEST_REVOLUTIONS} are required"
         )
     return [
-        _mean(run, name, sense, has_sign, run.signals[name][:count], turns)
+        _mean(run, name, sense, has_sign, run.signals[name][:count], revolutions)
         for name, (sense, has_sign) in channels.items()
     ]
 
 
-def _whole_turns(case: Case, time: Array) -> tuple[int, int]:
+def _whole_revolutions(case: Case, time: Array) -> tuple[int, int]:
     """Samples of whole revolutions from the start, and how many revolutions they are."""
     period = 2.0 * math.pi / case.cut.spindle_speed
     step = float(np.median(np.diff(time)))
-    turns = int((time.size * step) / period + 1e-6)
-    return min(round(turns * period / step), time.size), turns
+    revolutions = int((time.size * step) / period + 1e-6)
+    return min(round(revolutions * period / step), time.size), revolutions
 
 
 def _mean(
@@ -85,15 +85,15 @@ def _mean(
     direction: tuple[float, float, float],
     has_sign: bool,
     values: Array,
-    turns: int,
+    revolutions: int,
 ) -> MeanForce:
     """Mean, with the scatter of the means of revolutions and what no repetition shows."""
-    edges = np.linspace(0, values.size, turns + 1).round().astype(np.intp)
+    edges = np.linspace(0, values.size, revolutions + 1).round().astype(np.intp)
     each = np.array([values[low:high].mean() for low, high in itertools.pairwise(edges)])
     value = float(values.mean())
-    scatter = float(each.std(ddof=1)) / math.sqrt(turns)
+    scatter = float(each.std(ddof=1)) / math.sqrt(revolutions)
     return MeanForce(
-        run.name, name, direction, has_sign, value, math.hypot(scatter, _GAIN * value), turns
+        run.name, name, direction, has_sign, value, math.hypot(scatter, _GAIN * value), revolutions
     )
 
 

@@ -39,11 +39,11 @@ class Coefficients:
     fits : tuple of FittedLaw
         Of all laws that the cuts determine.
     kept : FittedLaw
-    left_out : dict of str to float, or None
+    holdout : dict of str to float, or None
         Error of the mean forces of each cut by the law fitted to the others, over their size.
     by_direction : FittedLaw, optional
         Law of which every direction has its own form; no law of a case file may be so.
-    left_out_by_direction : dict of str to float, or None
+    holdout_by_direction : dict of str to float, or None
         Error by that law of each cut, fitted to the others.
     """
 
@@ -51,9 +51,9 @@ class Coefficients:
     means: tuple[MeanForce, ...]
     fits: tuple[FittedLaw, ...]
     kept: FittedLaw
-    left_out: dict[str, float] | None
+    holdout: dict[str, float] | None
     by_direction: FittedLaw | None
-    left_out_by_direction: dict[str, float] | None
+    holdout_by_direction: dict[str, float] | None
 
     def __repr__(self) -> str:
         """Short: what it holds would fill the screen."""
@@ -83,7 +83,7 @@ class Coefficients:
             "signs": self.kept.signs,
             "linear_law_holds": self.linear_law_holds,
             "laws": [self._compared(one) for one in self.fits],
-            "error_of_cuts_left_out": self.left_out,
+            "holdout_error": self.holdout,
             "mean_forces": [
                 {
                     "run": one.run,
@@ -91,7 +91,7 @@ class Coefficients:
                     "measured_N": one.value,
                     "standard_deviation_N": one.deviation,
                     "predicted_N": float(predicted),
-                    "revolutions": one.turns,
+                    "revolutions": one.revolutions,
                 }
                 for one, predicted in zip(self.means, self.kept.predicted, strict=True)
             ],
@@ -119,8 +119,8 @@ class Coefficients:
             notes += self._bent_directions()
         if any(value < 0.0 for value in self.kept.values[:3]):
             notes.append("a cutting coefficient is below zero: a direction or a sense may be wrong")
-        if self.left_out is None:
-            notes.append("too few cuts to judge the law by one left out")
+        if self.holdout is None:
+            notes.append("too few cuts to judge the law by one held out")
         return notes
 
     def _bent_directions(self) -> list[str]:
@@ -162,7 +162,7 @@ class Coefficients:
             "coefficients": self._coefficients(one),
             "exponents": self._exponents(one),
             "chi_square": one.chi_square,
-            "error_of_cuts_left_out": self.left_out_by_direction,
+            "holdout_error": self.holdout_by_direction,
         }
 
     def _coefficients(self, fit: FittedLaw) -> list[dict[str, Any]]:

@@ -93,7 +93,7 @@ def test_coefficients_of_a_linear_law_come_back(tmp_path, cut):
     values = in_si(summary)
     for key, true in TRUE.items():
         assert values[key] == pytest.approx(true, rel=0.02 if key[2] == "c" else 0.04)
-    assert max(summary["error_of_cuts_left_out"].values()) < 0.02
+    assert max(summary["holdout_error"].values()) < 0.02
 
 
 def test_what_is_written_is_a_section_of_a_case(tmp_path):
