@@ -61,8 +61,19 @@ def axial_depths(case: Case, max_depth: float) -> Array:
 def depths_at_one_speed(case: Case, zero_order: ZeroOrderLimit) -> Array:
     """Depths of the grid for the limit at the operating speed, m, beyond the operating depth."""
     max_depth = beyond_the_cut(case, maximum_depth(case, zero_order))
-    spacing = min(
-        max_depth / _DEPTHS_AT_ONE_SPEED, _SHARE_OF_LOWEST_LIMIT * zero_order.lowest_depth
-    )
-    count = min(_MOST_DEPTHS, math.ceil(max_depth / spacing))
-    return np.linspace(0.0, max_depth, count + 1)[1:]
+    # limits lie close together near the lowest one, however deep the cut is
+    near = min(max_depth, maximum_depth(case, zero_order))
+    if math.isfinite(zero_order.lowest_depth):
+        near = min(near, _MAX_DEPTH_IN_LOWEST_LIMITS * zero_order.lowest_depth)
+    depths = _evenly(near, zero_order.lowest_depth)
+    if near < max_depth:
+        beyond = _evenly(max_depth, zero_order.lowest_depth)
+        depths = np.concatenate([depths, beyond[beyond > depths[-1] * (1.0 + 1e-9)]])
+    return depths
+
+
+def _evenly(depth: float, lowest_limit: float) -> Array:
+    """Evenly spaced depths down to one, m."""
+    spacing = min(depth / _DEPTHS_AT_ONE_SPEED, _SHARE_OF_LOWEST_LIMIT * lowest_limit)
+    count = min(_MOST_DEPTHS, math.ceil(depth / spacing))
+    return np.linspace(0.0, depth, count + 1)[1:]

@@ -158,3 +158,10 @@ def test_threads_do_not_change_a_byte(monkeypatch):
         monkeypatch.setattr("chatter.engine.parallel.worker_count", lambda n=threads: n)
         results.append(chatter.lobes(case).limits.critical_depth.tobytes())
     assert results[0] == results[1]
+
+
+@pytest.mark.parametrize("depth", ["1 mm", "60 mm", "200 mm"])
+def test_the_first_limit_is_found_however_deep_the_cut_is(depth):
+    """The unstable depths from 2.105 to 2.311 mm lie between two of a thousand over 200 mm."""
+    case = tool_of_922_hertz().patch({"cut.axial_depth": depth})
+    assert chatter.check(case).critical_depth == pytest.approx(2.10469e-3, rel=1e-5)
