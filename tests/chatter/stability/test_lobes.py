@@ -165,3 +165,32 @@ def test_the_first_limit_is_found_however_deep_the_cut_is(depth):
     """The unstable depths from 2.105 to 2.311 mm lie between two of a thousand over 200 mm."""
     case = tool_of_922_hertz().patch({"cut.axial_depth": depth})
     assert chatter.check(case).critical_depth == pytest.approx(2.10469e-3, rel=1e-5)
+
+
+def test_methods_agree_on_the_chatter_frequency_at_low_speed():
+    """Many folds of the period: the root's dip is narrower than that at a natural frequency."""
+    two = {"damping": 0.03, "stiffness": "12 N/um"}
+    case = chatter.Case.from_dict(
+        {
+            "tool": {"teeth": 4, "diameter": "16 mm", "helix": "40 deg"},
+            "material": {"Ktc": "1900 MPa", "Krc": "700 MPa", "Kte": "25 N/mm", "Kre": "40 N/mm"},
+            "cut": {
+                "mode": "down",
+                "radial_depth": "8 mm",
+                "axial_depth": "0.5 mm",
+                "spindle_speed": "300 rpm",
+                "feed_per_tooth": "0.08 mm",
+            },
+            "structure": {
+                "mode": [
+                    {**two, "frequency": "900 Hz", "direction": [1, 0, 0]},
+                    {**two, "frequency": "950 Hz", "direction": [0, 1, 0]},
+                ]
+            },
+        }
+    )
+    by_elements, by_harmonics = (
+        chatter.check(case, method=name).limit for name in ("collocation", "multi-frequency")
+    )
+    assert by_harmonics.critical_depth == pytest.approx(by_elements.critical_depth, rel=1e-3)
+    assert by_harmonics.chatter_frequency == pytest.approx(by_elements.chatter_frequency, rel=1e-3)

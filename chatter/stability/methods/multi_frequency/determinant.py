@@ -27,6 +27,8 @@ _FEWEST_LINES = 24
 FINEST_STEP = 1e-7
 #: frequencies at which the determinant at a limit is evaluated, four times around its least
 _LINES_SEARCHED = 41
+#: least values of the determinant around which the root is looked for
+_DIPS_FOLLOWED = 6
 
 
 class FrequencyResponse(NamedTuple):
@@ -142,17 +144,32 @@ def chatter_frequency(response, harmonics, speed, base, count, marks):
     rank = response.receptance.shape[1]
     size = (2 * count + 2) * rank
     matrix = np.empty((size, size), dtype=np.complex128)
-    best, position, low, high = np.inf, 0.0, 0.0, 0.5 * base
-    grid = np.sort(np.append(marks, np.linspace(0.0, high, _LINES_SEARCHED)))
-    for _ in range(4):
-        best = np.inf
-        for i in range(grid.shape[0]):
-            _loop(response, harmonics, speed, base, grid[i], count, matrix)
-            value = abs(np.linalg.det(matrix))
-            if value < best:
-                best, position = value, grid[i]
-                low, high = grid[max(0, i - 1)], grid[min(grid.shape[0] - 1, i + 1)]
-        grid = np.linspace(low, high, _LINES_SEARCHED)
+    coarse = np.sort(np.append(marks, np.linspace(0.0, 0.5 * base, _LINES_SEARCHED)))
+    last = coarse.shape[0] - 1
+    size_at = np.empty(last + 1)
+    for i in range(last + 1):
+        _loop(response, harmonics, speed, base, coarse[i], count, matrix)
+        size_at[i] = abs(np.linalg.det(matrix))
+    best, position, tried = np.inf, 0.0, 0
+    # the dip at the root may be narrower than another that does not reach zero
+    for i in np.argsort(size_at):
+        before, after = size_at[max(0, i - 1)], size_at[min(last, i + 1)]
+        if size_at[i] > before or size_at[i] > after or tried == _DIPS_FOLLOWED:
+            continue
+        tried += 1
+        low, high = coarse[max(0, i - 1)], coarse[min(last, i + 1)]
+        here, at = size_at[i], coarse[i]
+        for _ in range(3):
+            grid = np.linspace(low, high, _LINES_SEARCHED)
+            for j in range(grid.shape[0]):
+                _loop(response, harmonics, speed, base, grid[j], count, matrix)
+                value = abs(np.linalg.det(matrix))
+                if value <= here:
+                    here, at = value, grid[j]
+                    low = grid[max(0, j - 1)]
+                    high = grid[min(grid.shape[0] - 1, j + 1)]
+        if here < best:
+            best, position = here, at
     _loop(response, harmonics, speed, base, position, count, matrix)
     vector = np.ones(size, dtype=np.complex128)
     for i in range(size):
