@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from chatter.io.shipped_examples import examples as examples
     from chatter.learning.learn import learn as learn
     from chatter.simulation.simulate import simulate as simulate
+    from chatter.simulation.virtual_tests.export import export as export
     from chatter.simulation.virtual_tests.from_file import frf as frf
     from chatter.simulation.virtual_tests.from_file import move as move
     from chatter.stability.case_schema import schema as schema
@@ -68,6 +69,7 @@ _PUBLIC = {
     "check": "chatter.stability.check",
     "compare": "chatter.explain.comparison",
     "examples": "chatter.io.shipped_examples",
+    "export": "chatter.simulation.virtual_tests.export",
     "frf": "chatter.simulation.virtual_tests.from_file",
     "learn": "chatter.learning.learn",
     "load": "chatter.description.case",

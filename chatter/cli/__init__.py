@@ -38,6 +38,7 @@ COMMANDS = (
     "coefficients",
     "frf",
     "move",
+    "export",
     "materials",
     "examples",
     "schema",

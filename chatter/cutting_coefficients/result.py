@@ -216,6 +216,8 @@ class Coefficients:
         document = tomlkit.document()
         runs = len(self.measurement.runs)
         document.add(tomlkit.comment(f"{self.kept.law.name} law, mean forces of {runs} cuts"))
+        if self.linear_law_holds is False and self.kept.law.law == "linear":
+            document.add(tomlkit.comment("the linear law leaves more than the readings scatter"))
         document.add("material", section)
         return tomlkit.dumps(document)
 

@@ -238,15 +238,12 @@ class Case(Description):
         Paths that begin with "machine." lead into the machine. A cut that becomes a slot is as wide
         as the tool.
         """
-        of_machine = {
-            path.removeprefix(MACHINE_PATH): value
-            for path, value in values.items()
-            if path.startswith(MACHINE_PATH)
-        }
-        if of_machine:
-            own = {key: value for key, value in values.items() if not key.startswith(MACHINE_PATH)}
+        into = [str(path) for path in values if str(path).startswith(MACHINE_PATH)]
+        if into:
+            own = {path: value for path, value in values.items() if path not in into}
             moved = self.patch(own) if own else self
-            moved.require_machine(next(iter(of_machine)))
+            moved.require_machine(into[0])
+            of_machine = {path.removeprefix(MACHINE_PATH): values[path] for path in into}
             return moved.with_machine(moved.machine_file().patch(of_machine))
         if values.get(_MODE) == "slot" and self.cut is not None:
             given = [key for key in ENGAGEMENT_KEYS if getattr(self.cut, key) is not None]

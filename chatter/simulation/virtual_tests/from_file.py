@@ -166,12 +166,12 @@ def _one_frf(
         in_words(section),
         harmonic,
         tested,
-        "torque" if _turns(file, section.excite) else "force",
-        "rotation" if _turns(file, section.read or section.excite) else "displacement",
+        "torque" if is_rotation(file, section.excite) else "force",
+        "rotation" if is_rotation(file, section.read or section.excite) else "displacement",
     )
 
 
-def _turns(file: MachineFile, text: str) -> bool:
+def is_rotation(file: MachineFile, text: str) -> bool:
     """Whether a place of a test is a motor that turns, or a rotation."""
     place = parse_tested_point(text)
     if place.motor is not None:
@@ -246,12 +246,13 @@ def _rows(
     where: str, machine: Machine, section: FrfSection
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return (
-        _row(f"{where}.excite", machine, section.excite),
-        _row(f"{where}.read", machine, section.read or section.excite),
+        row_of_point(f"{where}.excite", machine, section.excite),
+        row_of_point(f"{where}.read", machine, section.read or section.excite),
     )
 
 
-def _row(where: str, machine: Machine, text: str) -> NDArray[np.float64]:
+def row_of_point(where: str, machine: Machine, text: str) -> NDArray[np.float64]:
+    """Row over the coordinates of a machine that gives the motion of a point such as "table:y"."""
     place = parse_tested_point(text)
     if place.motor is not None:
         rows = [drive.row for drive in machine.drives if drive.axis == place.motor]

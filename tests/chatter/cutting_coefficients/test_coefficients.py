@@ -147,7 +147,8 @@ def test_exponential_law_is_kept_where_it_holds(tmp_path, monkeypatch):
     assert in_si(summary)["Ktc"] == pytest.approx(TRUE["Ktc"], rel=0.03)
 
 
-def test_the_command(tmp_path):
+def test_the_command(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     folder = records(tmp_path, **UP_CUT)
     shown = chatter_command("coefficients", folder, "--out", tmp_path / "out")
     assert "linear law, 4 cuts" in shown.stdout
