@@ -16,6 +16,7 @@ cli, app             the command line, a module a command; the page in the brows
 plots                pictures of results
 report               pages of results
 cutting_coefficients coefficients of the force law from the forces of cuts
+monitoring           chatter in recordings of cuts, and what to do about it
 learning             what a few cutting tests leave possible, and the next cut
 explain              what a measurement says that its declared case lacks
 studies              what-if, uncertainty, optimisation, pitch design; executor, result cache
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     from chatter.explain.comparison import compare as compare
     from chatter.io.shipped_examples import examples as examples
     from chatter.learning.learn import learn as learn
+    from chatter.monitoring.detect import detect as detect
     from chatter.simulation.simulate import simulate as simulate
     from chatter.simulation.virtual_tests.export import export as export
     from chatter.simulation.virtual_tests.from_file import frf as frf
@@ -68,6 +70,7 @@ _PUBLIC = {
     "coefficients": "chatter.cutting_coefficients.identify",
     "check": "chatter.stability.check",
     "compare": "chatter.explain.comparison",
+    "detect": "chatter.monitoring.detect",
     "examples": "chatter.io.shipped_examples",
     "export": "chatter.simulation.virtual_tests.export",
     "frf": "chatter.simulation.virtual_tests.from_file",

@@ -36,6 +36,7 @@ COMMANDS = (
     "explain",
     "learn",
     "coefficients",
+    "detect",
     "frf",
     "move",
     "export",

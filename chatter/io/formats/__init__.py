@@ -12,6 +12,7 @@ csv             tables with names and units in the heading
 frf_columns     FRFs of the columns of a table
 npz             arrays by name, matrices                                     numpy, scipy.sparse
 tdms            channels of LabVIEW files                                    npTDMS
+wav             sound and other records of recorders                         RIFF WAVE
 matrix_market   matrices of finite element programs                          NIST Matrix Market
 =============== ============================================================ ===================
 

@@ -11,12 +11,13 @@ from chatter.io.formats.matrix_market import MATRIX_MARKET
 from chatter.io.formats.npz import NPZ
 from chatter.io.formats.tdms import TDMS
 from chatter.io.formats.uff58 import UFF58
+from chatter.io.formats.wav import WAV
 from dynamics.frf.container import Frf, MeasurementError
 
 FORMATS: Registry[Format] = Registry(
     group="chatter.formats",
     what="file format",
-    built_in=(UFF58, CUTPRO, CSV, NPZ, TDMS, MATRIX_MARKET),
+    built_in=(UFF58, CUTPRO, CSV, NPZ, TDMS, WAV, MATRIX_MARKET),
 )
 #: enough of a file to recognise its format
 _HEAD_BYTES = 65536

@@ -1,0 +1,99 @@
+"""`chatter detect RECORDING`: chatter or not over a recording, and what to do about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from chatter.cli import options
+from chatter.cli.options_as_one import takes_options
+from chatter.cli.progress import running
+from chatter.cli.results import present
+from chatter.report.console import print_line, print_table
+
+if TYPE_CHECKING:
+    from chatter.monitoring.result import DetectedChatter
+
+#: verdicts whose reason is printed
+_EXPLAINED = ("chatter", "not judged")
+
+
+@dataclass(frozen=True)
+class DetectOptions:
+    """What `chatter detect` is given."""
+
+    recording: Annotated[
+        Path,
+        typer.Argument(
+            metavar="RECORDING",
+            help="Sound, acceleration, force, displacement, current or power over time: WAV, CSV, "
+            "TDMS, UFF-58, NPZ.",
+        ),
+    ]
+    spindle_speed: Annotated[
+        str | None,
+        typer.Option("--spindle-speed", help='As set, such as "1656 rpm"; the lines refine it.'),
+    ] = None
+    teeth: Annotated[int | None, typer.Option("--teeth", help="Number of teeth.")] = None
+    case: Annotated[
+        Path | None,
+        typer.Option("--case", help="Case of the cut: speed, teeth, mode, stable speeds."),
+    ] = None
+    channel: Annotated[
+        list[str] | None,
+        typer.Option("--channel", metavar="NAME", help="Column to use; repeatable."),
+    ] = None
+    sampling_rate: Annotated[
+        str | None,
+        typer.Option("--sampling-rate", help='Of a file without time, such as "25.6 kHz".'),
+    ] = None
+    assignments: options.Assignments = None
+    out: options.OutputFolder = None
+    json: options.Json = False
+
+
+@takes_options
+def detect(options_: DetectOptions) -> None:
+    """Detect chatter in a recording: segments, frequency, and the speeds to try."""
+    case = None
+    if options_.case is not None:
+        case = options.patched_case(options_.case, options_.assignments)
+    from chatter.monitoring.detect import detect as run_detect
+
+    with running("spectra and verdicts"):
+        found = run_detect(
+            options_.recording,
+            spindle_speed=options_.spindle_speed,
+            teeth=options_.teeth,
+            case=case,
+            channels=tuple(options_.channel or ()),
+            sampling_rate=options_.sampling_rate,
+        )
+    folder = options.output_folder(options_.out, options_.recording.stem)
+    present(found, folder, json=options_.json, words=_print_detection, notes=found.notes)
+
+
+def _print_detection(found: DetectedChatter) -> None:
+    rows = [
+        [
+            f"{one['from_s']:.2f} to {one['to_s']:.2f}",
+            one["verdict"],
+            "" if one["chatter_frequency_Hz"] is None else f"{one['chatter_frequency_Hz']:.1f}",
+            "" if one["bifurcation"] == "none" else one["bifurcation"],
+            f"{one['confidence']:.2f}",
+        ]
+        for one in found.summary()["segments"]
+    ]
+    print_table(
+        f"{found.recording.name}: {found.verdict}",
+        ["time [s]", "verdict", "chatter [Hz]", "bifurcation", "confidence"],
+        rows,
+    )
+    for reason in dict.fromkeys(one.reason for one in found.segments if one.verdict in _EXPLAINED):
+        print_line(reason)
+    if found.advice is not None:
+        for sentence in found.advice.sentences:
+            print_line(sentence)

@@ -1,0 +1,14 @@
+"""Chatter or not from the spectra of a recording: sound, acceleration, force, current or power.
+
+==================== =========================================================================
+module               responsibility
+==================== =========================================================================
+recording            `Recording`: channels over time, what they are of
+spectra              power spectra of short frames, their noise floor
+revolution_frequency frequency of the spindle by the spacing of lines, or by a tacho
+chatter_lines        the strongest line off the harmonics: its share, its sidebands
+activity             frames in which nothing is cut
+frame_evidence       all of this over the frames of a recording
+segments             segments of one verdict, their frequency, bifurcation and confidence
+==================== =========================================================================
+"""

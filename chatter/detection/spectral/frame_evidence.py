@@ -1,0 +1,137 @@
+"""What the frames of a recording say: speed, activity, and the line off the harmonics of each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.detection.spectral.activity import activity_levels, idle_frames
+from chatter.detection.spectral.chatter_lines import ChatterLine, Comb, strongest_line
+from chatter.detection.spectral.recording import Recording
+from chatter.detection.spectral.revolution_frequency import (
+    Revolution,
+    about_given,
+    from_spectrum,
+    from_tacho,
+)
+from chatter.detection.spectral.spectra import Frames, frames_of
+
+Array = NDArray[np.float64]
+
+#: revolutions of a frame, at the most and at the least, and frames that a recording should hold
+_REVOLUTIONS, _FEWEST_REVOLUTIONS, _FRAMES = 24.0, 10.0, 4.0
+#: revolutions of the longer frames that the mean speed is read off
+_LONG = 96.0
+#: length below which a frame holds no more than a burst of a lightly damped mode, s
+_SHORTEST = 0.25
+#: length of frames while the speed is not known, s
+_UNKNOWN = 1.0
+#: frames that overlap: hop over length
+_HOP = 0.25
+#: least ratio of a line to what is there at rest
+_RATIO_AT_REST = 10.0
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """What the frames of a recording say.
+
+    Attributes
+    ----------
+    frames : Frames
+    revolution : Revolution or None
+        None where the speed is neither given nor to be read off the lines.
+    teeth : int or None
+    lines : tuple of ChatterLine
+        Of each frame; empty without a speed.
+    levels : (m,) array of float
+        Activity, dB above the quiet frames.
+    idle : (m,) array of bool or None
+        None where the levels of the frames make no two classes.
+    """
+
+    frames: Frames
+    revolution: Revolution | None
+    teeth: int | None
+    lines: tuple[ChatterLine, ...]
+    levels: Array
+    idle: NDArray[np.bool_] | None
+
+    def comb(self, row: int) -> Comb:
+        """Harmonics of the spindle in a frame."""
+        return comb_of(self.revolution, self.teeth, float(self.revolution.frequency[row]), self)
+
+    def above_rest(self, frequency: float, row: int) -> bool | None:
+        """Whether a line is far above what is there at rest; None where no frame is at rest."""
+        if self.idle is None or not self.idle.any():
+            return None
+        near = np.abs(self.frames.frequency - frequency) < self.frames.half_width
+        own = float(self.frames.power[row, near].sum())
+        rest = float(np.median(self.frames.power[self.idle][:, near].sum(axis=1)))
+        return own > _RATIO_AT_REST * rest
+
+
+def comb_of(revolution: Revolution, teeth: int | None, frequency: float, of: Evidence) -> Comb:
+    """Harmonics of a frequency of the spindle, Hz."""
+    return Comb(frequency, frequency * (teeth or 1), revolution.uncertainty, of.frames.half_width)
+
+
+def evidence_of(
+    recording: Recording, spindle_frequency: float | None, teeth: int | None
+) -> Evidence:
+    """Spectra, speed, activity and lines of a recording.
+
+    Parameters
+    ----------
+    recording : Recording
+    spindle_frequency : float or None
+        Hz, as set; None where it is not known.
+    teeth : int or None
+    """
+    frames, revolution = _with_speed(recording, spindle_frequency, teeth)
+    levels = activity_levels(frames)
+    bare = Evidence(frames, revolution, teeth, (), levels, idle_frames(levels))
+    if revolution is None:
+        return bare
+    lines = tuple(
+        strongest_line(power, logarithm, frames.frequency, bare.comb(row))
+        for row, (power, logarithm) in enumerate(zip(frames.power, frames.above, strict=True))
+    )
+    return Evidence(frames, revolution, teeth, lines, levels, bare.idle)
+
+
+def _with_speed(
+    recording: Recording, given: float | None, teeth: int | None
+) -> tuple[Frames, Revolution | None]:
+    """Frames of so many revolutions, and the speed over them."""
+    if given is not None:
+        frames = _frames(recording, given, _REVOLUTIONS)
+    else:
+        length = min(_UNKNOWN, recording.duration)
+        frames = frames_of(recording, length, _HOP * length)
+    if recording.tacho is not None:
+        found = from_tacho(recording.tacho, recording.time_step, recording.start, frames)
+        if found is not None:
+            frames = _frames(recording, found.mean, _REVOLUTIONS)
+            again = from_tacho(recording.tacho, recording.time_step, recording.start, frames)
+            return frames, again
+    if given is not None:
+        long = _frames(recording, given, _LONG)
+        return frames, about_given(long, frames, given, teeth or 1)
+    found = from_spectrum(frames, teeth)
+    if found is None:
+        return frames, None
+    frames, long = _frames(recording, found, _REVOLUTIONS), _frames(recording, found, _LONG)
+    again = about_given(long, frames, found, teeth or 1)
+    return frames, again._replace(source="spectrum", may_be_multiple=True)
+
+
+def _frames(recording: Recording, frequency: float, most: float) -> Frames:
+    """Frames of so many revolutions at the most; fewer where the recording is short."""
+    revolutions = recording.duration * frequency
+    longest = max(most, _SHORTEST * frequency)
+    wanted = min(max(revolutions / _FRAMES, _FEWEST_REVOLUTIONS), longest, revolutions)
+    length = wanted / frequency
+    return frames_of(recording, length, _HOP * length)

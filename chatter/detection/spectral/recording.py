@@ -1,0 +1,83 @@
+"""A recording: channels over time, what they are of."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.description.errors import InputError
+
+#: quantity of a channel -> power of the frequency that makes it comparable with a velocity or a
+#: sound, in which a chatter line of the structure and the harmonics of the teeth are alike in size
+SLOPES = {
+    "sound": 0.0,
+    "acceleration": 0.0,
+    "velocity": 0.0,
+    "displacement": 1.0,
+    "force": 1.0,
+    "torque": 1.0,
+    "current": 1.0,
+    "power": 1.0,
+    "unknown": 0.0,
+}
+#: samples that are of any use
+_FEWEST = 256
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """Channels over time, at a uniform step.
+
+    Parameters
+    ----------
+    name : str
+        As in messages: the file.
+    time_step : float
+        s.
+    channels : tuple of str
+        Names.
+    quantities : tuple of str
+        Of each channel, a key of `SLOPES`.
+    values : (n, k) array of float
+    start : float
+        s, time of the first sample.
+    tacho : (n,) array of float or None
+        Once-per-revolution signal.
+
+    Raises
+    ------
+    InputError
+        If there are too few samples, or some are not finite.
+    """
+
+    name: str
+    time_step: float
+    channels: tuple[str, ...]
+    quantities: tuple[str, ...]
+    values: NDArray[np.float64]
+    start: float = 0.0
+    tacho: NDArray[np.float64] | None = None
+
+    def __post_init__(self) -> None:
+        count = len(self.values)
+        if count < _FEWEST:
+            raise InputError(f"{self.name}: {count} samples; at least {_FEWEST} are needed")
+        for number, channel in enumerate(self.channels):
+            wrong = np.flatnonzero(~np.isfinite(self.values[:, number]))
+            if wrong.size:
+                raise InputError(f"{self.name}: {channel}: sample {wrong[0] + 1} is not finite")
+        if not (math.isfinite(self.time_step) and self.time_step > 0.0):
+            raise InputError(f"{self.name}: the time does not increase")
+
+    @property
+    def duration(self) -> float:
+        """Length in s."""
+        return len(self.values) * self.time_step
+
+    @property
+    def slopes(self) -> tuple[float, ...]:
+        """Power of the frequency by which each channel is weighted."""
+        return tuple(SLOPES[one] for one in self.quantities)

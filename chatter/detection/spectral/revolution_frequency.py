@@ -1,0 +1,219 @@
+"""Frequency of the spindle's revolution by the spacing of lines, or by a tacho."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import scipy.fft
+from numpy.typing import NDArray
+
+from chatter.detection.spectral.chatter_lines import MOST_TEETH, Comb, harmonics_significance
+from chatter.detection.spectral.spectra import Frames, mean_of
+
+Array = NDArray[np.float64]
+
+#: logarithm above the floor from which a bin counts, and at most
+_COUNTS, _AT_MOST = 1.5, 5.0
+#: multiples of the spacing that are added up, at the least and per tooth
+_MULTIPLES, _PER_TOOTH = 20, 4
+#: share of the range of frequencies up to which spacings are taken
+_RANGE = 0.5
+
+
+class Spacing(NamedTuple):
+    """The spacing of lines, and how sure it is."""
+
+    frequency: float  # Hz
+    score: float  # mean autocorrelation at its multiples
+    significance: float  # standard deviations above the scores of other spacings
+
+
+def line_autocorrelations(frames: Frames) -> Array:
+    """Autocorrelation over frequency of what stands above the floor, of each frame, (m, b).
+
+    Lines at c + k f, whatever c is, put peaks at the multiples of f: harmonics of the spindle do,
+    and so does a chatter frequency with its sidebands.
+    """
+    lines = np.clip(frames.above - _COUNTS, 0.0, _AT_MOST)
+    lines -= lines.mean(axis=1, keepdims=True)
+    count = frames.frequency.size
+    size = scipy.fft.next_fast_len(2 * count, real=True)
+    spectra = np.abs(scipy.fft.rfft(lines, size)) ** 2
+    found = scipy.fft.irfft(spectra, size)[:, :count]
+    return found / np.maximum(found[:, :1], 1e-300)
+
+
+def spacing_scores(autocorrelation: Array, step: float, spacings: Array, teeth: int) -> Array:
+    """Mean autocorrelation at the multiples of each spacing, Hz."""
+    highest = _RANGE * autocorrelation.size * step
+    most = max(_MULTIPLES, _PER_TOOTH * teeth)
+    at = spacings[:, None] * np.arange(1, most + 1)
+    inside = at < highest
+    inside[:, 0] = True
+    values = np.interp(at / step, np.arange(autocorrelation.size), autocorrelation)
+    norm = autocorrelation[0] if autocorrelation[0] > 0.0 else 1.0
+    return np.sum(values * inside, axis=1) / inside.sum(axis=1) / norm
+
+
+def best_spacing(
+    autocorrelation: Array, step: float, low: float, high: float, teeth: int = 1
+) -> Spacing:
+    """Spacing between two frequencies, Hz, with the largest score."""
+    finest = step / (4.0 * max(_MULTIPLES, _PER_TOOTH * teeth))
+    count = max(int((high - low) / finest), 8) + 1
+    spacings = np.linspace(low, high, count)
+    scores = spacing_scores(autocorrelation, step, spacings, teeth)
+    best = int(np.argmax(scores))
+    others = scores[np.abs(spacings - spacings[best]) > 2.0 * step]
+    if others.size < 8:
+        return Spacing(float(spacings[best]), float(scores[best]), math.nan)
+    centre = float(np.median(others))
+    spread = 1.4826 * float(np.median(np.abs(others - centre))) or 1e-12
+    return Spacing(
+        float(spacings[best]), float(scores[best]), (float(scores[best]) - centre) / spread
+    )
+
+
+class Revolution(NamedTuple):
+    """Frequency of the spindle over the frames, and where it is from."""
+
+    frequency: Array  # (m,) Hz, of each frame
+    uncertainty: float  # relative
+    source: str  # "tacho", "given", "given, refined by the spectrum" or "spectrum"
+    mean: float  # Hz, over the recording
+    #: of the spectrum alone: the spacing of lines may be that of several teeth
+    may_be_multiple: bool = False
+
+
+#: standard deviations from which a spacing is believed, alone and beside a given speed
+CERTAIN, _PLAUSIBLE = 10.0, 8.0
+#: range about a given speed in which the true one is searched; the near part of it is preferred
+#: unless the rest scores better by a factor
+ABOUT_GIVEN, _NEAR_GIVEN, _BETTER = 0.12, 0.015, 1.4
+#: relative uncertainty of a frequency given, read off a spectrum, and by a tacho
+_GIVEN, _READ, _BY_TACHO = 5e-3, 1e-3, 5e-4
+#: relative variation of the speed from frame to frame that is followed, and frames taken together
+_VARIATION, _TOGETHER = 0.015, 1
+#: lowest and highest frequency of a spindle, Hz
+_SLOWEST, _FASTEST = 3.0, 700.0
+
+
+def about_given(long: Frames, frames: Frames, given: float, teeth: int) -> Revolution:
+    """Frequency over the frames, where one is given, Hz: the lines near it decide.
+
+    What is set on the machine, and what a note says, may be some percent off. The mean is read off
+    longer frames, in which lines lie further apart for their width.
+    """
+    everywhere = line_autocorrelations(long).sum(axis=0)
+    bounds = given * (1.0 - ABOUT_GIVEN), given * (1.0 + ABOUT_GIVEN)
+    found = best_spacing(everywhere, long.step, *bounds, teeth)
+    near = best_spacing(
+        everywhere, long.step, given * (1.0 - _NEAR_GIVEN), given * (1.0 + _NEAR_GIVEN), teeth
+    )
+    if not found.significance > _PLAUSIBLE:
+        return Revolution(np.full(frames.time.size, given), _GIVEN, "given", given)
+    mean = near.frequency
+    if found.score > _BETTER * near.score and _explains_more(long, found, near, teeth):
+        mean = found.frequency
+    return _over_frames(frames, mean, teeth, "given, refined by the spectrum")
+
+
+def _explains_more(frames: Frames, one: Spacing, other: Spacing, teeth: int) -> bool:
+    """Whether harmonics of one spacing stand out more: chatter lines lie as far from each other."""
+    _, above = mean_of(frames, slice(None))
+    first, second = (
+        harmonics_significance(
+            above,
+            frames.frequency,
+            Comb(found.frequency, teeth * found.frequency, 0.0, frames.half_width),
+        )
+        for found in (one, other)
+    )
+    return first > second
+
+
+def from_spectrum(frames: Frames, teeth: int | None) -> float | None:
+    """Frequency, Hz, by the spacing of lines alone; None where no spacing stands out.
+
+    The spacing may be that of the teeth or of a part of them: its whole fractions are tried for
+    lines of their own, which runout and unequal inserts bring.
+    """
+    everywhere = line_autocorrelations(frames).sum(axis=0)
+    slowest = max(_SLOWEST, 3.0 * frames.half_width)
+    found = best_spacing(everywhere, frames.step, slowest, _FASTEST, 1)
+    if not found.significance > CERTAIN:
+        return None
+    most = MOST_TEETH if teeth is None else max(teeth, 1)
+    fractions = [
+        parts
+        for parts in range(2, most + 1)
+        if found.frequency / parts > slowest
+        and _has_own_lines(everywhere, frames.step, found.frequency, parts)
+    ]
+    return found.frequency / max(fractions, default=1)
+
+
+def _has_own_lines(autocorrelation: Array, step: float, spacing: float, parts: int) -> bool:
+    """Whether lines lie a fraction of a spacing apart that no coarser spacing explains."""
+    orders = np.arange(1, parts * max(_MULTIPLES // parts, 4) + 1)
+    orders = orders[np.gcd(orders, parts) == 1]
+    at = orders * spacing / parts
+    at = at[at < _RANGE * autocorrelation.size * step]
+    if at.size < 2:
+        return False
+    bins = np.arange(autocorrelation.size)
+    own = np.interp(at / step, bins, autocorrelation).mean()
+    shifts = np.linspace(0.2, 0.8, 40) * spacing / parts
+    others = np.array([np.interp((at + s) / step, bins, autocorrelation).mean() for s in shifts])
+    return bool(own > others.mean() + _PLAUSIBLE * max(float(others.std()), 1e-12))
+
+
+def _over_frames(frames: Frames, mean: float, teeth: int, source: str) -> Revolution:
+    """Follow the spacing from frame to frame where another than the mean is certain."""
+    count = frames.time.size
+    found = np.full(count, np.nan)
+    each = line_autocorrelations(frames)
+    for row in range(count):
+        together = each[max(row - _TOGETHER, 0) : row + _TOGETHER + 1].sum(axis=0)
+        found[row] = _of_frames(together, frames.step, mean, teeth)
+    certain = np.isfinite(found)
+    if not certain.any():
+        return Revolution(np.full(count, mean), _READ, source, mean)
+    followed = np.interp(np.arange(count), np.flatnonzero(certain), found[certain])
+    return Revolution(followed, _READ, source, mean)
+
+
+def _of_frames(autocorrelation: Array, step: float, mean: float, teeth: int) -> float:
+    """Spacing near the mean, nan where none is certain; the mean where nothing is much better."""
+    bounds = mean * (1.0 - ABOUT_GIVEN), mean * (1.0 + ABOUT_GIVEN)
+    found = best_spacing(autocorrelation, step, *bounds, teeth)
+    if not found.significance > _PLAUSIBLE or abs(found.frequency / mean - 1.0) > _VARIATION:
+        return math.nan
+    own = best_spacing(autocorrelation, step, mean * (1.0 - _READ), mean * (1.0 + _READ), teeth)
+    return own.frequency if found.score < _BETTER * own.score else found.frequency
+
+
+def from_tacho(tacho: Array, time_step: float, start: float, frames: Frames) -> Revolution | None:
+    """Frequency over the frames by the rising edges of a once-per-revolution signal."""
+    low, high = np.quantile(tacho, [0.02, 0.98])
+    if not high > low:
+        low, high = float(tacho.min()), float(tacho.max())
+    above = tacho > 0.5 * (low + high)
+    edges = np.flatnonzero(above[1:] & ~above[:-1]) + 1
+    if edges.size < 3:
+        return None
+    level = 0.5 * (low + high)
+    before, after = tacho[edges - 1], tacho[edges]
+    times = start + (edges - 1 + (level - before) / (after - before)) * time_step
+    middle = 0.5 * (times[1:] + times[:-1])
+    frequency = 1.0 / np.diff(times)
+    mean = (times.size - 1) / (times[-1] - times[0])
+    over = [
+        frequency[np.abs(middle - t) <= 0.5 * frames.length].mean()
+        if (np.abs(middle - t) <= 0.5 * frames.length).any()
+        else mean
+        for t in frames.time
+    ]
+    return Revolution(np.array(over), _BY_TACHO, "tacho", float(mean))

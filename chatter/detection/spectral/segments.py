@@ -1,0 +1,376 @@
+"""Segments of one verdict: chatter, stable, idle or not judged, with what each verdict rests on."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chatter.detection.spectral.chatter_lines import (
+    harmonics_significance,
+    is_half_tooth,
+    strongest_line,
+    tooth_powers,
+)
+from chatter.detection.spectral.frame_evidence import Evidence
+from chatter.detection.spectral.revolution_frequency import ABOUT_GIVEN
+from chatter.detection.spectral.spectra import mean_of
+
+CHATTER, STABLE, IDLE, NOT_JUDGED = "chatter", "stable", "idle", "not judged"
+
+#: share of the power off the harmonics from which chatter begins, and down to which it goes on
+_BEGINS, _GOES_ON = 0.3, 0.15
+#: relative change of the line from frame to frame that is one line
+_SAME_LINE = 0.02
+#: frames that chatter lasts at the least, where there are as many
+_LASTS = 5
+#: standard deviations of the sidebands over a segment, and where all else is of a cut; the share of
+#: the line itself that does without them where it is far above what is there at rest
+_SIDEBANDS, _FEWER_SIDEBANDS, _WITHOUT_SIDEBANDS = 5.0, 4.0, 0.5
+#: standard deviations of the harmonics of the teeth from which a record without idle frames cuts
+_CUTS = 4.0
+#: the same of a line whose amplitude is steady, as electrical ones are, and what is steady, where
+#: no idle frame shows what the machine does alone
+_CUTS_FOR_SURE, _STEADY = 8.0, 0.03
+#: highest harmonic of the teeth that a line is taken for where the speed may be wrong
+_LOW_ORDER = 4
+#: half-tooth share of a flip that grew, and before
+_FLIP, _BEFORE_FLIP = 0.3, 0.03
+#: power of the harmonics of the teeth before, over that during the flip, of the same cut
+_SAME_CUT = 0.25
+#: share of a line width within which a chatter frequency is known
+_KNOWN = 0.25
+#: fewest revolutions of which a verdict is given
+_FEWEST_REVOLUTIONS = 8.0
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A part of a recording with one verdict.
+
+    Attributes
+    ----------
+    begin, end : float
+        s.
+    verdict : {"chatter", "stable", "idle", "not judged"}
+    chatter_frequency : float
+        Hz; nan without chatter.
+    bifurcation : {"hopf", "flip", "none"}
+    confidence : float
+        0 to 1, by the margins of what the verdict rests on; no probability.
+    share : float
+        Of the power above 1.5 revolutions a second that is the chatter line and its family;
+        without chatter of the strongest line off the harmonics. nan where it is not known.
+    spindle_frequency : float
+        Hz; nan where it is not known.
+    reason : str
+        One sentence.
+    """
+
+    begin: float
+    end: float
+    verdict: str
+    chatter_frequency: float
+    bifurcation: str
+    confidence: float
+    share: float
+    spindle_frequency: float
+    reason: str
+
+
+def segments_of(evidence: Evidence) -> list[Segment]:
+    """Segments of a recording, in order, without gaps."""
+    if evidence.revolution is None:
+        return _without_speed(evidence)
+    verdicts = _verdicts(evidence)
+    return [
+        _segment(evidence, verdicts[first], slice(first, last)) for first, last in _runs(verdicts)
+    ]
+
+
+def _verdicts(evidence: Evidence) -> list[str]:
+    """Verdict of each frame."""
+    count = len(evidence.lines)
+    too_short = evidence.frames.length * evidence.revolution.mean < _FEWEST_REVOLUTIONS
+    if too_short:
+        return [NOT_JUDGED] * count
+    idle = np.zeros(count, dtype=bool) if evidence.idle is None else evidence.idle
+    verdicts = [IDLE if one else STABLE for one in idle]
+    if evidence.idle is None and _harmonics(evidence) < _CUTS:
+        verdicts = [IDLE] * count
+    for first, last, large in _runs_of_one_line(evidence, idle):
+        rows = slice(first, last)
+        lasts = large >= min(_LASTS, count)
+        found = CHATTER if lasts and _is_chatter(evidence, rows) else NOT_JUDGED
+        verdicts[rows] = [found] * (last - first)
+    for row in np.flatnonzero(_grown_flip(evidence)):
+        if verdicts[row] in (STABLE, IDLE):
+            verdicts[row] = CHATTER
+    return verdicts
+
+
+def _harmonics(evidence: Evidence) -> float:
+    """Significance of the harmonics of a cut over a recording."""
+    frames = evidence.frames
+    _, above = mean_of(frames, slice(None))
+    row = evidence.frames.time.size // 2
+    return harmonics_significance(above, frames.frequency, evidence.comb(row))
+
+
+def _runs_of_one_line(evidence: Evidence, idle: NDArray[np.bool_]) -> list[tuple[int, int, int]]:
+    """First and last row of frames with one line off the harmonics, and in how many it is large."""
+    runs: list[tuple[int, int, int]] = []
+    count = len(evidence.lines)
+    row = 0
+    while row < count:
+        if not _is_large(evidence, idle, row, _BEGINS):
+            row += 1
+            continue
+        first, last = row, row + 1
+        while last < count and _goes_on(evidence, idle, last, last - 1):
+            last += 1
+        while first > (runs[-1][1] if runs else 0) and _goes_on(evidence, idle, first - 1, first):
+            first -= 1
+        large = sum(_is_large(evidence, idle, k, _BEGINS) for k in range(first, last))
+        if large > 1 or count == 1:
+            runs.append((first, last, large))
+        row = last
+    return runs
+
+
+def _is_large(evidence: Evidence, idle: NDArray[np.bool_], row: int, share: float) -> bool:
+    line = evidence.lines[row]
+    if idle[row] or not line.share >= share:
+        return False
+    return evidence.above_rest(line.frequency, row) is not False
+
+
+def _goes_on(evidence: Evidence, idle: NDArray[np.bool_], row: int, other: int) -> bool:
+    one, two = evidence.lines[row].frequency, evidence.lines[other].frequency
+    same = abs(one - two) <= _SAME_LINE * two
+    return same and _is_large(evidence, idle, row, _GOES_ON)
+
+
+def _is_chatter(evidence: Evidence, rows: slice) -> bool:
+    """Whether the line of some frames is that of a cut: by its sidebands, or by its rise."""
+    if _may_be_harmonic(evidence, rows):
+        return False
+    sidebands = _sidebands(evidence, rows)
+    if evidence.idle is None:
+        harmonics = _harmonics(evidence)
+        varies = _variation(evidence, rows) > _STEADY
+        if harmonics > _CUTS_FOR_SURE and varies:
+            return sidebands >= _FEWER_SIDEBANDS
+        return sidebands >= _SIDEBANDS and harmonics > (_CUTS if varies else _CUTS_FOR_SURE)
+    if sidebands >= _SIDEBANDS:
+        return True
+    alone = float(np.median([line.alone for line in evidence.lines[rows]]))
+    middle = (rows.start + rows.stop) // 2
+    rose = evidence.above_rest(evidence.lines[middle].frequency, middle)
+    return bool(rose) and alone >= _WITHOUT_SIDEBANDS
+
+
+def _may_be_harmonic(evidence: Evidence, rows: slice) -> bool:
+    """Whether a speed near an unconfirmed one makes the line a low harmonic and explains more."""
+    if evidence.revolution.source != "given":
+        return False
+    comb = evidence.comb((rows.start + rows.stop - 1) // 2)
+    line = _line_of(evidence, rows).frequency
+    order = max(round(line / comb.tooth), 1)
+    tooth = line / order
+    if order > _LOW_ORDER or abs(tooth / comb.tooth - 1.0) > ABOUT_GIVEN:
+        return False
+    other = comb._replace(revolution=comb.revolution * tooth / comb.tooth, tooth=tooth)
+    _, above = mean_of(evidence.frames, rows)
+    frequency = evidence.frames.frequency
+    own = harmonics_significance(above, frequency, comb)
+    # of the line and its multiples the other speed would be confirmed by what it is to explain
+    others = harmonics_significance(above, frequency, other, order if order > 1 else 0)
+    return others >= own
+
+
+def _variation(evidence: Evidence, rows: slice) -> float:
+    """Relative variation of the amplitude of the line from frame to frame: none is electrical."""
+    frames = evidence.frames
+    near = np.abs(frames.frequency - _line_of(evidence, rows).frequency) < frames.half_width
+    amplitude = np.sqrt(frames.power[rows][:, near].sum(axis=1))
+    return float(amplitude.std() / amplitude.mean())
+
+
+def _sidebands(evidence: Evidence, rows: slice) -> float:
+    """Median over the frames, and at least that of their mean spectrum."""
+    each = float(np.median([line.sidebands for line in evidence.lines[rows]]))
+    return max(each, _line_of(evidence, rows).sidebands)
+
+
+def _line_of(evidence: Evidence, rows: slice):
+    """Strongest line off the harmonics in the mean spectrum of frames."""
+    middle = (rows.start + rows.stop - 1) // 2
+    power, above = mean_of(evidence.frames, rows)
+    return strongest_line(power, above, evidence.frames.frequency, evidence.comb(middle))
+
+
+def _grown_flip(evidence: Evidence) -> NDArray[np.bool_]:
+    """Frames in which every second tooth became alike during the cut, of an even number of teeth.
+
+    Its lines are harmonics of the spindle, as those of runout are; only growth is no runout. That
+    the teeth cut before as they do now is seen by the harmonics of the teeth.
+    """
+    none = np.zeros(evidence.frames.time.size, dtype=bool)
+    if evidence.teeth is None or evidence.teeth % 2 or evidence.revolution.may_be_multiple:
+        return none
+    teeth, _, _ = _tooth_powers(evidence)
+    shares = half_tooth_shares(evidence)
+    flip = shares > _FLIP
+    if flip.sum() < _LASTS:
+        return none
+    cut = teeth > _SAME_CUT * float(np.median(teeth[flip]))
+    before = np.flatnonzero(cut & (shares < _BEFORE_FLIP))
+    if before.size < _LASTS:
+        return none
+    return flip & cut & (np.arange(flip.size) > before[_LASTS - 1])
+
+
+def _tooth_powers(evidence: Evidence) -> NDArray[np.float64]:
+    """Power of each frame at multiples of the tooth passing frequency, at odd halves, of all."""
+    frames = evidence.frames
+    each = [
+        tooth_powers(power, frames.frequency, evidence.comb(row))
+        for row, power in enumerate(frames.power)
+    ]
+    return np.array(each).T
+
+
+def half_tooth_shares(evidence: Evidence) -> NDArray[np.float64]:
+    """Share of the power at odd multiples of half the tooth passing frequency, by frame."""
+    _, halves, total = _tooth_powers(evidence)
+    return halves / np.maximum(total, 1e-300)
+
+
+def _segment(evidence: Evidence, verdict: str, rows: slice) -> Segment:
+    begin, end = _bounds(evidence, rows)
+    speed = float(np.median(evidence.revolution.frequency[rows]))
+    lines = evidence.lines[rows]
+    share = float(np.median([line.share for line in lines]))
+    if verdict == CHATTER:
+        return _chatter_segment(evidence, rows, begin, end, speed)
+    confidence, reason = {
+        STABLE: _of_stable, IDLE: _of_idle, NOT_JUDGED: _of_not_judged
+    }[verdict](evidence, rows)  # fmt: skip
+    return Segment(begin, end, verdict, math.nan, "none", confidence, share, speed, reason)
+
+
+def _chatter_segment(
+    evidence: Evidence, rows: slice, begin: float, end: float, speed: float
+) -> Segment:
+    lines = evidence.lines[rows]
+    share = float(np.median([line.share for line in lines]))
+    comb = evidence.comb((rows.start + rows.stop - 1) // 2)
+    if share < _GOES_ON:  # half-tooth lines, which are harmonics of the spindle
+        shares = half_tooth_shares(evidence)[rows]
+        strongest = _strongest_half_tooth(evidence, rows)
+        reason = "lines at half the tooth passing frequency grew during the cut"
+        share = float(np.median(shares))
+        return Segment(begin, end, CHATTER, strongest, "flip", 0.6, share, speed, reason)
+    frequency = _line_of(evidence, rows).frequency
+    sidebands = _sidebands(evidence, rows)
+    strength = np.clip((share - _BEGINS) / 0.4, 0.0, 1.0)
+    confidence = 0.5 + 0.2 * float(strength) + 0.28 * float(np.clip(sidebands / 8.0, 0.0, 1.0))
+    # what the speed is not known by: a flip needs the tooth passing frequency
+    is_flip = (
+        evidence.teeth is not None
+        and not evidence.revolution.may_be_multiple
+        and is_half_tooth(frequency, comb, _KNOWN / evidence.frames.length)
+    )
+    reason = (
+        f"{share:.0%} of the power is a line at {frequency:.1f} Hz, off the harmonics of the "
+        f"spindle, and its sidebands"
+    )
+    kind = "flip" if is_flip else "hopf"
+    return Segment(begin, end, CHATTER, frequency, kind, confidence, share, speed, reason)
+
+
+def _strongest_half_tooth(evidence: Evidence, rows: slice) -> float:
+    """Strongest odd multiple of half the tooth passing frequency, Hz."""
+    frames = evidence.frames
+    power = frames.power[rows].mean(axis=0)
+    tooth = evidence.comb((rows.start + rows.stop - 1) // 2).tooth
+    orders = np.arange(0.5, frames.frequency[-1] / tooth)
+    strength = [
+        power[np.abs(frames.frequency - k * tooth) < frames.half_width].sum() for k in orders
+    ]
+    return float(orders[int(np.argmax(strength))] * tooth)
+
+
+def _of_stable(evidence: Evidence, rows: slice) -> tuple[float, str]:
+    shares = [line.share for line in evidence.lines[rows]]
+    margin = float(np.clip(1.0 - np.quantile(shares, 0.9) / _BEGINS, 0.0, 1.0))
+    confidence = 0.5 + 0.48 * margin
+    if evidence.revolution.source == "given":
+        confidence = min(confidence, 0.7)
+    reason = (
+        f"no line off the harmonics of the spindle has more than {max(shares):.1%} of the power"
+    )
+    even = evidence.teeth is not None and evidence.teeth % 2 == 0
+    if even and np.median(half_tooth_shares(evidence)[rows]) > _FLIP:
+        confidence = min(confidence, 0.6)
+        reason += "; every second tooth is alike, by runout or by a flip that was there at once"
+    return confidence, reason
+
+
+def _of_idle(evidence: Evidence, rows: slice) -> tuple[float, str]:
+    if evidence.idle is None:
+        return 0.6, "neither harmonics of the teeth nor a line with their sidebands stand out"
+    apart = float(np.median(evidence.levels[~evidence.idle]) - np.median(evidence.levels[rows]))
+    return 0.5 + 0.48 * float(np.clip(apart / 12.0, 0.0, 1.0)), f"{apart:.0f} dB below the cut"
+
+
+def _of_not_judged(evidence: Evidence, rows: slice) -> tuple[float, str]:
+    revolutions = evidence.frames.length * evidence.revolution.mean
+    if revolutions < _FEWEST_REVOLUTIONS:
+        return (
+            0.0,
+            f"{revolutions:.1f} revolutions are too few; {_FEWEST_REVOLUTIONS:.0f} are needed",
+        )
+    line = _line_of(evidence, rows)
+    if rows.stop - rows.start < _LASTS:
+        return 0.0, f"a line at {line.frequency:.1f} Hz comes and goes"
+    return 0.0, (
+        f"a line at {line.frequency:.1f} Hz has {line.share:.0%} of the power, without the "
+        "sidebands that a cut gives to chatter: it may be of the machine"
+    )
+
+
+def _without_speed(evidence: Evidence) -> list[Segment]:
+    """Idle frames, and others of which nothing can be told."""
+    count = evidence.frames.time.size
+    idle = np.ones(count, dtype=bool) if evidence.idle is None else evidence.idle
+    verdicts = [IDLE if one else NOT_JUDGED for one in idle]
+    if evidence.idle is None:
+        verdicts = [NOT_JUDGED] * count
+    reason = (
+        "the spindle speed is not given, and no spacing of lines shows it: state --spindle-speed"
+    )
+    return [
+        Segment(*_bounds(evidence, slice(*run)), verdicts[run[0]], math.nan, "none", 0.0, math.nan,
+                math.nan, reason)
+        for run in _runs(verdicts)
+    ]  # fmt: skip
+
+
+def _bounds(evidence: Evidence, rows: slice) -> tuple[float, float]:
+    """Begin and end of frames, s: half way to those before and after."""
+    time, half = evidence.frames.time, 0.5 * evidence.frames.length
+    first, last = rows.start, rows.stop - 1
+    begin = time[0] - half if first == 0 else 0.5 * (time[first - 1] + time[first])
+    end = time[-1] + half if last == time.size - 1 else 0.5 * (time[last] + time[last + 1])
+    return float(begin), float(end)
+
+
+def _runs(values: list[str]) -> list[tuple[int, int]]:
+    """First and last row, which is left out, of runs of equal values."""
+    edges = [0, *(k for k in range(1, len(values)) if values[k] != values[k - 1]), len(values)]
+    return list(itertools.pairwise(edges))

@@ -1,0 +1,169 @@
+"""Channels of a recording in a file of any format: which are of use, and what they are of."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from chatter.description.arrays import Array
+from chatter.description.errors import InputError
+from chatter.description.units import dimension_of, measured_unit
+from chatter.detection.spectral.recording import Recording
+from chatter.io.formats.format_list import format_of
+from chatter.io.table import Column, Table
+from dynamics.frf.container import MeasurementError
+
+#: quantity -> SI unit by whose dimension a column is recognised
+_UNITS = {
+    "acceleration": "m/s**2",
+    "velocity": "m/s",
+    "displacement": "m",
+    "force": "N",
+    "torque": "N*m",
+    "sound": "Pa",
+    "power": "W",
+    "current": "A",
+}
+#: names of channels -> quantity, where the unit does not tell it
+_NAMES = {
+    "sound": r"(sound|mic|audio|spl|left|right)",
+    "acceleration": r"(a[xyz]?\d*$|acc|vib)",
+    "force": r"(f[xyzn]?\d*$|force)",
+    "displacement": r"([xyz]$|disp)",
+    "velocity": r"(v[xyz]$|vel)",
+    "torque": r"(m[xyz]$|torque)",
+    "current": r"(i\d*$|cur)",
+    "power": r"(p\d*$|pow)",
+}
+_TIME = re.compile(r"\s*(t|time|zeit|elapsed.*|x[_ ]?value)\s*", re.IGNORECASE)
+_TACHO = re.compile(r"\s*(tacho.*|trigger|once[ _-]?per[ _-]?rev.*|keyphasor|index pulse)\s*", re.I)
+#: channels that follow the tool: motor currents and power are read only where there are none
+_SLOW = ("current", "power")
+#: relative scatter of the steps of time that counts as uniform
+_UNIFORM = 0.01
+
+
+class _Channel(NamedTuple):
+    name: str
+    quantity: str
+    values: Array
+
+
+def read_recording(
+    path: str | Path, channels: Sequence[str] = (), sampling_rate: float | None = None
+) -> Recording:
+    """Channels of a file.
+
+    Parameters
+    ----------
+    path : path
+        File of any format that holds signals.
+    channels : sequence of str
+        Names of those to use; by default all that vibrate: sound, acceleration, velocity,
+        displacement, force, torque; current and power where there are none of these.
+    sampling_rate : float, optional
+        Hz, where the file has no time.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, has no time, or no channel of use.
+    """
+    path = Path(path)
+    try:
+        table = format_of(path, "signals").read_signals(path)
+        return _recording(path, table, channels, sampling_rate)
+    except MeasurementError as error:
+        raise InputError(str(error)) from error
+
+
+def _recording(
+    path: Path, table: Table, wanted: Sequence[str], sampling_rate: float | None
+) -> Recording:
+    numbers = {one.name: table.numbers(k) for k, one in enumerate(table.columns)}
+    time = _time(path, table, numbers, sampling_rate)
+    tacho = next((numbers[one.name] for one in table.columns if _TACHO.fullmatch(one.name)), None)
+    chosen = _chosen(path, _usable(table, numbers), wanted)
+    values = np.stack([one.values for one in chosen], axis=1)
+    steps = np.diff(time)
+    step = float(np.median(steps)) if steps.size else math.nan
+    if steps.size and not np.all(steps > 0.0):
+        raise InputError(
+            f"{path}: the time does not increase at {table.where(int(np.argmin(steps)) + 1)}"
+        )
+    if steps.size and steps.max() - steps.min() > _UNIFORM * step:
+        even = time[0] + step * np.arange(int((time[-1] - time[0]) / step) + 1)
+        values = np.stack([np.interp(even, time, one) for one in values.T], axis=1)
+        tacho = None if tacho is None else np.interp(even, time, tacho)
+    else:
+        step = float((time[-1] - time[0]) / max(time.size - 1, 1))
+    names, quantities = zip(*((one.name, one.quantity) for one in chosen), strict=True)
+    return Recording(str(path), step, names, quantities, values, float(time[0]), tacho)
+
+
+def _time(
+    path: Path, table: Table, numbers: dict[str, Array], sampling_rate: float | None
+) -> Array:
+    """Time of the samples, s: of the sampling rate where it is given."""
+    if sampling_rate is not None:
+        return np.arange(table.size) / sampling_rate
+    for column in table.columns:
+        if _TIME.fullmatch(column.name) or column.content == "time":
+            unit = measured_unit(column.unit) if column.unit and not column.content else None
+            return numbers[column.name] * (1.0 if unit is None else unit.factor)
+    raise InputError(
+        f"{path}: no column is a time; there are {', '.join(numbers)}; state --sampling-rate"
+    )
+
+
+def _usable(table: Table, numbers: dict[str, Array]) -> list[_Channel]:
+    """Columns that are a signal, with what they are of."""
+    found = []
+    for column in table.columns:
+        is_other = _TIME.fullmatch(column.name) or _TACHO.fullmatch(column.name)
+        values = numbers[column.name]
+        if is_other or column.content == "time" or not np.ptp(values) > 0.0:
+            continue
+        quantity = quantity_of(column)
+        if quantity is not None:
+            found.append(_Channel(column.name, quantity, values))
+    return found
+
+
+def quantity_of(column: Column) -> str | None:
+    """What a column is of: by its unit, else by its name; None where it is no vibration."""
+    if column.content is not None:
+        return column.content if column.content in _UNITS else None
+    unit = measured_unit(column.unit) if column.unit else None
+    if unit is not None and unit.dimension:
+        for quantity, si_unit in _UNITS.items():
+            if unit.dimension == dimension_of(si_unit):
+                return quantity
+        if unit.dimension != dimension_of("V"):
+            return None
+    name = column.name.strip().lower()
+    by_name = (quantity for quantity, form in _NAMES.items() if re.match(form, name))
+    return next(by_name, None if unit is not None and unit.has_angle else "unknown")
+
+
+def _chosen(path: Path, usable: list[_Channel], wanted: Sequence[str]) -> list[_Channel]:
+    """Channels that are named, else all that vibrate."""
+    named = {one.name: one for one in usable}
+    for name in wanted:
+        if name not in named:
+            raise InputError(
+                f'{path}: --channel "{name}" is no signal of the file; there are '
+                f"{', '.join(named) or 'none'}"
+            )
+    if wanted:
+        return [named[name] for name in wanted]
+    known = [one for one in usable if one.quantity != "unknown"] or usable
+    chosen = [one for one in known if one.quantity not in _SLOW] or known
+    if not chosen:
+        raise InputError(f"{path}: no column is a sound, vibration, force, current or power")
+    return chosen

@@ -1,0 +1,162 @@
+"""What was detected in a recording: verdicts over time, chatter frequency, advice; picture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from chatter.description.case import Case
+from chatter.detection.spectral.frame_evidence import Evidence
+from chatter.detection.spectral.recording import Recording
+from chatter.detection.spectral.segments import CHATTER, IDLE, NOT_JUDGED, STABLE, Segment
+from chatter.io.presentation import presentation
+from chatter.io.result_files import as_json, finite_or_none, write_results
+from chatter.monitoring.advice import ChatterMode, ProposedSpeed, as_rows, in_words
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: difference of the speed from the one that was given that is worth a note
+_DIFFERS = 0.01
+
+
+@dataclass(frozen=True)
+class Advice:
+    """What to do about chatter.
+
+    Attributes
+    ----------
+    segment : Segment
+        The chatter that it is about.
+    proposed : tuple of ProposedSpeed
+    mode : ChatterMode or None
+        Of the case.
+    case : Case or None
+    case_is_stable : bool
+        Whether the case has the cut as stable, against the recording.
+    """
+
+    segment: Segment
+    proposed: tuple[ProposedSpeed, ...]
+    mode: ChatterMode | None = None
+    case: Case | None = None
+    case_is_stable: bool = False
+
+    @property
+    def sentences(self) -> list[str]:
+        """The advice in words."""
+        frequency = self.segment.chatter_frequency
+        return in_words(list(self.proposed), self.mode, self.case, frequency, self.case_is_stable)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DetectedChatter:
+    """Verdicts over a recording.
+
+    Parameters
+    ----------
+    recording : Recording
+    evidence : Evidence
+    segments : tuple of Segment
+    given : float or None
+        Hz, frequency of the spindle as it was stated.
+    case : Case or None
+    advice : Advice or None
+        None without chatter.
+    """
+
+    recording: Recording
+    evidence: Evidence
+    segments: tuple[Segment, ...]
+    given: float | None
+    case: Case | None
+    advice: Advice | None
+
+    def __repr__(self) -> str:
+        """Short: what it holds would fill the screen."""
+        return f"<DetectedChatter {self.recording.name!r}, {self.verdict}>"
+
+    @property
+    def verdict(self) -> str:
+        """Of the recording: that of its segments which matters most."""
+        found = {one.verdict for one in self.segments}
+        return next(one for one in (CHATTER, STABLE, NOT_JUDGED, IDLE) if one in found)
+
+    @property
+    def chatter_frequency(self) -> float | None:
+        """Of the longest chatter, Hz; None without chatter."""
+        return None if self.advice is None else self.advice.segment.chatter_frequency
+
+    def summary(self) -> dict[str, Any]:
+        """Content of detection.json."""
+        revolution = self.evidence.revolution
+        return {
+            "recording": self.recording.name,
+            "channels": list(self.recording.channels),
+            "duration_s": self.recording.duration,
+            "verdict": self.verdict,
+            "chatter_frequency_Hz": self.chatter_frequency,
+            "spindle_speed_rpm": None if revolution is None else 60.0 * revolution.mean,
+            "spindle_speed_source": None if revolution is None else revolution.source,
+            "teeth": self.evidence.teeth,
+            "segments": [
+                {
+                    "from_s": one.begin,
+                    "to_s": one.end,
+                    "verdict": one.verdict,
+                    "chatter_frequency_Hz": finite_or_none(one.chatter_frequency),
+                    "bifurcation": one.bifurcation,
+                    "confidence": one.confidence,
+                    "share_off_harmonics": finite_or_none(one.share),
+                    "spindle_speed_rpm": finite_or_none(60.0 * one.spindle_frequency),
+                    "reason": one.reason,
+                }
+                for one in self.segments
+            ],
+            "advice": [] if self.advice is None else self.advice.sentences,
+            "proposed_speeds": [] if self.advice is None else as_rows(list(self.advice.proposed)),
+            "mode": self._mode(),
+            "notes": self.notes,
+        }
+
+    def _mode(self) -> dict[str, Any] | None:
+        mode = None if self.advice is None else self.advice.mode
+        return None if mode is None else {"number": mode.number, "frequency_Hz": mode.frequency}
+
+    @property
+    def notes(self) -> list[str]:
+        """What the reader should know."""
+        notes = []
+        revolution = self.evidence.revolution
+        if revolution is not None and self.given is not None:
+            ratio = revolution.mean / self.given
+            if abs(ratio - 1.0) > _DIFFERS:
+                notes.append(
+                    f"the spindle runs at {60.0 * revolution.mean:.0f} rpm by the {_by(revolution)}"
+                    f", {60.0 * self.given:.0f} rpm were stated"
+                )
+        if revolution is not None and revolution.source == "given":
+            notes.append("no spacing of lines confirms the spindle speed")
+        if revolution is not None and revolution.may_be_multiple:
+            notes.append(
+                "the spindle speed is the spacing of the lines: that of a revolution, or of "
+                "several teeth; state --spindle-speed and --teeth for better verdicts"
+            )
+        if self.advice is not None and self.evidence.teeth is None:
+            notes.append("state --teeth for the speeds that the chatter frequency proposes")
+        return notes
+
+    def plot(self) -> Figure:
+        """Spectrogram with verdicts, harmonics and chatter lines marked."""
+        return presentation("plots.detection").plot_detection(self)
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write detection.json and detection.png."""
+        return write_results(
+            folder, {"detection.json": as_json(self.summary())}, {"detection.png": self.plot()}
+        )
+
+
+def _by(revolution) -> str:
+    return "tacho" if revolution.source == "tacho" else "spacing of its lines"

@@ -1,0 +1,225 @@
+"""`chatter detect`: files of every kind, advice, what is written, what is refused."""
+
+import json
+
+import numpy as np
+import pytest
+import scipy.io.wavfile
+
+import chatter
+from chatter.description.errors import InputError
+from chatter.detection.spectral.recording import Recording
+from chatter.monitoring.advice import proposed_by_frequency
+from tests.chatter.detection.made_recordings import (
+    RATE,
+    chatter_line,
+    clock,
+    during,
+    forced_cut,
+    noise,
+)
+from tests.command_line import chatter_command
+from tests.places import EXAMPLES
+
+REVOLUTION, TEETH, FREQUENCY = 50.0, 4, 1230.0
+#: tooth passing frequency = fc / k: 60 * 1230 / (4 k)
+LOBES = {6: 3075.0, 7: 2635.714, 5: 3690.0}
+
+
+def made(seconds=3.0):
+    random = np.random.default_rng(1)
+    time = clock(seconds)
+    values = forced_cut(random, time, REVOLUTION, TEETH) * during(time, 0.5, seconds)
+    chatter_part = chatter_line(random, time, FREQUENCY, TEETH * REVOLUTION)
+    return time, values + 2.0 * during(time, 1.2, seconds) * chatter_part + noise(random, time)
+
+
+def write_csv(path, heading, time, values):
+    np.savetxt(path, np.c_[time, values], delimiter=",", header=heading, comments="", fmt="%.7g")
+    return path
+
+
+@pytest.fixture(scope="module")
+def table(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("recording")
+    return write_csv(folder / "cut.csv", "time [s],ax [m/s^2]", *made())
+
+
+def test_the_command_writes_what_the_contract_names(table, tmp_path):
+    done = chatter_command(
+        "detect", table, "--spindle-speed", "3000 rpm", "--teeth", TEETH, "--out", tmp_path,
+        "--json",
+    )  # fmt: skip
+    assert done.exit_code == 0, done.output
+    summary = json.loads((tmp_path / "detection.json").read_text(encoding="utf-8"))
+    assert json.loads(done.stdout) == summary
+    assert (tmp_path / "detection.png").stat().st_size > 10_000
+    assert summary["verdict"] == "chatter"
+    for one in summary["segments"]:
+        assert {"from_s", "to_s", "verdict", "chatter_frequency_Hz", "confidence"} <= one.keys()
+        assert one["verdict"] in ("chatter", "stable", "idle", "not judged")
+        assert 0.0 <= one["confidence"] <= 1.0
+    found = [one for one in summary["segments"] if one["verdict"] == "chatter"]
+    assert found[0]["chatter_frequency_Hz"] == pytest.approx(FREQUENCY, rel=1e-3)
+    proposed = {one["lobe"]: one["spindle_speed_rpm"] for one in summary["proposed_speeds"]}
+    for lobe, speed in LOBES.items():
+        assert proposed[lobe] == pytest.approx(speed, rel=1e-3)
+    assert "3075 rpm (k = 6)" in summary["advice"][0]
+
+
+def test_speeds_are_proposed_nearest_first():
+    # 60 * 900 / (6 k): 1800, 1500, 1286 and 2250 rpm are 144, 156, 370 and 594 from 1656
+    found = proposed_by_frequency(900.0, 1656.0 / 60.0, 6)
+    assert [one.lobe for one in found] == [5, 6, 7, 4]
+    assert [round(one.spindle_speed_rpm) for one in found] == [1800, 1500, 1286, 2250]
+
+
+def test_the_same_in_wav_csv_npz_and_memory(table, tmp_path):
+    time, values = made()
+    scipy.io.wavfile.write(
+        tmp_path / "cut.wav", int(RATE), (values / np.abs(values).max() * 30000).astype(np.int16)
+    )
+    np.savez(tmp_path / "cut.npz", **{"time [ms]": 1e3 * time, "ax [g]": values / 9.80665})
+    direct = Recording("made", 1.0 / RATE, ("a",), ("acceleration",), values[:, None])
+    for one in (table, tmp_path / "cut.wav", tmp_path / "cut.npz", direct):
+        found = chatter.detect(one, "3000 rpm", TEETH)
+        assert found.verdict == "chatter"
+        assert found.chatter_frequency == pytest.approx(FREQUENCY, rel=1e-3)
+
+
+def test_a_file_without_time_asks_for_the_sampling_rate(tmp_path):
+    _, values = made()
+    path = tmp_path / "cut.csv"
+    np.savetxt(path, values, header="force [N]", comments="")
+    with pytest.raises(InputError, match=r"cut\.csv: no column is a time; .*--sampling-rate"):
+        chatter.detect(path, "3000 rpm", TEETH)
+    assert chatter.detect(path, "3000 rpm", TEETH, sampling_rate="10 kHz").verdict == "chatter"
+
+
+def test_a_channel_is_chosen_by_name(tmp_path):
+    time, values = made()
+    random = np.random.default_rng(2)
+    calm = forced_cut(random, time, REVOLUTION, TEETH) + noise(random, time)
+    heading = "time [s],ax [m/s^2],ay [m/s^2],temperature [degC],n [rpm]"
+    columns = np.c_[values, calm, 20.0 + 0.1 * time, 3000.0 + random.standard_normal(time.size)]
+    path = write_csv(tmp_path / "cut.csv", heading, time, columns)
+    found = chatter.detect(path, "3000 rpm", TEETH)
+    assert found.recording.channels == ("ax", "ay")
+    assert found.verdict == "chatter"
+    assert chatter.detect(path, "3000 rpm", TEETH, channels=["ay"]).verdict == "stable"
+    with pytest.raises(InputError, match=r'--channel "az" is no signal of the file; .*ax, ay'):
+        chatter.detect(path, "3000 rpm", TEETH, channels=["az"])
+
+
+def test_a_speed_that_is_some_percent_off_is_read_off_the_lines(table):
+    found = chatter.detect(table, "3240 rpm", TEETH)
+    assert found.verdict == "chatter"
+    summary = found.summary()
+    assert summary["spindle_speed_rpm"] == pytest.approx(3000.0, rel=1e-3)
+    assert "3240 rpm were stated" in summary["notes"][0]
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"spindle_speed": "3000"}, "spindle speed"),
+        ({"spindle_speed": "-5 rpm"}, "above zero"),
+        ({"spindle_speed": "3 mm"}, "spindle speed"),
+        ({"spindle_speed": "3000 rpm", "teeth": 0}, "--teeth is 0"),
+        ({"spindle_speed": "3000 rpm", "sampling_rate": "0 Hz"}, "sampling rate"),
+    ],
+)
+def test_wrong_values_are_refused(table, given, message):
+    with pytest.raises(InputError, match=message):
+        chatter.detect(table, **given)
+
+
+def test_a_wrong_file_is_one_sentence_and_exit_code_2(tmp_path):
+    path = tmp_path / "nothing.wav"
+    done = chatter_command("detect", path)
+    assert done.exit_code == 2
+    assert "nothing.wav: no such file" in done.output
+    assert "Traceback" not in done.output
+
+
+CASE = """
+[tool]
+kind = "end mill"
+teeth = 4
+diameter = "20 mm"
+[material]
+law = "linear"
+Ktc = "800 MPa"
+Krc = "300 MPa"
+[cut]
+mode = "down"
+spindle_speed = "6600 rpm"
+feed_per_tooth = "0.1 mm"
+axial_depth = "{depth} mm"
+radial_depth = "10 mm"
+[[structure.mode]]
+frequency = "600 Hz"
+damping = 0.03
+stiffness = "10 N/um"
+direction = [1, 0, 0]
+[[structure.mode]]
+frequency = "1150 Hz"
+damping = 0.03
+stiffness = "40 N/um"
+direction = [0, 1, 0]
+[lobes]
+speeds = { from = "5000 rpm", to = "12000 rpm", count = 141 }
+"""
+
+
+def test_with_a_case_the_mode_and_stable_speeds_of_the_case(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(CASE.replace("{depth}", "8"), encoding="utf-8")
+    case = chatter.load(path)
+    random = np.random.default_rng(3)
+    time = clock(3.0)
+    values = forced_cut(random, time, 110.0, 4) + 2.0 * chatter_line(random, time, 637.0, 440.0)
+    values += noise(random, time)
+    recording = Recording("cut", 1.0 / RATE, ("x",), ("sound",), values[:, None])
+    found = chatter.detect(recording, case=path)
+    assert found.verdict == "chatter"
+    summary = found.summary()
+    assert summary["mode"] == {"number": 1, "frequency_Hz": pytest.approx(600.0, rel=1e-3)}
+    assert summary["teeth"] == 4
+    diagram = chatter.lobes(case)
+    speeds, limits = diagram.limits.spindle_speed_rpm, diagram.limits.critical_depth_mm
+    deep = limits > 1.1 * 8.0
+    expected = [speeds[deep & (speeds < 6534.0)].max(), speeds[deep & (speeds > 6666.0)].min()]
+    proposed = summary["proposed_speeds"]
+    assert sorted(one["spindle_speed_rpm"] for one in proposed) == pytest.approx(expected)
+    # what is proposed is stable by another call, and the cut as it was is not
+    assert all(
+        chatter.check(case.patch({"cut.spindle_speed": f"{one['spindle_speed_rpm']} rpm"})).stable
+        for one in proposed
+    )
+    assert not chatter.check(case).stable
+    assert not any("has 8 mm as stable" in one for one in summary["advice"])
+    shallow = case.patch({"cut.axial_depth": "1 mm"})
+    assert any(
+        "has 1 mm as stable" in one
+        for one in chatter.detect(recording, case=shallow).advice.sentences
+    )
+
+
+@pytest.mark.parametrize(("depth", "verdict"), [("1 mm", "stable"), ("3 mm", "chatter")])
+def test_simulated_cuts_have_the_verdict_of_their_poincare_sections(depth, verdict):
+    case = chatter.load(EXAMPLES / "chattering-cut" / "case.toml")
+    result = chatter.simulate(case.patch({"cut.axial_depth": depth}))
+    assert result.detection.verdict == verdict
+    duration = 60.0 / 100.0  # of 60 revolutions at 6000 rpm
+    for quantity, columns in (("force", [0, 1]), ("displacement", [3, 4])):
+        values = result.rows[:, columns]
+        recording = Recording(
+            "simulated", duration / len(values), ("x", "y"), (quantity,) * 2, values
+        )
+        found = chatter.detect(recording, "6000 rpm", 4)
+        assert found.verdict == verdict
+        if verdict == "chatter":
+            expected = result.detection.chatter_frequency
+            assert found.chatter_frequency == pytest.approx(expected, rel=2e-3)
+            assert found.segments[-1].bifurcation == result.detection.bifurcation
