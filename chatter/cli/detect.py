@@ -10,7 +10,7 @@ import typer
 
 from chatter.cli import options
 from chatter.cli.options_as_one import takes_options
-from chatter.cli.progress import running
+from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
 from chatter.report.console import print_line, print_table
 
@@ -63,7 +63,7 @@ def detect(options_: DetectOptions) -> None:
         case = options.patched_case(options_.case, options_.assignments)
     from chatter.monitoring.detect import detect as run_detect
 
-    with running("spectra and verdicts"):
+    with progress_bar("spectra and verdicts"):
         found = run_detect(
             options_.recording,
             spindle_speed=options_.spindle_speed,
