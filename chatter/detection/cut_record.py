@@ -42,6 +42,9 @@ class CutRecord:
     negligible : float
         Deviation from period to period, as a share of the rms of the motion, that is none: what
         the record itself does not repeat any better.
+    speed_follows : bool
+        Whether a drive that gives way to the cut turns the spindle, so that a speed that varies is
+        a consequence of the vibration. Otherwise its variation is taken for a cause of motion.
     lowest_frequency : float
         Hz, below which the structure has no resonance and its drives no loop: slower motion is no
         chatter. 0 where it is not known.
@@ -61,6 +64,7 @@ class CutRecord:
     runout: NDArray[np.float64] | None = None
     negligible: float = 0.005
     lowest_frequency: float = 0.0
+    speed_follows: bool = False
 
     def __post_init__(self) -> None:
         for name in ("time", "spindle_angle", "tooth_angles", "runout"):

@@ -36,13 +36,13 @@ class Periods(NamedTuple):
     period: float  # s, mean over the later half
     per_revolution: int  # periods per revolution
     roughness: float  # rms of what sampling does not resolve, noise included, units of `scale`
-    speed_variation: float  # rms of the relative speed from period to period
+    speed_variation: float  # rms of the relative speed from period to period that may cause motion
 
 
 def cut_into_periods(record: CutRecord, per_revolution: int) -> Periods:
     """Resample the signals over the spindle angle and cut them into periods.
 
-    What follows from a speed that varies is subtracted.
+    What follows from a speed that varies is subtracted, unless the speed follows the cut.
 
     A revolution has 1 period, or one a tooth of a symmetric tool.
     """
@@ -56,15 +56,16 @@ def cut_into_periods(record: CutRecord, per_revolution: int) -> Periods:
     values = CubicSpline(angle, signals, axis=0)(grid).reshape(count, points, -1)
     edges = first + length * np.arange(count + 1)
     durations = np.diff(np.interp(edges, record.spindle_angle, record.time))
-    values = _without_speed_variation(values, durations)
+    variation = 0.0
+    if not record.speed_follows:
+        values = _without_speed_variation(values, durations)
+        variation = float(np.std(durations)) / float(durations[count // 2 :].mean())
     later = values[count // 2 :]
     spread = np.sqrt(np.mean((later - later.mean(axis=(0, 1))) ** 2, axis=(0, 1)))
     scale = float(spread.max()) or 1.0
     period = float(durations[count // 2 :].mean())
     rough = _roughness(signals) / scale
-    return Periods(
-        values / scale, scale, period, per_revolution, rough, float(np.std(durations) / period)
-    )
+    return Periods(values / scale, scale, period, per_revolution, rough, variation)
 
 
 def _without_speed_variation(

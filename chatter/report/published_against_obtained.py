@@ -7,6 +7,18 @@ from pathlib import Path
 
 from chatter.report.console import print_table
 
+#: nothing of the model was fitted or chosen with this number in view
+PREDICTED = "predicted"
+#: a parameter was fitted to this number
+CALIBRATED = "calibrated on this"
+#: a choice that the publication leaves open was made with this number in view
+SELECTED = "selected for this"
+#: made by the model itself and found again: checks the method, not the model
+RECOVERED = "own data recovered"
+#: deviation within which a predicted number is near the published one, and a frequency
+_NEAR, _NEAR_FREQUENCY = 0.15, 0.05
+KINDS = (PREDICTED, CALIBRATED, SELECTED, RECOVERED)
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -19,8 +31,13 @@ class Finding:
     unit : str
     source : str
         Where it is published: figure, table, section.
-    calibrated : bool
-        Whether the model was fitted to it, so that it proves nothing.
+    kind : str
+        One of `KINDS`: what the row proves.
+
+    Raises
+    ------
+    ValueError
+        If `kind` is none of them.
     """
 
     what: str
@@ -28,7 +45,12 @@ class Finding:
     obtained: float | str
     unit: str = ""
     source: str = ""
-    calibrated: bool = False
+    kind: str = PREDICTED
+
+    def __post_init__(self) -> None:
+        """Refuse a kind that is none."""
+        if self.kind not in KINDS:
+            raise ValueError(f"{self.kind!r} is none of {', '.join(KINDS)}")
 
     @property
     def deviation(self) -> float | None:
@@ -47,10 +69,11 @@ def write_findings(findings: Sequence[Finding], folder: str | Path) -> Path:
     folder : path
         Made where it is missing.
     """
-    headers = ["finding", "published", "obtained", "deviation", "source"]
+    headers = ["finding", "kind", "published", "obtained", "deviation", "source"]
     rows = [
         [
-            one.what + (" (calibrated)" if one.calibrated else ""),
+            one.what,
+            one.kind,
             _shown(one.published, one.unit),
             _shown(one.obtained, one.unit),
             "" if one.deviation is None else f"{100.0 * one.deviation:+.1f} %",
@@ -58,7 +81,7 @@ def write_findings(findings: Sequence[Finding], folder: str | Path) -> Path:
         ]
         for one in findings
     ]
-    print_table("published and obtained", headers, rows)
+    print_table(f"published and obtained; {_tally(findings)}", headers, rows)
     path = Path(folder) / "findings.csv"
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("w", newline="", encoding="utf-8") as file:
@@ -66,6 +89,20 @@ def write_findings(findings: Sequence[Finding], folder: str | Path) -> Path:
         writer.writerow(headers)
         writer.writerows(rows)
     return path
+
+
+def _tally(findings: Sequence[Finding]) -> str:
+    """How many of the predicted numbers come near, in words."""
+    predicted = [
+        (_NEAR_FREQUENCY if one.unit == "Hz" else _NEAR, abs(one.deviation))
+        for one in findings
+        if one.kind == PREDICTED and one.deviation is not None
+    ]
+    near = sum(apart <= allowed for allowed, apart in predicted)
+    return (
+        f"of {len(predicted)} predicted numbers {near} within {100.0 * _NEAR:.0f} % "
+        f"(frequencies {100.0 * _NEAR_FREQUENCY:.0f} %)"
+    )
 
 
 def _shown(value: float | str, unit: str) -> str:

@@ -97,6 +97,7 @@ def _cut_record(result: SimulationResult) -> CutRecord:
         forces=result.force,
         runout=slices.normal_offset[:, widest] if known else None,
         lowest_frequency=_lowest_frequency(result),
+        speed_follows=result.setup.turned_by_port,
         negligible=_CARVED if isinstance(result.setup.groups[0], DiscreteCut) else _DELAYED,
     )
 

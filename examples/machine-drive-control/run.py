@@ -15,7 +15,14 @@ import chatter
 from chatter.compile.machine_parts import assembled_machine
 from chatter.description.machine.machine_file import MachineFile
 from chatter.plots.style import BLUE, GREEN, GREY, ORANGE, RED, finish, new_figure
-from chatter.report.published_against_obtained import Finding, write_findings
+from chatter.report.published_against_obtained import (
+    CALIBRATED,
+    PREDICTED,
+    RECOVERED,
+    SELECTED,
+    Finding,
+    write_findings,
+)
 from chatter.simulation.virtual_tests.frf import FrfCurve, peaks
 from dynamics.friction.identification.dynamic_fit import (
     AxisFit,
@@ -77,6 +84,7 @@ def main(out: Path) -> list[Path]:
             "-",
             f"{100 * state_space_deviation(machine):.2g} %",
             source="section 2.1",
+            kind=RECOVERED,
         ),
     ]
     curves = {f"{speed} mm/min": friction_over_position(record, fit.model.inertia, LOW_PASS)
@@ -107,7 +115,9 @@ def frequency_findings(first: list[FrfCurve], states: list[FrfCurve]) -> list[Fi
         ("S2, X, axial mode of Z", states[0], 122.0, "Figure 8"),
     ]
     return [
-        Finding(what, published, peak_near(curve, published)["frequency_Hz"], "Hz", source, True)
+        Finding(
+            what, published, peak_near(curve, published)["frequency_Hz"], "Hz", source, CALIBRATED
+        )
         for what, curve, published, source in wanted
     ]
 
@@ -127,9 +137,16 @@ def control_findings(states: list[FrfCurve]) -> list[Finding]:
     share = level_at(control, top) / level_at(brake, top)
     return [
         Finding(
-            "mode at 122 Hz with active control", "completely attenuated", text, "", "Figure 9"
+            "mode at 122 Hz with active control",
+            "completely attenuated",
+            text,
+            "",
+            "Figure 9",
+            SELECTED,
         ),
-        Finding("  receptance at its frequency, control over brake", "-", f"{share:.2f}"),
+        Finding(
+            "  receptance at its frequency, control over brake", "-", f"{share:.2f}", kind=SELECTED
+        ),
     ]
 
 
@@ -145,7 +162,8 @@ def gain_findings(moving: dict[float, FrfCurve]) -> list[Finding]:
                 values = [factor * peak_near(moving[g], about, tested)[key] for g in GAINS]
                 text = ", ".join(f"{value:.1f}" for value in values) + f" {unit}"
                 name = f"{order} mode, K_pn 30, 15, 7.5: {what}, {way}"
-                findings.append(Finding(name, published, text, "", "Figure 10"))
+                kind = SELECTED if order == "first" else PREDICTED
+                findings.append(Finding(name, published, text, "", "Figure 10", kind))
     return findings
 
 
@@ -171,13 +189,13 @@ def friction_findings(machine: MachineFile, fit: AxisFit) -> list[Finding]:
     law, found = machine.friction["x"].spec(), fit.model.law
     findings = [
         Finding(f"friction of X at {speed:g} mm/min", float(law.steady_state_force(speed / 6e4)),
-                float(found.steady_state_force(speed / 6e4)), "N", MODEL)
+                float(found.steady_state_force(speed / 6e4)), "N", MODEL, RECOVERED)
         for speed in (1000.0, 3000.0)
     ]  # fmt: skip
     presliding = Finding("presliding stiffness of X", law.bristle_stiffness * 1e-6,
-                         found.bristle_stiffness * 1e-6, "N/um", MODEL)  # fmt: skip
+                         found.bristle_stiffness * 1e-6, "N/um", MODEL, RECOVERED)  # fmt: skip
     inertia = Finding("moved mass of X with its turning parts", moved_mass(machine),
-                      fit.model.inertia, "kg", MODEL)  # fmt: skip
+                      fit.model.inertia, "kg", MODEL, RECOVERED)  # fmt: skip
     return [*findings, presliding, inertia]
 
 

@@ -19,7 +19,7 @@ from chatter.compile.linearised_friction import linearised_frf
 from chatter.compile.machine_parts import assembled_machine, machine_parts
 from chatter.description.machine.machine_file import MachineFile
 from chatter.plots import style
-from chatter.report.published_against_obtained import Finding, write_findings
+from chatter.report.published_against_obtained import CALIBRATED, RECOVERED, Finding, write_findings
 from chatter.simulation.virtual_tests.frf import FrfResult, peaks
 from chatter.simulation.virtual_tests.move import MovePlan, MoveResult, move_axes
 from dynamics.frf.container import Frf
@@ -246,14 +246,14 @@ def findings(
     tool = max(usual_difference(identified, name) for name in ("x_tcp", "z_tcp", "y_tcp"))
     motor = max(usual_difference(identified, name) for name in ("x_motor", "y_motor"))
     return [
-        Finding("bracket, clamped", 182.0, clamped_bracket(machine), "Hz", "figure 4", True),
+        Finding("bracket, clamped", 182.0, clamped_bracket(machine), "Hz", "figure 4", CALIBRATED),
         Finding(
             "bending, head in the middle", 98.0, peak_near(frfs["X", "z", "middle"], 98.0), "Hz",
-            "figure 15", True,
+            "figure 15", CALIBRATED,
         ),
         Finding(
             "bending, head at the left", 112.0, peak_near(frfs["X", "z", "left"], 112.0), "Hz",
-            "figure 15", True,
+            "figure 15", CALIBRATED,
         ),
         Finding(
             "bracket in X torque to tool x", 185.0, peak_near(frfs["X", "x", "middle"], 185.0),
@@ -276,10 +276,11 @@ def findings(
             peaks_between(frfs["Y", "y", "middle"], 20.0, 150.0), "", "figure 14",
         ),
         Finding("contour error, axes keep the jerk limit", 30.0, kept, "um", "section 5"),
-        Finding("contour error, acceleration jumps at arcs", "-", jumping, "um", "not published"),
+        Finding("contour error, acceleration jumps at arcs", "-", jumping, "um",
+                "not published", RECOVERED),
         *(
             Finding(f"multisine from linearised, {what}, 95 % of lines", "-",
-                    f"{100.0 * value:.2f} %", "", "not published")
+                    f"{100.0 * value:.2f} %", "", "not published", RECOVERED)
             for what, value in (("tool", tool), ("motor", motor))
         ),
     ]  # fmt: skip

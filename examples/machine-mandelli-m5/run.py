@@ -19,7 +19,7 @@ from chatter.compile.linearised_friction import linearised_frictions
 from chatter.compile.machine_parts import assembled_machine
 from chatter.description.machine.machine_file import MachineFile
 from chatter.plots import style
-from chatter.report.published_against_obtained import Finding, write_findings
+from chatter.report.published_against_obtained import CALIBRATED, RECOVERED, Finding, write_findings
 from chatter.simulation.virtual_tests.frf import peaks
 from chatter.simulation.virtual_tests.loop_response import (
     LoopResponse,
@@ -434,17 +434,32 @@ def tuning_findings(tuning: Tuning, before: float, still: StillY) -> list[Findin
     before_db, after_db = (f"{value:.3g} dB" for value in tuning.misfit)
     return [
         *(
-            Finding(one.name, one.published, float(value), one.unit, sources)
+            Finding(one.name, one.published, float(value), one.unit, sources, RECOVERED)
             for one, value in zip(TABLE_3, tuning.values, strict=True)
         ),
-        Finding("misfit of magnitudes before tuning", "peaks misaligned", before_db, "", "Fig. 10"),
-        Finding("misfit of magnitudes after tuning", "peaks replicated", after_db, "", "Fig. 11"),
+        Finding(
+            "misfit of magnitudes before tuning",
+            "peaks misaligned",
+            before_db,
+            "",
+            "Fig. 10",
+            RECOVERED,
+        ),
+        Finding(
+            "misfit of magnitudes after tuning",
+            "peaks replicated",
+            after_db,
+            "",
+            "Fig. 11",
+            RECOVERED,
+        ),
         Finding(
             "stiffness in X at 8 Hz, before over after",
             "statically more rigid",
             before,
             "",
             "section 6",
+            RECOVERED,
         ),
         Finding(
             "Y: compliance at 8 Hz without friction over that with",
@@ -479,6 +494,7 @@ def loop_findings(found: Loops) -> list[Finding]:
                 f"{100.0 * value:.2g} %",
                 "",
                 "section 6",
+                RECOVERED,
             )
             for name, value in found.deviation.items()
         ),
@@ -490,8 +506,12 @@ def friction_findings(found: dict[str, Identified]) -> list[Finding]:
     for axis, one in found.items():
         coulomb, viscous, inertia = TABLE_1[axis]
         rows += [
-            Finding(f"{axis}: tau_st", coulomb, one.fit.value("coulomb"), "N m", "Table 1"),
-            Finding(f"{axis}: mu", viscous, one.fit.value("viscous"), "N m s", "Table 1"),
+            Finding(
+                f"{axis}: tau_st", coulomb, one.fit.value("coulomb"), "N m", "Table 1", RECOVERED
+            ),
+            Finding(
+                f"{axis}: mu", viscous, one.fit.value("viscous"), "N m s", "Table 1", RECOVERED
+            ),
         ]
         if axis == "Y":
             rows.append(
@@ -501,17 +521,19 @@ def friction_findings(found: dict[str, Identified]) -> list[Finding]:
                     one.fit.value("inertia"),
                     "kg m^2",
                     "Table 1",
+                    RECOVERED,
                 )
             )
         reading = "Y: J_eq read as 0.0192" if axis == "Y" else "Z: J_eq"
         rows += [
-            Finding(reading, inertia, one.fit.value("inertia"), "kg m^2", "Table 1", True),
+            Finding(reading, inertia, one.fit.value("inertia"), "kg m^2", "Table 1", CALIBRATED),
             Finding(
                 f"{axis}: torque left unexplained on another profile",
                 "curves agree",
                 f"{100.0 * one.residual:.2g} %",
                 "",
                 "Fig. 7",
+                RECOVERED,
             ),
         ]
     return rows

@@ -17,7 +17,7 @@ import chatter
 from chatter.compile.machine_parts import assembled_machine, machine_parts
 from chatter.description.machine.machine_file import MachineFile
 from chatter.plots import style
-from chatter.report.published_against_obtained import Finding, write_findings
+from chatter.report.published_against_obtained import CALIBRATED, RECOVERED, Finding, write_findings
 from chatter.simulation.virtual_tests.frf import FrfCurve, FrfResult, peaks
 from chatter.simulation.virtual_tests.move import MoveResult
 from chatter.simulation.virtual_tests.run import RunInputs, run_machine
@@ -202,9 +202,11 @@ def findings(
         source = "figure 3.10" if name == "frame_x" else "table 3.1, model"
         for frequency in published:
             found = peak_near(hammered[name], frequency)["frequency_Hz"]
-            rows.append(Finding(f"{name}, harmonic", frequency, found, "Hz", source, True))
+            rows.append(Finding(f"{name}, harmonic", frequency, found, "Hz", source, CALIBRATED))
             found = peak_near(hammered[name], frequency, tested=True)["frequency_Hz"]
-            rows.append(Finding(f"{name}, simulated blow", frequency, found, "Hz", source, True))
+            rows.append(
+                Finding(f"{name}, simulated blow", frequency, found, "Hz", source, CALIBRATED)
+            )
     heights = (("tip_x", 800.0, 0.05), ("tip_x", 1300.0, 0.17), ("tip_z", 650.0, 0.11))
     for name, frequency, height in heights:
         found = peak_near(hammered[name], frequency)["magnitude"] / GRAVITY
@@ -214,11 +216,21 @@ def findings(
     for name in PUBLISHED:
         apart = difference(hammered[name])
         text = f"{100 * np.median(apart):.2f} %, {100 * np.percentile(apart, 95):.2f} %"
-        rows.append(Finding(f"{name}: blow from harmonic, half and 95 % of lines", "-", text))
+        rows.append(
+            Finding(
+                f"{name}: blow from harmonic, half and 95 % of lines", "-", text, kind=RECOVERED
+            )
+        )
     error = float(np.max(np.abs(move.tracking_error))) * 1e6
-    rows.append(Finding("positioning error, 100 mm in Y", 28.0, error, "um", "section 3.3.2", True))
-    rows.append(Finding("Gepro: drive, motors braked", "-", drive_mode(gepro), "Hz"))
-    rows.append(Finding("Gepro: the same, mass on springs", "-", of_springs(gepro), "Hz"))
+    rows.append(
+        Finding("positioning error, 100 mm in Y", 28.0, error, "um", "section 3.3.2", CALIBRATED)
+    )
+    rows.append(
+        Finding("Gepro: drive, motors braked", "-", drive_mode(gepro), "Hz", kind=RECOVERED)
+    )
+    rows.append(
+        Finding("Gepro: the same, mass on springs", "-", of_springs(gepro), "Hz", kind=RECOVERED)
+    )
     for one, name in zip(runs, gepro.move, strict=True):
         # once preloaded and before the move, and at the least of the pinion that pushes forward
         still = one.teeth[one.time < 0.95 * gepro.move[name].standstill][-1, 0]
@@ -227,6 +239,7 @@ def findings(
             Finding(
                 f"Gepro, {name}: teeth of motor 1, at rest and least", "-",
                 f"{still / 1e3:.2f} kN, {least / 1e3:.2f} kN",
+                kind=RECOVERED,
             )
         )  # fmt: skip
     return rows

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 import chatter
 from chatter.description.case import Case
 from chatter.plots import style
-from chatter.report.published_against_obtained import Finding, write_findings
+from chatter.report.published_against_obtained import RECOVERED, Finding, write_findings
 from chatter.simulation.simulate import MachineResult
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import milling_model
@@ -94,6 +94,7 @@ def findings_of(cases: dict[str, Case], results: dict[str, MachineResult]) -> li
             float(published.torque_of("Y")[last].mean()),
             "N m",
             "closed form of the slot",
+            RECOVERED,
         ),
         Finding(
             "torque on Y, edge forces as printed",
