@@ -4,12 +4,7 @@ import csv
 
 import pytest
 
-from chatter.report.published_against_obtained import (
-    CALIBRATED,
-    PREDICTED,
-    Finding,
-    write_findings,
-)
+from chatter.report.published_against_obtained import CALIBRATED, PREDICTED, Finding, write_findings
 
 
 def test_each_row_says_what_it_proves(tmp_path, capsys):
