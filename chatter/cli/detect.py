@@ -12,7 +12,7 @@ from chatter.cli import options
 from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
-from chatter.report.console import print_line, print_table
+from chatter.report.console import print_line, print_message, print_table
 
 if TYPE_CHECKING:
     from chatter.monitoring.result import DetectedChatter
@@ -50,6 +50,14 @@ class DetectOptions:
         str | None,
         typer.Option("--sampling-rate", help='Of a file without time, such as "25.6 kHz".'),
     ] = None
+    follow: Annotated[
+        bool,
+        typer.Option(
+            "--follow",
+            help="Of a WAV or text file that is still being written: a line on stderr at every "
+            "change; the whole recording at its end. Needs --spindle-speed.",
+        ),
+    ] = False
     assignments: options.Assignments = None
     out: options.OutputFolder = None
     json: options.Json = False
@@ -63,6 +71,9 @@ def detect(options_: DetectOptions) -> None:
         case = options.patched_case(options_.case, options_.assignments)
     from chatter.monitoring.detect import detect as run_detect
 
+    if options_.follow:
+        _follow(options_)
+
     with progress_bar("spectra and verdicts"):
         found = run_detect(
             options_.recording,
@@ -74,6 +85,27 @@ def detect(options_: DetectOptions) -> None:
         )
     folder = options.output_folder(options_.out, options_.recording.stem)
     present(found, folder, json=options_.json, words=_print_detection, notes=found.notes)
+
+
+def _follow(options_: DetectOptions) -> None:
+    """Print changes of the verdict until the file grows no more, or it is interrupted."""
+    from chatter.monitoring.follow import follow
+
+    verdict = ""
+    try:
+        for one in follow(
+            options_.recording,
+            options_.spindle_speed,
+            options_.teeth,
+            tuple(options_.channel or ()),
+            options_.sampling_rate,
+        ):
+            if one.verdict != verdict:
+                verdict = one.verdict
+                line = f", {one.chatter_frequency:.1f} Hz" if verdict == "chatter" else ""
+                print_message(f"{one.time:.2f} s: {verdict}{line}")
+    except KeyboardInterrupt:
+        print_message("interrupted; what was written up to here follows")
 
 
 def _print_detection(found: DetectedChatter) -> None:

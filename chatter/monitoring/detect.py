@@ -63,10 +63,10 @@ def detect(
     """
     if isinstance(case, (str, Path)):
         case = load(case)
-    given = _frequency(spindle_speed, case)
+    given = spindle_frequency(spindle_speed, case)
     teeth = _teeth(teeth, case)
     if not isinstance(recording, Recording):
-        recording = read_recording(recording, channels, _rate(sampling_rate))
+        recording = read_recording(recording, channels, sampling_frequency(sampling_rate))
     evidence = evidence_of(recording, given, teeth)
     segments = tuple(segments_of(evidence))
     return DetectedChatter(
@@ -97,7 +97,7 @@ def _advice(segments: Sequence[Segment], teeth: int | None, case: Case | None) -
     return Advice(worst, tuple(proposed))
 
 
-def _frequency(given: str | float | None, case: Case | None) -> float | None:
+def spindle_frequency(given: str | float | None, case: Case | None) -> float | None:
     """Frequency of the spindle, Hz, as given or of the case."""
     if given is None:
         cut = None if case is None else case.cut
@@ -108,7 +108,7 @@ def _frequency(given: str | float | None, case: Case | None) -> float | None:
     return value
 
 
-def _rate(given: str | float | None) -> float | None:
+def sampling_frequency(given: str | float | None) -> float | None:
     """Sampling rate, Hz."""
     if given is None:
         return None

@@ -10,5 +10,6 @@ chatter_lines        the strongest line off the harmonics: its share, its sideba
 activity             frames in which nothing is cut
 frame_evidence       all of this over the frames of a recording
 segments             segments of one verdict, their frequency, bifurcation and confidence
+running_detection    a verdict every revolution while a recording goes on
 ==================== =========================================================================
 """

@@ -16,7 +16,7 @@ _SIDEBANDS = 3
 #: logarithm above the floor at which a line counts to the family of the chatter line
 _STANDS_OUT = 2.0
 #: offsets at which lines by chance are sampled, how many it takes, and how many positions
-_OFFSETS, _FEWEST_OFFSETS, _FEWEST_POSITIONS = 64, 12, 3
+_OFFSETS, _FEWEST_OFFSETS, _FEWEST_POSITIONS = 64, 8, 3
 #: teeth that are tried where they are not known
 MOST_TEETH = 8
 #: standard deviations that the best of so many teeth, or of three sets of sidebands, has by chance
@@ -113,7 +113,7 @@ def _sidebands(above: Array, frequency: Array, line: float, comb: Comb) -> float
 
 def _between(offsets: Array, comb: Comb) -> NDArray[np.bool_]:
     """Offsets, of a revolution, that leave the line that they are from."""
-    return np.minimum(offsets, comb.revolution - offsets) > 1.5 * comb.half_width
+    return np.minimum(offsets, comb.revolution - offsets) > 1.25 * comb.half_width
 
 
 def _significance(above: Array, frequency: Array, at: Array, offsets: Array, comb: Comb) -> float:

@@ -21,7 +21,7 @@ from chatter.detection.spectral.spectra import Frames, frames_of
 Array = NDArray[np.float64]
 
 #: revolutions of a frame, at the most and at the least, and frames that a recording should hold
-_REVOLUTIONS, _FEWEST_REVOLUTIONS, _FRAMES = 24.0, 10.0, 4.0
+_REVOLUTIONS, _FEWEST_REVOLUTIONS, _FRAMES = 24.0, 12.0, 2.0
 #: revolutions of the longer frames that the mean speed is read off
 _LONG = 96.0
 #: length below which a frame holds no more than a burst of a lightly damped mode, s
@@ -31,7 +31,7 @@ _UNKNOWN = 1.0
 #: frames that overlap: hop over length
 _HOP = 0.25
 #: least ratio of a line to what is there at rest
-_RATIO_AT_REST = 10.0
+RATIO_AT_REST = 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +70,7 @@ class Evidence:
         near = np.abs(self.frames.frequency - frequency) < self.frames.half_width
         own = float(self.frames.power[row, near].sum())
         rest = float(np.median(self.frames.power[self.idle][:, near].sum(axis=1)))
-        return own > _RATIO_AT_REST * rest
+        return own > RATIO_AT_REST * rest
 
 
 def comb_of(revolution: Revolution, teeth: int | None, frequency: float, of: Evidence) -> Comb:

@@ -10,31 +10,36 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.detection.spectral.chatter_lines import (
+    MOST_TEETH,
     harmonics_significance,
     is_half_tooth,
     strongest_line,
     tooth_powers,
 )
-from chatter.detection.spectral.frame_evidence import Evidence
+from chatter.detection.spectral.frame_evidence import RATIO_AT_REST, Evidence
 from chatter.detection.spectral.revolution_frequency import ABOUT_GIVEN
 from chatter.detection.spectral.spectra import mean_of
 
 CHATTER, STABLE, IDLE, NOT_JUDGED = "chatter", "stable", "idle", "not judged"
 
 #: share of the power off the harmonics from which chatter begins, and down to which it goes on
-_BEGINS, _GOES_ON = 0.3, 0.15
+BEGINS, GOES_ON = 0.3, 0.15
 #: relative change of the line from frame to frame that is one line
 _SAME_LINE = 0.02
 #: frames that chatter lasts at the least, where there are as many
 _LASTS = 5
 #: standard deviations of the sidebands over a segment, and where all else is of a cut; the share of
 #: the line itself that does without them where it is far above what is there at rest
-_SIDEBANDS, _FEWER_SIDEBANDS, _WITHOUT_SIDEBANDS = 5.0, 4.0, 0.5
+SIDEBANDS, _FEWER_SIDEBANDS, _WITHOUT_SIDEBANDS = 5.0, 4.0, 0.5
 #: standard deviations of the harmonics of the teeth from which a record without idle frames cuts
 _CUTS = 4.0
-#: the same of a line whose amplitude is steady, as electrical ones are, and what is steady, where
-#: no idle frame shows what the machine does alone
-_CUTS_FOR_SURE, _STEADY = 8.0, 0.03
+#: the same, for sure
+_CUTS_FOR_SURE = 8.0
+#: relative variation of amplitude and frequency up to which a line is as steady as electrical ones,
+#: which is no chatter where no idle frame shows what the machine does alone
+_STEADY, _STEADY_FREQUENCY = 0.03, 1e-4
+#: multiple of a spacing of lines up to which simple fractions of it may be the teeth
+_LOW_FRACTION = 8.0
 #: highest harmonic of the teeth that a line is taken for where the speed may be wrong
 _LOW_ORDER = 4
 #: half-tooth share of a flip that grew, and before
@@ -126,7 +131,7 @@ def _runs_of_one_line(evidence: Evidence, idle: NDArray[np.bool_]) -> list[tuple
     count = len(evidence.lines)
     row = 0
     while row < count:
-        if not _is_large(evidence, idle, row, _BEGINS):
+        if not _is_large(evidence, idle, row, BEGINS):
             row += 1
             continue
         first, last = row, row + 1
@@ -134,7 +139,7 @@ def _runs_of_one_line(evidence: Evidence, idle: NDArray[np.bool_]) -> list[tuple
             last += 1
         while first > (runs[-1][1] if runs else 0) and _goes_on(evidence, idle, first - 1, first):
             first -= 1
-        large = sum(_is_large(evidence, idle, k, _BEGINS) for k in range(first, last))
+        large = sum(_is_large(evidence, idle, k, BEGINS) for k in range(first, last))
         if large > 1 or count == 1:
             runs.append((first, last, large))
         row = last
@@ -151,7 +156,7 @@ def _is_large(evidence: Evidence, idle: NDArray[np.bool_], row: int, share: floa
 def _goes_on(evidence: Evidence, idle: NDArray[np.bool_], row: int, other: int) -> bool:
     one, two = evidence.lines[row].frequency, evidence.lines[other].frequency
     same = abs(one - two) <= _SAME_LINE * two
-    return same and _is_large(evidence, idle, row, _GOES_ON)
+    return same and _is_large(evidence, idle, row, GOES_ON)
 
 
 def _is_chatter(evidence: Evidence, rows: slice) -> bool:
@@ -160,12 +165,11 @@ def _is_chatter(evidence: Evidence, rows: slice) -> bool:
         return False
     sidebands = _sidebands(evidence, rows)
     if evidence.idle is None:
-        harmonics = _harmonics(evidence)
-        varies = _variation(evidence, rows) > _STEADY
-        if harmonics > _CUTS_FOR_SURE and varies:
-            return sidebands >= _FEWER_SIDEBANDS
-        return sidebands >= _SIDEBANDS and harmonics > (_CUTS if varies else _CUTS_FOR_SURE)
-    if sidebands >= _SIDEBANDS:
+        cuts, wanders = _harmonics(evidence) > _CUTS_FOR_SURE, _wanders(evidence, rows)
+        return (cuts or wanders or _rose(evidence, rows)) and sidebands >= (
+            _FEWER_SIDEBANDS if cuts and wanders else SIDEBANDS
+        )
+    if sidebands >= SIDEBANDS:
         return True
     alone = float(np.median([line.alone for line in evidence.lines[rows]]))
     middle = (rows.start + rows.stop) // 2
@@ -174,7 +178,9 @@ def _is_chatter(evidence: Evidence, rows: slice) -> bool:
 
 
 def _may_be_harmonic(evidence: Evidence, rows: slice) -> bool:
-    """Whether a speed near an unconfirmed one makes the line a low harmonic and explains more."""
+    """Whether another speed that is not ruled out makes the line a harmonic."""
+    if evidence.revolution.may_be_multiple:
+        return _is_low_fraction(evidence, rows)
     if evidence.revolution.source != "given":
         return False
     comb = evidence.comb((rows.start + rows.stop - 1) // 2)
@@ -192,12 +198,42 @@ def _may_be_harmonic(evidence: Evidence, rows: slice) -> bool:
     return others >= own
 
 
-def _variation(evidence: Evidence, rows: slice) -> float:
-    """Relative variation of the amplitude of the line from frame to frame: none is electrical."""
+def _is_low_fraction(evidence: Evidence, rows: slice) -> bool:
+    """Whether a line is a simple fraction of a spacing that may be that of several teeth."""
+    comb = evidence.comb((rows.start + rows.stop - 1) // 2)
+    line = _line_of(evidence, rows).frequency
+    if line > _LOW_FRACTION * comb.revolution:
+        return False
+    tolerance = _KNOWN / evidence.frames.length + comb.uncertainty * line
+    parts = comb.revolution / np.arange(1, MOST_TEETH + 1)
+    return bool(np.any(np.abs(line - np.round(line / parts) * parts) < tolerance))
+
+
+def _rose(evidence: Evidence, rows: slice) -> bool:
+    """Whether the line is far above what the other frames have there."""
     frames = evidence.frames
+    others = np.ones(frames.time.size, dtype=bool)
+    others[rows] = False
+    if others.sum() < _LASTS:
+        return False
     near = np.abs(frames.frequency - _line_of(evidence, rows).frequency) < frames.half_width
+    power = frames.power[:, near].sum(axis=1)
+    return bool(np.median(power[rows]) > RATIO_AT_REST * np.median(power[others]))
+
+
+def _wanders(evidence: Evidence, rows: slice) -> bool:
+    """Whether amplitude and frequency of the line vary over the frames: no electrical one does."""
+    frames = evidence.frames
+    line = _line_of(evidence, rows).frequency
+    near = np.abs(frames.frequency - line) < frames.half_width
     amplitude = np.sqrt(frames.power[rows][:, near].sum(axis=1))
-    return float(amplitude.std() / amplitude.mean())
+    frequency = np.array([one.frequency for one in evidence.lines[rows]])
+    same = np.abs(frequency - line) < frames.half_width
+    return bool(
+        amplitude.std() > _STEADY * amplitude.mean()
+        and same.any()
+        and frequency[same].std() > _STEADY_FREQUENCY * line
+    )
 
 
 def _sidebands(evidence: Evidence, rows: slice) -> float:
@@ -269,7 +305,7 @@ def _chatter_segment(
     lines = evidence.lines[rows]
     share = float(np.median([line.share for line in lines]))
     comb = evidence.comb((rows.start + rows.stop - 1) // 2)
-    if share < _GOES_ON:  # half-tooth lines, which are harmonics of the spindle
+    if share < GOES_ON:  # half-tooth lines, which are harmonics of the spindle
         shares = half_tooth_shares(evidence)[rows]
         strongest = _strongest_half_tooth(evidence, rows)
         reason = "lines at half the tooth passing frequency grew during the cut"
@@ -277,7 +313,7 @@ def _chatter_segment(
         return Segment(begin, end, CHATTER, strongest, "flip", 0.6, share, speed, reason)
     frequency = _line_of(evidence, rows).frequency
     sidebands = _sidebands(evidence, rows)
-    strength = np.clip((share - _BEGINS) / 0.4, 0.0, 1.0)
+    strength = np.clip((share - BEGINS) / 0.4, 0.0, 1.0)
     confidence = 0.5 + 0.2 * float(strength) + 0.28 * float(np.clip(sidebands / 8.0, 0.0, 1.0))
     # what the speed is not known by: a flip needs the tooth passing frequency
     is_flip = (
@@ -307,7 +343,7 @@ def _strongest_half_tooth(evidence: Evidence, rows: slice) -> float:
 
 def _of_stable(evidence: Evidence, rows: slice) -> tuple[float, str]:
     shares = [line.share for line in evidence.lines[rows]]
-    margin = float(np.clip(1.0 - np.quantile(shares, 0.9) / _BEGINS, 0.0, 1.0))
+    margin = float(np.clip(1.0 - np.quantile(shares, 0.9) / BEGINS, 0.0, 1.0))
     confidence = 0.5 + 0.48 * margin
     if evidence.revolution.source == "given":
         confidence = min(confidence, 0.7)

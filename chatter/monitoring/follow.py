@@ -1,0 +1,64 @@
+"""A recording that is still being written: its verdict every revolution, as it grows."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+from chatter.description.errors import InputError
+from chatter.detection.spectral.running_detection import Observation, RunningDetection
+from chatter.monitoring.detect import sampling_frequency, spindle_frequency
+from chatter.monitoring.growing_file import growing_file
+
+#: s after which the file is read again
+_EVERY = 0.01
+#: s without growth after which a file is finished
+DEFAULT_PATIENCE = 5.0
+
+
+def follow(
+    path: str | Path,
+    spindle_speed: str | float | None,
+    teeth: int | None = None,
+    channels: Sequence[str] = (),
+    sampling_rate: str | float | None = None,
+    patience: float = DEFAULT_PATIENCE,
+    clock: Callable[[], float] = time.monotonic,
+) -> Iterator[Observation]:
+    """Observe chatter in a file that is being written, once a revolution.
+
+    Each verdict is of the last 24 revolutions. A sample is part of one as soon as the revolution
+    ends in which it was written.
+
+    Parameters
+    ----------
+    path : path
+        WAV, or a table in text that grows by lines.
+    spindle_speed : str or float
+        As for `detect`; right within 1.5 %.
+    teeth, channels, sampling_rate
+        As for `detect`.
+    patience : float
+        s without growth after which the file is finished.
+    clock : callable
+        s, that never goes back.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be followed, or a value is wrong.
+    """
+    frequency = spindle_frequency(spindle_speed, None)
+    if frequency is None:
+        raise InputError("--follow needs --spindle-speed, such as 1656 rpm")
+    file = growing_file(Path(path), channels, sampling_frequency(sampling_rate))
+    running = RunningDetection(file.start, frequency, teeth)
+    grown = clock()
+    while clock() - grown < patience:
+        samples = file.new_samples()
+        if len(samples):
+            grown = clock()
+            yield from running.take(samples)
+        else:
+            time.sleep(_EVERY)

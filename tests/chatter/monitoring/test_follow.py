@@ -1,0 +1,144 @@
+"""Files that are still being written: what is followed is what was written."""
+
+import itertools
+import struct
+import threading
+import time as clock_time
+
+import numpy as np
+import pytest
+import scipy.io.wavfile
+
+from chatter.description.errors import InputError
+from chatter.detection.spectral.recording import Recording
+from chatter.detection.spectral.running_detection import RunningDetection
+from chatter.monitoring.follow import follow
+from chatter.monitoring.growing_file import growing_file
+from tests.chatter.detection.made_recordings import (
+    RATE,
+    chatter_line,
+    clock,
+    during,
+    forced_cut,
+    noise,
+)
+from tests.command_line import chatter_command
+
+REVOLUTION, TEETH, FREQUENCY = 50.0, 4, 1230.0
+
+
+def made(begin, seconds=4.0):
+    random = np.random.default_rng(1)
+    time = clock(seconds)
+    values = forced_cut(random, time, REVOLUTION, TEETH) + noise(random, time)
+    chatter_part = chatter_line(random, time, FREQUENCY, TEETH * REVOLUTION)
+    return 0.05 * (values + 4.0 * during(time, begin, seconds) * chatter_part)
+
+
+def running(values):
+    start = Recording("made", 1.0 / RATE, ("a",), ("sound",), values[:256, None])
+    return RunningDetection(start, REVOLUTION, TEETH)
+
+
+def test_a_verdict_every_revolution_and_chatter_within_the_window():
+    values = made(2.0)
+    found = running(values).take(values[:, None])
+    times = [one.time for one in found]
+    # the window of 24 revolutions is full at 0.48 s
+    assert times[0] == pytest.approx(0.5, abs=1e-3)
+    np.testing.assert_allclose(np.diff(times), 1.0 / REVOLUTION, rtol=1e-9)
+    before = {one.verdict for one in found if one.time < 2.0}
+    assert "chatter" not in before
+    first = next(one for one in found if one.verdict == "chatter")
+    assert 2.0 < first.time < 2.0 + 16.0 / REVOLUTION
+    assert {one.verdict for one in found if one.time > first.time} == {"chatter"}
+    assert found[-1].chatter_frequency == pytest.approx(FREQUENCY, rel=1e-3)
+
+
+def test_the_parts_in_which_samples_come_do_not_matter():
+    values = made(1.0, 2.0)[:, None]
+    at_once = running(values[:, 0]).take(values)
+    one_by_one = running(values[:, 0])
+    edges = [0, 1, 700, 701, 9000, len(values)]
+    in_parts = [
+        found
+        for low, high in itertools.pairwise(edges)
+        for found in one_by_one.take(values[low:high])
+    ]
+    assert [one[:2] for one in in_parts] == [one[:2] for one in at_once]
+
+
+def test_a_stable_cut_never_chatters():
+    values = made(9.0)
+    assert "chatter" not in {one.verdict for one in running(values).take(values[:, None])}
+
+
+def test_a_sound_grows_whatever_its_header_has_as_its_length(tmp_path):
+    values = (made(1.0) * 20000).astype("<i2")
+    path = tmp_path / "cut.wav"
+    scipy.io.wavfile.write(path, int(RATE), values)
+    whole = bytearray(path.read_bytes())
+    struct.pack_into("<I", whole, whole.find(b"data") + 4, 0)
+    half = len(whole) // 2 | 1  # in the middle of a sample
+    path.write_bytes(whole[:half])
+    file = growing_file(path)
+    parts = [file.new_samples()]
+    path.write_bytes(whole)
+    parts.append(file.new_samples())
+    assert file.start.time_step == pytest.approx(1.0 / RATE)
+    assert len(file.new_samples()) == 0
+    np.testing.assert_allclose(np.concatenate(parts)[:, 0], values / 32768.0)
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+def test_a_table_grows_by_lines(tmp_path, separator):
+    path = tmp_path / "cut.csv"
+    lines = [separator.join(("time [s]", "temperature [degC]", "ax [m/s^2]"))]
+    values = made(1.0)
+    lines += [
+        separator.join((f"{k / RATE:.5f}", "20", f"{one:.6f}")) for k, one in enumerate(values)
+    ]
+    text = "\n".join(lines) + "\n"
+    head = text.index("\n", 20_000) - 3  # in the middle of a number
+    path.write_text(text[: text.rindex("\n", 0, head) + 1], encoding="utf-8")
+    file = growing_file(path)
+    assert file.start.channels == ("ax",)
+    path.write_text(text[:head], encoding="utf-8")
+    parts = [file.new_samples()]
+    path.write_text(text, encoding="utf-8")
+    parts.append(file.new_samples())
+    np.testing.assert_allclose(np.concatenate(parts)[:, 0], values, atol=1e-6)
+
+
+def test_following_while_another_writes(tmp_path):
+    values = made(1.5, 3.0)
+    path = tmp_path / "cut.wav"
+    scipy.io.wavfile.write(path, int(RATE), (values * 20000).astype("<i2"))
+    whole = path.read_bytes()
+    path.write_bytes(whole[:2000])
+
+    def write():
+        with path.open("ab") as file:
+            for low in range(2000, len(whole), 4000):
+                file.write(whole[low : low + 4000])
+                file.flush()
+                clock_time.sleep(0.005)
+
+    writer = threading.Thread(target=write)
+    writer.start()
+    found = list(follow(path, "3000 rpm", TEETH, patience=1.0))
+    writer.join()
+    assert found[-1].time == pytest.approx(3.0, abs=1.0 / REVOLUTION + 1e-3)
+    assert found[-1].verdict == "chatter"
+    assert found[0].verdict == "stable"
+
+
+def test_following_needs_a_speed(tmp_path):
+    path = tmp_path / "cut.wav"
+    scipy.io.wavfile.write(path, int(RATE), np.zeros(1000, dtype=np.int16))
+    with pytest.raises(InputError, match="--follow needs --spindle-speed"):
+        list(follow(path, None))
+    done = chatter_command("detect", path, "--follow")
+    assert done.exit_code == 2
+    with pytest.raises(InputError, match=r"none\.wav: no such file"):
+        list(follow(tmp_path / "none.wav", "3000 rpm"))
