@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from chatter.io.shipped_examples import examples as examples
     from chatter.learning.learn import learn as learn
     from chatter.monitoring.detect import detect as detect
+    from chatter.operator_sheet.sheet import sheet as sheet
     from chatter.simulation.simulate import simulate as simulate
     from chatter.simulation.virtual_tests.export import export as export
     from chatter.simulation.virtual_tests.from_file import frf as frf
@@ -84,6 +85,7 @@ _PUBLIC = {
     "move": "chatter.simulation.virtual_tests.from_file",
     "pitch": "chatter.studies.pitch_design.pitch_design",
     "schema": "chatter.stability.case_schema",
+    "sheet": "chatter.operator_sheet.sheet",
     "simulate": "chatter.simulation.simulate",
     "uncertainty": "chatter.studies.uncertainty.monte_carlo",
     "whatif": "chatter.studies.whatif.whatif_study",

@@ -112,7 +112,12 @@ WORDS = (
     Word("max_pitch_ratio", "largest_chip", r"largest[_ ]chip"),
     Word("radial_depths", "widths", within=("chatter/studies", "chatter/description")),
     Word("process optimisation", "best_cut best_cuts", r"best cuts?"),
-    Word("speed-depth slice", "sheet sheets", r"sheets?(?! metal)"),
+    # `chatter sheet` is the operator's page
+    Word(
+        "speed-depth slice",
+        "sheet sheets",
+        within=("cutting", "dynamics", "chatter/stability", "chatter/studies"),
+    ),
     Word("result cache", "kept_results finished_points", r"kept results|finished points"),
     Word("executor", "=Computing =Here =OnDask"),
     Word(

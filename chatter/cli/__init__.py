@@ -40,6 +40,7 @@ COMMANDS = (
     "frf",
     "move",
     "export",
+    "sheet",
     "materials",
     "examples",
     "schema",

@@ -37,7 +37,7 @@ def plot_limits(diagram: StabilityDiagram) -> Figure:
     """Draw critical depth and chatter frequency over the axis of a diagram."""
     figure = style.new_figure(8.0, 7.0 if diagram.is_over_speed else 6.4)
     limit, frequency = figure.subplots(2, 1, sharex=True, height_ratios=[2.2, 1.0])
-    _draw_limits(limit, diagram)
+    draw_limits(limit, diagram)
     _draw_frequency(frequency, diagram)
     if diagram.is_over_speed:
         frequency.text(
@@ -48,7 +48,8 @@ def plot_limits(diagram: StabilityDiagram) -> Figure:
     return figure
 
 
-def _draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
+def draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
+    """Draw critical depths, what is stable below them, and the operating point."""
     x, top, limits = diagram.axis.values, _top(diagram), diagram.limits
     _fill(axes, diagram, top)
     # where stable intervals come or go the limit jumps: no line across

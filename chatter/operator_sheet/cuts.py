@@ -1,0 +1,111 @@
+"""Rows of an operator's sheet: cuts of one case with limits and margins."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from chatter.description.case import Case
+from chatter.description.units import rpm
+from chatter.operator_sheet.variation import Variation
+from chatter.stability.diagram import StabilityDiagram
+from chatter.stability.pockets import DEPTH_MARGIN
+
+#: pockets on a sheet
+_MOST_POCKETS = 3
+
+
+class SheetCut(NamedTuple):
+    """One line of the sheet, in the units of the shop."""
+
+    name: str
+    spindle_speed: float | None  # rpm; None for any speed
+    cutting_speed: float | None  # m/min
+    axial_depth: float  # mm
+    width_of_cut: float  # mm
+    feed_per_tooth: float  # mm
+    feed_rate: float | None  # mm/min
+    limit: float | None  # mm; None where none was found up to the searched depth
+    removal_rate: float | None  # cm^3/min
+    stable: bool
+
+    @property
+    def margin(self) -> float | None:
+        """Share of the limit that is kept in hand; negative beyond the limit."""
+        return None if self.limit is None else 1.0 - self.axial_depth / self.limit
+
+
+class CaseCuts(NamedTuple):
+    """Cuts of one case."""
+
+    case: Case
+    diagram: StabilityDiagram
+    cuts: tuple[SheetCut, ...]
+    variation: Variation | None
+
+
+def cuts_of(diagram: StabilityDiagram) -> tuple[SheetCut, ...]:
+    """The cut as stated, the best pockets, and the depth that any speed of the range allows."""
+    case = diagram.case
+    cut = case.cut
+    stated = _at_speed(
+        case,
+        "as stated",
+        cut.spindle_speed,
+        cut.axial_depth,
+        float(diagram.operating.critical_depth[0]),
+        diagram.operating_is_stable,
+    )
+    pockets = [
+        _at_speed(
+            case,
+            f"pocket {place}",
+            pocket.spindle_speed,
+            pocket.axial_depth,
+            pocket.critical_depth,
+            stable=True,
+        )
+        for place, pocket in enumerate(diagram.pockets[:_MOST_POCKETS], start=1)
+    ]
+    return (stated, *pockets, *_at_any_speed(diagram))
+
+
+def _at_speed(
+    case: Case, name: str, speed: float, depth: float, limit: float, stable: bool
+) -> SheetCut:
+    turns = speed / (2.0 * math.pi)
+    feed = case.cut.feed_per_tooth * case.tool.teeth * turns
+    return SheetCut(
+        name,
+        rpm(speed),
+        60.0 * math.pi * case.tool.diameter * turns,
+        1e3 * depth,
+        1e3 * case.width_of_cut,
+        1e3 * case.cut.feed_per_tooth,
+        60e3 * feed,
+        1e3 * limit if math.isfinite(limit) else None,
+        60e6 * depth * case.width_of_cut * feed,
+        stable,
+    )
+
+
+def _at_any_speed(diagram: StabilityDiagram) -> list[SheetCut]:
+    """Depth below every limit of the range, less the margin; none where there is no limit."""
+    lowest = diagram.lowest.critical_depth
+    if not math.isfinite(lowest):
+        return []
+    case = diagram.case
+    return [
+        SheetCut(
+            "any speed",
+            None,
+            None,
+            1e3 * (1.0 - DEPTH_MARGIN) * lowest,
+            1e3 * case.width_of_cut,
+            1e3 * case.cut.feed_per_tooth,
+            None,
+            1e3 * lowest,
+            None,
+            stable=True,
+        )
+    ]

@@ -1,0 +1,92 @@
+"""The operator's sheet: its numbers by hand, its files as other programs read them."""
+
+import json
+import math
+
+import openpyxl
+import pytest
+
+import chatter
+from chatter.description.errors import InputError
+from chatter.operator_sheet.variation import variation_that_helps
+from tests.command_line import chatter_command
+from tests.places import EXAMPLES
+
+STEEL = EXAMPLES / "steel-half-immersion" / "case.toml"
+TWO = EXAMPLES / "two-degrees-of-freedom" / "case.toml"
+
+
+@pytest.fixture(scope="module")
+def found():
+    return chatter.sheet([STEEL, TWO])
+
+
+def test_the_stated_cut_by_hand(found):
+    """4500 rpm, 12 mm, four teeth of 0.05 mm, 0.42 mm by 6 mm."""
+    stated = found.cases[0].cuts[0]
+    assert stated.cutting_speed == pytest.approx(math.pi * 0.012 * 4500.0)
+    assert stated.feed_rate == pytest.approx(4500.0 * 4 * 0.05)
+    assert stated.removal_rate == pytest.approx(0.42 * 6.0 * 900.0 * 1e-3)
+    limit = chatter.check(STEEL).critical_depth * 1e3
+    assert stated.limit == pytest.approx(limit, rel=5e-3)
+    assert stated.margin == pytest.approx(1.0 - 0.42 / limit, abs=5e-3)
+
+
+def test_every_cut_that_is_proposed_is_stable(found):
+    for one in found.cases:
+        for cut in one.cuts[1:]:
+            if cut.spindle_speed is not None:
+                at = {
+                    "cut.spindle_speed": f"{cut.spindle_speed} rpm",
+                    "cut.axial_depth": f"{cut.axial_depth} mm",
+                }
+                assert chatter.check(one.case.patch(at)).stable, cut
+
+
+def test_the_depth_of_any_speed_is_below_every_limit(found):
+    for one in found.cases:
+        assert one.cuts[-1].name == "any speed"
+        assert one.cuts[-1].axial_depth * 1e-3 < one.diagram.limits.critical_depth.min()
+
+
+def test_files(found, tmp_path):
+    found.save(tmp_path)
+    assert (tmp_path / "sheet.pdf").read_bytes().startswith(b"%PDF")
+    book = openpyxl.load_workbook(tmp_path / "sheet.xlsx")
+    rows = list(book["cuts"].values)
+    assert rows[1][1:4] == ("as stated", "stable", 4500)
+    assert len(rows) == 1 + sum(len(one.cuts) for one in found.cases)
+    assert book["limits 1"].max_row == 401
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    assert summary["cases"][0]["cuts"][0]["spindle_speed_rpm"] == pytest.approx(4500.0)
+
+
+def test_a_title_is_no_formula(tmp_path):
+    case = chatter.load(STEEL).patch(
+        {"title": "=1+1", "lobes.speeds": {"from": "4000 rpm", "to": "5000 rpm", "count": 20}}
+    )
+    chatter.sheet(case).save(tmp_path)
+    cell = openpyxl.load_workbook(tmp_path / "sheet.xlsx")["cuts"]["A2"]
+    assert (cell.value, cell.data_type) == ("=1+1", "s")
+
+
+def test_variation_helps_where_the_lobes_are_dense():
+    """At a low speed of a lightly damped mode, as every experiment with a varied speed has it."""
+    case = chatter.load(TWO).patch({"cut.spindle_speed": "3000 rpm", "cut.axial_depth": "30 mm"})
+    limit = chatter.check(case).critical_depth
+    best = variation_that_helps(case, limit)
+    assert best is not None
+    assert best.limit is None or best.limit > 1.1 * limit
+    # nothing to gain where the cut has its margin
+    assert variation_that_helps(case.patch({"cut.axial_depth": 0.5 * limit}), limit) is None
+
+
+def test_the_command(tmp_path):
+    shown = chatter_command("sheet", STEEL, "--out", tmp_path)
+    assert "as stated" in shown.stdout
+    assert (tmp_path / "sheet.pdf").exists()
+
+
+def test_no_case():
+    with pytest.raises(InputError, match="no case"):
+        chatter.sheet([])
