@@ -11,6 +11,8 @@ Array = NDArray[np.float64]
 
 #: line half widths to a band
 _BAND = 16
+#: power of a bin below which it is silence, over the largest
+_SILENCE = 1e-9
 #: share of the frames of lowest level that is the reference of a band
 _QUIET = 0.1
 #: dB between the two classes, and their distance over the scatter within, where they differ
@@ -28,9 +30,10 @@ def activity_levels(frames: Frames) -> Array:
     width = max(round(_BAND * frames.half_width / frames.step), 4)
     count = frames.frequency.size // width
     bands = frames.power[:, : count * width].reshape(len(frames.power), count, width)
-    level = 10.0 * np.log10(bands.mean(axis=2) + 1e-300)
+    least = _SILENCE * float(frames.power.max()) + 1e-300
+    level = 10.0 * np.log10(bands.mean(axis=2) + least)
     by_band = np.median(level - np.quantile(level, _QUIET, axis=0), axis=1)
-    whole = 10.0 * np.log10(frames.power.sum(axis=1) + 1e-300)
+    whole = 10.0 * np.log10(frames.power.sum(axis=1) + least * frames.frequency.size)
     return 0.5 * (by_band + whole - np.quantile(whole, _QUIET))
 
 

@@ -28,8 +28,8 @@ _LONG = 96.0
 _SHORTEST = 0.25
 #: length of frames while the speed is not known, s
 _UNKNOWN = 1.0
-#: frames that overlap: hop over length
-_HOP = 0.25
+#: frames that overlap: hop over length; most frames, of which those of long recordings are apart
+_HOP, _MOST_FRAMES = 0.25, 2000.0
 #: least ratio of a line to what is there at rest
 RATIO_AT_REST = 10.0
 
@@ -110,7 +110,7 @@ def _with_speed(
         frames = _frames(recording, given, _REVOLUTIONS)
     else:
         length = min(_UNKNOWN, recording.duration)
-        frames = frames_of(recording, length, _HOP * length)
+        frames = frames_of(recording, length, max(_HOP * length, recording.duration / _MOST_FRAMES))
     if recording.tacho is not None:
         found = from_tacho(recording.tacho, recording.time_step, recording.start, frames)
         if found is not None:
@@ -134,4 +134,4 @@ def _frames(recording: Recording, frequency: float, most: float) -> Frames:
     longest = max(most, _SHORTEST * frequency)
     wanted = min(max(revolutions / _FRAMES, _FEWEST_REVOLUTIONS), longest, revolutions)
     length = wanted / frequency
-    return frames_of(recording, length, _HOP * length)
+    return frames_of(recording, length, max(_HOP * length, recording.duration / _MOST_FRAMES))

@@ -36,12 +36,13 @@ def line_autocorrelations(frames: Frames) -> Array:
     Lines at c + k f, whatever c is, put peaks at the multiples of f: harmonics of the spindle do,
     and so does a chatter frequency with its sidebands.
     """
-    lines = np.clip(frames.above - _COUNTS, 0.0, _AT_MOST)
-    lines -= lines.mean(axis=1, keepdims=True)
     count = frames.frequency.size
     size = scipy.fft.next_fast_len(2 * count, real=True)
-    spectra = np.abs(scipy.fft.rfft(lines, size)) ** 2
-    found = scipy.fft.irfft(spectra, size)[:, :count]
+    found = np.empty_like(frames.above)
+    for row, above in enumerate(frames.above):
+        lines = np.clip(above - _COUNTS, 0.0, _AT_MOST)
+        spectrum = np.abs(scipy.fft.rfft(lines - lines.mean(), size)) ** 2
+        found[row] = scipy.fft.irfft(spectrum, size)[:count]
     return found / np.maximum(found[:, :1], 1e-300)
 
 

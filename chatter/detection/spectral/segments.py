@@ -258,14 +258,17 @@ def _grown_flip(evidence: Evidence) -> NDArray[np.bool_]:
     none = np.zeros(evidence.frames.time.size, dtype=bool)
     if evidence.teeth is None or evidence.teeth % 2 or evidence.revolution.may_be_multiple:
         return none
-    teeth, _, _ = _tooth_powers(evidence)
+    teeth, halves, _ = _tooth_powers(evidence)
     shares = half_tooth_shares(evidence)
     flip = shares > _FLIP
     if flip.sum() < _LASTS:
         return none
     cut = teeth > _SAME_CUT * float(np.median(teeth[flip]))
     before = np.flatnonzero(cut & (shares < _BEFORE_FLIP))
-    if before.size < _LASTS:
+    # unbalance is there before, and stands out where the cut ends
+    if before.size < _LASTS or not (
+        np.median(halves[flip]) > RATIO_AT_REST * np.median(halves[before])
+    ):
         return none
     return flip & cut & (np.arange(flip.size) > before[_LASTS - 1])
 

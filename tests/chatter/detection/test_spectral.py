@@ -134,6 +134,24 @@ def test_every_second_tooth_of_even_teeth_is_a_flip_only_where_it_grew():
     assert "every second tooth" in throughout[0].reason
 
 
+def test_unbalance_that_is_left_as_a_cut_of_two_teeth_ends_is_no_flip():
+    random = np.random.default_rng(11)
+    time = clock(4.0)
+    # half the tooth passing frequency of two teeth is the revolution; cut and air are as loud
+    unbalance = 2.0 * np.cos(2.0 * np.pi * 70.0 * time) + np.cos(2.0 * np.pi * 140.0 * time)
+    cut = 6.0 * during(time, 0.0, 2.5) * forced_cut(random, time, 70.0, 2, runout=0.0, mode=1500.0)
+    values = cut + unbalance + noise(random, time)
+    assert "chatter" not in verdicts(detected(values, 70.0, 2)[0])
+
+
+def test_silence_of_a_recorder_is_idle():
+    random = np.random.default_rng(12)
+    time = clock(4.0)
+    values = forced_cut(random, time, 50.0, 4) + noise(random, time)
+    segments, _ = detected(np.where(time < 1.0, 0.0, values), 50.0, 4)
+    assert [one.verdict for one in segments] == ["idle", "stable"]
+
+
 def test_a_tacho_gives_the_speed_whatever_is_stated():
     random = np.random.default_rng(7)
     time = clock(4.0)
