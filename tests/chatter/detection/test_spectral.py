@@ -137,9 +137,9 @@ def test_every_second_tooth_of_even_teeth_is_a_flip_only_where_it_grew():
 def test_unbalance_that_is_left_as_a_cut_of_two_teeth_ends_is_no_flip():
     random = np.random.default_rng(11)
     time = clock(4.0)
-    # half the tooth passing frequency of two teeth is the revolution; cut and air are as loud
+    # half the tooth passing frequency of two teeth is the revolution
     unbalance = 2.0 * np.cos(2.0 * np.pi * 70.0 * time) + np.cos(2.0 * np.pi * 140.0 * time)
-    cut = 6.0 * during(time, 0.0, 2.5) * forced_cut(random, time, 70.0, 2, runout=0.0, mode=1500.0)
+    cut = 14.0 * during(time, 0.0, 2.5) * forced_cut(random, time, 70.0, 2, runout=0.0, mode=1500.0)
     values = cut + unbalance + noise(random, time)
     assert "chatter" not in verdicts(detected(values, 70.0, 2)[0])
 
