@@ -49,11 +49,11 @@ def _page(one: CaseCuts) -> Figure:
     for axes in (head, table, foot):
         axes.set_axis_off()
     _write(head, 1.0, one.case.title or one.case.name, size=14.0)
-    _write(head, 0.55, textwrap.fill(_set_up(one), 95))
+    _write(head, 0.55, textwrap.fill(_set_up(one), 90))
     _draw_table(table, [row[1:] for row in rows_of(one)], _HEADERS)
     draw_limits(diagram, one.diagram)
     diagram.set_xlabel("spindle speed [rpm]")
-    _write(foot, 1.0, textwrap.fill(_remarks(one), 110))
+    _write(foot, 1.0, textwrap.fill(_remarks(one), 90))
     return figure
 
 
@@ -118,7 +118,8 @@ def _remarks(one: CaseCuts) -> str:
 
 
 def _write(axes: Any, height: float, text: str, size: float = 9.5) -> None:
-    axes.text(0.0, height, text, transform=axes.transAxes, va="top", fontsize=size)
+    shown = axes.text(0.0, height, text, transform=axes.transAxes, va="top", fontsize=size)
+    shown.set_in_layout(False)
 
 
 def _short(title: str, most: int = 34) -> str:
