@@ -10,7 +10,8 @@ import typer
 from chatter.cli import options
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
-from chatter.report.console import print_table
+from chatter.description.errors import InputError
+from chatter.report.console import print_table, print_written
 
 if TYPE_CHECKING:
     from chatter.cutting_coefficients.result import Coefficients
@@ -23,16 +24,27 @@ def coefficients(
     case: Annotated[
         Path | None, typer.Option("--case", help="In place of the case of measurement.toml.")
     ] = None,
+    table: Annotated[
+        Path | None,
+        typer.Option("--table", help="Own table of materials to add the coefficients to."),
+    ] = None,
+    name: Annotated[
+        str | None, typer.Option("--name", help="Name of the new row of that table.")
+    ] = None,
     out: options.OutputFolder = None,
     json: options.Json = False,
 ) -> None:
     """Find the cutting coefficients of a series of cuts by their mean forces."""
     from chatter.cutting_coefficients.identify import coefficients as identify
 
+    if (table is None) != (name is None):
+        raise InputError("--table and --name belong together: a row of a table, and its name")
     with progress_bar("mean forces and laws"):
         found = identify(records, case)
     folder = options.output_folder(out, records.resolve().name)
     present(found, folder, json=json, words=_print_coefficients)
+    if table is not None:
+        print_written([found.keep_in(table, name)])
 
 
 def _print_coefficients(found: Coefficients) -> None:

@@ -12,6 +12,7 @@ import tomlkit
 
 from chatter.cutting_coefficients.fit import FittedLaw
 from chatter.cutting_coefficients.mean_forces import MeanForce, channels_of
+from chatter.cutting_coefficients.own_table import add_row
 from chatter.explain.measurement import Measurement
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, short_repr, write_results
@@ -205,14 +206,8 @@ class Coefficients:
     def material_toml(self) -> str:
         """[material] section of a case file."""
         section = tomlkit.table()
-        section.add("law", self.kept.law.law)
-        for one in self._coefficients(self.kept):
-            section.add(
-                one["name"], f"{one['value']:.5g} +- {one['standard_deviation']:.2g} {one['unit']}"
-            )
-        if self.kept.exponents.size:
-            section.add("exponent", round(float(self.kept.exponents[0]), 5))
-            section.add("h0", "0.1 mm")
+        for key, value in self._row().items():
+            section.add(key, value)
         document = tomlkit.document()
         runs = len(self.measurement.runs)
         document.add(tomlkit.comment(f"{self.kept.law.name} law, mean forces of {runs} cuts"))
@@ -220,6 +215,32 @@ class Coefficients:
             document.add(tomlkit.comment("the linear law leaves more than the readings scatter"))
         document.add("material", section)
         return tomlkit.dumps(document)
+
+    def _row(self) -> dict[str, Any]:
+        """Keys and values of [material], in usual units."""
+        row: dict[str, Any] = {"law": self.kept.law.law}
+        for one in self._coefficients(self.kept):
+            row[one["name"]] = (
+                f"{one['value']:.5g} +- {one['standard_deviation']:.2g} {one['unit']}"
+            )
+        if self.kept.exponents.size:
+            row["exponent"] = round(float(self.kept.exponents[0]), 5)
+            row["h0"] = "0.1 mm"
+        return row
+
+    def keep_in(self, table: str | Path, name: str) -> Path:
+        """Add the coefficients to a table of materials, where cases find them by name.
+
+        Raises
+        ------
+        InputError
+            If there is a row of that name, or the file is no table of materials.
+        """
+        case = self.measurement.case
+        feeds = [run.of(case).cut.feed_per_tooth for run in self.measurement.runs]
+        source = f"mean forces of {len(feeds)} cuts, {self.measurement.folder.resolve().name}"
+        validity = f"feeds of {1e3 * min(feeds):.4g} to {1e3 * max(feeds):.4g} mm a tooth"
+        return add_row(table, name, {**self._row(), "source": source, "validity": validity})
 
     def plot(self) -> Figure:
         """Picture of mean forces over the cuts, and the laws."""

@@ -172,3 +172,22 @@ def test_what_is_wrong_is_told(tmp_path, change, told):
         file.write_text(text.replace(*change))
     with pytest.raises(InputError, match=told):
         chatter.coefficients(folder)
+
+
+def test_a_row_of_the_own_table_is_used_by_name(tmp_path):
+    folder = tmp_path / "feeds"
+    folder.mkdir()
+    records(folder, **UP_CUT)
+    table = tmp_path / "ours.toml"
+    table.write_text('# ours\n[older]\nKtc = "700 MPa"\nKrc = "200 MPa"\nsource = "a book"\n')
+    shown = chatter_command(
+        "coefficients", folder, "--table", table, "--name", "our steel", "--out", tmp_path / "out"
+    )
+    assert shown.exit_code == 0, shown
+    assert table.read_text().startswith("# ours\n[older]")
+    case = load(folder / "case.toml").patch(
+        {"material": {"name": "our steel", "table": str(table)}}
+    )
+    assert case.material.values["Ktc"] == pytest.approx(TRUE["Ktc"], rel=0.02)
+    with pytest.raises(InputError, match='row "our steel" already'):
+        chatter.coefficients(folder).keep_in(table, "our steel")
