@@ -165,7 +165,10 @@ def _is_chatter(evidence: Evidence, rows: slice) -> bool:
         return False
     sidebands = _sidebands(evidence, rows)
     if evidence.idle is None:
-        cuts, wanders = _harmonics(evidence) > _CUTS_FOR_SURE, _wanders(evidence, rows)
+        harmonics = _harmonics(evidence)
+        cuts = harmonics > _CUTS_FOR_SURE
+        # teeth that are chosen to fit find sidebands of an inverter too
+        wanders = _wanders(evidence, rows) and (evidence.teeth is not None or harmonics > _CUTS)
         return (cuts or wanders or _rose(evidence, rows)) and sidebands >= (
             _FEWER_SIDEBANDS if cuts and wanders else SIDEBANDS
         )
