@@ -12,6 +12,7 @@ from chatter.cli import options
 from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
+from chatter.description.errors import InputError
 from chatter.report.console import print_line, print_message, print_table
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ class DetectOptions:
         typer.Argument(
             metavar="RECORDING",
             help="Sound, acceleration, force, displacement, current or power over time: WAV, CSV, "
-            "TDMS, UFF-58, NPZ.",
+            "XLSX, LVM, TDMS, MAT, NPZ, Parquet, UFF-58.",
         ),
     ]
     spindle_speed: Annotated[
@@ -50,6 +51,7 @@ class DetectOptions:
         str | None,
         typer.Option("--sampling-rate", help='Of a file without time, such as "25.6 kHz".'),
     ] = None
+    columns: options.Columns = None
     follow: Annotated[
         bool,
         typer.Option(
@@ -82,6 +84,7 @@ def detect(options_: DetectOptions) -> None:
             case=case,
             channels=tuple(options_.channel or ()),
             sampling_rate=options_.sampling_rate,
+            columns=options_.columns,
         )
     folder = options.output_folder(options_.out, options_.recording.stem)
     present(found, folder, json=options_.json, words=_print_detection, notes=found.notes)
@@ -89,6 +92,8 @@ def detect(options_: DetectOptions) -> None:
 
 def _follow(options_: DetectOptions) -> None:
     """Print changes of the verdict until the file grows no more, or it is interrupted."""
+    if options_.columns is not None:
+        raise InputError("--columns is of a finished file; with --follow its heading names them")
     from chatter.monitoring.follow import follow
 
     verdict = ""

@@ -18,8 +18,7 @@ if TYPE_CHECKING:
 
 def modes(
     files: Annotated[
-        list[Path],
-        typer.Argument(metavar="FRF...", help="FRF files (UFF-58, CSV, .frf), or a folder."),
+        list[Path], typer.Argument(metavar="FRF...", help="FRF files, hammer records, or a folder.")
     ],
     keep: Annotated[
         list[str] | None,
@@ -36,6 +35,7 @@ def modes(
     mode_count: Annotated[
         int | None, typer.Option("--mode-count", help="Fix the number of modes.")
     ] = None,
+    columns: options.Columns = None,
     out: options.OutputFolder = None,
     json: options.Json = False,
 ) -> None:
@@ -44,7 +44,13 @@ def modes(
 
     with progress_bar("fitting modes to the responses"):
         result = run_modes(
-            files, keep=keep or (), direction=direction, side=side, band=band, mode_count=mode_count
+            files,
+            keep=keep or (),
+            direction=direction,
+            side=side,
+            band=band,
+            mode_count=mode_count,
+            columns=columns,
         )
     present(
         result,

@@ -33,6 +33,14 @@ Assignments = Annotated[
 OutputFolder = Annotated[
     Path | None, typer.Option("--out", metavar="DIR", help="Folder for what is written.")
 ]
+Columns = Annotated[
+    str | None,
+    typer.Option(
+        "--columns",
+        metavar="HEADINGS",
+        help='Of a file without headings: "time [s], force [N], acceleration [m/s^2]".',
+    ),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")]
 Cluster = Annotated[
     str | None,

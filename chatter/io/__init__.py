@@ -7,6 +7,7 @@ formats          one module a format, their registry: FRFs, signals, matrices
 files            opening within limits, text told from binary content
 table            columns of numbers or words, whatever the format
 headings         names and units of columns
+stated_columns   tables of signals, headings stated where a file has none
 signals          signals of a measurement in SI, by name
 hammer_records   hammer records, one or a folder of them
 matrices         matrices and nodes of a finite element program

@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from chatter.description.arrays import Array
-from chatter.io.formats.format_list import format_of, formats_of
+from chatter.io.formats.format_list import formats_of
 from chatter.io.formats.units import Channel, channel_unit
+from chatter.io.stated_columns import read_signal_table
 from chatter.io.table import Column, Table
 from dynamics.frf.container import QUANTITY_OF_MOTION, MeasurementError, Point
 from dynamics.frf.hammer.record import FEWEST_SAMPLES, HammerRecord
@@ -28,20 +29,22 @@ class HammerFolder:
     passed_over: tuple[str, ...] = ()  # names of the files of other extensions
 
 
-def read_hammer_record(path: str | Path, response: str | None = None) -> HammerRecord:
+def read_hammer_record(
+    path: str | Path, response: str | None = None, columns: str | None = None
+) -> HammerRecord:
     """Read one hammer record from a file of any format of signals.
 
     The columns, such as ``time [s],force [N],acceleration [m/s^2]``, are told by their units: a
     time, a force, and a displacement, velocity or acceleration, by its name where there are
-    several. MeasurementError if the file is no such table, its samples are not evenly spaced, or
-    the response column cannot be told.
+    several; `columns` states them where the file has no heading. MeasurementError if the file is no
+    such table, its samples are not evenly spaced, or the response column cannot be told.
     """
     path = Path(path)
-    table = format_of(path, "signals").read_signals(path)
+    table = read_signal_table(path, columns)
     if not any(column.unit or column.content for column in table.columns):
         raise MeasurementError(
             f"{path}: no heading with names and units above the numbers; "
-            f"the first line must be like: {_EXAMPLE}"
+            f'the first line must be like: {_EXAMPLE}; or state them: --columns "{_EXAMPLE}"'
         )
     channels = [_channel(path, column) for column in table.columns]
     time = _only(path, table, channels, ("time",), None)
@@ -63,7 +66,16 @@ def read_hammer_record(path: str | Path, response: str | None = None) -> HammerR
     )
 
 
-def read_hammer_folder(path: str | Path) -> HammerFolder:
+def is_hammer_record(path: Path, columns: str | None = None) -> bool:
+    """Tell whether a file is a time record: one of its columns is a time by its unit."""
+    try:
+        table = read_signal_table(path, columns)
+        return any(_channel(path, column)[0] == "time" for column in table.columns)
+    except MeasurementError:
+        return False
+
+
+def read_hammer_folder(path: str | Path, columns: str | None = None) -> HammerFolder:
     """Read every hammer record of a folder.
 
     Files as `read_hammer_record` reads them. Files of other extensions, hidden files and folders
@@ -85,7 +97,7 @@ def read_hammer_folder(path: str | Path) -> HammerFolder:
             passed_over.append(file.name)
             continue
         try:
-            records.append(read_hammer_record(file))
+            records.append(read_hammer_record(file, columns=columns))
         except MeasurementError as error:
             unreadable.append((file.name, str(error).removeprefix(f"{file}: ")))
     if not records:

@@ -29,6 +29,7 @@ def detect(
     case: str | Path | Case | None = None,
     channels: Sequence[str] = (),
     sampling_rate: str | float | None = None,
+    columns: str | None = None,
 ) -> DetectedChatter:
     """Detect chatter in a recording of sound, vibration, force, current or power.
 
@@ -51,6 +52,9 @@ def detect(
         Names of the columns to use; by default all that vibrate.
     sampling_rate : str or float, optional
         ``"25.6 kHz"``, or Hz, where the file has no time.
+    columns : str, optional
+        Names and units of all columns in their order, such as ``"time [s], Fx [N]"``, where the
+        file has no heading.
 
     Returns
     -------
@@ -66,7 +70,8 @@ def detect(
     given = spindle_frequency(spindle_speed, case)
     teeth = _teeth(teeth, case)
     if not isinstance(recording, Recording):
-        recording = read_recording(recording, channels, sampling_frequency(sampling_rate))
+        rate = sampling_frequency(sampling_rate)
+        recording = read_recording(recording, channels, rate, columns)
     evidence = evidence_of(recording, given, teeth)
     segments = tuple(segments_of(evidence))
     return DetectedChatter(

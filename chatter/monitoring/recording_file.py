@@ -14,7 +14,7 @@ from chatter.description.arrays import Array
 from chatter.description.errors import InputError
 from chatter.description.units import dimension_of, measured_unit
 from chatter.detection.spectral.recording import Recording
-from chatter.io.formats.format_list import format_of
+from chatter.io.stated_columns import read_signal_table
 from chatter.io.table import Column, Table
 from dynamics.frf.container import MeasurementError
 
@@ -55,7 +55,10 @@ class _Channel(NamedTuple):
 
 
 def read_recording(
-    path: str | Path, channels: Sequence[str] = (), sampling_rate: float | None = None
+    path: str | Path,
+    channels: Sequence[str] = (),
+    sampling_rate: float | None = None,
+    columns: str | None = None,
 ) -> Recording:
     """Channels of a file.
 
@@ -68,6 +71,8 @@ def read_recording(
         displacement, force, torque; current and power where there are none of these.
     sampling_rate : float, optional
         Hz, where the file has no time.
+    columns : str, optional
+        Names and units of all columns in their order, where the file has none.
 
     Raises
     ------
@@ -76,7 +81,7 @@ def read_recording(
     """
     path = Path(path)
     try:
-        table = format_of(path, "signals").read_signals(path)
+        table = read_signal_table(path, columns)
         return _recording(path, table, channels, sampling_rate)
     except MeasurementError as error:
         raise InputError(str(error)) from error

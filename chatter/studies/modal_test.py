@@ -10,7 +10,12 @@ from typing import TYPE_CHECKING
 from chatter.compile.measured_frf import with_direction, with_magnitudes
 from chatter.description.errors import InputError
 from chatter.io.formats.format_list import read_frfs
-from chatter.io.hammer_records import read_hammer_folder
+from chatter.io.hammer_records import (
+    HammerFolder,
+    is_hammer_record,
+    read_hammer_folder,
+    read_hammer_record,
+)
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, write_results
 from dynamics.frf.container import Frf, MeasurementError
@@ -148,13 +153,14 @@ def modes(
     side: Side = "tool",
     band: tuple[float, float] | None = None,
     mode_count: int | None = None,
+    columns: str | None = None,
 ) -> ModalTest:
-    """Identify modal parameters from measured FRFs, or from a folder of hammer records.
+    """Identify modal parameters from measured FRFs, or from hammer records.
 
     Parameters
     ----------
     paths : path or sequence of paths
-        FRF files (UFF-58, CSV, CutPro ``.frf``), or one folder of hammer records.
+        FRF files, hammer records, or one folder of hammer records, of any format.
     keep : sequence of str
         Names of hammer records that are used in spite of their faults.
     direction : str, optional
@@ -164,6 +170,9 @@ def modes(
         Hz; found from the data where not given.
     mode_count : int, optional
         Found from the data where not given.
+    columns : str, optional
+        Names and units of the columns of hammer records that have no heading, such as
+        ``"time [s], force [N], acceleration [m/s^2]"``.
 
     Returns
     -------
@@ -180,7 +189,7 @@ def modes(
     if direction is not None and direction not in ("x", "y", "z"):
         raise InputError(f'direction "{direction}" is not known; there are "x", "y" and "z"')
     try:
-        frfs, hammer, notes = _read(given, keep)
+        frfs, hammer, notes = _read(given, keep, columns)
         frfs, assumed = _with_default_direction(frfs, direction)
         fit = with_magnitudes(identify_modes(frfs, band=band, mode_count=mode_count))
     except MeasurementError as error:
@@ -193,20 +202,36 @@ def modes(
 
 
 def _read(
-    paths: Sequence[Path], keep: Sequence[str]
+    paths: Sequence[Path], keep: Sequence[str], columns: str | None
 ) -> tuple[list[Frf], HammerTest | None, list[str]]:
-    """Read FRF files, or the hammer records of one folder; the notes hold the remarks."""
+    """Read FRF files or hammer records, one folder or files; the notes hold the remarks."""
     folders = [path for path in paths if path.is_dir()]
     if folders and len(paths) > 1:
         raise InputError(f"{folders[0]}: is a folder; a folder of hammer records is given alone")
-    if folders:
-        folder = read_hammer_folder(folders[0])
+    folder = _records(paths, columns)
+    if folder is not None:
         test = hammer_test(folder.records, keep=keep, unreadable=folder.unreadable)
         notes = [f"{finding.record}: {finding.reason}" for finding in test.remarks]
         return list(test.frfs), test, notes
     if keep:
         raise InputError("--keep names hammer records; FRF files were given")
     return [frf for path in paths for frf in read_frfs(path)], None, []
+
+
+def _records(paths: Sequence[Path], columns: str | None) -> HammerFolder | None:
+    """Hammer records of a folder, or of files that are time records; None of FRF files."""
+    if paths[0].is_dir():
+        return read_hammer_folder(paths[0], columns)
+    if columns is None and not all(is_hammer_record(p) and not _holds_frfs(p) for p in paths):
+        return None
+    return HammerFolder(tuple(read_hammer_record(path, columns=columns) for path in paths))
+
+
+def _holds_frfs(path: Path) -> bool:
+    try:
+        return bool(read_frfs(path))
+    except MeasurementError:
+        return False
 
 
 def _with_default_direction(

@@ -11,6 +11,11 @@ cutpro          ``.frf`` text of CutPro
 csv             tables with names and units in the heading
 frf_columns     FRFs of the columns of a table
 npz             arrays by name, matrices                                     numpy, scipy.sparse
+lvm             channels of LabVIEW files in text                            LVM
+matlab          variables of MAT files                                       scipy, h5py
+xlsx            the table of a workbook                                      openpyxl
+parquet         columns of Parquet files                                     pyarrow
+named_arrays    arrays by name as columns of a table
 tdms            channels of LabVIEW files                                    npTDMS
 wav             sound and other records of recorders                         RIFF WAVE
 matrix_market   matrices of finite element programs                          NIST Matrix Market

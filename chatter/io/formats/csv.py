@@ -25,7 +25,11 @@ def read_table(path: Path) -> Table:
     MeasurementError if the file is not text, has no rows of numbers, no heading, or a row with too
     few or too many cells; the message names file and line.
     """
-    lines = read_lines(path)
+    return table_of_lines(path, read_lines(path))
+
+
+def table_of_lines(path: Path, lines: Sequence[str]) -> Table:
+    """Table of the lines of a text, as `read_table`."""
     first = _first_row(lines)
     if first is None:
         raise MeasurementError(f"{path}: no line of numbers; the file is text only")
@@ -34,7 +38,8 @@ def read_table(path: Path) -> Table:
     if not headings:
         raise MeasurementError(
             f"{path}: no heading with names and units above the numbers; the first line must be "
-            'like "frequency [Hz],real [m/N],imag [m/N]" or "time [s],force [N]"'
+            'like "frequency [Hz],real [m/N],imag [m/N]" or "time [s],force [N]"; or state them: '
+            '--columns "time [s], force [N], acceleration [m/s^2]"'
         )
     rows, numbers = [], []
     for index in range(begin, len(lines)):
@@ -48,6 +53,35 @@ def read_table(path: Path) -> Table:
                 continue
             raise MeasurementError(
                 f"{path}: line {index + 1} has {len(row)} columns where the heading has "
+                f"{len(headings)}: {lines[index].strip()[:60]!r}"
+            )
+        rows.append(row)
+        numbers.append(index + 1)
+    columns = zip(headings, zip(*rows, strict=True), strict=True)
+    return Table(path, tuple(Column(heading, cells) for heading, cells in columns), numbers)
+
+
+def read_with_headings(path: Path, headings: Sequence[str]) -> Table:
+    """Read the rows of numbers of a text, whose headings are stated.
+
+    Lines above the first row are passed over. MeasurementError if there is no row, or one has
+    another number of cells than there are headings.
+    """
+    lines = read_lines(path)
+    first = _first_row(lines)
+    if first is None:
+        raise MeasurementError(f"{path}: no line of numbers; the file is text only")
+    separator = _separator(lines[first])
+    rows, numbers = [], []
+    for index in range(first, len(lines)):
+        if not lines[index].strip() or _is_comment(lines[index]):
+            continue
+        row = _cells(lines[index].strip() if separator is None else lines[index], separator)
+        if len(row) == len(headings) + 1 and not row[-1].strip():
+            row.pop()
+        if len(row) != len(headings):
+            raise MeasurementError(
+                f"{path}: line {index + 1} has {len(row)} columns where --columns states "
                 f"{len(headings)}: {lines[index].strip()[:60]!r}"
             )
         rows.append(row)

@@ -7,17 +7,21 @@ from chatter.io.files import read_content
 from chatter.io.formats.csv import CSV
 from chatter.io.formats.cutpro import CUTPRO
 from chatter.io.formats.format import CONTENTS, Content, Format
+from chatter.io.formats.lvm import LVM
+from chatter.io.formats.matlab import MATLAB
 from chatter.io.formats.matrix_market import MATRIX_MARKET
 from chatter.io.formats.npz import NPZ
+from chatter.io.formats.parquet import PARQUET
 from chatter.io.formats.tdms import TDMS
 from chatter.io.formats.uff58 import UFF58
 from chatter.io.formats.wav import WAV
+from chatter.io.formats.xlsx import XLSX
 from dynamics.frf.container import Frf, MeasurementError
 
 FORMATS: Registry[Format] = Registry(
     group="chatter.formats",
     what="file format",
-    built_in=(UFF58, CUTPRO, CSV, NPZ, TDMS, WAV, MATRIX_MARKET),
+    built_in=(UFF58, CUTPRO, LVM, CSV, NPZ, MATLAB, XLSX, PARQUET, TDMS, WAV, MATRIX_MARKET),
 )
 #: enough of a file to recognise its format
 _HEAD_BYTES = 65536

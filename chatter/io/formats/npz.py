@@ -10,34 +10,30 @@ from chatter.description.arrays import Array
 from chatter.io.formats.format import Format
 from chatter.io.formats.frf_columns import frfs_of_table
 from chatter.io.formats.matrix_market import require_square
-from chatter.io.table import Column, Table, table_of
+from chatter.io.formats.named_arrays import require_size, table_of_arrays
+from chatter.io.table import Table
 from dynamics.frf.container import MeasurementError
 
 
 def read_columns(path: Path) -> Table:
-    """Arrays (n,) of an archive by name; a complex one as its real and imaginary part.
+    """Arrays of an archive by name; a complex one as its real and imaginary part.
 
-    MeasurementError if the file is no archive of arrays, or their lengths differ.
+    MeasurementError if the file is no archive of arrays, unpacks to too much, or their lengths
+    differ.
     """
     try:
         with np.load(path, allow_pickle=False) as content:
+            require_size(path, float(sum(one.file_size for one in content.zip.infolist())))
             arrays = {name: content[name] for name in content.files}
+    except MeasurementError:
+        raise
     except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
         raise MeasurementError(f"{path}: cannot be read: {error}") from error
     except AttributeError as error:  # a single array, not a file of several
         raise MeasurementError(
             f"{path}: holds one array; save them by name with numpy.savez"
         ) from error
-    columns = []
-    for name, array in arrays.items():
-        if array.ndim != 1:
-            continue
-        if np.iscomplexobj(array):
-            unit = name[name.index("[") :] if "[" in name else ""
-            columns += [Column(f"real {unit}", array.real), Column(f"imag {unit}", array.imag)]
-        else:
-            columns.append(Column(name, array))
-    return table_of(path, columns, "columns")
+    return table_of_arrays(path, arrays)
 
 
 def read_matrix(path: Path) -> Array | scipy.sparse.sparray:

@@ -62,3 +62,19 @@ def test_keep_belongs_to_hammer_records(tmp_path):
 def test_empty_folder(tmp_path):
     with pytest.raises(InputError, match="no hammer record"):
         chatter.modes(tmp_path)
+
+
+def test_single_hammer_record_without_a_heading(tmp_path):
+    """One file is as good as a folder; stated columns and units are those of the result."""
+    write_set(tmp_path, 0)
+    rows = np.loadtxt(tmp_path / "tap1.csv", delimiter=",", skiprows=1)
+    path = tmp_path / "tap.txt"
+    np.savetxt(path, rows * [1e3, 1e-3, 1.0])
+    with_heading = chatter.modes(tmp_path / "tap1.csv", direction="x")
+    test = chatter.modes(path, direction="x", columns="t [ms], force [kN], a [m/s^2]")
+    assert test.hammer.used == ("tap.txt",)
+    for one in (test, with_heading):
+        for frequency, _, mass in made.CLOSE.modes:
+            nearest = min(one.fit.identified, key=lambda m: abs(m.frequency - frequency))
+            assert nearest.frequency == pytest.approx(frequency, rel=0.005)
+            assert nearest.mass == pytest.approx(mass, rel=0.1)
