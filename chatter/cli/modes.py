@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from chatter.cli import options
+from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
 from chatter.report.console import print_table
@@ -16,46 +18,52 @@ if TYPE_CHECKING:
     from chatter.studies.modal_test import ModalTest
 
 
-def modes(
+@dataclass(frozen=True)
+class ModesOptions:
+    """What `chatter modes` is given."""
+
     files: Annotated[
         list[Path], typer.Argument(metavar="FRF...", help="FRF files, hammer records, or a folder.")
-    ],
+    ]
     keep: Annotated[
         list[str] | None,
         typer.Option("--keep", metavar="RECORD", help="Use a hammer record in spite of its fault."),
-    ] = None,
+    ] = None
     direction: Annotated[
         str | None, typer.Option("--direction", help="x, y or z, where the files do not say.")
-    ] = None,
-    side: Annotated[str, typer.Option("--side", help="tool or workpiece.")] = "tool",
+    ] = None
+    side: Annotated[str, typer.Option("--side", help="tool or workpiece.")] = "tool"
     band: Annotated[
         tuple[float, float] | None,
         typer.Option("--band", metavar="LOWEST HIGHEST", help="Fit this band only, in Hz."),
-    ] = None,
+    ] = None
     mode_count: Annotated[
         int | None, typer.Option("--mode-count", help="Fix the number of modes.")
-    ] = None,
-    columns: options.Columns = None,
-    out: options.OutputFolder = None,
-    json: options.Json = False,
-) -> None:
+    ] = None
+    columns: options.Columns = None
+    out: options.OutputFolder = None
+    json: options.Json = False
+
+
+@takes_options
+def modes(options_: ModesOptions) -> None:
     """Identify modal parameters from measured FRFs or hammer records."""
     from chatter.studies.modal_test import modes as run_modes
 
     with progress_bar("fitting modes to the responses"):
         result = run_modes(
-            files,
-            keep=keep or (),
-            direction=direction,
-            side=side,
-            band=band,
-            mode_count=mode_count,
-            columns=columns,
+            options_.files,
+            keep=options_.keep or (),
+            direction=options_.direction,
+            side=options_.side,
+            band=options_.band,
+            mode_count=options_.mode_count,
+            columns=options_.columns,
         )
     present(
         result,
-        options.output_folder(out, files[0].stem or "modes"),
-        json=json,
+        options.output_folder(options_.out, options_.files[0].stem or "modes"),
+        json=options_.json,
         words=_print_modes,
         notes=[*result.notes, *result.fit.warnings],
     )
