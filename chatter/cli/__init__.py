@@ -23,6 +23,7 @@ import typer
 from chatter.cli.errors import reports_errors
 
 COMMANDS = (
+    "new",
     "check",
     "lobes",
     "simulate",
@@ -44,6 +45,7 @@ COMMANDS = (
     "materials",
     "examples",
     "schema",
+    "doctor",
 )
 
 app = typer.Typer(

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from chatter.cli import options
+from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
 from chatter.report.console import print_table
 
@@ -31,7 +32,8 @@ def export(
     from chatter.simulation.virtual_tests.export import export as export_machine
 
     file = options.patched_machine(machine, assignments)
-    found = export_machine(file, excite or (), read or ())
+    with progress_bar("state space"):
+        found = export_machine(file, excite or (), read or ())
     folder = options.output_folder(out, machine.stem)
     present(found, folder, json=json, words=_print_export)
 

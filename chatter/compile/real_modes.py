@@ -27,10 +27,6 @@ _DAMPINGS = 1e-4, 0.95
 _ABOVE = 2.5
 #: improvement of the sum of squares by a further mode below which it was the last
 _NO_BETTER = 0.9
-#: relative change of the sum of squares below which a fit has settled: limits move by 0.15 % at
-#: most
-#: against a hundredth of it, on machines whose receptance real modes miss by 3 to 30 %
-_SETTLED = 1e-4
 #: elements of a symmetric matrix, and their weights in its norm
 _FIRST, _SECOND = np.triu_indices(3)
 _WEIGHT = np.where(_FIRST == _SECOND, 1.0, math.sqrt(2.0))
@@ -151,7 +147,7 @@ def _refined(
     bounds = ((least / scale).ravel(), (most / scale).ravel())
     inside = np.clip((table / scale).ravel(), bounds[0] + 1e-9, bounds[1] - 1e-9)
     found = scipy.optimize.least_squares(
-        misfit, inside, slope, bounds, max_nfev=60, xtol=1e-6, ftol=_SETTLED
+        misfit, inside, slope, bounds, max_nfev=60, xtol=1e-6, ftol=1e-5
     )
     return found.x.reshape(-1, 5) * scale, 2.0 * float(found.cost)
 

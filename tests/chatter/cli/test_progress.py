@@ -10,7 +10,7 @@ from chatter.cli.progress import RunningWork, in_words, progress_bar, running
 from tests.places import ROOT
 
 #: commands that compute nothing
-AT_ONCE = {"materials", "schema"}
+AT_ONCE = {"materials", "new", "schema"}
 
 
 class Clock:

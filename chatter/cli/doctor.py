@@ -1,0 +1,51 @@
+"""`chatter doctor`: the state of the installation, and a self-check."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from chatter.cli import options
+from chatter.cli.progress import progress_bar
+from chatter.report.console import print_json, print_line, print_table
+
+if TYPE_CHECKING:
+    from chatter.first_steps.self_check import CheckedAnswer
+
+
+def doctor(json: options.Json = False) -> None:
+    """Versions, cores, threads, compiled code, and three answers checked within seconds."""
+    from chatter.first_steps.installation import installation
+    from chatter.first_steps.self_check import self_check
+
+    state = installation()
+    with progress_bar("self-check; the first one compiles, about a minute"):
+        answers = self_check()
+    right = all(one.right for one in answers)
+    if json:
+        print_json({**state, "self_check": [one._asdict() for one in answers], "right": right})
+    else:
+        _print_state(state, answers)
+    if not right:
+        raise typer.Exit(1)
+
+
+def _print_state(state: dict[str, Any], answers: list[CheckedAnswer]) -> None:
+    versions = ", ".join(f"{name} {version}" for name, version in state["libraries"].items())
+    print_line(f"Python {state['python']} on {state['system']}; {versions}")
+    print_line(f"{state['cores']} cores, {state['threads']} threads")
+    cache = state["cache"]
+    told = "writable" if cache["writable"] else "cannot be written: every start compiles anew"
+    print_line(
+        f"compiled code: {cache['compiled_functions']} functions, {cache['MB']} MB in "
+        f"{cache['folder']} ({told})"
+    )
+    for name, one in state["optional"].items():
+        if not one["installed"]:
+            print_line(f"{name} is not installed ({one['for']})")
+    rows = [
+        [one.name, one.found, one.wanted, "right" if one.right else "WRONG", f"{one.seconds:.1f} s"]
+        for one in answers
+    ]
+    print_table("self-check", ["answer", "found", "wanted", "", "took"], rows)
