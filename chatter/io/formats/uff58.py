@@ -183,6 +183,14 @@ def _is_translation(heading: Heading) -> bool:
     return max(abs(heading.response[1]), abs(heading.reference[1])) <= 3
 
 
+def _heading_text(raw: bytes) -> str:
+    """Text of the heading: the standard has ASCII; others write UTF-8 or Latin-1 for m/s²."""
+    try:
+        return raw.decode("utf-8")
+    except UnicodeDecodeError:
+        return raw.decode("latin-1")
+
+
 def _heading(dataset: Dataset, where: str) -> tuple[Heading, int]:
     """Parse the eleven text records; also return where in the body the numbers begin."""
     end = 0
@@ -190,7 +198,7 @@ def _heading(dataset: Dataset, where: str) -> tuple[Heading, int]:
         end = dataset.body.find(b"\n", end) + 1
         if end == 0:
             raise MeasurementError(f"{where}: fewer than {_HEADING_LINES} heading lines")
-    lines = dataset.body[:end].decode("latin-1").split("\n")
+    lines = _heading_text(dataset.body[:end]).split("\n")
     try:
         return _parsed_heading([line.rstrip("\r") for line in lines]), end
     except (ValueError, IndexError):

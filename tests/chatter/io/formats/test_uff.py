@@ -294,3 +294,40 @@ def test_files_of_another_writer(tmp_path, binary, even):
         assert (frf.response, frf.reference) == (Point("4", "z", -1), Point("2", "x"))
         np.testing.assert_allclose(frf.frequency, FREQUENCY, rtol=1e-5)
         np.testing.assert_allclose(frf.values, 1e-3 * VALUES, rtol=1e-10)
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+@pytest.mark.filterwarnings("ignore::ResourceWarning")  # it leaves its files open
+@pytest.mark.parametrize("encoding", ["utf-8", "cp1252"])
+@pytest.mark.parametrize(
+    ("numerator", "denominator", "factor"),
+    [("m/s²", "N", 1.0), ("mm/s²", "N", 1e-3), ("(1/N)*(m/s²)", "", 1.0), ("g", "N", 9.80665)],
+)
+def test_headings_that_are_no_ascii(tmp_path, encoding, numerator, denominator, factor):
+    pyuff = pytest.importorskip("pyuff")
+    path = tmp_path / "other.uff"
+    dataset = {
+        "type": 58,
+        "binary": 0,
+        "func_type": 4,
+        "rsp_node": 4,
+        "rsp_dir": 1,
+        "ref_node": 4,
+        "ref_dir": 1,
+        "data": VALUES,
+        "x": FREQUENCY,
+        "id1": "Fräser, Länge 40 µm",
+        "rsp_ent_name": "Fräser",
+        "abscissa_spacing": 1,
+        "abscissa_spec_data_type": 18,
+        "ordinate_spec_data_type": 12,
+        "orddenom_spec_data_type": 13,
+        "ordinate_axis_units_lab": numerator,
+        "orddenom_axis_units_lab": denominator,
+    }
+    pyuff.UFF(str(path)).write_sets(dataset, mode="overwrite")
+    gc.collect()
+    path.write_bytes(path.read_bytes().decode("utf-8").encode(encoding))
+    (frf,) = read_frfs(path)
+    assert frf.quantity == "accelerance"
+    np.testing.assert_allclose(frf.values, factor * VALUES, rtol=1e-10)
