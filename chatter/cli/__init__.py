@@ -1,14 +1,15 @@
 """The command line: a command is a function of its name in a module of its name, and a line here.
 
-============== ===============================================================================
-module         responsibility
-============== ===============================================================================
-options        options that commands share; case and machine files with their patches
-options_as_one commands of many options take them as one dataclass
-progress       progress bars; what the first use takes
-results        what every command does with its result
-errors         one clear message and an exit code for every error
-============== ===============================================================================
+================= ============================================================================
+module            responsibility
+================= ============================================================================
+options           options that commands share; case and machine files with their patches
+options_as_one    commands of many options take them as one dataclass
+imported_commands commands are imported when they are called, and help imports none
+progress          progress bars; what the first use takes
+results           what every command does with its result
+errors            one clear message and an exit code for every error
+================= ============================================================================
 """
 
 import os
@@ -16,11 +17,11 @@ import os
 # matrices here are small: threads of BLAS cost more than they bring, and take cores from the sweeps
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from importlib import import_module
+from typing import Any
 
 import typer
 
-from chatter.cli.errors import reports_errors
+from chatter.cli.imported_commands import CommandGroup, ImportedCommands
 
 COMMANDS = (
     "new",
@@ -48,16 +49,29 @@ COMMANDS = (
     "doctor",
 )
 
+
+class _Group(CommandGroup):
+    """Group of the commands of this list."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        """Build the group as typer does."""
+        super().__init__(*args, **kwargs)
+        self.commands = ImportedCommands(COMMANDS)
+
+
 app = typer.Typer(
     name="chatter",
+    cls=_Group,
     help="Chatter and stability of milling, and the machines that it happens on.",
     no_args_is_help=True,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
 
-for _name in COMMANDS:
-    app.command(_name)(reports_errors(getattr(import_module(f"chatter.cli.{_name}"), _name)))
+
+@app.callback()
+def _of_all() -> None:
+    """Chatter and stability of milling, and the machines that it happens on."""
 
 
 def main() -> None:

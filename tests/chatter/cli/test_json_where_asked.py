@@ -10,8 +10,8 @@ from tests.cases import TOOL_OF_922_HERTZ
 from tests.command_line import chatter_command
 from tests.places import ROOT
 
-#: its result is a JSON schema
-PRINTS_A_SCHEMA = {"schema"}
+#: the result is a JSON schema, or a case file
+WITHOUT_JSON = {"new", "schema"}
 GROUP = typer.main.get_command(app)
 
 CASE = f"""{TOOL_OF_922_HERTZ}
@@ -64,7 +64,7 @@ def is_json(text):
 @pytest.mark.parametrize("command", COMMANDS)
 def test_every_command_has_the_option(command):
     names = [name for one in GROUP.commands[command].params for name in one.opts]
-    assert ("--json" in names) != (command in PRINTS_A_SCHEMA)
+    assert ("--json" in names) != (command in WITHOUT_JSON)
 
 
 @pytest.mark.parametrize("command", RUNS)
