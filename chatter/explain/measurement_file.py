@@ -162,6 +162,8 @@ def _idle_power(path: Path, content: Mapping[str, Any]) -> float | None:
 
 def _file(path: Path, content: Mapping[str, Any], key: str) -> Path:
     name = content.get(key)
+    if name is None:
+        raise InputError(f"{path}: {key} is missing; a file name is required")
     if not isinstance(name, str):
         raise InputError(f"{path}: {key}: {formatted(name)} is not a file name")
     return path.parent / name
@@ -169,7 +171,9 @@ def _file(path: Path, content: Mapping[str, Any], key: str) -> Path:
 
 def _run(path: Path, kind: str, number: int, entry: Mapping[str, Any], declared: Case) -> Run:
     where = f"{path}: run {number}"
-    if not isinstance(entry.get("file"), str):
+    if "file" not in entry:
+        raise InputError(f'{where}: file is missing; a run names its signals, such as "run01.csv"')
+    if not isinstance(entry["file"], str):
         raise InputError(f"{where}: file: {formatted(entry.get('file'))} is not a file name")
     file = _file(path, entry, "file")
     where = f"{where} ({file.name})"
@@ -210,6 +214,8 @@ def _path_of(where: str, key: str, declared: Case) -> str:
     """Path of a key of a run: itself, or that of the section it belongs to."""
     if "." in key:
         return key
+    if key == "name":
+        raise InputError(f"{where}: name: a run has the name of its file; title is free text")
     for section in _SECTIONS:
         fields = type(declared).model_fields[section].annotation
         for kind in getattr(fields, "__args__", (fields,)):

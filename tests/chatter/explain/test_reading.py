@@ -267,3 +267,20 @@ def test_columns_of_cutting_tests_come_in_si(tmp_path, heading, name, value):
 def test_an_idle_power_that_is_none_is_refused(tmp_path, given):
     with pytest.raises(InputError, match="idle_power"):
         read_measurement(written_tests(tmp_path, "power [W]", f"idle_power = {given}\n"))
+
+
+@pytest.mark.parametrize(
+    ("run", "said"),
+    [
+        ('feed_per_tooth = "0.1 mm"', "run 1: file is missing; a run names its signals"),
+        ("file = 3", "run 1: file: 3 is not a file name"),
+        ('file = "a.csv"\nname = "first"', "name: a run has the name of its file"),
+    ],
+)
+def test_wrong_runs_are_told(tmp_path, run, said):
+    (tmp_path / "case.toml").write_text(CASE)
+    (tmp_path / "measurement.toml").write_text(
+        f'kind = "milling"\ncase = "case.toml"\n[[run]]\n{run}\n'
+    )
+    with pytest.raises(InputError, match=said):
+        read_measurement(tmp_path)
