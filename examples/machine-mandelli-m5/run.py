@@ -124,6 +124,10 @@ class Tuning(NamedTuple):
     evaluations: int
 
 
+#: factor by which a tuned number may leave its start
+FARTHEST = 100.0
+
+
 def tuned(machine: MachineFile, test: dict[str, Frf]) -> Tuning:
     """Slider numbers by least squares on the logarithm of the magnitudes."""
     frequency = next(iter(test.values())).frequency
@@ -139,7 +143,13 @@ def tuned(machine: MachineFile, test: dict[str, Frf]) -> Tuning:
     # far off, peaks lie beside peaks: soft_l1 keeps them from deciding
     tolerances = {"xtol": 1e-3, "ftol": 1e-4}
     found = least_squares(
-        residual, start, loss="soft_l1", f_scale=0.3, diff_step=1e-3, **tolerances
+        residual,
+        start,
+        bounds=(start - np.log(FARTHEST), start + np.log(FARTHEST)),
+        loss="soft_l1",
+        f_scale=0.3,
+        diff_step=1e-3,
+        **tolerances,
     )
     left = residual(found.x)
     variance = np.sum(left**2) / (left.size - start.size)
