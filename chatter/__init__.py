@@ -16,6 +16,7 @@ cli, app             the command line, a module a command; the page in the brows
 plots                pictures of results
 report               pages of results
 cutting_coefficients coefficients of the force law from the forces of cuts
+drive_friction       friction and inertia of a drive from records of its moves
 monitoring           chatter in recordings of cuts, and what to do about it
 learning             what a few cutting tests leave possible, and the next cut
 explain              what a measurement says that its declared case lacks
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from chatter.description.errors import InputError as InputError
     from chatter.description.errors import RunError as RunError
     from chatter.description.machine.machine_file import load_machine as load_machine
+    from chatter.drive_friction.identify import friction as friction
     from chatter.explain.comparison import compare as compare
     from chatter.io.shipped_examples import examples as examples
     from chatter.learning.learn import learn as learn
@@ -74,6 +76,7 @@ _PUBLIC = {
     "detect": "chatter.monitoring.detect",
     "examples": "chatter.io.shipped_examples",
     "export": "chatter.simulation.virtual_tests.export",
+    "friction": "chatter.drive_friction.identify",
     "frf": "chatter.simulation.virtual_tests.from_file",
     "learn": "chatter.learning.learn",
     "load": "chatter.description.case",

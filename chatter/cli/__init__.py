@@ -38,6 +38,7 @@ COMMANDS = (
     "explain",
     "learn",
     "coefficients",
+    "friction",
     "detect",
     "frf",
     "move",

@@ -7,12 +7,19 @@ inverse-dynamics identification: Gautier 1997, IEEE Int. Conf. Control Applicati
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt
 
 from dynamics.frf.container import MeasurementError
+
+
+@lru_cache(maxsize=64)
+def _sections(order: int, cutoff: float) -> NDArray[np.float64]:
+    """Second-order sections of a Butterworth low-pass; a fit applies the same one many times."""
+    return butter(order, cutoff, output="sos")
 
 
 @dataclass(frozen=True)
@@ -55,5 +62,5 @@ class LowPass:
                 f"drive record: a low-pass at {self.cutoff:g} Hz needs more than {pad} samples; "
                 f"the record has {len(values)}"
             )
-        sections = butter(self.order, self.cutoff / nyquist, output="sos")
+        sections = _sections(self.order, self.cutoff / nyquist)
         return sosfiltfilt(sections, values, axis=0, padlen=pad)

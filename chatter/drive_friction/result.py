@@ -1,0 +1,208 @@
+"""What the moves of a drive say about its friction: table, [friction.NAME], picture."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import tomlkit
+
+from chatter.drive_friction.drive_records import DriveRecords
+from chatter.drive_friction.friction_laws import FitSettings, FittedFriction
+from chatter.io.presentation import presentation
+from chatter.io.result_files import as_json, finite_or_none, write_results
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: parameter -> unit along the slide, and about the motor
+UNITS = {
+    "inertia": ("kg", "kg*m^2"),
+    "viscous": ("N*s/m", "N*m*s/rad"),
+    "coulomb": ("N", "N*m"),
+    "static": ("N", "N*m"),
+    "offset": ("N", "N*m"),
+    "stribeck_velocity": ("m/s", "rad/s"),
+    "bristle_stiffness": ("N/m", "N*m/rad"),
+    "bristle_damping": ("N*s/m", "N*m*s/rad"),
+}
+#: law that is tried -> law of a machine file
+_IN_FILES = {
+    "viscous": "coulomb-stribeck",
+    "coulomb": "coulomb-stribeck",
+    "stribeck": "coulomb-stribeck",
+    "lugre": "lugre",
+}
+#: condition number of the linear fit from which its terms resemble each other
+_ALIKE = 20.0
+#: share of the variance of a derived acceleration that is noise, worth telling
+_NOISY = 0.02
+
+
+@dataclass(frozen=True)
+class TriedFriction:
+    """A law that was tried on the records."""
+
+    name: str
+    fit: FittedFriction | None  # none where the records do not determine it
+    holdout: float | None  # error of parts held out, over the deviation of the effort
+    reason: str = ""  # why there is no fit
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DriveFriction:
+    """Friction and inertia of a drive."""
+
+    given: DriveRecords
+    settings: FitSettings
+    tried: tuple[TriedFriction, ...]
+    kept: FittedFriction
+    other_cutoffs: Mapping[float, FittedFriction]  # Hz -> the same law with that low-pass
+    name: str  # of the axis
+
+    def __repr__(self) -> str:
+        """Short: what it holds would fill the screen."""
+        return f"<DriveFriction {self.kept.name}, {len(self.given.records)} records>"
+
+    def unit(self, parameter: str) -> str:
+        """Unit of a parameter of the records."""
+        return UNITS[parameter][self.given.rotary]
+
+    @property
+    def residual(self) -> float:
+        """Rms of what the kept law leaves of the low-passed effort, over its deviation."""
+        low_pass = self.settings.low_pass
+        left, whole = [], []
+        for record in self.given.records:
+            effort = low_pass.apply(record.effort, record.sample_time)
+            left.append(self.kept.effort(record, low_pass) - effort)
+            whole.append(effort)
+        return float(np.sqrt(np.mean(np.concatenate(left) ** 2)) / np.std(np.concatenate(whole)))
+
+    def summary(self) -> dict[str, Any]:
+        """Content of friction.json."""
+        return {
+            "law": self.kept.name,
+            "records": [record.name for record in self.given.records],
+            "motion": "about the motor" if self.given.rotary else "along the slide",
+            "parameters": [
+                {
+                    "name": name,
+                    "value": one.value,
+                    "standard_error": finite_or_none(one.standard_error),
+                    "ci95": [finite_or_none(one.lower), finite_or_none(one.upper)],
+                    "unit": self.unit(name),
+                    "decided": name not in self.kept.undecided,
+                }
+                for name, one in self.kept.estimates.items()
+            ],
+            "inertia_given": self.settings.inertia,
+            "inertia_declared": self.given.declared_inertia,
+            "residual": self.residual,
+            "low_pass_Hz": self.settings.low_pass.cutoff,
+            "minimum_speed": self.settings.minimum_speed,
+            "laws": [
+                {"law": one.name, "holdout_error": one.holdout, "reason": one.reason or None}
+                for one in self.tried
+            ],
+            "other_low_passes": [
+                {
+                    "low_pass_Hz": cutoff,
+                    "parameters": {name: one.value for name, one in fit.estimates.items()},
+                }
+                for cutoff, fit in self.other_cutoffs.items()
+            ],
+            "notes": self.notes,
+        }
+
+    @property
+    def notes(self) -> list[str]:
+        """What the reader should know."""
+        notes = []
+        if self.kept.undecided:
+            notes.append(
+                f"the records do not decide {', '.join(self.kept.undecided)}: the interval spans "
+                "more than a decade"
+            )
+        linear = self.kept.linear
+        if linear is not None and linear.conditioning > _ALIKE:
+            notes.append(
+                "the moves hardly tell inertia and friction apart: weigh it and give it by "
+                "--inertia, or record both directions at several speeds"
+            )
+        if linear is not None and linear.attenuation > _NOISY:
+            notes.append(
+                f"noise of the velocity makes the inertia about {linear.attenuation:.0%} too small"
+            )
+        notes += self._wrong_signs()
+        notes += self._moved_by_the_filter()
+        if "offset" not in self.kept.estimates:
+            notes.append(
+                "the moves go one way only: an offset, such as weight, counts as Coulomb friction"
+            )
+        return notes
+
+    def _wrong_signs(self) -> list[str]:
+        found = self.kept.estimates
+        if "inertia" in found and found["inertia"].upper < 0.0:
+            return ["the inertia is below 0: the effort has the wrong sign, -HEADING turns it"]
+        below = [name for name in ("viscous", "coulomb") if name in found and found[name].value < 0]
+        return [
+            f"{name} friction comes out below 0 and is written as 0; the records bear no more"
+            for name in below
+        ]
+
+    def _moved_by_the_filter(self) -> list[str]:
+        moved = []
+        for name, one in self.kept.estimates.items():
+            if name in self.kept.undecided:
+                continue
+            others = [fit.estimates[name].value for fit in self.other_cutoffs.values()]
+            if any(not one.lower <= value <= one.upper for value in others):
+                moved.append(name)
+        if not moved:
+            return []
+        return [f"half or double the low-pass moves {', '.join(moved)} out of the interval"]
+
+    def friction_toml(self) -> str:
+        """[friction.NAME] of a machine file."""
+        section = tomlkit.table()
+        section.add("law", _IN_FILES[self.kept.name])
+        for key, value in self._keys().items():
+            section.add(key, value)
+        on = tomlkit.inline_table()
+        on["motor" if self.given.rotary else "axis"] = self.name
+        section.add("on", on)
+        parent = tomlkit.table(is_super_table=True)
+        parent.add(self.name, section)
+        document = tomlkit.document()
+        names = ", ".join(record.name for record in self.given.records)
+        document.add(tomlkit.comment(f"friction identified from {names}"))
+        document.add("friction", parent)
+        return tomlkit.dumps(document)
+
+    def _keys(self) -> dict[str, str]:
+        found = self.kept.estimates
+        keys = {}
+        for name in UNITS:
+            if name in ("inertia", "offset") or not hasattr(self.kept.law, name):
+                continue
+            if name in found:
+                value, error = max(found[name].value, 0.0), found[name].standard_error
+                spread = f" +- {error:.2g}" if 0.0 < error < np.inf and value > 0.0 else ""
+                keys[name] = f"{value:.5g}{spread} {self.unit(name)}"
+            elif name == "coulomb":
+                keys[name] = f"0 {self.unit(name)}"
+        return keys
+
+    def plot(self) -> Figure:
+        """Picture of effort over time, and of friction over velocity and position."""
+        return presentation("plots.drive_friction").plot_drive_friction(self)
+
+    def save(self, folder: str | Path) -> list[Path]:
+        """Write friction.json, friction.toml and friction.png."""
+        texts = {"friction.json": as_json(self.summary()), "friction.toml": self.friction_toml()}
+        return write_results(folder, texts, {"friction.png": self.plot()})
