@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 
-.PHONY: demo test lint benchmarks clean
+.PHONY: demo test manual distributions benchmarks clean
 
 demo: $(VENV)/.installed
 	$(BIN)/chatter examples flexible-workpiece --run --open --out demo-output
@@ -14,6 +14,15 @@ test: $(VENV)/.installed-dev
 	$(BIN)/lint-imports
 	$(BIN)/mypy
 	$(BIN)/pytest -n auto --dist loadfile
+
+# the site in build/manual; no network is needed to build it
+manual: $(VENV)/.installed-dev
+	$(BIN)/python -m sphinx -W --keep-going -q -b html docs build/manual
+	@echo "build/manual/index.html"
+
+# wheel and sdist in dist
+distributions: $(VENV)/.installed-dev
+	$(BIN)/python -m build
 
 benchmarks: $(VENV)/.installed-dev
 	$(BIN)/python benchmarks/run.py
@@ -30,8 +39,8 @@ $(VENV)/.installed: $(VENV)/.python pyproject.toml
 	@touch $@
 
 $(VENV)/.installed-dev: $(VENV)/.installed
-	$(BIN)/python -m pip install --quiet --editable '.[dev,formats]'
+	$(BIN)/python -m pip install --quiet --editable '.[dev,formats,manual]'
 	@touch $@
 
 clean:
-	rm -rf $(VENV) demo-output build dist *.egg-info
+	rm -rf $(VENV) demo-output build dist docs/generated *.egg-info

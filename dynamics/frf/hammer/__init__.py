@@ -1,8 +1,8 @@
 """Hammer tests: time records of blows to one frequency response function.
 
-================= ====================================================================== ===========
+================= ==================================================================== ===========
 module            responsibility                                                       source
-================= ====================================================================== ===========
+================= ==================================================================== ===========
 record            the record of one blow
 hit               where the blow lies; rest level and noise of the channels
 force_checks      force by itself: cut, second blow, dropouts, drift
@@ -16,5 +16,5 @@ examine           all of it for a set
 windows           force, response and exponential windows                              Fladung 1997
 spectra           averaged spectra, H1, H2, coherence, usable band                     Bendat 2010
 averaging         the examined and averaged set
-================= ====================================================================== ===========
+================= ==================================================================== ===========
 """
