@@ -1,6 +1,9 @@
 """Whether runs begin from rest, recognised by what they hold."""
 
+import math
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +23,11 @@ _MOST_RUNS = 4
 #: error as a settled cut over that from rest below which a run did not begin from rest (a runout
 #: that is missing leaves 0.6 of it to both), and error from rest below which it did
 _BETTER, _FITS = 0.7, 0.35
-#: displacement at the first sample, over its rms, up to which a tool is at rest
-_AT_REST = 0.1
+#: displacement at the beginning, over its rms, up to which a tool is at rest, and by how many
+#: standard deviations of the noise it may be more
+_AT_REST, _BY_NOISE = 0.1, 2.0
+#: samples of the beginning, over which the tool hardly moves
+_FIRST = 4
 #: speeds that are sought around the declared one where nothing is told
 _TOLERANCE = 0.005
 
@@ -43,17 +49,22 @@ def beginning_of(
     settled = replace(
         described,
         begins=CUT,
-        spindle_angle=UNKNOWN,
+        spindle_angle=described.spindle_angle or _angle_channel(measurement),
         speed_tolerance=described.speed_tolerance or _TOLERANCE,
     )
     some = measurement.runs[:: max(1, -(-len(measurement.runs) // _MOST_RUNS))]
+    some = measurement.with_runs([one for one in some if not _at_rest(one)])
     try:
-        errors = _errors(measurement.with_runs(list(some)), described, settled)
+        rest = _errors_from_rest(some, described)
+        as_rest = _rms(rest)
+        if as_rest < _FITS:
+            return record, []
+        # of the same channels of the same runs
+        cut = _errors_as_cut(some, settled)
     except (InputError, RunError):
         return record, []  # a case that cannot be simulated is reported where it is used
-    if not errors.size:
-        return record, []
-    as_rest, as_cut = np.sqrt(np.mean(errors**2, axis=0))
+    shared = rest.keys() & cut.keys()
+    as_rest, as_cut = (_rms({key: of[key] for key in shared}) for of in (rest, cut))
     if as_rest < _FITS or as_cut > _BETTER * as_rest:
         return record, []
     description = (
@@ -64,36 +75,62 @@ def beginning_of(
     return settled, [SignalFinding(NOTE, "", "spindle_angle", description)]
 
 
-def _errors(
-    measurement: Measurement, described: RecordDescription, settled: RecordDescription
-) -> Array:
-    """Errors (n, 2) of the declared case over the signals: from rest, and as a settled cut."""
-    found = []
-    cut_out, _ = settled_records(measurement, settled)
-    by_name = {run.name: run for run in cut_out.runs}
+def _rms(errors: Mapping[Any, float]) -> float:
+    return float(np.sqrt(np.mean(np.square(list(errors.values()))))) if errors else 0.0
+
+
+def _errors_from_rest(
+    measurement: Measurement, described: RecordDescription
+) -> dict[tuple[str, str], float]:
+    """Error of the declared case from rest over the signal, by run and channel."""
+    found = {}
     for run in measurement.runs:
         turned, components = in_case_axes(run, described.channels)
         turned = replace(turned, components=components)
-        other = by_name.get(run.name)
-        if other is None or _at_rest(turned):
-            continue
-        declared = measurement.case
-        rest = from_rest(run.of(declared), turned)
-        cut = other.record.predicted(other.of(declared))
+        predicted = from_rest(run.of(measurement.case), turned)
         for name in components:
-            found.append((_relative(turned, rest, name), _relative(other, cut, name)))
-    return np.array(found).reshape(-1, 2)
+            found[run.name, name] = _relative(turned, predicted, name)
+    return found
+
+
+def _errors_as_cut(
+    measurement: Measurement, settled: RecordDescription
+) -> dict[tuple[str, str], float]:
+    """Error of the declared case as a settled cut over the signal, by run and channel."""
+    cut_out, _ = settled_records(measurement, settled)
+    found = {}
+    for run in cut_out.runs:
+        predicted = run.record.predicted(run.of(measurement.case))
+        for name in run.components:
+            found[run.name, name] = _relative(run, predicted, name)
+    return found
 
 
 def _at_rest(run: Run) -> bool:
     """Whether displacements show that a run begins at rest."""
     moved = [run.signals[name] for name in ("x", "y") if name in run.signals]
-    return bool(moved) and all(
-        abs(float(values[0])) < _AT_REST * float(np.sqrt(np.mean(values**2))) for values in moved
-    )
+    return bool(moved) and all(_begins_at_zero(values) for values in moved)
+
+
+def _begins_at_zero(values: Array) -> bool:
+    # what changes from sample to sample is noise, and motion where it is coarsely sampled
+    noise = float(np.median(np.abs(np.diff(values)))) / (0.6745 * math.sqrt(2.0))
+    limit = _AT_REST * float(np.sqrt(np.mean(values**2)))
+    begin = abs(float(np.mean(values[:_FIRST])))
+    return begin < limit + _BY_NOISE * noise / math.sqrt(_FIRST)
+
+
+def _angle_channel(measurement: Measurement) -> str:
+    """Channel of the spindle angle where every run has the usual one."""
+    usual = "spindle_angle"
+    return usual if all(usual in run.signals for run in measurement.runs) else UNKNOWN
 
 
 def _relative(run: Run, predicted: dict[str, Array], name: str) -> float:
+    """Error over the signal, without offset and drift, which neither tells a beginning by."""
     measured = run.signals[name]
     level = max(float(np.std(measured)), 1e-300)
-    return float(np.sqrt(np.mean((measured - predicted[name]) ** 2))) / level
+    residual = measured - predicted[name]
+    along = np.linspace(-1.0, 1.0, residual.size)
+    residual = residual - np.polyval(np.polyfit(along, residual, 1), along)
+    return float(np.sqrt(np.mean(residual**2))) / level

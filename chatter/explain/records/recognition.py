@@ -241,14 +241,16 @@ def _steady(one: _Settled, channels: Mapping[str, Channel], record: RecordDescri
 
 def _known_angle(run: Run, record: RecordDescription) -> Array | None:
     """Angle of the spindle where a channel has it."""
-    if record.spindle_angle in ("", UNKNOWN):
+    usual = "spindle_angle"
+    if record.spindle_angle == UNKNOWN or (not record.spindle_angle and usual not in run.signals):
         return None
-    if record.spindle_angle not in run.signals:
+    name = record.spindle_angle or usual
+    if name not in run.signals:
         raise InputError(
             f"{run.name}: record.spindle_angle: there is no channel {record.spindle_angle}; there "
             f"are {', '.join(run.signals)}"
         )
-    return np.unwrap(run.signals[record.spindle_angle])
+    return np.unwrap(run.signals[name])
 
 
 def _with_tachos(

@@ -98,6 +98,60 @@ def cut_off():
     return found
 
 
+#: speed, rpm, feed, axial and radial depth, m
+SLOW_CUTS = ((756.0, 92e-6, 1.27e-3, 19.71e-3), (793.0, 172e-6, 1.46e-3, 27.39e-3))
+SLOW_CASE = """
+[tool]
+teeth = 5
+diameter = "50 mm"
+helix = "14 deg"
+[material]
+Ktc = "1772.81 MPa"
+Krc = "730.719 MPa"
+Kte = "0 N/mm"
+Kre = "0 N/mm"
+[cut]
+mode = "down"
+spindle_speed = "756 rpm"
+feed_per_tooth = "0.092 mm"
+axial_depth = "1.27 mm"
+radial_depth = "19.71 mm"
+[[structure.mode]]
+frequency = "52.4765 Hz"
+damping = 0.044045
+mass = "468.32 kg"
+direction = [0, 1, 0]
+[[structure.mode]]
+frequency = "211.993 Hz"
+damping = 0.046112
+mass = "70.8736 kg"
+direction = [1, 0, 0]
+[[structure.mode]]
+frequency = "257.713 Hz"
+damping = 0.045321
+mass = "49.5992 kg"
+direction = [0, 1, 0]
+"""
+
+
+def slow_plant() -> Plant:
+    """Slow structure with edge forces."""
+    return Plant(
+        25e-3,
+        math.tan(math.radians(14.0)) / 25e-3,
+        np.arange(5) * TURN / 5.0,
+        np.ones(5),
+        np.array([52.34, 210.4, 257.7]),
+        np.array([0.0427, 0.0448, 0.0445]),
+        np.array([473.1, 68.0, 49.7]),
+        np.array([[0.0, 1.0], [1.0, 0.0], [0.0, 1.0]]),
+        1860e6,
+        741e6,
+        47.2e3,
+        49.6e3,
+    )
+
+
 def measurement(case, cut_off, tmp_path, signals_of, record) -> Measurement:
     runs = []
     for number, ((rpm, radial, _), (time, rows, _, _)) in enumerate(
@@ -146,6 +200,30 @@ def test_runs_from_rest_stay_as_they_are(case, tmp_path):
     usable = checked(Measurement("milling", "rest", tmp_path, case, (one,)))
     assert usable.measurement.runs[0].record is None
     assert not usable.findings
+
+
+@pytest.mark.parametrize("with_angle", [True, False])
+def test_noise_and_a_missing_effect_do_not_hide_a_beginning_from_rest(tmp_path, with_angle):
+    # edge forces that are not declared, on a slow structure that has not settled when a run ends
+    declared, edges = loads(SLOW_CASE, "case.toml"), slow_plant()
+    noise, runs = np.random.default_rng(8), []
+    for number, (rpm, feed, axial, radial) in enumerate(SLOW_CUTS):
+        speed = rpm * TURN / 60.0
+        cut = Cut(speed, feed, axial, radial, *arc_of("down", radial, 25e-3), 0.0)
+        signals = run(edges, cut, 0.5)
+        scatter = np.array([0.04, 0.01, 0.12, 0.01]) * signals.channels.std(axis=1)
+        rows = signals.channels + scatter[:, None] * noise.standard_normal(signals.channels.shape)
+        columns = {"time": signals.time, **as_in_the_case(rows)}
+        columns |= {"spindle_angle": signals.angle} if with_angle else {}
+        overrides = {
+            "cut.spindle_speed": f"{rpm} rpm",
+            "cut.feed_per_tooth": feed,
+            "cut.axial_depth": axial,
+            "cut.radial_depth": radial,
+        }
+        runs.append(Run(f"run{number + 1}.csv", overrides, columns))
+    usable = checked(Measurement("milling", "rest", tmp_path, declared, tuple(runs)))
+    assert all(one.record is None for one in usable.measurement.runs)
 
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
