@@ -24,13 +24,18 @@ Kind = Literal["linear", "rotary", "current", "share"]
 #: words of a heading that make it a role; the controls' own names stand beside the plain ones
 _TOLD: Mapping[Role, re.Pattern[str]] = {
     "time": re.compile(r"^(t|time|zeit|timestamp)\b"),
-    "position": re.compile(r"position|^(s|x|angle)$|^s ?(act|ist)|^pos\b"),
-    "velocity": re.compile(r"velocity|speed|^v$|^v ?(act|ist)|^n ?(act|ist)"),
-    "effort": re.compile(r"force|torque|current|^i ?(act|ist|q)\b|^i\(q\)|^m ?(act|ist)"),
+    "position": re.compile(r"position|lageist|^(s|x|angle)$|^s ?(act|ist)|^pos\b"),
+    "velocity": re.compile(
+        r"velocity|speed|drehzahl|geschwindigkeit|^v$|^v ?(act|ist)|^n ?(act|ist)"
+    ),
+    "effort": re.compile(
+        r"force|torque|current|moment|strom|kraft|^i ?(act|ist|q)\b|^i\(q\)|^m ?(act|ist)"
+    ),
 }
 #: words of what is commanded, left over or limited, which is not what the axis did
 _NOT_ACTUAL = re.compile(
-    r"command|set ?p|\bset\b|nominal|\bnom\b|soll|error|\bdif|deviation|limit|forward|desired"
+    r"command|set ?p|\bset\b|nominal|\bnom\b|soll|error|\bdif|deviation|limit|forward|desired|"
+    r"schlepp|abweich|grenz|vorsteuer"
 )
 _EXAMPLES = {"position": "position [mm]", "velocity": "v act. X [mm/min]", "effort": "torque [N*m]"}
 #: units of drives as their programs write them -> as the units library has them
@@ -125,7 +130,11 @@ def _stated(table: Table, role: Role, stated: str) -> tuple[int, str, float]:
     text = text.removeprefix("-").strip()
     whole = [i for i, one in enumerate(table.columns) if one.heading.strip() == text]
     name, unit = (text, "") if whole else split_heading(text)
-    found = whole or [i for i, one in enumerate(table.columns) if _plain(one.name) == _plain(name)]
+    found = whole or [
+        i
+        for i, one in enumerate(table.columns)
+        if _plain(name) in (_plain(one.name), _plain(one.heading))
+    ]
     if len(found) != 1:
         raise InputError(
             f'{table.path}: --{role} "{stated}": {len(found) or "no"} column'

@@ -16,6 +16,9 @@ matlab          variables of MAT files                                       sci
 xlsx            the table of a workbook                                      openpyxl
 parquet         columns of Parquet files                                     pyarrow
 named_arrays    arrays by name as columns of a table
+sinumerik_trace traces of drives by SINUMERIK Operate                        XML
+tncscope        traces of drives by TNCscope of HEIDENHAIN
+mr_configurator traces of drives by MR Configurator of Mitsubishi
 tdms            channels of LabVIEW files                                    npTDMS
 wav             sound and other records of recorders                         RIFF WAVE
 matrix_market   matrices of finite element programs                          NIST Matrix Market

@@ -10,9 +10,12 @@ from chatter.io.formats.format import CONTENTS, Content, Format
 from chatter.io.formats.lvm import LVM
 from chatter.io.formats.matlab import MATLAB
 from chatter.io.formats.matrix_market import MATRIX_MARKET
+from chatter.io.formats.mr_configurator import MR_CONFIGURATOR
 from chatter.io.formats.npz import NPZ
 from chatter.io.formats.parquet import PARQUET
+from chatter.io.formats.sinumerik_trace import SINUMERIK_TRACE
 from chatter.io.formats.tdms import TDMS
+from chatter.io.formats.tncscope import TNCSCOPE
 from chatter.io.formats.uff58 import UFF58
 from chatter.io.formats.wav import WAV
 from chatter.io.formats.xlsx import XLSX
@@ -21,7 +24,22 @@ from dynamics.frf.container import Frf, MeasurementError
 FORMATS: Registry[Format] = Registry(
     group="chatter.formats",
     what="file format",
-    built_in=(UFF58, CUTPRO, LVM, CSV, NPZ, MATLAB, XLSX, PARQUET, TDMS, WAV, MATRIX_MARKET),
+    built_in=(
+        UFF58,
+        CUTPRO,
+        LVM,
+        SINUMERIK_TRACE,
+        TNCSCOPE,
+        CSV,
+        MR_CONFIGURATOR,
+        NPZ,
+        MATLAB,
+        XLSX,
+        PARQUET,
+        TDMS,
+        WAV,
+        MATRIX_MARKET,
+    ),
 )
 #: enough of a file to recognise its format
 _HEAD_BYTES = 65536
