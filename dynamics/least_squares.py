@@ -7,11 +7,13 @@ same normal equations, gradient and sum of squares: to `scipy.optimize.least_squ
 problem itself.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
-import scipy.optimize
+import scipy
 from numpy.typing import NDArray
 
 

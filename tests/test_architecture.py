@@ -242,6 +242,30 @@ def test_cache_folder_changes_with_every_source(sources):
     assert source_hash(sources) not in seen
 
 
+@pytest.mark.parametrize("library", ["numba", "llvmlite", "numpy", "scipy"])
+def test_cache_folder_changes_with_every_library(monkeypatch, library):
+    from chatter.engine import presets
+
+    first, installed = presets.source_hash(ROOT), presets.version
+    newer = {library: f"{installed(library)}.post1"}
+    monkeypatch.setattr(presets, "version", lambda name: newer.get(name) or installed(name))
+    assert presets.source_hash(ROOT) != first
+
+
+def test_a_check_loads_no_more_than_it_needs():
+    check = (
+        "import json, sys, chatter\n"
+        "chatter.check('examples/one-degree-of-freedom/case.toml').summary()\n"
+        "print(json.dumps(sorted(sys.modules)))"
+    )
+    # the first time it may have to compile
+    python(check)
+    loaded = python(check)
+    slow = {"pint", "dask", "matplotlib", "scipy.optimize", "scipy.linalg", "scipy.interpolate"}
+    assert not slow & set(loaded)
+    assert not [name for name in loaded if name.startswith("chatter.description.machine")]
+
+
 def test_an_edited_leaf_is_compiled_anew(sources):
     """The leaf lives in another file than the cached driver, where numba does not look."""
     code = (

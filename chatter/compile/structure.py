@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.compile.measured_frf import MeasuredSide, measured_sides
 from chatter.description.errors import InputError
 from chatter.description.units import rpm
 from dynamics.frf.container import MeasurementError
-from dynamics.identification.result import ModalFit
 from dynamics.modal.modes import Mode, frequency_lines, receptance_matrix
 
 if TYPE_CHECKING:
+    from chatter.compile.measured_frf import MeasuredSide
     from chatter.description.case import Case
+    from dynamics.identification.result import ModalFit
 
 #: chatter is looked for up to this multiple of the highest mode
 _HIGHEST_CHATTER = 4.0
@@ -192,6 +192,8 @@ def structure_at(case: Case, spindle_speed: float) -> Structure:
         measured = _measured_speeds(case)
         nearest = min(measured, key=lambda speed: abs(speed - spindle_speed)) if measured else None
         chosen = tuple(frf for frf in section.frf if frf.spindle_speed in (None, nearest))
+        from chatter.compile.measured_frf import measured_sides
+
         sides, notes = measured_sides(case, chosen)
         return MeasuredStructure(sides, (*notes, *_notes_on_speed(case)))
     from chatter.compile.linearised_machine import machine_structure

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import least_squares
+import scipy
 
 from chatter.cutting_coefficients.laws import TriedLaw, unit_forces
 from chatter.cutting_coefficients.mean_forces import MeanForce, channels_of
@@ -90,7 +90,7 @@ def _of_signs(
     if len(means) < law.parameters or _solved(rows_at(exponents), means) is None:
         return None
     if exponents.size:
-        exponents = least_squares(
+        exponents = scipy.optimize.least_squares(
             lambda p: _solved(rows_at(p), means).left, exponents, bounds=_EXPONENTS, x_scale=0.1
         ).x
     rows = rows_at(exponents)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import scipy.stats
+import scipy
 import tomlkit
 
 from chatter.cutting_coefficients.fit import FittedLaw

@@ -15,6 +15,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from chatter.description.formatting import formatted
+from chatter.description.known_units import MEASURED, SI_VALUE
 
 if TYPE_CHECKING:
     import numpy as np
@@ -177,6 +178,12 @@ def unit_factor(unit: str, dimension: str) -> float:
     """
     if not unit or unit == DIMENSIONS[dimension].unit:
         return 1.0
+    known = SI_VALUE.get(dimension, {}).get(unit)
+    return asked_of_library(unit, dimension) if known is None else known
+
+
+def asked_of_library(unit: str, dimension: str) -> float:
+    """SI value of one unit by the units library; as `unit_factor`, which knows many by heart."""
     parsed, one = _parsed_unit(unit, dimension)
     if dimension == "number":
         if unit in _NUMBER_UNITS:
@@ -228,6 +235,13 @@ def measured_unit(unit: str) -> MeasuredUnit | None:
 
     Such as ``"um/N"``, ``"g"`` (the acceleration of gravity here), ``"lb"`` (a force), ``"m/s2"``.
     """
+    if unit in MEASURED:
+        return MeasuredUnit(*MEASURED[unit])
+    return measured_by_library(unit)
+
+
+def measured_by_library(unit: str) -> MeasuredUnit | None:
+    """Unit of a measured file by the units library; as `measured_unit`, which knows many."""
     known = _unit_of_library(unit.strip(), _MEASURED_WORDS) if len(unit) <= _LONGEST_TEXT else None
     if known is None or not known[2]:
         return None
@@ -238,6 +252,8 @@ def measured_unit(unit: str) -> MeasuredUnit | None:
 @lru_cache(maxsize=64)
 def dimension_of(unit: str) -> dict[str, int]:
     """Exponent of each base dimension of pint, of an SI unit such as ``"m/N"``."""
+    if unit in MEASURED and unit not in _MEASURED_WORDS:
+        return MEASURED[unit][0]
     return dict(registry().Unit(unit).dimensionality)
 
 

@@ -5,7 +5,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
 from chatter.detection.deviations import directions_of
 
@@ -92,6 +91,9 @@ def _rotation(scores: NDArray[np.float64], growth_rate: float) -> float:
     grid = np.linspace(max(start - reach, 0.5 * step), min(start + reach, math.pi), 4 * _PADDING)
     best = int(np.argmin([negative_explained(angle) for angle in grid]))
     low, high = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
+    # slow to import, and what judges a case by its multiplier has no signal to fit
+    from scipy.optimize import minimize_scalar
+
     found = minimize_scalar(
         negative_explained, bounds=(low, high), method="bounded", options={"xatol": 1e-4 / count}
     )

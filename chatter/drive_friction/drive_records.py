@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
+import scipy
 
 from chatter.description.arrays import Array
 from chatter.description.errors import InputError
@@ -127,7 +127,7 @@ def _of_file(path: Path, settings: DriveSettings) -> tuple[DriveRecord, bool]:
     if speed is None:
         speed = np.gradient(moved, time)
     if moved is None:
-        moved = cumulative_trapezoid(speed, time, initial=0.0)
+        moved = scipy.integrate.cumulative_trapezoid(speed, time, initial=0.0)
     drive = _effort_of(path, force, rotary, settings)
     return DriveRecord(time, moved, speed, drive, name=path.name), rotary
 

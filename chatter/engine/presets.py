@@ -2,30 +2,36 @@
 
 Physics leaves in `cutting` and `dynamics` are plain functions to Python, inlined by the drivers
 here (see `cutting.compiled` and `cutting.leaves`). numba's disk cache looks only at the file of
-the cached function, so that an edit of a leaf would go unseen; the cache folder is therefore named
-by a hash of all sources.
+the cached function, so that an edit of a leaf would go unseen, and so would another version of
+numpy; the cache folder is therefore named by a hash of all sources and of the libraries.
 """
 
 import hashlib
 import os
 import shutil
 import time
+from importlib.metadata import version
 from pathlib import Path
 
 import numba
 
 from chatter.description.registry import extension_sources
+from chatter.engine.loaded_kernels import load_without_compiler
 from cutting.compiled import UNCOUNTED
 
 #: compiled code of other versions is kept this long, s
 _KEEP_OLD_CACHES = 30 * 86400.0
 
 _PACKAGES = ("chatter", "cutting", "dynamics")
+#: what compiled code is made by and calls
+_LIBRARIES = ("numba", "llvmlite", "numpy", "scipy")
 
 
 def source_hash(root: Path) -> str:
-    """Hash of every Python source below the three packages in `root` and of every extension."""
+    """Hash of every Python source below the three packages in `root`, extensions, libraries."""
     digest = hashlib.sha256()
+    for library in _LIBRARIES:
+        digest.update(f"{library} {version(library)}\n".encode())
     for package in _PACKAGES:
         for path in sorted((root / package).rglob("*.py")):
             digest.update(path.relative_to(root).as_posix().encode())
@@ -62,6 +68,7 @@ def _set_cache_folder() -> Path:
         # a read-only home: numba falls back to its own choice
         return folder
     numba.config.CACHE_DIR = str(folder)
+    load_without_compiler(folder)
     return folder
 
 

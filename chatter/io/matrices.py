@@ -1,11 +1,13 @@
 """Matrices and nodes that a finite element program wrote, read and checked."""
 
+from __future__ import annotations
+
 import csv
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-import scipy.sparse
+import scipy
 
 from chatter.description.arrays import BooleanArray
 from chatter.io.formats.format_list import format_of

@@ -7,9 +7,9 @@ import textwrap
 from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from scipy.interpolate import CubicSpline
 
 from chatter.description.arrays import Array
 from chatter.description.units import rpm
@@ -249,7 +249,7 @@ def _once_a_turn(result: SimulationResult) -> Array:
     turns = np.arange(1, result.whole_revolutions + 1)
     if len(turns) == 0 or len(result.rows) < 4:
         return np.zeros((0, 2))
-    motion = CubicSpline(result.spindle_angle, result.displacement[:, :2], axis=0)
+    motion = scipy.interpolate.CubicSpline(result.spindle_angle, result.displacement[:, :2], axis=0)
     return motion(turns * _TURN) * 1e6
 
 

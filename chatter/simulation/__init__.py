@@ -7,6 +7,7 @@ simulate          `simulate`: sets a case up, runs it, asks whether it chatters;
                   dynamometer shows them
 setup             a case compiled: laws at the tool point on a structure
 structure_in_time modes or machine behind the ports, with its step
+machine_in_time   the machine among them, its axes at the feed as the cut begins
 resolution        steps, slices and length of a run, chosen where the case is silent
 spindle           rotation of the spindle and path of the tool over the steps
 workpiece         workpiece of dexels or voxels

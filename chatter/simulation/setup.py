@@ -1,13 +1,16 @@
 """A case compiled to law groups, modes and record."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from chatter.compile.cutter import cutter_of, edge_law, flank_table, force_law, helix_angles
 from chatter.compile.empirical import force_factor
-from chatter.compile.machine_cut import MachineCut
+from chatter.compile.teeth_on_the_tool import refuse_teeth_off_the_tool
 from chatter.compile.worn_flank import notes_on_worn_flank
 from chatter.description.case import Case
 from chatter.description.errors import InputError
@@ -23,7 +26,7 @@ from chatter.simulation.spindle import (
     spindle_of,
 )
 from chatter.simulation.start_in_stock import clear_start
-from chatter.simulation.structure_in_time import StructureInTime, modes_in_time, structure_in_time
+from chatter.simulation.structure_in_time import StructureInTime, modes_in_time, modes_of
 from chatter.simulation.workpiece import REVOLUTIONS_BEFORE, discrete_cut, reading_notes
 from cutting.chip.delayed_chip import DelayedCut
 from cutting.chip.discrete_chip import DiscreteCut
@@ -32,6 +35,9 @@ from cutting.engagement.immersion import slice_arcs, slice_engagement
 from cutting.process_damping.contact import ToolContact
 from cutting.tool.cutter import Cutter, EdgeSlices, slices_between
 from dynamics.modal.modes import Mode
+
+if TYPE_CHECKING:
+    from chatter.compile.machine_cut import MachineCut
 
 #: the model of the chip holds while the tool moves by less than this share of its radius
 _FURTHEST = 0.2
@@ -102,7 +108,25 @@ def set_up_in_stock(case: Case, modes: tuple[Mode, ...] | None = None) -> Setup:
     """Compile a case as `set_up` does, but leave the stock whole where the tool begins."""
     check_case(case)
     cutter = cutter_of(case)
-    return _compiled(case, cutter, structure_in_time(case, cutter, modes))
+    return _compiled(case, cutter, _structure_in_time(case, cutter, modes))
+
+
+def _structure_in_time(
+    case: Case, cutter: Cutter, modes: tuple[Mode, ...] | None = None
+) -> StructureInTime:
+    """Compile the structure of a case for the time domain.
+
+    Modes where they are known already; a machine has its own. InputError if the structure cannot be
+    read or the machine cannot make the cut.
+    """
+    if case.structure is not None and case.structure.machine is not None:
+        from chatter.simulation.machine_in_time import machine_in_time
+
+        return machine_in_time(case, cutter)
+    notes: tuple[str, ...] = ()
+    if modes is None:
+        modes, notes = modes_of(case)
+    return modes_in_time(case, cutter, modes, notes)
 
 
 def with_start_cleared(setup: Setup) -> Setup:
@@ -178,30 +202,6 @@ def _compiled(case: Case, cutter: Cutter, structure: StructureInTime) -> Setup:
         furthest=_FURTHEST * cutter.radius,
         notes=notes,
     )
-
-
-def refuse_teeth_off_the_tool(case: Case) -> None:
-    """Refuse runout and setting errors that would move a tooth by a good part of the radius.
-
-    And waves of an edge that would reach the axis.
-    """
-    tool = case.tool
-    most = _FURTHEST * 0.5 * tool.diameter
-    given = {"runout.offset": (tool.runout.offset,) if tool.runout else ()}
-    given |= {"radial_error": tool.radial_error or (), "axial_error": tool.axial_error or ()}
-    problems = [
-        f"{case.name}: tool.{key}: {max(map(abs, values)) * 1e3:g} mm is more than a tenth of the "
-        f"diameter, {tool.diameter * 1e3:g} mm"
-        for key, values in given.items()
-        if values and max(map(abs, values)) > most
-    ]
-    if tool.serration is not None and tool.serration.depth >= 0.5 * tool.diameter:
-        problems.append(
-            f"{case.name}: tool.serration.depth: {tool.serration.depth * 1e3:g} mm is not less "
-            f"than the radius of the tool, {tool.diameter * 500.0:g} mm"
-        )
-    if problems:
-        raise InputError(problems)
 
 
 def _refuse_crossing_flutes(case: Case, slices: EdgeSlices) -> None:

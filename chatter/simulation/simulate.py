@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import scipy.signal
 from numpy.typing import NDArray
 
 from chatter.description.case import Case
@@ -165,7 +164,10 @@ def through_resonance(
     first = [0.0, ahead[0], transition[0, 1] * ahead[1] - transition[1, 1] * ahead[0]]
     last = [0.0, behind[0], transition[0, 1] * behind[1] - transition[1, 1] * behind[0]]
     numerator = np.array([first[1], first[2] + last[1], last[2]])
-    return scipy.signal.lfilter(numerator, [1.0, -trace, determinant], force, axis=0)
+    # slow to import, and few cases have a dynamometer
+    from scipy.signal import lfilter
+
+    return lfilter(numerator, [1.0, -trace, determinant], force, axis=0)
 
 
 #: port of the rotation of the tool

@@ -11,6 +11,7 @@ import numpy as np
 
 from chatter.compile.cutter import cutter_of, force_law, helix_angles, process_damping_of
 from chatter.compile.structure import Structure, depends_on_speed, structure_at, structure_of
+from chatter.compile.teeth_on_the_tool import refuse_teeth_off_the_tool
 from chatter.compile.worn_flank import notes_on_limits, notes_on_worn_flank
 from chatter.description.arrays import Array, ComplexArray
 from chatter.description.case import Case
@@ -18,8 +19,6 @@ from chatter.description.errors import InputError
 from chatter.description.plausibility import check_plausible
 from chatter.description.questioned import questions
 from chatter.description.units import rpm
-from chatter.engine.loop_stability import refuse_unstable_structure
-from chatter.simulation.setup import refuse_teeth_off_the_tool
 from chatter.stability.averaged_coefficients import AveragedCoefficients, averaged_coefficients
 from chatter.stability.cut_arrays import CutArrays, cut_arrays
 from chatter.stability.spindle_rotation import CONSTANT_SPEED, SpeedVariation
@@ -263,7 +262,10 @@ def milling_model(case: Case, structure: Structure | None = None) -> MillingMode
     refuse_teeth_off_the_tool(case)
     if structure is None:
         structure = structure_of(case)
-        refuse_unstable_structure(structure)
+        if case.structure.machine is not None:
+            from chatter.engine.loop_stability import refuse_unstable_structure
+
+            refuse_unstable_structure(structure)
     cutter = cutter_of(case)
     notes = [*questions(case), *structure.notes]
     flank = process_damping_of(case)

@@ -1,15 +1,20 @@
 """What frictions at rest do to the limits of a machine, for the reader of linear limits."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from chatter.compile.linearised_machine import LinearisedMachine
 from chatter.description.units import rpm
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel
-from dynamics.friction.laws import FrictionLaw
+
+if TYPE_CHECKING:
+    from chatter.compile.linearised_machine import LinearisedMachine
+    from dynamics.friction.laws import FrictionLaw
 
 #: change of the limit by what sticks that is worth a note
 _REPORTED = 0.02
@@ -23,6 +28,10 @@ def notes_on_resting_friction(model: MillingModel) -> tuple[str, ...]:
     Zeroth-order limits: what is compared is the structures. None where no friction rests, or where
     it makes no difference.
     """
+    if model.case.structure.machine is None:
+        return ()
+    from chatter.compile.linearised_machine import LinearisedMachine
+
     structure = model.structure
     if not isinstance(structure, LinearisedMachine) or not (names := structure.resting):
         return ()

@@ -12,7 +12,6 @@ from numba import types
 from numba.core import cgutils
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, register_model
-from numba.np.arrayobj import make_array
 
 #: points that are treated together
 BATCH_SIZE = 8
@@ -91,6 +90,9 @@ def _pointer(context, builder, kinds, values):
         for part, kind in zip(parts, part_kinds, strict=True)
     ]
     positions.append(context.get_constant(types.intp, 0))
+    # what only compilation needs is not imported where the compiled code is on the disk
+    from numba.np.arrayobj import make_array
+
     whole = make_array(array_kind)(context, builder, array)
     address = cgutils.get_item_pointer(
         context, builder, array_kind, whole, positions, wraparound=False

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
 
 #: median signal over noise, and median coherence, of lines in which modes are looked for
 SEARCHED_SIGNAL_TO_NOISE = 2.0
@@ -118,7 +118,7 @@ def widened(
 
 def _running_median(values: NDArray[np.float64]) -> NDArray[np.float64]:
     half = int(min(SMOOTHING, SMOOTHING_SHARE * values.size)) // 2
-    return median_filter(values, size=2 * half + 1, mode="nearest")
+    return scipy.ndimage.median_filter(values, size=2 * half + 1, mode="nearest")
 
 
 def _run(lines: int) -> int:

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg import eig
 
 from dynamics.identification.tall import gram, product
 
@@ -118,7 +118,7 @@ def _solve_order(
     coefficients = -np.linalg.lstsq(reduced[:free, :free], reduced[:free, free:], rcond=1e-14)[0]
     companion = np.kron(hessenberg[:order, :order], np.eye(references))
     companion[:, -references:] -= hessenberg[order, order - 1] * coefficients
-    roots, left = eig(companion, left=True, right=False)
+    roots, left = scipy.linalg.eig(companion, left=True, right=False)
     participation = left[:references, :].conj().T
     keep = (roots.imag < 0.0) & (np.abs(roots) > 1e-6)
     poles = -np.log(roots[keep]) / period

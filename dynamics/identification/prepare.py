@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
 
 from dynamics.frf.container import DERIVATIVE_ORDER, Frf, MeasurementError, Point, on_common_lines
 from dynamics.identification.band import Band, usable_bands
@@ -245,7 +245,9 @@ def noise_level(frequency: NDArray[np.float64], values: NDArray[np.complex128]) 
     # the median of a chi-square variable lies below its mean (Wilson-Hilferty)
     median_to_mean = (1.0 - 2.0 / (9.0 * 2.0 * freedom)) ** 3
     reach = min(HALF_SMOOTHING, variance.size // 2)
-    smooth = median_filter(variance, size=2 * reach + 1, mode="nearest") / median_to_mean
+    smooth = (
+        scipy.ndimage.median_filter(variance, size=2 * reach + 1, mode="nearest") / median_to_mean
+    )
     smooth = np.concatenate([np.full(half, smooth[0]), smooth, np.full(half, smooth[-1])])
     return np.maximum(np.sqrt(smooth), floor)
 

@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter1d
 
 from dynamics.identification.mode_quality import inside, mode_quality, without_mode
 from dynamics.identification.refinement import ModalModel, fit_residues, pole_range, refine
@@ -169,7 +169,9 @@ def _places(records: Records, model: ModalModel) -> list[float]:
     excess = np.sum(np.abs(error) ** 2, axis=1)
     frequencies: list[float] = []
     for width in (1, 5, 21):
-        smooth = uniform_filter1d(excess, size=min(width, excess.size), mode="nearest")
+        smooth = scipy.ndimage.uniform_filter1d(
+            excess, size=min(width, excess.size), mode="nearest"
+        )
         for line in np.argsort(smooth)[::-1]:
             frequency = float(records.frequency[line])
             if all(abs(frequency - p) > 0.01 * p for p in frequencies):

@@ -7,7 +7,7 @@ each damped vibration, and one block for what is left - rigid-body motion, overd
 from typing import NamedTuple
 
 import numpy as np
-import scipy.linalg
+import scipy
 from numpy.typing import NDArray
 
 from dynamics.reduction.modal_truncation import undamped_modes

@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import PchipInterpolator
 
 from dynamics.control.response import controller_response
 from dynamics.control.sampling import zero_order_hold_response
@@ -55,7 +55,7 @@ def at_amplitude(amplitude: float) -> Linearised:
         nodes = np.geomspace(lines.min(), lines.max(), _CYCLES_GONE_THROUGH)
         found = at(law, nodes)
         return sum(
-            factor * PchipInterpolator(np.log(nodes), part)(np.log(lines))
+            factor * scipy.interpolate.PchipInterpolator(np.log(nodes), part)(np.log(lines))
             for factor, part in ((1.0, found.real), (1j, found.imag))
         )
 

@@ -10,8 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import scipy.interpolate
-import scipy.optimize
+import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from dynamics.structure.bodies import finite

@@ -4,13 +4,13 @@ Fixed-interface modes and constraint modes (Craig and Bampton, AIAA Journal 6, 1
 elimination of the dependent freedoms, or by springs and dampers between points.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import scipy.linalg
-import scipy.sparse
-import scipy.sparse.linalg
+import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from dynamics.receptance.coupling import joint_matrix
@@ -273,6 +273,8 @@ def _solved_for(rows: NDArray[np.float64]) -> tuple[scipy.sparse.csr_array, scip
 
 def _static_shapes(stiffness: Matrix, coupling: Matrix) -> NDArray[np.float64]:
     """Constraint modes -K_ii^-1 K_ib (inner, boundary)."""
+    import scipy.sparse.linalg
+
     if not stiffness.shape[0]:
         return np.zeros(coupling.shape)
     if scipy.sparse.issparse(stiffness):

@@ -6,13 +6,13 @@ out is kept between the points asked for; of a free structure it is the inertia-
 (Craig and Kurdila, Fundamentals of Structural Dynamics, 2006, section 17.3).
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import scipy.linalg
-import scipy.sparse
-import scipy.sparse.linalg
+import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from dynamics.receptance.coupling import PointPort, residual_compliance
@@ -111,6 +111,8 @@ def _dense_shapes(mass: NDArray[np.float64], stiffness: NDArray[np.float64]) -> 
 def _sparse_shapes(
     structure: LinearStructure, highest: float, count: int | None
 ) -> NDArray[np.float64]:
+    import scipy.sparse.linalg
+
     mass, stiffness = (
         scipy.sparse.csc_array(part) for part in (structure.mass, structure.stiffness)
     )
@@ -141,6 +143,8 @@ def _modes_below(
     mass: scipy.sparse.csc_array, stiffness: scipy.sparse.csc_array, limit: float
 ) -> int:
     """Number of modes with omega^2 below a limit: negative pivots of K - limit M (Sylvester)."""
+    import scipy.sparse.linalg
+
     factors = scipy.sparse.linalg.splu(
         scipy.sparse.csc_array(stiffness - limit * mass),
         permc_spec="MMD_AT_PLUS_A",
@@ -279,6 +283,8 @@ def _elastic_answer(
     The bordered system [K, M R; R' M, 0] holds the rigid-body part at zero without holding a
     freedom; its load is (I - M R R') f.
     """
+    import scipy.sparse.linalg
+
     inertia = structure.mass @ rigid
     balanced = loads - inertia @ (rigid.T @ loads)
     stiffness = scipy.sparse.csc_array(structure.stiffness)

@@ -1,11 +1,11 @@
 """Structures given by their matrices: points tied to the nodes, the mass matrix checked."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
 import numpy as np
-import scipy.linalg
-import scipy.sparse
-import scipy.sparse.linalg
+import scipy
 from numpy.typing import NDArray
 
 from dynamics.structure.linear_structure import LinearStructure, Matrix, StructureError
@@ -100,6 +100,8 @@ def _sparse_eigenvalue(mass: scipy.sparse.csr_array, scale: NDArray[np.float64])
     elements, whatever the mesh (Wathen, IMA Journal of Numerical Analysis 7, 1987), so the
     smallest comes out in few products; a factorisation would cost as much as the stiffness's.
     """
+    import scipy.sparse.linalg
+
     if len(scale) <= MOST_DENSE_ROWS:
         return _dense_pivots(mass.toarray(), scale)
     around = scipy.sparse.diags(scale)

@@ -10,11 +10,10 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 import numpy as np
-import scipy.linalg
-import scipy.sparse
+import scipy
 from numpy.typing import ArrayLike, NDArray
 
-Matrix: TypeAlias = NDArray[np.float64] | scipy.sparse.csr_array
+Matrix: TypeAlias = "NDArray[np.float64] | scipy.sparse.csr_array"
 
 
 class StructureError(ValueError):

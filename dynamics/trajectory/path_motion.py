@@ -14,8 +14,8 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 from dynamics.trajectory.jerk_limited import reachable_speed, speed_change, speed_change_length
 from dynamics.trajectory.motion import Motion, TrajectoryError, require_positive
@@ -142,7 +142,9 @@ class PathMotion:
             peak = (
                 low
                 if needed(low) >= length
-                else brentq(lambda v: needed(v) - length, low, peak, xtol=1e-15, rtol=1e-14)
+                else scipy.optimize.brentq(
+                    lambda v: needed(v) - length, low, peak, xtol=1e-15, rtol=1e-14
+                )
             )
         cruise = max(length - needed(peak), 0.0) / peak
         speed, s = first, begin

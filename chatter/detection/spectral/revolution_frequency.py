@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import scipy.fft
+import scipy
 from numpy.typing import NDArray
 
 from chatter.detection.spectral.chatter_lines import MOST_TEETH, Comb, harmonics_significance

@@ -6,9 +6,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import scipy.fft
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
 
 from chatter.detection.spectral.recording import Recording
 
@@ -88,7 +87,7 @@ def above_floor(power: Array, frequency: Array, length: float) -> Array:
     step = float(frequency[1] - frequency[0])
     width = round(_FLOOR_WIDTH * HALF_WIDTH / (length * step)) | 1
     flat = logarithm.reshape(-1, logarithm.shape[-1])
-    floor = np.array([median_filter(one, width) for one in flat])
+    floor = np.array([scipy.ndimage.median_filter(one, width) for one in flat])
     return logarithm - floor.reshape(logarithm.shape)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import scipy.stats
+import scipy
 
 from chatter.explain.cutting_tests.priors import declared, pulls
 from chatter.explain.fitting import Fit, Parameter

@@ -1,7 +1,7 @@
 """Displacements against the measured forces through the declared structure: axes, signs, units."""
 
 import numpy as np
-import scipy.fft
+import scipy
 from numpy.typing import NDArray
 
 from chatter.compile.structure import structure_of

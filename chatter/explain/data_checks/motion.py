@@ -1,7 +1,7 @@
 """Axis moves: position, velocity, command and force against each other and the declared mass."""
 
 import numpy as np
-import scipy.signal
+import scipy
 from numpy.typing import NDArray
 
 from chatter.explain.data_checks.finding import FATAL, RUN, SignalFinding, of_all_or_some

@@ -6,9 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
-import scipy.integrate
-import scipy.ndimage
-import scipy.signal
+import scipy
 from numpy.typing import NDArray
 
 from chatter.explain.measurement import Run

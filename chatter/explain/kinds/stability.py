@@ -6,7 +6,7 @@ from dataclasses import replace
 from threading import Lock
 
 import numpy as np
-import scipy.special
+import scipy
 from numpy.typing import NDArray
 
 from chatter.description.case import Case

@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-import scipy.stats
+import scipy
 from numpy.typing import NDArray
 
 from chatter.explain.residuals.channel_residual import ChannelResidual

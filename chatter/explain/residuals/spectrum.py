@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg import solve_triangular
 
 from chatter.explain.criteria import AT_NOISE
 from chatter.explain.residuals.channel_residual import ChannelResidual
@@ -332,8 +332,8 @@ class Harmonics:
     def split(self, residual: ChannelResidual) -> Split:
         """Split one channel of the run."""
         values = residual.normalised[: self.samples]
-        parts = solve_triangular(self.factor, self.columns.T @ values, lower=True)
-        amplitudes = solve_triangular(self.factor, parts, lower=True, trans="T")
+        parts = scipy.linalg.solve_triangular(self.factor, self.columns.T @ values, lower=True)
+        amplitudes = scipy.linalg.solve_triangular(self.factor, parts, lower=True, trans="T")
         between = values - self.columns @ amplitudes
         density = self._density(between)
         return Split(

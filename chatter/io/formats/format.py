@@ -1,11 +1,13 @@
 """What a file format is: its name, its extensions, and what it can hold."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, get_args
 
-import scipy.sparse
+import scipy
 
 from chatter.description.arrays import Array
 from chatter.io.table import Table

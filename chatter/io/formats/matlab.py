@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy.io
+import scipy
 
 from chatter.io.files import read_content
 from chatter.io.formats.format import Format

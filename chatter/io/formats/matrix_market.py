@@ -1,9 +1,10 @@
 """Matrices in Matrix Market files."""
 
+from __future__ import annotations
+
 from pathlib import Path
 
-import scipy.io
-import scipy.sparse
+import scipy
 
 from chatter.description.arrays import Array
 from chatter.io.formats.format import Format

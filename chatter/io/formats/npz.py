@@ -1,10 +1,12 @@
 """NumPy archives: signals and FRFs as arrays by name, matrices dense or sparse."""
 
+from __future__ import annotations
+
 import zipfile
 from pathlib import Path
 
 import numpy as np
-import scipy.sparse
+import scipy
 
 from chatter.description.arrays import Array
 from chatter.io.formats.format import Format

@@ -4,7 +4,6 @@ import warnings
 from pathlib import Path
 
 import numpy as np
-import scipy.io.wavfile
 
 from chatter.io.formats.format import Format
 from chatter.io.table import Column, Table, table_of
@@ -16,6 +15,8 @@ def read_sound(path: Path) -> Table:
 
     MeasurementError if the file is none that is read.
     """
+    import scipy.io.wavfile
+
     try:
         with warnings.catch_warnings():
             # of chunks that are no sound, and of a length that a recorder has not written yet

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy.io
+import scipy
 
 from chatter.description.errors import InputError
 from chatter.description.machine.frequency_response import StateSection, parse_tested_point

@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
-from scipy.signal import find_peaks
 
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, write_results
@@ -165,7 +164,7 @@ def _peaks(frf: Frf, wanted: NDArray[np.float64]) -> list[dict]:
     """Peaks whose logarithm stands out by what is required at their line."""
     height = np.abs(frf.values)
     level = np.log(np.maximum(height, np.finfo(np.float64).tiny))
-    indices, properties = find_peaks(level, prominence=0.0)
+    indices, properties = scipy.signal.find_peaks(level, prominence=0.0)
     found = []
     for index in indices[properties["prominences"] >= wanted[indices]]:
         top, at = _vertex(frf.frequency, height, index)
@@ -183,7 +182,7 @@ def _roughness(frf: Frf) -> NDArray[np.float64]:
     # cubic trends, such as the flanks of a peak, leave no third difference
     third = np.abs(np.diff(level, 3))
     size = min(_NEIGHBOURS, 2 * (len(third) // 2) - 1)
-    around = median_filter(third, size=max(size, 1), mode="nearest")
+    around = scipy.ndimage.median_filter(third, size=max(size, 1), mode="nearest")
     return np.pad(around, (1, 2), mode="edge") / (_MEDIAN * _THIRD_DIFFERENCE)
 
 

@@ -1,7 +1,7 @@
 """Sine chirps: a sine of constant amplitude that sweeps through a band."""
 
 import numpy as np
-from scipy.signal.windows import tukey
+import scipy
 
 from dynamics.frf.excitation.signal import (
     ExcitationError,
@@ -41,7 +41,7 @@ def linear_chirp(
     share = np.arange(samples) / samples
     turns = period * (lowest * share + 0.5 * (highest - lowest) * share**2)
     # a window over one sample more is zero at the first sample of the next period
-    envelope = tukey(samples + 1, 2.0 * taper)[:-1]
+    envelope = scipy.signal.windows.tukey(samples + 1, 2.0 * taper)[:-1]
     return PeriodicSignal(
         amplitude * envelope * np.sin(2.0 * np.pi * turns),
         step,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d
 
 from dynamics.frf.hammer.hit import Baseline, Hit, noise_of
 from dynamics.frf.hammer.record import Fault, Finding, HammerRecord
@@ -242,5 +242,5 @@ def _typical_nearby(values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Median of blocks of 16 samples, the larger of each block and its neighbours'."""
     count = values.size // 16
     blocks = np.median(values[: count * 16].reshape(count, 16), axis=1)
-    spread = np.repeat(maximum_filter1d(blocks, 3, mode="nearest"), 16)
+    spread = np.repeat(scipy.ndimage.maximum_filter1d(blocks, 3, mode="nearest"), 16)
     return np.concatenate((spread, np.full(values.size - spread.size, spread[-1])))

@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d
-from scipy.stats import chi2
 
 from dynamics.frf.hammer.consensus import AlignedSet, common_function, predicted, unpredictable
 from dynamics.frf.hammer.hit import NORMAL_MAD
@@ -111,7 +110,7 @@ def compare(aligned: AlignedSet, row: int, members: NDArray[np.bool_]) -> Compar
         misfit=_misfit(aligned, row, explained, prediction_noise),
         response=response,
         residual=residual,
-        envelope=maximum_filter1d(np.abs(prediction), 65, mode="nearest"),
+        envelope=scipy.ndimage.maximum_filter1d(np.abs(prediction), 65, mode="nearest"),
         unpredictable=unknown,
         noise=_expected_noise(aligned, row, residual, prediction_noise),
         wander=float(np.hypot(aligned.wander[row], np.median(aligned.wander[others]))),
@@ -176,7 +175,7 @@ def largest_excess(comparison: Comparison, tolerance: float) -> Excess:
     for length in SEGMENT_LENGTHS:
         if length > square.size:
             break
-        by_chance = float(np.sqrt(chi2.isf(_CHANCE, length) / length)) * _NOISE_MARGIN
+        by_chance = float(np.sqrt(scipy.stats.chi2.isf(_CHANCE, length) / length)) * _NOISE_MARGIN
         limit = by_chance * comparison.noise + _CREST * comparison.wander + allowed
         ratio = np.sqrt(_means(square, length) / _means(limit**2, length))
         start = int(np.argmax(ratio))

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from dynamics.frf.hammer.force_checks import block_medians
 from dynamics.frf.hammer.hit import NORMAL_MAD, Hit
@@ -180,8 +180,10 @@ def common_function(aligned: AlignedSet, members: NDArray[np.bool_]) -> CommonFu
     cross = np.sum(aligned.response_spectra[members] * np.conj(force), axis=0)
     noise_line = (aligned.noise[members] ** 2 * aligned.ringing)[:, None]
     noise = np.sum(noise_line * np.abs(force) ** 2, axis=0) + 1e-300
-    measured = uniform_filter1d(np.abs(cross) ** 2, _WIENER_LINES, mode="nearest")
-    weight = np.clip(1.0 - uniform_filter1d(noise, _WIENER_LINES, mode="nearest") / measured, 0, 1)
+    measured = scipy.ndimage.uniform_filter1d(np.abs(cross) ** 2, _WIENER_LINES, mode="nearest")
+    weight = np.clip(
+        1.0 - scipy.ndimage.uniform_filter1d(noise, _WIENER_LINES, mode="nearest") / measured, 0, 1
+    )
     return CommonFunction(weight * cross / power, weight * np.sqrt(noise) / power, weight)
 
 
@@ -218,7 +220,7 @@ def unpredictable(
     spectrum = (1.0 - function.weight) * aligned.force_spectra[row]
     force = np.fft.irfft(spectrum, aligned.transform_length)[: aligned.force.shape[1]]
     # an unknown mode rings on for a while: a few times the duration of the blow
-    sharp = maximum_filter1d(np.abs(force), _REACH, mode="nearest")
+    sharp = scipy.ndimage.maximum_filter1d(np.abs(force), _REACH, mode="nearest")
     acting = np.zeros(force.size)
     blow = np.flatnonzero(aligned.force[row])
     acting[max(blow[0] - _REACH // 2, 0) : blow[-1] + 2 * blow.size] = 1.0

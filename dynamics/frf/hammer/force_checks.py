@@ -1,8 +1,8 @@
 """Faults of the force channel: a cut or second blow, dropouts, a baseline that moves."""
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.signal import find_peaks
 
 from dynamics.frf.hammer.hit import Hit
 from dynamics.frf.hammer.record import Finding, HammerRecord
@@ -100,7 +100,7 @@ def _notch(record: HammerRecord, hit: Hit, force: NDArray[np.float64]) -> Findin
     """Two humps within one blow: the hammer bounced before it let go."""
     blow = force[max(hit.onset - 1, 0) : hit.end + 1]
     depth = max(8.0 * hit.force.noise, _NOTCH_SHARE * hit.amplitude)
-    peaks, _ = find_peaks(blow, prominence=depth, width=2)
+    peaks, _ = scipy.signal.find_peaks(blow, prominence=depth, width=2)
     if peaks.size < 2:
         return None
     first, second = peaks[0], peaks[1]

@@ -1,7 +1,7 @@
 """Putting a name and a reason to what sets a record apart from the others."""
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
+import scipy
 
 from dynamics.frf.hammer.comparison import RecordAssessment
 from dynamics.frf.hammer.consensus import AlignedSet
@@ -107,12 +107,12 @@ def _local(
     after = (sample - aligned.lead) / aligned.sampling_rate * 1e3
     what = f"{excess.size:.3g} {record.response_unit} {after:.1f} ms after the hit"
     share = f"{excess.size / np.max(np.abs(response)):.1%} of the peak"
-    if float(np.max(uniform_filter1d(square, 6))) * 6.0 > 0.7 * energy:
+    if float(np.max(scipy.ndimage.uniform_filter1d(square, 6))) * 6.0 > 0.7 * energy:
         return "dropout", f"the response jumps by {what} ({share}) against the other records"
     extreme = np.abs(response[near]) > 0.85 * np.max(np.abs(response))
     if after < 20.0 and float(square[extreme].sum()) > 0.6 * energy:
         return "clipped", f"the response falls short at its peaks, by up to {what} ({share})"
-    slow = uniform_filter1d(residual, _SLOW)[near]
+    slow = scipy.ndimage.uniform_filter1d(residual, _SLOW)[near]
     if float(np.sum(slow**2)) > 0.6 * energy:
         return "drift", f"the response baseline moves, by {what} ({share})"
     if after < 1.0:

@@ -1,8 +1,8 @@
 """Records that are sound by themselves, judged against each other."""
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.stats import t as student
 
 from dynamics.frf.hammer.comparison import (
     Comparison,
@@ -133,7 +133,7 @@ def _unlikely(values: list[float]) -> float:
     count = len(values)
     if count < _ENOUGH_FOR_SPREAD:
         return 3.0 * float(np.ptp(values))
-    quantile = float(student.isf(0.5 * _CHANCE, count - 1))
+    quantile = float(scipy.stats.t.isf(0.5 * _CHANCE, count - 1))
     return quantile * float(np.std(values, ddof=1)) * float(np.sqrt(1.0 + 1.0 / count))
 
 

@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import binary_opening, uniform_filter1d
 
 from dynamics.frf.container import Frf, Point, Quantity
 from dynamics.frf.hammer.examine import require_one_kind
@@ -181,7 +181,7 @@ def usable_band(spectra: Spectra) -> tuple[float, float]:
         _FORCE_OVER_NOISE * spectra.force_noise_power,
     )
     good = (spectra.force_power >= least_force) & (_followed(spectra) >= _LEAST_COHERENCE)
-    good = binary_opening(good, structure=np.ones(_FEWEST_LINES, dtype=bool))
+    good = scipy.ndimage.binary_opening(good, structure=np.ones(_FEWEST_LINES, dtype=bool))
     good[0] = False
     if not good.any():
         strong = spectra.force_power >= least_force
@@ -198,11 +198,11 @@ def usable_band(spectra: Spectra) -> tuple[float, float]:
 
 def _followed(spectra: Spectra) -> NDArray[np.float64]:
     """Share of the response power that follows the force, averaged over neighbouring lines."""
-    power = uniform_filter1d(spectra.response_power, _SMOOTHED_LINES, mode="nearest")
+    power = scipy.ndimage.uniform_filter1d(spectra.response_power, _SMOOTHED_LINES, mode="nearest")
     share = 1.0 - spectra.noise_power / np.maximum(power, np.finfo(np.float64).tiny)
     if spectra.count == 1:
         return share
-    measured = uniform_filter1d(
+    measured = scipy.ndimage.uniform_filter1d(
         coherence(spectra) * spectra.response_power, _SMOOTHED_LINES, mode="nearest"
     )
     return np.minimum(share, measured / np.maximum(power, np.finfo(np.float64).tiny))

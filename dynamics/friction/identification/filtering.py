@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.signal import butter, sosfiltfilt
 
 from dynamics.frf.container import MeasurementError
 
@@ -19,7 +19,7 @@ from dynamics.frf.container import MeasurementError
 @lru_cache(maxsize=64)
 def _sections(order: int, cutoff: float) -> NDArray[np.float64]:
     """Second-order sections of a Butterworth low-pass; a fit applies the same one many times."""
-    return butter(order, cutoff, output="sos")
+    return scipy.signal.butter(order, cutoff, output="sos")
 
 
 @dataclass(frozen=True)
@@ -63,4 +63,4 @@ class LowPass:
                 f"the record has {len(values)}"
             )
         sections = _sections(self.order, self.cutoff / nyquist)
-        return sosfiltfilt(sections, values, axis=0, padlen=pad)
+        return scipy.signal.sosfiltfilt(sections, values, axis=0, padlen=pad)

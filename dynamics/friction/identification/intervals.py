@@ -10,8 +10,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.stats import t as student
 
 _CONFIDENCE = 0.95
 #: logarithm of a factor beyond which an interval has no ends
@@ -74,7 +74,7 @@ def covariance(
 
 def half_width(freedom: float) -> float:
     """95 % half width of Student's distribution, in standard errors."""
-    return float(student.ppf(0.5 + 0.5 * _CONFIDENCE, freedom))
+    return float(scipy.stats.t.ppf(0.5 + 0.5 * _CONFIDENCE, freedom))
 
 
 def estimate(value: float, variance: float, freedom: float) -> Estimate:

@@ -5,13 +5,15 @@ logarithms; an offset of the effort may have either sign and is searched as it i
 guard against local minima, of which the Stribeck curve and presliding have plenty.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import OptimizeResult, least_squares
 
 from dynamics.friction.identification.intervals import (
     Estimate,
@@ -82,7 +84,9 @@ def search(
         shift = np.array([0.1 if n in signed else _SPREAD for n in names])
         x = first + (shift * random.standard_normal(len(names)) if k else 0.0)
         outcomes.append(
-            least_squares(lambda x: residual(values(x)), x, bounds=(first - wide, first + wide))
+            scipy.optimize.least_squares(
+                lambda x: residual(values(x)), x, bounds=(first - wide, first + wide)
+            )
         )
     best = min(outcomes, key=lambda outcome: outcome.cost)
     if len(best.fun) < fewest * len(names):
@@ -96,7 +100,7 @@ def search(
 
 
 def _estimates(
-    best: OptimizeResult,
+    best: scipy.optimize.OptimizeResult,
     names: Sequence[str],
     signed: Mapping[str, float],
     found: Mapping[str, float],
