@@ -7,12 +7,13 @@ from typing import TypeVar
 import numpy as np
 
 from chatter.description.errors import InputError
-from chatter.description.machine.bodies import SIX, ImportedSection
+from chatter.description.machine.bodies import SIX
 from chatter.description.machine.compose import Composition
 from chatter.description.machine.errors_by_key import machine_errors
 from chatter.description.machine.friction import FrictionSection
+from chatter.description.machine.imported import ImportedSection
 from chatter.description.machine.machine_file import MachineFile
-from chatter.io.matrices import imported_structure
+from chatter.io.matrices import imported_model
 from dynamics.machine.description import (
     Condition,
     FrictionAt,
@@ -23,6 +24,7 @@ from dynamics.machine.description import (
 )
 from dynamics.reduction.imported_part import ImportedPart, reduced_part
 from dynamics.structure.bodies import Connector
+from dynamics.structure.imported import tied_structure
 from dynamics.structure.spring_coupling import Coupling, Term
 from dynamics.structure.surface_constraint import InterpolatedPoint, RigidSurface
 
@@ -137,19 +139,23 @@ def _imported_part(file: MachineFile, name: str) -> ImportedPart:
 
 
 def _reduced(section: ImportedSection, name: str) -> ImportedPart:
+    bare, nodes = imported_model(
+        *(section.mass, section.stiffness, section.damping, section.nodes),
+        names=section.names.given,
+        units=section.units.model_units,
+        total_mass=section.total_mass,
+    )
     rigid = [
-        RigidSurface(point, one.at, one.nodes)
+        RigidSurface(point, one.at, one.chosen(point, nodes))
         for point, one in section.point.items()
         if one.kind == "rigid"
     ]
     interpolated = [
-        InterpolatedPoint(point, one.at, one.nodes, one.weights)
+        InterpolatedPoint(point, one.at, one.chosen(point, nodes), one.weights)
         for point, one in section.point.items()
         if one.kind == "interpolating"
     ]
-    whole = imported_structure(
-        section.mass, section.stiffness, section.damping, section.nodes, rigid, interpolated
-    )
+    whole = tied_structure(bare, nodes, rigid, interpolated)
     positions = {point: one.at for point, one in section.point.items()}
     return reduced_part(name, whole, positions, section.rail, section.highest_frequency)
 

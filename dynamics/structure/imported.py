@@ -1,8 +1,9 @@
-"""Structures given by their matrices: points tied to the nodes, the mass matrix checked."""
+"""Structures given by their matrices: brought to SI, points tied to the nodes, masses checked."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy
@@ -21,6 +22,72 @@ from dynamics.structure.surface_constraint import (
 MOST_DENSE_ROWS = 1000
 #: of a mass matrix with a unit diagonal: rounding of a mode without mass
 MASSLESS = 1e-12
+#: of the mass stated: what a drawing leaves out, and what a wrong unit cannot hide in
+MASS_TOLERANCE = 0.02
+
+
+@dataclass(frozen=True)
+class ModelUnits:
+    """Units of a finite element model, in SI; force is mass times length over time squared."""
+
+    length: float = 1.0  # m
+    mass: float = 1.0  # kg
+    time: float = 1.0  # s
+
+
+def in_si(
+    structure: LinearStructure, nodes: Nodes | None, units: ModelUnits
+) -> tuple[LinearStructure, Nodes | None]:
+    """Structure without points, and its nodes, from units of a model to SI.
+
+    Displacements are lengths, rotations and coordinates that no node has are numbers: with their
+    units d on the diagonal of D, energy E = m l^2 / t^2 and x = D^-1 x_SI, stiffness is
+    E D^-1 K D^-1, damping t times and mass t^2 times as much. StructureError if a length other
+    than m comes without nodes, which tell displacements from rotations.
+    """
+    if nodes is None:
+        if units.length != 1.0:
+            raise StructureError("units: a length needs nodes, which tell what is a displacement")
+        per_unit = np.ones(structure.size)
+    else:
+        per_unit = np.ones(structure.size)
+        rows = nodes.rows[:, :3]
+        per_unit[rows[rows >= 0]] = 1.0 / units.length
+        nodes = replace(nodes, coordinates=units.length * nodes.coordinates)
+    energy = units.mass * units.length**2 / units.time**2
+    mass, damping, stiffness = (
+        _scaled(matrix, per_unit, energy * units.time**order)
+        for matrix, order in ((structure.mass, 2), (structure.damping, 1), (structure.stiffness, 0))
+    )
+    return replace(structure, mass=mass, damping=damping, stiffness=stiffness), nodes
+
+
+def refuse_other_mass(
+    structure: LinearStructure, nodes: Nodes | None, stated: float, where: str
+) -> None:
+    """Refuse a structure whose mass in a rigid motion along x, y or z is not that stated, kg.
+
+    The message of the StructureError begins with the file.
+    """
+    if nodes is None:
+        raise StructureError(f"{where}: the total mass is stated, which needs nodes to be checked")
+    for direction in range(3):
+        motion = np.zeros(structure.size)
+        rows = nodes.rows[:, direction]
+        motion[rows[rows >= 0]] = 1.0
+        found = float(motion @ (structure.mass @ motion))
+        if abs(found - stated) > MASS_TOLERANCE * stated:
+            raise StructureError(
+                f"{where}: has {found:.4g} kg along {'xyz'[direction]}, {stated:.4g} kg are stated;"
+                " see the units of the model, and freedoms that are held"
+            )
+
+
+def _scaled(matrix: Matrix, per_unit: NDArray[np.float64], factor: float) -> Matrix:
+    if scipy.sparse.issparse(matrix):
+        around = scipy.sparse.diags(per_unit)
+        return scipy.sparse.csr_array(factor * (around @ matrix @ around))
+    return factor * per_unit[:, None] * matrix * per_unit
 
 
 def tied_structure(
@@ -60,24 +127,28 @@ def tied_structure(
     return LinearStructure(mass, damping, stiffness, points)
 
 
-def refuse_indefinite(mass: Matrix, where: str) -> None:
+def _row(row: int) -> str:
+    return f"row {row + 1}"
+
+
+def refuse_indefinite(mass: Matrix, where: str, title: Callable[[int], str] = _row) -> None:
     """Refuse a mass matrix that is not positive definite.
 
     The matrix (n, n) is symmetric. The message of the StructureError begins with the file and names
-    the row, from 1.
+    the row by its title.
     """
     diagonal = mass.diagonal()
     if np.any(diagonal <= 0.0):
-        row = int(np.argmin(diagonal)) + 1
+        row = int(np.argmin(diagonal))
         raise StructureError(
-            f"{where}: row {row}, column {row} is {diagonal[row - 1]:g}; every freedom needs mass "
-            "(condense those without it before export)"
+            f"{where}: the diagonal at {title(row)} is {diagonal[row]:g}; every freedom needs mass "
+            "(consistent mass matrices, or condense those without it before export)"
         )
     search = _sparse_eigenvalue if scipy.sparse.issparse(mass) else _dense_pivots
     found = search(mass, 1.0 / np.sqrt(diagonal))
     if found is not None:
         raise StructureError(
-            f"{where}: the mass matrix is not positive definite, found at row {found + 1}"
+            f"{where}: the mass matrix is not positive definite, found at {title(found)}"
         )
 
 

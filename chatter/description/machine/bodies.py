@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+from pydantic import Field, model_validator
 
 from chatter.description.formatting import formatted
 from chatter.description.machine.fields import Direction, Position, Positions, Size
 from chatter.description.quantities import QuantityField, list_type, quantity
 from chatter.description.section import Section, raise_if_any
-from chatter.description.sections.structure import FileName
 from dynamics.structure.bodies import Body, Connector, Point
 
 _INERTIA = QuantityField("moment_of_inertia")
@@ -176,44 +175,3 @@ class ContactSection(Section):
     stiffness: quantity("stiffness", at_least=0.0)
     damping: quantity("damping", at_least=0.0) = 0.0
     directions: tuple[Literal["x", "y", "z"], ...] = Field(("x", "y", "z"), min_length=1)
-
-
-def _nodes(given: Any) -> tuple[int, ...]:
-    whole = isinstance(given, (list, tuple)) and given
-    if not whole or not all(isinstance(one, int) and not isinstance(one, bool) for one in given):
-        raise ValueError(f"{formatted(given)} is given; a list of numbers of nodes is required")
-    return tuple(given)
-
-
-NodeNumbers = Annotated[
-    tuple[int, ...],
-    BeforeValidator(_nodes),
-    WithJsonSchema({"type": "array", "items": {"type": "integer"}, "minItems": 1}),
-]
-
-
-class ImportedPointSection(Section):
-    """Point tied to nodes: they follow it rigidly, or it follows them."""
-
-    at: Position
-    nodes: NodeNumbers
-    kind: Literal["rigid", "interpolating"] = "rigid"
-    weights: tuple[quantity("number", above=0.0), ...] | None = Field(
-        None, description="of the nodes of an interpolating point"
-    )
-
-
-class ImportedSection(Section):
-    """Part of which mass and stiffness matrix are read from files; lengths there in m."""
-
-    mass: FileName = Field(examples=["M.npz"])
-    stiffness: FileName = Field(examples=["K.npz"])
-    damping: FileName | None = None
-    nodes: FileName = Field(description="table of nodes: node, x, y, z", examples=["nodes.csv"])
-    point: dict[str, ImportedPointSection] = Field(min_length=1)
-    highest_frequency: quantity("frequency", above=0.0) = Field(
-        description="of fixed-interface modes that are kept"
-    )
-    rail: tuple[str, ...] = Field(
-        (), description="points between which other parts may be joined anywhere"
-    )

@@ -14,13 +14,13 @@ from chatter.description.machine.bodies import (
     BodySection,
     ConnectorSection,
     ContactSection,
-    ImportedSection,
     PointSection,
 )
 from chatter.description.machine.compose import Composition
 from chatter.description.machine.errors_by_key import sentence
 from chatter.description.machine.frequency_response import FrfSection
 from chatter.description.machine.friction import FrictionSection
+from chatter.description.machine.imported import ImportedSection
 from chatter.description.machine.move import MoveSection
 from chatter.description.machine.references import dimension_problems, reference_problems
 from chatter.description.patchable import Description

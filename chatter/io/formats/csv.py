@@ -8,6 +8,7 @@ from pathlib import Path
 from chatter.io.files import read_lines
 from chatter.io.formats.format import Format
 from chatter.io.formats.frf_columns import frfs_of_table
+from chatter.io.formats.node_table import read_nodes
 from chatter.io.table import Column, Table, is_number
 from dynamics.frf.container import MeasurementError
 
@@ -183,4 +184,5 @@ CSV = Format(
     extensions=(".csv", ".txt", ".tsv", ".dat", ".asc"),
     read_frfs=lambda path: frfs_of_table(read_table(path)),
     read_signals=read_table,
+    read_nodes=read_nodes,
 )

@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, get_args
 
-import scipy
-
-from chatter.description.arrays import Array
+from chatter.io.formats.model_parts import StoredMatrix, StoredNodes
 from chatter.io.table import Table
 from dynamics.frf.container import Frf
 
-Content = Literal["FRFs", "signals", "matrices"]
+Content = Literal["FRFs", "signals", "matrices", "nodes"]
 CONTENTS: tuple[Content, ...] = get_args(Content)
 
 
@@ -31,8 +29,10 @@ class Format:
         Path -> list of Frf, in SI units, in the order of the file.
     read_signals : callable, optional
         Path -> Table: time records, or a table of points.
-    read_matrix : callable, optional
-        Path -> (n, m) array or sparse array.
+    read_matrices : callable, optional
+        Path -> list of StoredMatrix: what the file holds, symmetric or not, in its own units.
+    read_nodes : callable, optional
+        Path -> StoredNodes: nodes of a finite element model.
     recognises : callable, optional
         First bytes of a file -> True where the content is of this format whatever its extension.
 
@@ -47,11 +47,12 @@ class Format:
     extensions: tuple[str, ...]
     read_frfs: Callable[[Path], list[Frf]] | None = None
     read_signals: Callable[[Path], Table] | None = None
-    read_matrix: Callable[[Path], Array | scipy.sparse.sparray] | None = None
+    read_matrices: Callable[[Path], list[StoredMatrix]] | None = None
+    read_nodes: Callable[[Path], StoredNodes] | None = None
     recognises: Callable[[bytes], bool] = lambda head: False  # noqa: ARG005
 
     @property
     def holds(self) -> tuple[Content, ...]:
         """What files of this format can hold."""
-        readers = (self.read_frfs, self.read_signals, self.read_matrix)
+        readers = (self.read_frfs, self.read_signals, self.read_matrices, self.read_nodes)
         return tuple(c for c, reader in zip(CONTENTS, readers, strict=True) if reader is not None)

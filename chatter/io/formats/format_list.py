@@ -4,6 +4,8 @@ from pathlib import Path
 
 from chatter.description.registry import Registry
 from chatter.io.files import read_content
+from chatter.io.formats.abaqus import ABAQUS_INPUT, ABAQUS_MATRIX
+from chatter.io.formats.ansys import ANSYS_ARCHIVE, ANSYS_FULL
 from chatter.io.formats.csv import CSV
 from chatter.io.formats.cutpro import CUTPRO
 from chatter.io.formats.format import CONTENTS, Content, Format
@@ -11,6 +13,7 @@ from chatter.io.formats.lvm import LVM
 from chatter.io.formats.matlab import MATLAB
 from chatter.io.formats.matrix_market import MATRIX_MARKET
 from chatter.io.formats.mr_configurator import MR_CONFIGURATOR
+from chatter.io.formats.nastran_bulk import NASTRAN_BULK
 from chatter.io.formats.npz import NPZ
 from chatter.io.formats.parquet import PARQUET
 from chatter.io.formats.sinumerik_trace import SINUMERIK_TRACE
@@ -25,20 +28,9 @@ FORMATS: Registry[Format] = Registry(
     group="chatter.formats",
     what="file format",
     built_in=(
-        UFF58,
-        CUTPRO,
-        LVM,
-        SINUMERIK_TRACE,
-        TNCSCOPE,
-        CSV,
-        MR_CONFIGURATOR,
-        NPZ,
-        MATLAB,
-        XLSX,
-        PARQUET,
-        TDMS,
-        WAV,
-        MATRIX_MARKET,
+        *(UFF58, CUTPRO, LVM, SINUMERIK_TRACE, TNCSCOPE, CSV, MR_CONFIGURATOR, NPZ),
+        *(MATLAB, XLSX, PARQUET, TDMS, WAV),
+        *(NASTRAN_BULK, ABAQUS_MATRIX, ABAQUS_INPUT, ANSYS_FULL, ANSYS_ARCHIVE, MATRIX_MARKET),
     ),
 )
 #: enough of a file to recognise its format
@@ -46,7 +38,7 @@ _HEAD_BYTES = 65536
 
 
 def formats_of(content: Content) -> list[Format]:
-    """Formats that can hold FRFs, signals or matrices."""
+    """Formats that can hold FRFs, signals, matrices or nodes."""
     return [one for one in FORMATS if content in one.holds]
 
 
@@ -87,7 +79,10 @@ def read_frfs(path: str | Path) -> list[Frf]:
 
 def documentation() -> str:
     """Table of all formats for the documentation, in Markdown."""
-    rows = [f"| format | extensions | {' | '.join(CONTENTS)} | remarks |", "|---" * 6 + "|"]
+    rows = [
+        f"| format | extensions | {' | '.join(CONTENTS)} | remarks |",
+        "|---" * (3 + len(CONTENTS)) + "|",
+    ]
     for one in FORMATS:
         marks = " | ".join("yes" if content in one.holds else "" for content in CONTENTS)
         extensions = ", ".join(f"`{extension}`" for extension in one.extensions)

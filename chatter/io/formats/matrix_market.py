@@ -6,12 +6,9 @@ from pathlib import Path
 
 import scipy
 
-from chatter.description.arrays import Array
 from chatter.io.formats.format import Format
+from chatter.io.formats.model_parts import MOST_ROWS, StoredMatrix
 from dynamics.frf.container import MeasurementError
-
-#: more rows than a desk computer can factorise
-MOST_ROWS = 5_000_000
 
 
 def require_square(path: Path, shape: tuple[int, ...]) -> None:
@@ -21,7 +18,7 @@ def require_square(path: Path, shape: tuple[int, ...]) -> None:
         raise MeasurementError(f"{path}: is {size}; it must be square, 1 to {MOST_ROWS} rows")
 
 
-def read_matrix(path: Path) -> Array | scipy.sparse.sparray:
+def read_matrices(path: Path) -> list[StoredMatrix]:
     """Real or integer matrix, general or symmetric.
 
     MeasurementError if it is complex or a pattern, or larger than its file.
@@ -34,7 +31,7 @@ def read_matrix(path: Path) -> Array | scipy.sparse.sparray:
     require_square(path, (rows, columns))
     if layout == "array" and rows * columns > path.stat().st_size:
         raise MeasurementError(f"{path}: {rows} x {columns} entries do not fit into the file")
-    return scipy.io.mmread(path)
+    return [StoredMatrix(scipy.io.mmread(path))]
 
 
 MATRIX_MARKET = Format(
@@ -42,6 +39,6 @@ MATRIX_MARKET = Format(
     label="Matrix Market",
     help="real or integer entries, general or symmetric",
     extensions=(".mtx",),
-    read_matrix=read_matrix,
+    read_matrices=read_matrices,
     recognises=lambda head: head.startswith(b"%%MatrixMarket"),
 )

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import scipy
 
-from chatter.description.arrays import Array
 from chatter.io.formats.format import Format
 from chatter.io.formats.frf_columns import frfs_of_table
 from chatter.io.formats.matrix_market import require_square
+from chatter.io.formats.model_parts import StoredMatrix
 from chatter.io.formats.named_arrays import require_size, table_of_arrays
 from chatter.io.table import Table
 from dynamics.frf.container import MeasurementError
@@ -38,7 +38,7 @@ def read_columns(path: Path) -> Table:
     return table_of_arrays(path, arrays)
 
 
-def read_matrix(path: Path) -> Array | scipy.sparse.sparray:
+def read_matrices(path: Path) -> list[StoredMatrix]:
     """Matrix of `scipy.sparse.save_npz`, or the one plain array of an archive."""
     with path.open("rb") as file, zipfile.ZipFile(file) as archive:
         names = [Path(name).stem for name in archive.namelist()]
@@ -47,13 +47,13 @@ def read_matrix(path: Path) -> Array | scipy.sparse.sparray:
         if "format" not in names:
             if len(names) != 1 or not isinstance(arrays[arrays.files[0]], np.ndarray):
                 raise MeasurementError(f"{path}: has {', '.join(names)}; it must have one array")
-            return arrays[arrays.files[0]]
+            return [StoredMatrix(arrays[arrays.files[0]])]
         require_square(path, tuple(arrays["shape"]))
         file.seek(0)
         matrix = scipy.sparse.load_npz(file)
         if hasattr(matrix, "check_format"):
             matrix.check_format(full_check=True)
-        return matrix
+        return [StoredMatrix(matrix)]
 
 
 NPZ = Format(
@@ -64,5 +64,5 @@ NPZ = Format(
     extensions=(".npz",),
     read_frfs=lambda path: frfs_of_table(read_columns(path)),
     read_signals=read_columns,
-    read_matrix=read_matrix,
+    read_matrices=read_matrices,
 )

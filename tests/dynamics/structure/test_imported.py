@@ -294,7 +294,7 @@ def test_faulty_matrices_are_refused(tmp_path, matrix, message):
 @pytest.mark.parametrize(
     ("mass", "message"),
     [
-        (spoilt(np.eye(4), 2, 2, -1.0), "row 3, column 3 is -1"),
+        (spoilt(np.eye(4), 2, 2, -1.0), "diagonal at row 3 is -1"),
         (spoilt(np.eye(4), 2, 2, 0.0), "every freedom needs mass"),
         (
             spoilt(spoilt(np.eye(4), 1, 2, 1.5), 2, 1, 1.5),

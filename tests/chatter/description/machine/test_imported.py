@@ -62,6 +62,44 @@ def test_imported_beam_is_the_beam(head_on_beam, folder):
     assert found.natural_frequencies(8) == pytest.approx(expected.natural_frequencies(8), rel=1e-6)
 
 
+def in_mm_and_t(folder):
+    """The files as Abaqus writes them in mm, t, s: x = 1e3 x_SI, energy in 1e-3 J."""
+    per_metre = np.tile([1e3, 1e3, 1e3, 1.0, 1.0, 1.0], NODES)
+    for name, file in (("M", "beam_MASS1"), ("K", "beam_STIF1")):
+        matrix = np.load(folder / f"{name}.npz")["arr_0"] / (1e-3 * np.outer(per_metre, per_metre))
+        lines = [
+            f"{i // 6 + 1},{i % 6 + 1},{j // 6 + 1},{j % 6 + 1},{matrix[i, j]:.17g}"
+            for i, j in zip(*np.nonzero(np.tril(matrix)), strict=True)
+        ]
+        (folder / f"{file}.mtx").write_text("\n".join(lines))
+    rows = [f"{k + 1}, {125.0 * k}, 0., 0." for k in range(NODES)]
+    (folder / "beam.inp").write_text("*NODE\n" + "\n".join(rows) + "\n")
+
+
+def test_units_and_places_instead_of_numbers_of_nodes(head_on_beam, folder):
+    in_mm_and_t(folder)
+    data = with_imported(head_on_beam, [f"p{k}" for k in range(NODES)])
+    expected = assembled_machine(MachineFile.from_dict(data, folder=folder)).structure
+    part = data["imported"]["crossbeam"]
+    part.update(mass="beam_MASS1.mtx", stiffness="beam_STIF1.mtx", nodes="beam.inp")
+    part["units"] = {"length": "mm", "mass": "t"}
+    part["total_mass"] = "49.94 kg"  # 7850 kg/m^3 pi/4 (90 mm)^2 1 m
+    for number, point in enumerate(part["point"].values()):
+        del point["nodes"]
+        x = point["at"][0]
+        near = {"box": [[x - 0.01, -0.01, 0], [x + 0.01, 0.01, 0]]}
+        point.update({"within": "10 mm"} if number % 2 else near)
+    found = assembled_machine(MachineFile.from_dict(data, folder=folder)).structure
+    assert found.mass == pytest.approx(expected.mass, rel=1e-9, abs=1e-9)
+    assert found.natural_frequencies(8) == pytest.approx(expected.natural_frequencies(8), rel=1e-6)
+    part["units"] = {"length": "mm"}
+    with pytest.raises(InputError, match=r"beam_MASS1.mtx: has 0.04994 kg along x, 49.94 kg"):
+        assembled_machine(MachineFile.from_dict(data, folder=folder))
+    part["units"] = {"mass": "t"}
+    with pytest.raises(InputError, match=r'point "p1": .* the nearest, 1, is 125 mm .*see units'):
+        assembled_machine(MachineFile.from_dict(data, folder=folder))
+
+
 def test_rail_between_points(head_on_beam, folder):
     expected = assembled_machine(
         MachineFile.from_dict(head_on_beam), positions={"X": 0.03}
@@ -93,6 +131,19 @@ def test_read_once_for_all_positions(head_on_beam, folder):
         ("rail", ["p0", "q"], ["imported.crossbeam", 'no point "q"']),
         ("rail", [], ["no point at (0.45, 0, 0)"]),
         ("point", {"a": {"at": [0, 0, 0], "nodes": [77]}}, ["imported.crossbeam", "no node 77"]),
+        ("total_mass", "60 kg", ["imported.crossbeam", "M.npz: has 49.94 kg along x, 60 kg"]),
+        ("names", {"mass": "MAAX"}, ['M.npz: has no matrix "MAAX"']),
+        (
+            "point",
+            {"a": {"at": [0, 0.3, 0], "within": "20 mm"}},
+            ['point "a"', "the nearest, 1, is 300 mm from the point"],
+        ),
+        ("point", {"a": {"at": [0, 0, 0]}}, ["point.a.nodes: is missing"]),
+        (
+            "point",
+            {"a": {"at": [0, 0, 0], "nodes": [1], "within": 1}},
+            ["nodes and within are both given"],
+        ),
         (
             "point",
             {"a": {"at": [0, 0, 0], "nodes": [1, 2, 3], "kind": "interpolating"}},
