@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -65,3 +66,20 @@ def along(
         speed[..., None] * direction,
         gain[..., None] * direction,
     )
+
+
+@dataclass(frozen=True)
+class SomeCoordinates:
+    """Some coordinates of a trajectory, in another order."""
+
+    trajectory: Trajectory
+    coordinates: tuple[int, ...]
+
+    @property
+    def duration(self) -> float:
+        """From start to end, s."""
+        return self.trajectory.duration
+
+    def at(self, time: ArrayLike) -> Motion:
+        """Return position, velocity and acceleration of the coordinates at times, s."""
+        return Motion(*(part[..., list(self.coordinates)] for part in self.trajectory.at(time)))

@@ -95,6 +95,9 @@ class MachineFile(Description):
             for key in _FILES:
                 if section[key] is not None:
                     section[key] = str(Path(section[key]).resolve())
+        for section in content["move"].values():
+            if section["file"] is not None:
+                section["file"] = str(Path(section["file"]).resolve())
 
     @classmethod
     def _move_references(cls, document: Any, old: Path, new: Path) -> None:
@@ -102,6 +105,9 @@ class MachineFile(Description):
             for key in _FILES:
                 if isinstance(section.get(key), str):
                     section[key] = moved_reference(section[key], old, new)
+        for section in document.get("move", {}).values():
+            if isinstance(section.get("file"), str):
+                section["file"] = moved_reference(section["file"], old, new)
 
     def _further_problems(self, data: Mapping[str, Any]) -> Sequence[tuple[str, str]]:
         problems = reference_problems(self)

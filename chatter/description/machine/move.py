@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
+from chatter.description.file_name import FileName
 from chatter.description.machine.frequency_response import StateSection
 from chatter.description.quantities import QuantityField, quantity
 from chatter.description.section import raise_if_any
@@ -17,6 +18,7 @@ from dynamics.trajectory.motion import Trajectory
 from dynamics.trajectory.path import Path, circle, polyline, square
 from dynamics.trajectory.path_motion import PathMotion
 from dynamics.trajectory.periodic import CircleMotion, ConstantSpeedMove, SineMotion
+from dynamics.trajectory.spatial_path import PathInSpace
 
 _LENGTH = QuantityField("length")
 
@@ -41,16 +43,25 @@ PlanePoints = Annotated[tuple[tuple[float, float], ...], BeforeValidator(_plane_
 
 
 class Course(NamedTuple):
-    """A trajectory, and its path where it has a plane one."""
+    """A trajectory, and its path where it has one."""
 
     trajectory: Trajectory
-    path: Path | None = None
+    path: Path | PathInSpace | None = None
 
 
 class MoveSection(StateSection):
     """Trajectory and its limits."""
 
-    kind: Literal["jerk limited", "constant speed", "sine", "circle", "square", "polyline"]
+    kind: Literal[
+        "jerk limited",
+        "constant speed",
+        "sine",
+        "circle",
+        "square",
+        "polyline",
+        "nc program",
+        "recorded",
+    ]
     axes: tuple[str, ...] = Field(min_length=1, description="in the order of the coordinates")
     travel: Lengths | None = Field(None, description="of each axis, from where it stands")
     velocity: quantity("velocity", above=0.0) | None = None
@@ -63,6 +74,18 @@ class MoveSection(StateSection):
     side: quantity("length", above=0.0) | None = None
     fillet: quantity("length", at_least=0.0) | None = None
     points: PlanePoints | None = None
+    file: FileName | None = Field(
+        None, description="NC program, or a record of set points", examples=["part.nc"]
+    )
+    addresses: tuple[Literal["X", "Y", "Z"], ...] | None = Field(
+        None, description="letters of an NC program, one an axis; by default the names of the axes"
+    )
+    start: Lengths | None = Field(
+        None, description="where the axes stand in an NC program before it; 0 by default"
+    )
+    tolerance: quantity("length", above=0.0) | None = Field(
+        None, description="by which corners of an NC program may be rounded; exact by default"
+    )
     cycle: quantity("time", above=0.0) | None = Field(
         None, description="interpolation cycle; that of the slowest position loop by default"
     )
@@ -72,8 +95,7 @@ class MoveSection(StateSection):
     @model_validator(mode="after")
     def _check(self) -> MoveSection:
         always = ("axes", "cycle", "standstill", "afterwards", *StateSection.model_fields)
-        needed = COURSES[self.kind].keys
-        problems = key_problems(self, "kind", dict.fromkeys(needed, True), always)
+        problems = key_problems(self, "kind", _keys_of(self.kind), always)
         plane = self.kind in ("circle", "square", "polyline")
         if plane and len(self.axes) != 2:
             problems.append(("axes", f'kind = "{self.kind}" moves two axes, not {len(self.axes)}'))
@@ -83,11 +105,28 @@ class MoveSection(StateSection):
             problems.append(
                 ("travel", f"{len(self.travel)} lengths for {len(self.axes)} axes; one each")
             )
+        for key in ("addresses", "start"):
+            given = getattr(self, key)
+            if given is not None and len(given) != len(self.axes):
+                problems.append((key, f"{len(given)} for {len(self.axes)} axes; one each"))
+        if self.kind == "nc program" and self.letters is None:
+            text = f"is missing; {', '.join(self.axes)} are not all X, Y or Z"
+            problems.append(("addresses", text))
+        if self.letters is not None and len(set(self.letters)) != len(self.letters):
+            problems.append(("addresses", "a letter is there twice"))
         raise_if_any(problems)
         return self
 
+    @property
+    def letters(self) -> tuple[str, ...] | None:
+        """Letters of an NC program for the axes; None where they are not told."""
+        if self.addresses is not None:
+            return self.addresses
+        named = tuple(axis.upper() for axis in self.axes)
+        return named if set(named) <= set("XYZ") else None
+
     def course(self) -> Course:
-        """Trajectory and path.
+        """Trajectory and path of a kind that needs no file.
 
         Raises TrajectoryError if they make no sense.
         """
@@ -144,7 +183,7 @@ def _limits(section: MoveSection) -> tuple[float, float, float]:
     return section.velocity, section.acceleration, section.jerk
 
 
-#: kind of a move -> its keys and how it is made
+#: kind of a move that needs no file -> its keys and how it is made
 COURSES: dict[str, CourseKind] = {
     "jerk limited": CourseKind(("travel", *_LIMITS), _jerk_limited),
     "constant speed": CourseKind(("travel", "velocity"), _constant_speed),
@@ -153,3 +192,17 @@ COURSES: dict[str, CourseKind] = {
     "square": CourseKind(("side", "fillet", *_LIMITS), _square),
     "polyline": CourseKind(("points", "fillet", *_LIMITS), _polyline),
 }
+
+#: kind of a move that is read from a file -> its keys, and whether each is needed
+OF_FILES: dict[str, dict[str, bool]] = {
+    "nc program": {
+        **dict.fromkeys(("file", *_LIMITS), True),
+        **dict.fromkeys(("addresses", "start", "tolerance"), False),
+    },
+    "recorded": {"file": True, **dict.fromkeys(_LIMITS, False)},
+}
+
+
+def _keys_of(kind: str) -> dict[str, bool]:
+    """Keys of a kind, and whether each is needed."""
+    return OF_FILES[kind] if kind in OF_FILES else dict.fromkeys(COURSES[kind].keys, True)

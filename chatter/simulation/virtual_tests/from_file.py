@@ -21,6 +21,7 @@ from chatter.description.machine.machine_file import MachineFile
 from chatter.description.machine.move import MoveSection
 from chatter.description.progress import Progress, no_progress
 from chatter.engine.loop_stability import refuse_unstable_control
+from chatter.simulation.virtual_tests.courses import course_of
 from chatter.simulation.virtual_tests.frf import FrfCurve, FrfResult
 from chatter.simulation.virtual_tests.move import MovePlan, MoveResult, move_axes
 from chatter.simulation.virtual_tests.virtual_tests import FrfTest, frf_by_test
@@ -201,7 +202,7 @@ def file_move(
     where = f"{file.name}: move.{name}"
     machine = in_state(file, section)
     try:
-        course = section.course()
+        course = course_of(section)
     except TrajectoryError as error:
         raise InputError(f"{where}: {error}") from error
     cycles = [drive.controller.position.timing.sample_time for drive in machine.drives]

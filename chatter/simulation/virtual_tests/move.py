@@ -21,6 +21,7 @@ from dynamics.machine.description import Drive, Machine
 from dynamics.trajectory.motion import Trajectory, TrajectoryError
 from dynamics.trajectory.path import Path, contour_error
 from dynamics.trajectory.set_points import SetPoints, set_points
+from dynamics.trajectory.spatial_path import PathInSpace
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -35,7 +36,8 @@ class MovePlan:
     cycle: float  # interpolation cycle of the control, s
     standstill: float = 0.0  # before the move, s
     afterwards: float = 0.1  # time simulated behind its end, s
-    path: Path | None = None  # plane path of the first two axes, for the contour error
+    #: for the contour error: a plane path of the first two axes, or one in space of all of them
+    path: Path | PathInSpace | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +55,8 @@ class MoveResult:
     #: (n, axes), torque of the motors, N m, or force of linear ones, N; summed over those of an
     #: axis
     effort: NDArray[np.float64]
-    #: (n,), signed distance of the tool (of the motors without tool point) from the path, m
+    #: (n,), distance of the tool (of the motors without tool point) from the path, m; with a sign
+    #: where the path is plane
     contour: NDArray[np.float64] | None
     friction: dict[str, NDArray[np.float64]]  # (n,), forces of the frictions, N
     interrupted: bool
@@ -151,11 +154,7 @@ def move_axes(
     motor = _mean_of_drives(
         machine, plan.axes, lambda one: _travel(one) * run.displacement[f"drive {one.name}"]
     )
-    contour = None
-    if plan.path is not None:
-        start = np.asarray(plan.trajectory.at(0.0).position, dtype=np.float64)[:2]
-        went = (motor if tip is None else tip)[:, :2]
-        contour = contour_error(plan.path, went + start).error
+    contour = _contour(plan, motor if tip is None else tip)
     return MoveResult(
         name,
         tuple(plan.axes),
@@ -172,6 +171,16 @@ def move_axes(
         {one.name: -run.force[f"friction {one.name}"] for one in machine.frictions},
         run.interrupted,
     )
+
+
+def _contour(plan: MovePlan, travel: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """Distance from the path of axes that travelled from its start, m; None without a path."""
+    if plan.path is None:
+        return None
+    if isinstance(plan.path, PathInSpace):
+        return plan.path.distance(travel)
+    start = np.asarray(plan.trajectory.at(0.0).position, dtype=np.float64)[:2]
+    return contour_error(plan.path, travel[:, :2] + start).error
 
 
 def _records_a_cycle(machine: Machine, steps: int) -> int:
