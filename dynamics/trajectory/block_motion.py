@@ -29,11 +29,11 @@ from dynamics.trajectory.spatial_path import (
     SpatialArc,
     SpatialLine,
     SpatialPath,
+    angle_between,
     rounding_arc,
-    turn_between,
 )
 
-#: of a turn that counts as none, rad
+#: change of direction that counts as none, rad
 _STRAIGHT = 1e-6
 
 
@@ -200,7 +200,7 @@ class BlockMotion:
         speeds = [0.0]
         for number, (one, two) in enumerate(pairwise(self.blocks)):
             stop = one.stops or one.dwell > 0.0
-            passed = not stop and turn_between(one.element, two.element) <= _STRAIGHT
+            passed = not stop and angle_between(one.element, two.element) <= _STRAIGHT
             both = (limits[number].velocity, limits[number + 1].velocity)
             speeds.append(min(both) if passed else 0.0)
         speeds.append(0.0)

@@ -20,7 +20,7 @@ from dynamics.trajectory.motion import TrajectoryError, axes_vector, require_pos
 _ROUNDING = 1e-7
 
 
-class Place(NamedTuple):
+class PathPoint(NamedTuple):
     """Places on a path by their length; each (..., 3)."""
 
     position: NDArray[np.float64]  # m
@@ -48,11 +48,13 @@ class SpatialLine:
         """From start to end, m."""
         return math.dist(self.start, self.end)
 
-    def at(self, length: NDArray[np.float64]) -> Place:
+    def at(self, length: NDArray[np.float64]) -> PathPoint:
         """Places at lengths (...), m."""
         tangent = np.subtract(self.end, self.start) / self.length
         position = np.asarray(self.start) + length[..., None] * tangent
-        return Place(position, np.broadcast_to(tangent, position.shape), np.zeros_like(position))
+        return PathPoint(
+            position, np.broadcast_to(tangent, position.shape), np.zeros_like(position)
+        )
 
     def distance(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Distance of points (n, 3) from the element, m."""
@@ -71,7 +73,7 @@ class SpatialArc:
 
     centre: tuple[float, float, float]  # m
     first: tuple[float, float, float]  # from the centre to the start, m
-    second: tuple[float, float, float]  # a quarter of a turn on, m
+    second: tuple[float, float, float]  # a quarter of a revolution on, m
     sweep: float  # angle, rad; above 0
     rise: tuple[float, float, float] = (0.0, 0.0, 0.0)  # over the whole sweep, along the axis, m
 
@@ -105,17 +107,17 @@ class SpatialArc:
         """Size of d3p/ds3, 1/m^2."""
         return self.radius * (self.sweep / self.length) ** 3
 
-    def at(self, length: NDArray[np.float64]) -> Place:
+    def at(self, length: NDArray[np.float64]) -> PathPoint:
         """Places at lengths (...), m."""
         rate = self.sweep / self.length
         return self._at_angle(rate * length, rate)
 
-    def _at_angle(self, angle: NDArray[np.float64], rate: float) -> Place:
+    def _at_angle(self, angle: NDArray[np.float64], rate: float) -> PathPoint:
         first, second, rise = (np.asarray(one) for one in (self.first, self.second, self.rise))
         cosine, sine = np.cos(angle)[..., None], np.sin(angle)[..., None]
         outward = cosine * first + sine * second
         along = rise / self.sweep
-        return Place(
+        return PathPoint(
             np.asarray(self.centre) + outward + angle[..., None] * along,
             rate * (cosine * second - sine * first + along),
             -(rate**2) * outward,
@@ -124,7 +126,7 @@ class SpatialArc:
     def distance(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Distance of points (n, 3) from the element, m.
 
-        Exact for arcs; of a helix to the place at the angle of the point, which is farther by a
+        Exact for arcs; of a helix to the point at the angle of the point, which is farther by a
         share of (rise / circumference)^2 / 2.
         """
         off = points - np.asarray(self.centre)
@@ -176,12 +178,12 @@ class SpatialPath:
         """Lengths at which elements start, and the end of the last, m, (n + 1,)."""
         return np.cumsum([0.0, *(element.length for element in self.elements)])
 
-    def at(self, length: ArrayLike) -> Place:
+    def at(self, length: ArrayLike) -> PathPoint:
         """Places at lengths (...), m; beyond the ends those of the ends."""
         breaks = self.breaks
         s = np.clip(np.asarray(length, dtype=np.float64), 0.0, breaks[-1])
         which = np.clip(np.searchsorted(breaks, s, "right") - 1, 0, len(self.elements) - 1)
-        place = Place(*(np.empty((*s.shape, 3)) for _ in Place._fields))
+        place = PathPoint(*(np.empty((*s.shape, 3)) for _ in PathPoint._fields))
         for i in np.unique(which):
             here = which == i
             found = self.elements[i].at(np.minimum(s[here] - breaks[i], self.elements[i].length))
@@ -212,17 +214,17 @@ class PathInSpace:
         return self.path.distance(points)
 
 
-def start_of(element: Element) -> Place:
-    """Place where an element begins; each (3,)."""
+def start_of(element: Element) -> PathPoint:
+    """Point where an element begins; each (3,)."""
     return element.at(np.array(0.0))
 
 
-def end_of(element: Element) -> Place:
-    """Place where an element ends; each (3,)."""
+def end_of(element: Element) -> PathPoint:
+    """Point where an element ends; each (3,)."""
     return element.at(np.array(element.length))
 
 
-def turn_between(before: Element, after: Element) -> float:
+def angle_between(before: Element, after: Element) -> float:
     """Angle between the end of an element and the start of the next, rad."""
     one, two = end_of(before).tangent, start_of(after).tangent
     return math.atan2(float(np.linalg.norm(np.cross(one, two))), float(one @ two))
@@ -233,7 +235,7 @@ def rounding_arc(before: SpatialLine, after: SpatialLine, tolerance: float) -> S
 
     It takes half of either line at the most; None where the lines go on straight, or back.
     """
-    turn = turn_between(before, after)
+    turn = angle_between(before, after)
     half = 0.5 * turn
     if not 1e-6 < turn < math.pi - 1e-3:
         return None
