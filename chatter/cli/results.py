@@ -30,10 +30,14 @@ def present(
     json: bool,
     words: Callable[[Result], None],
     notes: Sequence[str] = (),
+    save: Callable[[Path], list[Path]] | None = None,
 ) -> None:
-    """Write the files of a result and print it, as JSON or in words; notes follow on stderr."""
+    """Write the files of a result and print it, as JSON or in words; notes follow on stderr.
+
+    It writes its files itself, unless it is told how to `save` them.
+    """
     with running("writing the results"):
-        written = result.save(folder)
+        written = (save or result.save)(folder)
     if json:
         print_json(result.summary())
     else:

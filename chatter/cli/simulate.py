@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -11,6 +12,7 @@ from chatter.cli import options
 from chatter.cli.errors import EXIT_RUN_FAILED
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
+from chatter.io.recorded_columns import KINDS, require_kind
 from chatter.report.console import print_table
 
 if TYPE_CHECKING:
@@ -28,10 +30,14 @@ def simulate(
     chip: Annotated[
         str | None, typer.Option("--chip", help="delay (default), dexel or voxel.")
     ] = None,
+    signals: Annotated[
+        str, typer.Option("--signals", help=f"File of the signals: {', '.join(KINDS)}.")
+    ] = "csv",
     out: options.OutputFolder = None,
     json: options.Json = False,
 ) -> None:
     """Simulate the cut of a case: forces, vibration, surface, chatter or not."""
+    require_kind(signals)
     description = options.patched_case(case, assignments)
     if chip is not None:
         description = description.patch({"simulation.chip": chip})
@@ -55,6 +61,7 @@ def simulate(
         json=json,
         words=_print_summary,
         notes=result.summary()["notes"],
+        save=partial(result.save, signals=signals),
     )
     if failure is not None:
         raise failure

@@ -4,11 +4,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import scipy
 from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
 
 from chatter.detection.cut_record import CutRecord
+from cutting.cubic_spline import CubicSpline
 
 _REVOLUTION = 2.0 * math.pi
 #: points per revolution at most
@@ -53,7 +53,7 @@ def cut_into_periods(record: CutRecord, per_revolution: int) -> Periods:
     count = math.floor((angle[-1] - angle[0]) / length * (1.0 + 1e-12))
     first = angle[-1] - count * length
     grid = first + length / points * np.arange(count * points)
-    values = scipy.interpolate.CubicSpline(angle, signals, axis=0)(grid).reshape(count, points, -1)
+    values = CubicSpline(angle, signals)(grid).reshape(count, points, -1)
     edges = first + length * np.arange(count + 1)
     durations = np.diff(np.interp(edges, record.spindle_angle, record.time))
     variation = 0.0
@@ -163,4 +163,4 @@ def _sections_at(record: CutRecord, *offsets: float) -> NDArray[np.float64]:
     revolutions = np.arange(math.floor(first / _REVOLUTION) - 1, math.ceil(last / _REVOLUTION) + 2)
     angles = np.sort((revolutions[:, None] * _REVOLUTION + np.array(offsets)).ravel())
     angles = angles[(angles >= first - 1e-9) & (angles <= last + 1e-9)]
-    return scipy.interpolate.CubicSpline(record.spindle_angle, record.signals, axis=0)(angles)
+    return CubicSpline(record.spindle_angle, record.signals)(angles)

@@ -11,6 +11,7 @@ stated_columns   tables of signals, headings stated where a file has none
 signals          signals of a measurement in SI, by name
 hammer_records   hammer records, one or a folder of them
 matrices         matrices and nodes of a finite element program
+recorded_columns columns of a run as CSV or Parquet
 result_files     texts, summaries and pictures that results write
 presentation     pictures and pages of results, loaded when asked for
 shipped_examples examples that are installed with the package

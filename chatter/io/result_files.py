@@ -62,7 +62,7 @@ def write_results(
     for name, text in texts.items():
         (folder / name).write_text(text, encoding="utf-8")
     for name, figure in pictures.items():
-        figure.savefig(folder / name)
+        presentation("plots.style").write_png(figure, folder / name)
     return [folder / name for name in (*texts, *pictures)]
 
 

@@ -7,7 +7,6 @@ import textwrap
 from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -249,8 +248,10 @@ def _once_a_turn(result: SimulationResult) -> Array:
     turns = np.arange(1, result.whole_revolutions + 1)
     if len(turns) == 0 or len(result.rows) < 4:
         return np.zeros((0, 2))
-    motion = scipy.interpolate.CubicSpline(result.spindle_angle, result.displacement[:, :2], axis=0)
-    return motion(turns * _TURN) * 1e6
+    # steps divide a turn, so that a turn seldom ends between two rows, and then close to one
+    columns = result.displacement[:, :2].T
+    motion = [np.interp(turns * _TURN, result.spindle_angle, column) for column in columns]
+    return np.stack(motion, axis=1) * 1e6
 
 
 def draw_wall(axes: Axes, result: SimulationResult) -> None:

@@ -15,6 +15,7 @@ from chatter.explain.residuals.finding import Finding
 from chatter.explain.selection.discriminating_test import in_words
 from chatter.plots.explanation import plot_errors, plot_lobes_before_after, plot_terms
 from chatter.plots.residual_diagnostics import plot_findings
+from chatter.plots.style import write_png
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -98,5 +99,5 @@ def _drawn(finding: Finding) -> Figure:
 def _embedded(figure: Figure) -> str:
     """Picture as the source of an image inside the page."""
     buffer = BytesIO()
-    figure.savefig(buffer, format="png")
+    write_png(figure, buffer)
     return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")

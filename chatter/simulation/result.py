@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +15,7 @@ from chatter.description.units import rpm
 from chatter.detection.chatter_detection import Detection
 from chatter.engine.record import largest_between_steps
 from chatter.io.presentation import presentation
+from chatter.io.recorded_columns import write_columns
 from chatter.io.result_files import as_json, finite_or_none, short_repr, write_results
 from chatter.simulation.carved_workpiece import carving_notes
 from chatter.simulation.finish import Finish, finish_of, scallop_height
@@ -296,27 +296,35 @@ class SimulationResult:
         """Return the picture of the run as a matplotlib figure."""
         return presentation("plots.simulation").plot_simulation(self)
 
-    def save(self, folder: str | Path) -> list[Path]:
+    def save(self, folder: str | Path, signals: str = "csv") -> list[Path]:
         """Write signals.csv, summary.json and simulate.png.
+
+        Parameters
+        ----------
+        folder : path
+        signals : str, optional
+            File of the signals: "csv", "parquet" or "none".
 
         Returns
         -------
         list of Path
             What was written.
-        """
-        return write_results(
-            folder,
-            {"signals.csv": self._signals(), "summary.json": as_json(self.summary())},
-            {"simulate.png": self.plot()},
-        )
 
-    def _signals(self) -> str:
-        """Content of signals.csv."""
-        header = "time [s],spindle_angle [rad],Fx [N],Fy [N],Fz [N],x [um],y [um],z [um]"
-        table = np.column_stack(
-            [self.time, self.spindle_angle, self.force, self.displacement * 1e6]
-        )
-        columns = ["%.9g", "%.9g", *["%.6g"] * 6]
-        text = StringIO()
-        np.savetxt(text, table, fmt=columns, delimiter=",", header=header, comments="")
-        return text.getvalue()
+        Raises
+        ------
+        InputError
+            If `signals` is none of these, or pyarrow is needed and not installed.
+        """
+        forms = ["%.9g", "%.9g", *["%.6g"] * 6]
+        columns = write_columns(Path(folder), "signals", signals, self._signals(), forms)
+        summary = {"summary.json": as_json(self.summary())}
+        return [*columns, *write_results(folder, summary, {"simulate.png": self.plot()})]
+
+    def _signals(self) -> dict[str, NDArray[np.float64]]:
+        """Columns of the file of the signals, by their heading."""
+        columns = {"time [s]": self.time, "spindle_angle [rad]": self.spindle_angle}
+        for number, axis in enumerate("xyz"):
+            columns[f"F{axis} [N]"] = self.force[:, number]
+        for number, axis in enumerate("xyz"):
+            columns[f"{axis} [um]"] = self.displacement[:, number] * 1e6
+        return columns

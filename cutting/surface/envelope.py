@@ -9,8 +9,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
+
+from cutting.cubic_spline import CubicSpline
 
 Array = NDArray[np.float64]
 
@@ -35,7 +36,7 @@ class ToolMotion:
     def __init__(self, spindle_angle: Array, position: Array) -> None:
         self.first, self.last = float(spindle_angle[0]), float(spindle_angle[-1])
         self.position = np.asarray(position, dtype=np.float64)
-        self.at = scipy.interpolate.CubicSpline(spindle_angle, self.position, axis=0)
+        self.at = CubicSpline(spindle_angle, self.position)
 
     def passes(self, edge_angle: Array, direction: float, margin: float) -> tuple[Array, NDArray]:
         """Spindle angles at which edges point in a direction.

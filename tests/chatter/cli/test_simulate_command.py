@@ -289,3 +289,35 @@ def test_unusual_but_right_input_gives_numbers(case_file, tmp_path, assignments)
     summary = strict((tmp_path / "out/summary.json").read_text())
     assert summary["peak_resultant_N"] > 0.0
     assert np.isfinite(table_of(tmp_path / "out/signals.csv")).all()
+
+
+def test_signals_are_written_as_asked_for(case_file):
+    assert simulate(case_file).exit_code == 0
+    out = case_file.parent / "out"
+    table = table_of(out / "signals.csv")
+    (out / "signals.csv").unlink()
+    assert simulate(case_file, options=("--signals", "none")).exit_code == 0
+    assert {path.name for path in out.iterdir()} == {"summary.json", "simulate.png"}
+    parquet = pytest.importorskip("pyarrow.parquet")
+    assert simulate(case_file, options=("--signals", "parquet")).exit_code == 0
+    written = parquet.read_table(out / "signals.parquet")
+    assert ",".join(written.column_names) + "\n" == HEADER + "\n"
+    columns = np.column_stack([column.to_numpy() for column in written.columns])
+    np.testing.assert_allclose(columns, table, rtol=1e-5, atol=1e-9)
+
+
+def test_an_unknown_file_of_signals_is_refused(case_file):
+    result = simulate(case_file, options=("--signals", "xlsx"))
+    assert result.exit_code == 2
+    assert '"xlsx" is not known; there are csv, parquet, none' in result.stderr
+    assert not (case_file.parent / "out").exists()
+
+
+def test_the_picture_is_as_large_as_it_says(case_file):
+    from PIL import Image
+
+    assert simulate(case_file, options=("--signals", "none")).exit_code == 0
+    with Image.open(case_file.parent / "out" / "simulate.png") as picture:
+        # 11 by 12 inches at 120 dots
+        assert picture.size == (1320, 1440)
+        assert picture.mode == "RGB"

@@ -1,0 +1,53 @@
+"""Columns of a run as a file: CSV, Parquet, or none where the summary is enough."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+
+from chatter.description.errors import InputError
+from chatter.description.formatting import formatted
+
+#: what a run may write its columns as
+KINDS = ("csv", "parquet", "none")
+
+
+def require_kind(kind: str) -> None:
+    """Refuse what is none of `KINDS`, and Parquet where pyarrow is not installed; InputError."""
+    if kind not in KINDS:
+        raise InputError(f"signals: {formatted(kind)} is not known; there are {', '.join(KINDS)}")
+    if kind == "parquet":
+        try:
+            import pyarrow.parquet  # noqa: F401
+        except ImportError as error:
+            raise InputError(
+                'signals: Parquet files are written with pyarrow: install "chatter[formats]"'
+            ) from error
+
+
+def write_columns(
+    folder: Path, name: str, kind: str, columns: Mapping[str, np.ndarray], forms: list[str]
+) -> list[Path]:
+    """Write columns (n,), heading -> values, into a folder under a name; return what was written.
+
+    Forms are those of numbers in CSV, such as "%.6g"; Parquet keeps all digits.
+    """
+    require_kind(kind)
+    if kind == "none":
+        return []
+    path = folder / f"{name}.{kind}"
+    folder.mkdir(parents=True, exist_ok=True)
+    if kind == "parquet":
+        import pyarrow
+        import pyarrow.parquet
+
+        pyarrow.parquet.write_table(pyarrow.table(dict(columns)), path)
+        return [path]
+    text = StringIO()
+    table = np.column_stack(list(columns.values()))
+    np.savetxt(text, table, fmt=forms, delimiter=",", header=",".join(columns), comments="")
+    path.write_text(text.getvalue(), encoding="utf-8")
+    return [path]
