@@ -1,8 +1,8 @@
 """Imported finite element part, reduced to its points, as a part of an assembly.
 
 A Craig-Bampton super-element keeps the motion of every point of it, so that springs may act
-there. Along a rail, a line of points, they may act anywhere: the rail moves as a straight line
-between neighbouring points.
+there. Along a rail, a line of points, they may act anywhere: between neighbouring points the rail
+moves as a beam that is bent by the motion of its ends alone.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,14 +33,15 @@ class ImportedPart:
     Raises
     ------
     StructureError
-        If the rail names no point or fewer than two, or the structure is held by itself.
+        If a rail names no point or fewer than two, or the structure is held by itself.
     """
 
     name: str
     #: super-element of `reduced_part`: points' six directions in order, modal coordinates
     structure: LinearStructure
     positions: Mapping[str, ArrayLike]  # each (3,), of all its points, in order, m
-    rail: Sequence[str] = ()  # points of a line along which other parts may be joined anywhere
+    #: points of lines along which other parts may be joined anywhere
+    rails: Sequence[Sequence[str]] = ()
 
     def __post_init__(self) -> None:
         where = f'imported part "{self.name}"'
@@ -49,14 +51,8 @@ class ImportedPart:
             for name, position in self.positions.items()
         }
         object.__setattr__(self, "positions", positions)
-        for name in self.rail:
-            if name not in positions:
-                known = ", ".join(f'"{one}"' for one in positions)
-                raise StructureError(
-                    f'{where}: rail: there is no point "{name}"; there are {known}'
-                )
-        if len(self.rail) == 1 or len(set(self.rail)) < len(self.rail):
-            raise StructureError(f"{where}: rail must name two points or more, each once")
+        for rail in self.rails:
+            _check_rail(where, rail, positions)
         stiffness, rigid = self.stiffness_matrix, self.rigid_motions
         if np.any(np.abs(stiffness @ rigid) > NO_FORCE * np.max(np.abs(stiffness) @ np.abs(rigid))):
             raise StructureError(
@@ -90,9 +86,9 @@ class ImportedPart:
         return motions
 
     def motion_at(self, position: ArrayLike) -> NDArray[np.float64]:
-        """Displacements and rotations (6, n) at a position: a point, or beside the rail.
+        """Displacements and rotations (6, n) at a position: a point, or beside a rail.
 
-        Beside the rail the position follows the nearest position on the rail rigidly.
+        Beside a rail the position follows the nearest position on it rigidly.
 
         Raises
         ------
@@ -103,7 +99,7 @@ class ImportedPart:
         for name, point in self.positions.items():
             if np.linalg.norm(at - point) <= SAME_POSITION:
                 return self.structure.points[name]
-        if not self.rail:
+        if not self.rails:
             points = "; ".join(f'"{name}" at {_shown(one)}' for name, one in self.positions.items())
             raise StructureError(
                 f'imported part "{self.name}" has no point at {_shown(at)} m; there are {points}'
@@ -116,33 +112,109 @@ class ImportedPart:
         return replace(self, positions=moved)
 
     def _on_rail(self, at: NDArray[np.float64]) -> NDArray[np.float64]:
-        ends = [self.positions[name] for name in self.rail]
-        best, chosen = np.inf, None
-        for number, (start, end) in enumerate(itertools.pairwise(ends)):
-            along = end - start
-            share = float((at - start) @ along / (along @ along))
-            share_within = min(max(share, 0.0), 1.0)
-            distance = float(np.linalg.norm(at - start - share_within * along))
-            if distance < best:
-                off = abs(share - share_within) * np.linalg.norm(along)
-                beyond = (share < 0.0 and number == 0) or (share > 1.0 and number == len(ends) - 2)
-                best, chosen = distance, (number, share_within, beyond and off > SAME_POSITION)
-        number, share, beyond = chosen
-        if beyond:
+        spans = [
+            _Span(self.positions, *pair, number == 0, number == len(rail) - 2)
+            for rail in self.rails
+            for number, pair in enumerate(itertools.pairwise(rail))
+        ]
+        span = min(spans, key=lambda one: one.distance(at))
+        if span.is_beyond(at):
+            ends = "; ".join(
+                f"{_shown(self.positions[rail[0]])} to {_shown(self.positions[rail[-1]])}"
+                for rail in self.rails
+            )
             raise StructureError(
                 f'imported part "{self.name}": {_shown(at)} m lies off the end of the rail, which '
-                f"goes from {_shown(ends[0])} to {_shown(ends[-1])} m"
+                f"goes from {ends} m"
             )
-        first, second = (self.structure.points[name] for name in self.rail[number : number + 2])
-        nearest = (1.0 - share) * ends[number] + share * ends[number + 1]
-        return rigid_motion(at - nearest) @ ((1.0 - share) * first + share * second)
+        share = span.share_within(at)
+        first, second = (self.structure.points[name] for name in (span.first, span.second))
+        nearest = span.start + share * span.along
+        return rigid_motion(at - nearest) @ bent_beam(first, second, span.along, share)
+
+
+class _Span(NamedTuple):
+    """Two neighbouring points of a rail."""
+
+    positions: Mapping[str, NDArray[np.float64]]
+    first: str
+    second: str
+    begins: bool  # whether the rail begins with it
+    ends: bool
+
+    @property
+    def start(self) -> NDArray[np.float64]:
+        return self.positions[self.first]
+
+    @property
+    def along(self) -> NDArray[np.float64]:
+        return self.positions[self.second] - self.start
+
+    def share(self, at: NDArray[np.float64]) -> float:
+        return float((at - self.start) @ self.along / (self.along @ self.along))
+
+    def share_within(self, at: NDArray[np.float64]) -> float:
+        return min(max(self.share(at), 0.0), 1.0)
+
+    def distance(self, at: NDArray[np.float64]) -> float:
+        nearest = self.start + self.share_within(at) * self.along
+        return float(np.linalg.norm(at - nearest))
+
+    def is_beyond(self, at: NDArray[np.float64]) -> bool:
+        share = self.share(at)
+        off = abs(share - self.share_within(at)) * np.linalg.norm(self.along)
+        at_end = (self.begins and share < 0.0) or (self.ends and share > 1.0)
+        return bool(at_end and off > SAME_POSITION)
+
+
+def bent_beam(
+    first: NDArray[np.float64],
+    second: NDArray[np.float64],
+    along: NDArray[np.float64],
+    share: float,
+) -> NDArray[np.float64]:
+    """Motion (6, n) at a share of the way between two points, as a beam without loads bends.
+
+    Displacements across are the cubics of both ends' displacements and rotations (Hermite; slope
+    is rotation, Euler and Bernoulli), those along and the twist are linear. A rigid motion of the
+    ends is one of the beam.
+
+    Parameters
+    ----------
+    first, second : (6, n) array of float
+        Motion of the ends.
+    along : (3,) array of float
+        From the first to the second, m.
+    share : float
+        0 to 1.
+    """
+    length = float(np.linalg.norm(along))
+    axis = along / length
+    lengthwise = np.outer(axis, axis)
+    across = np.eye(3) - lengthwise
+    # rotation to slope of the displacement along the axis, theta x axis
+    turning = np.array([np.cross(one, axis) for one in np.eye(3)]).T
+    s = share
+    values = (2 * s**3 - 3 * s**2 + 1, length * (s**3 - 2 * s**2 + s))
+    values += (3 * s**2 - 2 * s**3, length * (s**3 - s**2))
+    slopes = ((6 * s**2 - 6 * s) / length, 3 * s**2 - 4 * s + 1)
+    slopes += ((6 * s - 6 * s**2) / length, 3 * s**2 - 2 * s)
+    ends = (first[:3], turning @ first[3:], second[:3], turning @ second[3:])
+    deflection, slope = (
+        across @ sum(value * end for value, end in zip(shape, ends, strict=True))
+        for shape in (values, slopes)
+    )
+    straight = (1.0 - s) * first + s * second
+    displacement = lengthwise @ straight[:3] + deflection
+    rotation = lengthwise @ straight[3:] + np.cross(axis, slope, axisb=0, axisc=0)
+    return np.vstack([displacement, rotation])
 
 
 def reduced_part(
     name: str,
     structure: LinearStructure,
     positions: Mapping[str, ArrayLike],
-    rail: Sequence[str] = (),
+    rails: Sequence[Sequence[str]] = (),
     highest: float = np.inf,
 ) -> ImportedPart:
     """Reduce a structure to its points and fixed-interface modes up to a frequency.
@@ -157,7 +229,16 @@ def reduced_part(
                 f'imported part "{name}": point "{point}" lacks displacements or rotations; '
                 "tie it to nodes that are not on one line"
             )
-    return ImportedPart(name, super_element(structure, list(positions), highest), positions, rail)
+    return ImportedPart(name, super_element(structure, list(positions), highest), positions, rails)
+
+
+def _check_rail(where: str, rail: Sequence[str], positions: Mapping[str, ArrayLike]) -> None:
+    for name in rail:
+        if name not in positions:
+            known = ", ".join(f'"{one}"' for one in positions)
+            raise StructureError(f'{where}: rail: there is no point "{name}"; there are {known}')
+    if len(rail) < 2 or len(set(rail)) < len(rail):
+        raise StructureError(f"{where}: rail must name two points or more, each once")
 
 
 def _shown(position: NDArray[np.float64]) -> str:

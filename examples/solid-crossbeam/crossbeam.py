@@ -12,20 +12,19 @@ from __future__ import annotations
 import csv
 import sys
 import time
-from collections.abc import Callable, Sequence
-from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse
-from numpy.typing import ArrayLike, NDArray
-from skfem import Basis, BilinearForm, ElementHexS2, MeshHex
+from numpy.typing import NDArray
+from skfem import MeshHex
 
 from chatter.io.matrices import imported_structure, read_nodes
+from chatter.io.super_element import write_super_element
 from dynamics.reduction.craig_bampton import super_element
 from dynamics.reduction.modal_truncation import undamped_modes
 from dynamics.structure.linear_structure import LinearStructure
+from dynamics.structure.solid_elements import STEEL, boxes, solid_matrices
 from dynamics.structure.surface_constraint import InterpolatedPoint, Nodes, RigidSurface
 
 HERE = Path(__file__).parent
@@ -50,36 +49,6 @@ WASHER = 0.035  # radius that a bolt clamps, m
 LONGEST = 0.12  # side of an element, m: one element between ribs and carriages
 # Hz, of the fixed-interface modes; the machine's below 350 Hz are then within 0.05 %.
 HIGHEST = 2000.0
-
-
-class Material(NamedTuple):
-    """Isotropic material."""
-
-    modulus: float  # N/m^2
-    poisson: float
-    density: float  # kg/m^3
-
-
-STEEL = Material(210e9, 0.3, 7850.0)
-
-
-def grid(lines: Sequence[float], longest: float) -> NDArray[np.float64]:
-    """Lines (m,) of a mesh along one axis, with equal parts between those given."""
-    lines = np.unique(np.round(lines, 9))
-    parts = [
-        np.linspace(low, high, int(np.ceil((high - low) / longest - 1e-9)) + 1)[:-1]
-        for low, high in pairwise(lines)
-    ]
-    return np.append(np.concatenate(parts), lines[-1])
-
-
-def boxes(
-    lines: Sequence[Sequence[float]], filled: Callable[..., NDArray[np.bool_]], longest: float
-) -> MeshHex:
-    """Hexahedra between lines along x, y and z where `filled(x, y, z)` at their centres."""
-    mesh = MeshHex.init_tensor(*(grid(along, longest) for along in lines))
-    centres = mesh.p[:, mesh.t].mean(axis=1)
-    return mesh.restrict(np.flatnonzero(filled(*centres)))
 
 
 def crossbeam_length(stations: int = STATIONS) -> float:
@@ -115,55 +84,6 @@ def crossbeam_mesh(stations: int = STATIONS, longest: float = LONGEST) -> MeshHe
         return flange | rail | (section & ~hollow) | (section & rib & ~window)
 
     return boxes((x, y, z), filled, longest)
-
-
-def solid_matrices(
-    mesh: MeshHex, material: Material
-) -> tuple[NDArray[np.float64], scipy.sparse.csr_array, scipy.sparse.csr_array]:
-    """Consistent mass and stiffness of linear elasticity with 20-node hexahedra.
-
-    The stiffness is put together from integrals of products of two derivatives of the scalar shape
-    functions, which is quicker than a form over all pairs of displacements.
-
-    Parameters
-    ----------
-    mesh : MeshHex
-        Boxes: three Gauss points an axis integrate them exactly.
-    material : Material
-
-    Returns
-    -------
-    coordinates : (m, 3) array of float
-        Nodes in order of x, m.
-    mass, stiffness : (3 m, 3 m) sparse array of float
-        x, y, z of each node in turn; kg, N/m.
-    """
-    basis = Basis(mesh, ElementHexS2(), intorder=5)
-    order = np.lexsort(np.round(basis.doflocs, 9)[::-1])
-    shear = material.modulus / (2.0 * (1.0 + material.poisson))
-    lame = 2.0 * shear * material.poisson / (1.0 - 2.0 * material.poisson)
-
-    def integral(form: Callable) -> scipy.sparse.csr_array:
-        return scipy.sparse.csr_array(BilinearForm(form).assemble(basis))[order][:, order]
-
-    slopes = {  # of the column's shape function along a, of the row's along b
-        (a, b): integral(lambda u, v, _, a=a, b=b: u.grad[a] * v.grad[b])
-        for a in range(3)
-        for b in range(a, 3)
-    }
-    slopes |= {(b, a): slopes[a, b].T for a, b in ((0, 1), (0, 2), (1, 2))}
-    laplace = shear * (slopes[0, 0] + slopes[1, 1] + slopes[2, 2])
-    blocks = [
-        [lame * slopes[a, b] + shear * slopes[b, a] + (laplace if a == b else 0 * laplace)
-         for a in range(3)]
-        for b in range(3)
-    ]  # fmt: skip
-    weight = material.density * integral(lambda u, v, _: u * v)
-    one_after_another = np.arange(3 * len(order)).reshape(3, -1).T.ravel()
-    stiffness = scipy.sparse.block_array(blocks, format="csr")
-    stiffness = stiffness[one_after_another][:, one_after_another]
-    mass = scipy.sparse.csr_array(scipy.sparse.kron(weight, np.eye(3)))
-    return basis.doflocs[:, order].T, mass, stiffness
 
 
 def write_model(
@@ -230,27 +150,6 @@ def tied_crossbeam(folder: Path, stations: int = STATIONS) -> tuple[LinearStruct
         interpolated=interpolated,
     )
     return structure, {tie.name: np.asarray(tie.at) for tie in (*rigid, *interpolated)}
-
-
-def write_super_element(
-    folder: Path, reduced: LinearStructure, places: dict[str, ArrayLike]
-) -> list[Path]:
-    """Write a super-element in the same formats as the full model.
-
-    Its points are nodes with six freedoms, which are its first coordinates; the rest are modal
-    coordinates, which no node has.
-    """
-    folder.mkdir(parents=True, exist_ok=True)
-    written = [folder / name for name in ("mass.npz", "stiffness.npz", "nodes.csv")]
-    np.savez_compressed(written[0], matrix=reduced.mass)
-    np.savez_compressed(written[1], matrix=reduced.stiffness)
-    with written[2].open("w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file)
-        table.writerow(["node", "x", "y", "z", "ux", "uy", "uz", "rx", "ry", "rz", "point"])
-        for number, (name, at) in enumerate(places.items()):
-            row = [f"{value:.9g}" for value in at]
-            table.writerow([number + 1, *row, *(6 * number + np.arange(1, 7)), name])
-    return written
 
 
 def main(full: Path, reduced: Path) -> list[Path]:

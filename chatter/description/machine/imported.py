@@ -34,6 +34,26 @@ NodeNumbers = Annotated[
 ]
 
 
+def _rails(given: Any) -> tuple[tuple[str, ...], ...]:
+    rails = given if isinstance(given, (list, tuple)) else [given]
+    if rails and all(isinstance(one, str) for one in rails):
+        rails = [rails]
+    for rail in rails:
+        if not isinstance(rail, (list, tuple)) or not all(isinstance(one, str) for one in rail):
+            raise ValueError(
+                f"{formatted(rail)} is given; a list of names of points is required, or several"
+            )
+    return tuple(tuple(rail) for rail in rails)
+
+
+_POINTS = {"type": "array", "items": {"type": "string"}, "minItems": 2}
+Rails = Annotated[
+    tuple[tuple[str, ...], ...],
+    BeforeValidator(_rails),
+    WithJsonSchema({"anyOf": [_POINTS, {"type": "array", "items": _POINTS}]}),
+]
+
+
 def _unit_of(dimension: str) -> Any:
     """Field type of a unit of a model: a name such as "mm", read as one of it in SI."""
     field = QuantityField(dimension, above=0.0)
@@ -144,6 +164,8 @@ class ImportedSection(Section):
     highest_frequency: quantity("frequency", above=0.0) = Field(
         description="of fixed-interface modes that are kept"
     )
-    rail: tuple[str, ...] = Field(
-        (), description="points between which other parts may be joined anywhere"
+    rail: Rails = Field(
+        (),
+        description="points between which other parts may be joined anywhere; a list of them, or a "
+        "list a rail",
     )
