@@ -14,5 +14,6 @@ edge_segments   segments of edges in one coupling of the linear analysis
 surface         wall and floor that the edges leave; roughness and waviness
 =============== ==================================================================
 
-`cubic_spline` goes through points. `keys` are the keys of laws in files, `leaves` and `compiled` the presets of kernels.
+`cubic_spline` goes through points. `keys` are the keys of laws in files, `leaves` and `compiled`
+the presets of kernels.
 """

@@ -60,11 +60,11 @@ def beginning_of(
         if as_rest < _FITS:
             return record, []
         # of the same channels of the same runs
-        cut = _errors_as_cut(some, settled)
+        settled_cut = _errors_as_cut(some, settled)
     except (InputError, RunError):
         return record, []  # a case that cannot be simulated is reported where it is used
-    shared = rest.keys() & cut.keys()
-    as_rest, as_cut = (_rms({key: of[key] for key in shared}) for of in (rest, cut))
+    shared = rest.keys() & settled_cut.keys()
+    as_rest, as_cut = (_rms({key: of[key] for key in shared}) for of in (rest, settled_cut))
     if as_rest < _FITS or as_cut > _BETTER * as_rest:
         return record, []
     description = (
