@@ -29,10 +29,13 @@ def force_factor(case: Case, bins: int) -> ForceFactor | None:
     over_travel = case.empirical_over("feed distance")
     if over_angle is None and over_travel is None:
         return None
-    if over_travel is not None and case.simulation and len(case.simulation.path or ()) > 2:
+    section = case.simulation
+    bent = section is not None and (section.program or len(section.path or ()) > 2)
+    if over_travel is not None and bent:
+        key = "program" if section.program else "path"
         raise InputError(
-            f"{case.name}: simulation.path: has corners; the empirical term over the feed distance "
-            "holds along a straight path"
+            f"{case.name}: simulation.{key}: has corners; the empirical term over the feed "
+            "distance holds along a straight path"
         )
     angles = np.ones(2)
     if over_angle is not None:

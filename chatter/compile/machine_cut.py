@@ -41,6 +41,9 @@ class MachineCut:
     #: velocity of each axis of the machine for a feed of 1 m/s; empty where none of those under
     #: control can feed the tool, whose path is then prescribed
     feeds: Mapping[str, float]
+    #: direction of the cut, "x", "y", "z" -> velocity of each axis for 1 m/s along it; those alone
+    #: along which the axes under control can move the tool
+    travels: Mapping[str, Mapping[str, float]]
 
     def velocities(self, feed: float, speed: float) -> dict[str, float]:
         """Velocity of all axes for a feed, m/s, and a spindle speed, rad/s."""
@@ -101,8 +104,9 @@ def machine_cut(case: Case, friction: bool | None = None) -> MachineCut:
     spindle, sense = None, 1.0
     if name is not None:
         spindle, sense = _spindle_row(case, file, machine, name, workpiece, axes[2])
-    feeds = _feeds(machine, tool, [one for one in machine.axes if one != name])
-    return MachineCut(file, machine, tool, spindle, name, sense, feeds)
+    travels = _travels(machine, tool, [one for one in machine.axes if one != name])
+    feeds = travels.get("x", {})
+    return MachineCut(file, machine, tool, spindle, name, sense, feeds, travels)
 
 
 def _refuse_unknown_axes(case: Case, file: MachineFile) -> None:
@@ -187,15 +191,18 @@ def _spindle_row(
     return machine.row("spindle", terms), sense
 
 
-def _feeds(machine: Machine, tool: NDArray[np.float64], axes: list[str]) -> dict[str, float]:
-    """Velocities of controlled axes that feed the tool along x at 1 m/s; none if they cannot."""
+def _travels(
+    machine: Machine, tool: NDArray[np.float64], axes: list[str]
+) -> dict[str, dict[str, float]]:
+    """Velocities of controlled axes that move the tool along x, y, z at 1 m/s, where they can."""
     controlled = [name for name in axes if name in {drive.axis for drive in machine.drives}]
-    ways = np.array([tool @ rigid_motion(machine, {name: 1.0}) for name in controlled]).T
-    wanted = np.array([1.0, 0.0, 0.0])
     if not controlled:
         return {}
-    share, *_ = np.linalg.lstsq(ways, wanted, rcond=None)
-    if np.max(np.abs(ways @ share - wanted)) > _UNMOVED:
-        return {}
-    feeds = dict(zip(controlled, share.tolist(), strict=True))
-    return {name: part for name, part in feeds.items() if abs(part) > 1e-9}
+    ways = np.array([tool @ rigid_motion(machine, {name: 1.0}) for name in controlled]).T
+    found = {}
+    for way, wanted in zip("xyz", np.eye(3), strict=True):
+        share, *_ = np.linalg.lstsq(ways, wanted, rcond=None)
+        if np.max(np.abs(ways @ share - wanted)) <= _UNMOVED:
+            moved = dict(zip(controlled, share.tolist(), strict=True))
+            found[way] = {name: part for name, part in moved.items() if abs(part) > 1e-9}
+    return found

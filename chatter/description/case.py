@@ -129,6 +129,9 @@ class Case(Description):
     def _resolve_files(self, content: dict[str, Any]) -> None:
         if self.material is not None and self.material.table is not None:
             content["material"]["table"] = str(self.material.table.resolve())
+        if self.simulation is not None and self.simulation.program is not None:
+            file = self.simulation.program.file
+            content["simulation"]["program"]["file"] = str(file.resolve())
         if self.structure is None:
             return
         for entry in content["structure"]["frf"]:

@@ -133,6 +133,10 @@ def move_references(document: Any, old: Path, new: Path) -> None:
     material = document.get("material")
     if isinstance(material, dict) and isinstance(material.get("table"), str):
         material["table"] = moved(material["table"])
+    simulation = document.get("simulation")
+    program = simulation.get("program") if isinstance(simulation, dict) else None
+    if isinstance(program, dict) and isinstance(program.get("file"), str):
+        program["file"] = moved(program["file"])
     structure = document.get("structure")
     if not isinstance(structure, dict):
         return

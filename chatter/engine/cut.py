@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from cutting.chip.delayed_chip import DelayedCut, delayed_commit, delayed_forces
 from cutting.chip.discrete_chip import DiscreteCut, discrete_commit, discrete_forces
-from cutting.chip.tool_point import Rotation, ToolPoint, tool_point
+from cutting.chip.tool_point import Rotation, ToolPoint, TurningRotation, tool_point
 from cutting.compiled import INLINED, by_table, for_each
 from cutting.force.force_factor import ForceFactor, factor_commit, factor_forces
 from cutting.process_damping.contact import ToolContact, contact_commit, contact_forces
@@ -37,6 +37,15 @@ class PrescribedPath(NamedTuple):
     x: NDArray[np.float64]  # m, (n+1,)
     y: NDArray[np.float64]  # m, (n+1,)
     share: NDArray[np.float64]  # of the cutting force that the structure feels, (n+1,)
+
+
+class TurningPath(NamedTuple):
+    """Path of the tool axis whose direction turns; the fields of `PrescribedPath`, and that."""
+
+    x: NDArray[np.float64]  # m, (n+1,)
+    y: NDArray[np.float64]  # m, (n+1,)
+    share: NDArray[np.float64]  # of the cutting force that the structure feels, (n+1,)
+    heading: NDArray[np.float64]  # of the feed from +x towards +y, bins of a revolution, (n+1,)
 
 
 class PrescribedSpindle(NamedTuple):
@@ -75,14 +84,23 @@ class ToolOnPorts(NamedTuple):
     carried: NDArray[np.float64]  # feed of the tool by the structure, m/s, (3,)
 
 
+class ToolAlongPath(NamedTuple):
+    """Tool against the workpiece on any ports, moved by the structure along a path."""
+
+    port: NDArray[np.int64]  # along x, y, z of the cut, (3,)
+    origin: NDArray[np.float64]  # displacement of the ports where the cut begins, m, (3,)
+    travel: NDArray[np.float64]  # of the path that the structure makes, at ends of steps, m, (n, 3)
+    velocity: NDArray[np.float64]  # of it, m/s, (n, 3)
+
+
 class CutOnPorts(NamedTuple):
     """Cut between tool and workpiece, which ports of a structure move."""
 
     laws: tuple  # at the tool point
     spindle: PrescribedSpindle | SpindleOnPort
-    path: PrescribedPath
+    path: PrescribedPath | TurningPath
     point: ToolPoint
-    tool: ToolOnModes | ToolOnPorts
+    tool: ToolOnModes | ToolOnPorts | ToolAlongPath
     furthest: float  # displacement beyond which the model of the cut no longer holds, m
 
 
@@ -151,6 +169,35 @@ def _rotation_of_port(spindle, path, bus, clock):
 
 
 @register_jitable(**INLINED)
+def _straight(path, rotation, clock):  # noqa: ARG001
+    """Rotation on a path along x."""
+    return rotation
+
+
+@register_jitable(**INLINED)
+def _turning(path, rotation, clock):
+    """Rotation on a path that turns."""
+    return TurningRotation(
+        rotation.whole,
+        rotation.part,
+        rotation.sine,
+        rotation.cosine,
+        rotation.sine_before,
+        rotation.cosine_before,
+        rotation.whole_before,
+        rotation.part_before,
+        rotation.advance,
+        rotation.speed,
+        rotation.step,
+        rotation.x,
+        rotation.y,
+        rotation.x_before,
+        rotation.y_before,
+        path.heading[clock.row + 1],
+    )
+
+
+@register_jitable(**INLINED)
 def _no_torque(spindle, point, bus):
     """Put on nothing: a prescribed spindle turns whatever the torque."""
 
@@ -167,7 +214,8 @@ def _leave_torque(spindle, point, bus):
     bus.next_force[spindle.port] = -point.torque[0]
 
 
-_rotation = by_table({PrescribedSpindle: _prescribed_rotation, SpindleOnPort: _rotation_of_port})
+_rotation_of = by_table({PrescribedSpindle: _prescribed_rotation, SpindleOnPort: _rotation_of_port})
+_on_path = by_table({PrescribedPath: _straight, TurningPath: _turning})
 _put_torque = by_table({PrescribedSpindle: _no_torque, SpindleOnPort: _torque})
 _commit_torque = by_table({PrescribedSpindle: _no_torque, SpindleOnPort: _leave_torque})
 
@@ -190,6 +238,18 @@ def _motion_of_ports(tool, point, bus, clock):
 
 
 @register_jitable(**INLINED)
+def _motion_from_path(tool, point, bus, clock):
+    """Displacement of the tool from its path at both ends of the step."""
+    i, now = clock.row, clock.row + 1
+    for axis in range(3):
+        p, origin = tool.port[axis], tool.origin[axis]
+        point.displacement_before[axis] = bus.u_before[p] - origin - tool.travel[i, axis]
+        point.velocity_before[axis] = bus.v_before[p] - tool.velocity[i, axis]
+        point.displacement[axis] = bus.u[p] - origin - tool.travel[now, axis]
+        point.velocity[axis] = bus.v[p] - tool.velocity[now, axis]
+
+
+@register_jitable(**INLINED)
 def _port_of_mode(tool, axis):  # noqa: ARG001
     """Port of an axis."""
     return axis
@@ -201,8 +261,10 @@ def _port(tool, axis):
     return tool.port[axis]
 
 
-_take_motion = by_table({ToolOnModes: _shared, ToolOnPorts: _motion_of_ports})
-_port_of = by_table({ToolOnModes: _port_of_mode, ToolOnPorts: _port})
+_take_motion = by_table(
+    {ToolOnModes: _shared, ToolOnPorts: _motion_of_ports, ToolAlongPath: _motion_from_path}
+)
+_port_of = by_table({ToolOnModes: _port_of_mode, ToolOnPorts: _port, ToolAlongPath: _port})
 
 
 @register_jitable(**INLINED)
@@ -229,7 +291,8 @@ def cut_forces(cut, bus, clock):
     point = cut.point
     _take_motion(cut.tool, point, bus, clock)
     _clear(point)
-    _forces_at_tool(cut.laws, _rotation(cut.spindle, cut.path, bus, clock), point)
+    rotation = _rotation_of(cut.spindle, cut.path, bus, clock)
+    _forces_at_tool(cut.laws, _on_path(cut.path, rotation, clock), point)
     share = cut.path.share[clock.row + 1]
     for axis in range(3):
         p = _port_of(cut.tool, axis)
@@ -243,7 +306,7 @@ def cut_commit(cut, bus, clock):
     """Take the corrected motion into the memory of the laws; halt where it is too large."""
     point = cut.point
     _take_motion(cut.tool, point, bus, clock)
-    rotation = _rotation(cut.spindle, cut.path, bus, clock)
+    rotation = _rotation_of(cut.spindle, cut.path, bus, clock)
     reach = 0.0
     for axis in range(3):
         reach = max(reach, abs(point.displacement[axis]))
@@ -251,7 +314,7 @@ def cut_commit(cut, bus, clock):
     if not reach <= cut.furthest or (clock.step >= 0 and not rotation.advance > 0.0):
         bus.halted[0] = 1
         return
-    _commit_at_tool(cut.laws, rotation, point)
+    _commit_at_tool(cut.laws, _on_path(cut.path, rotation, clock), point)
     for axis in range(3):
         bus.next_force[_port_of(cut.tool, axis)] = point.force[axis]
     _commit_torque(cut.spindle, point, bus)

@@ -13,6 +13,7 @@ from chatter.engine.loop_stability import refuse_unstable_control
 from chatter.simulation.resolution import Resolution, bounds_of, resolved_arc, revolutions_of
 from chatter.simulation.spindle import path_of
 from chatter.simulation.structure_in_time import StructureInTime
+from chatter.simulation.tool_course import ToolCourse
 from cutting.tool.cutter import Cutter
 from dynamics.control.sampling import ControlError
 from dynamics.machine.tables import StructureTables, machine_tables
@@ -27,10 +28,17 @@ _STEPS_A_PITCH = 16
 _SETTLING, _SPEEDING_UP, _LEAST_SPEEDING_UP = 1.0, 0.3, 0.05
 #: rows of the record, at the most
 _MOST_ROWS = 200_000
+#: instants at which a program is looked at for what it moves, and travel that is none, m
+_SAMPLES, _NOTHING = 2000, 1e-9
 
 
-def machine_in_time(case: Case, cutter: Cutter) -> StructureInTime:
-    """Compile the machine of a case, its axes to be at the feed when the cut begins."""
+def machine_in_time(
+    case: Case, cutter: Cutter, course: ToolCourse | None = None
+) -> StructureInTime:
+    """Compile the machine of a case, its axes to be at the feed when the cut begins.
+
+    Along the course of a program they are at rest then.
+    """
     if case.cut.speed_variation is not None:
         raise InputError(
             f"{case.name}: cut.speed_variation: the spindle of a machine turns as its drive lets it"
@@ -38,22 +46,29 @@ def machine_in_time(case: Case, cutter: Cutter) -> StructureInTime:
     if case.simulation is not None and case.simulation.path is not None:
         raise InputError(f"{case.name}: simulation.path: a machine is fed along a straight line")
     cut = machine_cut(case)
-    step = _step(case, cut, cutter)
+    if course is not None:
+        _refuse_unmoved(case, cut, course)
+    fastest = case.cut.spindle_speed if course is None else course.fastest
+    step = _step(case, cut, cutter, fastest)
     refuse_unstable_control(cut.machine, step)
     modes = cut.modes()
     resolution = _resolution(case, cutter, modes, step)
     speed = case.cut.spindle_speed
     before = round(_time_before(case, cut) / step)
     duration = resolution.revolutions * 2.0 * math.pi / speed
-    points = _set_points(
-        cut, path_of(case).feed, speed, (before + 10) * step + duration, before * step
-    )
+    if course is None:
+        points = _set_points(
+            cut, path_of(case).feed, speed, (before + 10) * step + duration, before * step
+        )
+    else:
+        points = _set_points_of(cut, course, (before + 10) * step + duration, before * step)
+        speed = float(course.spindle.speed_at(np.zeros(1))[0])
     return StructureInTime(
         modes,
         resolution,
         step,
         max(1, round(duration / step)),
-        _tables(cut, case, step, points),
+        _tables(cut, speed, step, points),
         _notes(cut),
         cut,
         before,
@@ -74,9 +89,9 @@ def _time_before(case: Case, cut: MachineCut) -> float:
     return settling
 
 
-def _step(case: Case, cut: MachineCut, cutter: Cutter) -> float:
-    """Step of the machine file, or a whole part of it that resolves the cut."""
-    a_turn = 2.0 * math.pi / case.cut.spindle_speed
+def _step(case: Case, cut: MachineCut, cutter: Cutter, speed: float) -> float:
+    """Step of the machine file, or a whole part of it that resolves the cut at a speed, rad/s."""
+    a_turn = 2.0 * math.pi / speed
     section = case.simulation
     wanted = section.steps if section and section.steps else None
     if wanted is None:
@@ -102,10 +117,7 @@ def _set_points(
 ) -> SetPoints:
     """Axes that come to speed smoothly before the cut, the spindle at speed from the start."""
     machine = cut.machine
-    cycle = max(
-        (drive.controller.position.timing.sample_time for drive in machine.drives),
-        default=cut.file.step,
-    )
+    cycle = _cycle(cut)
     time = cycle * np.arange(math.ceil(duration / cycle) + 2)
     ramp = max(min(_SPEEDING_UP, before), _LEAST_SPEEDING_UP)
     share = np.clip(time / ramp, 0.0, 1.0)
@@ -125,16 +137,59 @@ def _set_points(
     return SetPoints(position, velocity, acceleration, round(cycle / cut.file.step))
 
 
-def _tables(cut: MachineCut, case: Case, step: float, points: SetPoints) -> StructureTables:
+def _cycle(cut: MachineCut) -> float:
+    """Interpolation cycle, s."""
+    drives = cut.machine.drives
+    return max(
+        (drive.controller.position.timing.sample_time for drive in drives), default=cut.file.step
+    )
+
+
+def _refuse_unmoved(case: Case, cut: MachineCut, course: ToolCourse) -> None:
+    """Refuse a program along a direction in which no axis moves the tool, while others do."""
+    if not cut.travels:
+        return
+    samples = course.trajectory.at(np.linspace(0.0, course.duration, _SAMPLES)).position
+    for number, axis in enumerate("xy"):
+        if axis not in cut.travels and np.ptp(samples[:, number]) > _NOTHING:
+            raise InputError(
+                f"{case.name}: simulation.program: it moves along {axis}, in which no axis of "
+                f"{cut.file.name} under control moves the tool"
+            )
+
+
+def _set_points_of(
+    cut: MachineCut, course: ToolCourse, duration: float, before: float
+) -> SetPoints:
+    """Axes that follow a program from rest, and the spindle at its speeds."""
+    machine, cycle = cut.machine, _cycle(cut)
+    time = cycle * np.arange(math.ceil(duration / cycle) + 2) - before
+    motion = course.trajectory.at(time)
+    start = course.trajectory.at(np.zeros(1)).position
+    position, velocity, acceleration = np.zeros((3, time.size, max(len(machine.axes), 1)))
+    for way, shares in cut.travels.items():
+        number = "xyz".index(way)
+        for axis, share in shares.items():
+            index = machine.axes.index(axis)
+            position[:, index] += share * (motion.position - start)[:, number]
+            velocity[:, index] += share * motion.velocity[:, number]
+            acceleration[:, index] += share * motion.acceleration[:, number]
+    if cut.spindle_axis is not None:
+        index = machine.axes.index(cut.spindle_axis)
+        turned = course.spindle.angle_at(time)
+        position[:, index] = cut.sense * (turned - turned[0])
+        velocity[:, index] = cut.sense * course.spindle.speed_at(time)
+    return SetPoints(position, velocity, acceleration, round(cycle / cut.file.step))
+
+
+def _tables(cut: MachineCut, speed: float, step: float, points: SetPoints) -> StructureTables:
     outputs = {f"tool {axis}": row for axis, row in zip("xyz", cut.tool, strict=True)}
     if cut.spindle is not None:
         outputs["tool turn"] = cut.spindle
     parts = round(cut.file.step / step)
     points = points._replace(steps=points.steps * parts)
     try:
-        return machine_tables(
-            cut.machine, step, points, {}, outputs, _start(cut, case.cut.spindle_speed)
-        )
+        return machine_tables(cut.machine, step, points, {}, outputs, _start(cut, speed))
     except (StructureError, ControlError) as error:
         raise InputError(f"{cut.file.name}: {error}") from error
 

@@ -74,7 +74,7 @@ def surface_profiles(
     Walls (none where the run is too short), floor, and what is missing and why.
     """
     case = result.case
-    if case.stock is not None or (case.simulation and case.simulation.path):
+    if case.stock is not None or (case.simulation and case.simulation.has_own_path):
         return [], None, ["surface: evaluated for the straight cut of [cut] alone"]
     record = _record(result)
     if record is None:

@@ -117,7 +117,7 @@ class SimulationResult:
     def judged(self) -> slice:
         """Rows that peaks are taken over: the settled cut; all where the engagement changes."""
         simulation = self.case.simulation
-        moves = self.case.stock is not None or (simulation is not None and simulation.path)
+        moves = self.case.stock is not None or (simulation is not None and simulation.has_own_path)
         return slice(0, len(self.rows)) if moves else self.settled
 
     def _largest(self, rows: slice) -> dict:

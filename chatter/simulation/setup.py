@@ -17,8 +17,10 @@ from chatter.description.errors import InputError
 from chatter.description.plausibility import check_plausible
 from chatter.description.questioned import questions
 from chatter.description.stated_engagement import ENGAGEMENT_KEYS
+from chatter.description.units import rpm
 from chatter.simulation.resolution import Resolution
 from chatter.simulation.spindle import (
+    ProgrammedSpindle,
     Spindle,
     ToolPath,
     path_of,
@@ -27,6 +29,7 @@ from chatter.simulation.spindle import (
 )
 from chatter.simulation.start_in_stock import clear_start
 from chatter.simulation.structure_in_time import StructureInTime, modes_in_time, modes_of
+from chatter.simulation.tool_course import ToolCourse, tool_course
 from chatter.simulation.workpiece import REVOLUTIONS_BEFORE, discrete_cut, reading_notes
 from cutting.chip.delayed_chip import DelayedCut
 from cutting.chip.discrete_chip import DiscreteCut
@@ -51,8 +54,8 @@ class Setup:
     cutter: Cutter
     slices: EdgeSlices
     structure: StructureInTime  # it holds the state of one run
-    spindle: Spindle
-    path: ToolPath
+    spindle: Spindle | ProgrammedSpindle
+    path: ToolPath | ToolCourse
     groups: tuple  # laws at the tool point; the cut comes first. They hold the state of one run
     furthest: float  # displacement at which the run stops, m
     notes: tuple[str, ...]
@@ -107,26 +110,34 @@ def set_up(case: Case, modes: tuple[Mode, ...] | None = None) -> Setup:
 def set_up_in_stock(case: Case, modes: tuple[Mode, ...] | None = None) -> Setup:
     """Compile a case as `set_up` does, but leave the stock whole where the tool begins."""
     check_case(case)
+    course = tool_course(case)
+    if course is not None:
+        case = course.fitted(case)
     cutter = cutter_of(case)
-    return _compiled(case, cutter, _structure_in_time(case, cutter, modes))
+    return _compiled(case, cutter, _structure_in_time(case, cutter, modes, course), course)
 
 
 def _structure_in_time(
-    case: Case, cutter: Cutter, modes: tuple[Mode, ...] | None = None
+    case: Case,
+    cutter: Cutter,
+    modes: tuple[Mode, ...] | None = None,
+    course: ToolCourse | None = None,
 ) -> StructureInTime:
     """Compile the structure of a case for the time domain.
 
-    Modes where they are known already; a machine has its own. InputError if the structure cannot be
+    Modes where they are known already; a machine has its own, and moves its axes along the course
+    of the tool, where there is one. InputError if the structure cannot be
     read or the machine cannot make the cut.
     """
     if case.structure is not None and case.structure.machine is not None:
         from chatter.simulation.machine_in_time import machine_in_time
 
-        return machine_in_time(case, cutter)
+        return machine_in_time(case, cutter, course)
     notes: tuple[str, ...] = ()
     if modes is None:
         modes, notes = modes_of(case)
-    return modes_in_time(case, cutter, modes, notes)
+    spread = 1.0 if course is None else course.fastest / course.slowest
+    return modes_in_time(case, cutter, modes, notes, spread)
 
 
 def with_start_cleared(setup: Setup) -> Setup:
@@ -153,7 +164,7 @@ def delayed(case: Case) -> Case:
     """Return the case with the delayed chip and the steady engagement of [cut]."""
     settings = case.simulation
     if settings is not None:
-        settings = settings.model_copy(update={"chip": "delay", "path": None})
+        settings = settings.model_copy(update={"chip": "delay", "path": None, "program": None})
     return case.model_copy(update={"simulation": settings, "stock": None})
 
 
@@ -164,13 +175,17 @@ def check_case(case: Case) -> None:
     refuse_teeth_off_the_tool(case)
 
 
-def _compiled(case: Case, cutter: Cutter, structure: StructureInTime) -> Setup:
-    """Compile tool, chip and contact on a structure."""
+def _compiled(
+    case: Case, cutter: Cutter, structure: StructureInTime, course: ToolCourse | None = None
+) -> Setup:
+    """Compile tool, chip and contact on a structure, along the course of a program if given."""
     resolution = structure.resolution
     slices = slices_between(cutter, resolution.bounds)
     _refuse_crossing_flutes(case, slices)
     _refuse_out_of_reach(case, slices)
     spindle, path = spindle_of(case), path_of(case)
+    if course is not None:
+        spindle, path = course.spindle, course
     bent = case.simulation is not None and case.simulation.path is not None
     if bent and case.stock is None and case.simulation.chip != "delay":
         raise InputError(
@@ -179,6 +194,8 @@ def _compiled(case: Case, cutter: Cutter, structure: StructureInTime) -> Setup:
     notes = (*questions(case), *structure.notes)
     if case.tool.axial_error and np.all(slices.immersion > 0.5 * math.pi - 1e-9):
         notes += ("tool.axial_error changes no force: the edge is parallel to the tool axis",)
+    if course is not None:
+        notes += _notes_on(course, case)
     if case.stock is not None:
         notes += ("the engagement changes along the path; the verdict is that of the whole record",)
     notes += tuple(notes_on_worn_flank(case, force_law(case, helix_angles(case)[0])))
@@ -199,9 +216,36 @@ def _compiled(case: Case, cutter: Cutter, structure: StructureInTime) -> Setup:
         spindle=spindle,
         path=path,
         groups=groups,
-        furthest=_FURTHEST * cutter.radius,
+        furthest=_furthest(cutter, structure, course),
         notes=notes,
     )
+
+
+def _furthest(cutter: Cutter, structure: StructureInTime, course: ToolCourse | None) -> float:
+    """Displacement of the tool at which a run stops, m.
+
+    Axes that follow a program lag behind it, which is no vibration.
+    """
+    if course is not None and structure.on_machine is not None:
+        return cutter.radius
+    return _FURTHEST * cutter.radius
+
+
+def _notes_on(course: ToolCourse, case: Case) -> tuple[str, ...]:
+    """What is taken from a program, and what of it does not cut."""
+    file = case.simulation.program.file.name
+    speeds = sorted({rpm(course.slowest), rpm(course.fastest)})
+    told = " to ".join(f"{speed:.6g}" for speed in speeds)
+    notes = [
+        f"{file}: {course.duration:.4g} s at {told} rpm, up to "
+        f"{course.feed_per_tooth * 1e3:.4g} mm a tooth; the verdict is that of the whole record"
+    ]
+    if course.in_air.size:
+        spent = float(np.diff(course.in_air, axis=1).sum())
+        above = "above its lowest height"
+        where = f"in rapid traverse or {above}" if case.simulation.chip == "delay" else above
+        notes.append(f"{file}: the tool is in the air for {spent:.4g} s, {where}; no plunge cuts")
+    return tuple(notes)
 
 
 def _refuse_crossing_flutes(case: Case, slices: EdgeSlices) -> None:
@@ -240,8 +284,8 @@ def _delayed(
     slices: EdgeSlices,
     modes: tuple[Mode, ...],  # noqa: ARG001
     resolution: Resolution,
-    spindle: Spindle,
-    path: ToolPath,
+    spindle: Spindle | ProgrammedSpindle,
+    path: ToolPath | ToolCourse,
 ) -> DelayedCut:
     if case.stock is not None or (case.simulation and case.simulation.path):
         raise InputError(

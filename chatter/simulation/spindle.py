@@ -23,6 +23,11 @@ class Spindle:
     frequency: float = 1.0  # of the variation, Hz
     shape: str = "sine"  # ``"sine"`` or ``"triangle"``
 
+    @property
+    def has_constant_speed(self) -> bool:
+        """Whether its speed is the same all along."""
+        return self.amplitude == 0.0
+
     def speed_at(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
         """Speed, rad/s."""
         if self.amplitude == 0.0:
@@ -53,6 +58,36 @@ def _triangle_integral(cycle: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.where(cycle < 0.25, rising, np.where(cycle < 0.75, falling, last))
 
 
+@dataclass(frozen=True, eq=False)
+class ProgrammedSpindle:
+    """Rotation whose speed changes at times of a program, at once."""
+
+    speed: float  # that steps are counted by, rad/s
+    begins: NDArray[np.float64]  # from when on a speed holds, s, the first at 0, (n,)
+    speeds: NDArray[np.float64]  # rad/s, (n,)
+    amplitude: float = 0.0  # it changes from block to block alone
+    frequency: float = 1.0  # of no meaning then
+
+    @property
+    def has_constant_speed(self) -> bool:
+        """Whether its speed is the same all along."""
+        return False
+
+    def _part(self, time: NDArray[np.float64]) -> NDArray[np.int64]:
+        return np.clip(np.searchsorted(self.begins, time, side="right") - 1, 0, None)
+
+    def speed_at(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Speed, rad/s."""
+        return self.speeds[self._part(time)]
+
+    def angle_at(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Angle turned since time zero, rad."""
+        time = np.asarray(time, dtype=np.float64)
+        turned = np.concatenate([[0.0], np.cumsum(self.speeds[:-1] * np.diff(self.begins))])
+        part = self._part(time)
+        return turned[part] + self.speeds[part] * (time - self.begins[part])
+
+
 @dataclass(frozen=True)
 class ToolPath:
     """Straight lines from corner to corner, run through at a constant feed."""
@@ -60,6 +95,11 @@ class ToolPath:
     #: (c, 2), m; the tool starts at the first, and runs on beyond the last
     corners: NDArray[np.float64]
     feed: float  # m/s
+
+    @property
+    def start(self) -> NDArray[np.float64]:
+        """Where the tool axis is at time zero, m, (2,)."""
+        return self.corners[0]
 
     def position_at(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
         """Place (2, ...) of the tool axis, m; before time zero it came straight to the first."""

@@ -47,10 +47,22 @@ def modes_of(case: Case) -> tuple[tuple[Mode, ...], tuple[str, ...]]:
 
 
 def modes_in_time(
-    case: Case, cutter: Cutter, modes: tuple[Mode, ...], notes: tuple[str, ...] = ()
+    case: Case,
+    cutter: Cutter,
+    modes: tuple[Mode, ...],
+    notes: tuple[str, ...] = (),
+    speed_spread: float = 1.0,
 ) -> StructureInTime:
-    """Compile modes with the frictions on them."""
+    """Compile modes with the frictions on them.
+
+    The spread is the fastest spindle speed of a run over that of [cut], its slowest.
+    """
     resolution = resolution_of(case, cutter, modes)
+    if speed_spread > 1.0:
+        finer = math.ceil(resolution.steps_per_revolution * speed_spread)
+        settings = case.simulation.model_copy(update={"steps": finer})
+        finer_case = case.model_copy(update={"simulation": settings})
+        resolution = resolution_of(finer_case, cutter, modes)
     step = 2.0 * math.pi / (case.cut.spindle_speed * resolution.steps_per_revolution)
     given = case.structure.mode if case.structure is not None else ()
     frictions = {

@@ -79,7 +79,7 @@ def _large(result: SimulationResult) -> bool:
 def _steady(result: SimulationResult) -> bool:
     """Whether the cut is that of [cut] all along, on modes that are known."""
     section = result.case.simulation
-    bent = section is not None and section.path is not None
+    bent = section is not None and section.has_own_path
     return result.case.stock is None and not bent and result.setup.on_machine is None
 
 

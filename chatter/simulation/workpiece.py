@@ -15,7 +15,8 @@ from chatter.compile.cutter import edge_law, flank_table
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.simulation.resolution import Resolution, outermost_radius
-from chatter.simulation.spindle import Spindle, ToolPath
+from chatter.simulation.spindle import ProgrammedSpindle, Spindle, ToolPath
+from chatter.simulation.tool_course import ToolCourse
 from cutting.chip.discrete_chip import DiscreteCut
 from cutting.dexel.stock import (
     DexelStock,
@@ -195,8 +196,8 @@ def discrete_cut(
     slices: EdgeSlices,
     modes: tuple[Mode, ...],
     resolution: Resolution,
-    spindle: Spindle,
-    path: ToolPath,
+    spindle: Spindle | ProgrammedSpindle,
+    path: ToolPath | ToolCourse,
 ) -> DiscreteCut:
     """Cut through a workpiece as it is before the first step.
 
@@ -204,7 +205,9 @@ def discrete_cut(
     """
     kind = DISCRETE_CHIPS[case.simulation.chip]
     size = case.simulation.resolution or kind.resolution(case, cutter, modes)
-    ends = _ends(case, cutter, slices, resolution, spindle, path, size)
+    ends = (0.0, 0.0)
+    if case.stock is None:
+        ends = _ends(case, cutter, slices, resolution, spindle, path, size)
     boxes = _boxes(case, slices, ends, size)
     _refuse_too_coarse(case, size)
     _refuse_too_large(case, kind, boxes, size)
@@ -228,10 +231,12 @@ def _window(case: Case, cutter: Cutter) -> float:
     return 3.0 * thickest + float(spread) + 5e-5
 
 
-def follows(case: Case, path: ToolPath) -> bool:
+def follows(case: Case, path: ToolPath | ToolCourse) -> bool:
     """Whether the stock moves along with the tool: in a straight cut along x without a stock."""
+    if case.stock is not None or isinstance(path, ToolCourse):
+        return False
     legs = np.diff(path.corners, axis=0)
-    return case.stock is None and bool(np.all(legs[:, 0] > 0.0) and np.all(legs[:, 1] == 0.0))
+    return bool(np.all(legs[:, 0] > 0.0) and np.all(legs[:, 1] == 0.0))
 
 
 def steps_a_chunk(case: Case, slices: EdgeSlices, resolution: Resolution) -> int:

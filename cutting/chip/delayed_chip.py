@@ -16,6 +16,7 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from cutting.chip.delayed_edge import at_jump, chip_at, part_of_slice, straight_mean, whole_slice
+from cutting.chip.tool_point import Rotation, TurningRotation
 from cutting.compiled import INLINED, by_table
 from cutting.process_damping.flank import BARE, LEAVES, end_contact, flank_force, store_surface
 from cutting.tool.edge_table import EdgeTable, direction, force_on_tool, signed_bin, spindle_bin
@@ -46,6 +47,39 @@ class DelayedCut(NamedTuple):
     history: NDArray[np.float64]  # x, y, z of the tool against the work at each bin of the last
     # turn, path and vibration, m, and its change to the next bin by its slope, m, (2, bins, 3)
     since: NDArray[np.float64]  # scratch: motion since each pass, m, (N, 3)
+
+
+@register_jitable(**INLINED)
+def _along_x(rotation, edges):  # noqa: ARG001
+    """Heading of a feed along x, bins."""
+    return 0.0
+
+
+@register_jitable(**INLINED)
+def _as_it_turns(rotation, edges):  # noqa: ARG001
+    """Heading of the feed, bins."""
+    return rotation.heading
+
+
+@register_jitable(**INLINED)
+def _bin_along_x(rotation, edges, whole, part):  # noqa: ARG001
+    """Bin of an edge as a number near the arc of the cut."""
+    return signed_bin(edges, whole, part)
+
+
+@register_jitable(**INLINED)
+def _bin_as_it_turns(rotation, edges, whole, part):
+    """Bin of an edge as a number near the arc of the cut, which turns with the feed."""
+    towards = int(rotation.heading)
+    turned = whole + towards
+    if turned >= edges.bins:
+        turned -= edges.bins
+    return signed_bin(edges, turned, part) - towards
+
+
+#: angle by which the arcs of the cut turn with the feed, clockwise ones becoming smaller, bins
+_heading = by_table({Rotation: _along_x, TurningRotation: _as_it_turns})
+_position = by_table({Rotation: _bin_along_x, TurningRotation: _bin_as_it_turns})
 
 
 @register_jitable(**INLINED)
@@ -127,7 +161,7 @@ _add_flank_force = by_table({one.table: _off_flank if one is BARE else _on_flank
 def _all_in_air(cut, tooth, rotation):
     """Tell whether no part of an edge is in the arc of the cut."""
     whole, part = spindle_bin(cut.edges, tooth, 0, rotation.whole, rotation.part)
-    position = signed_bin(cut.edges, whole, part)
+    position = _position(rotation, cut.edges, whole, part) + _heading(rotation, cut.edges)
     low, high = position + cut.reach[tooth, 0], position + cut.reach[tooth, 1]
     for turns in range(-1, 2):
         shift = turns * cut.edges.bins
@@ -143,6 +177,7 @@ def delayed_forces(group, rotation, point):
     now = _place_now(rotation, point)
     teeth, pieces = edges.whole.shape
     advance = rotation.advance
+    heading = _heading(rotation, edges)
     sx = sy = sz = mx = my = mz = torque = contact = 0.0
     for tooth in range(teeth):
         if _all_in_air(cut, tooth, rotation):
@@ -150,8 +185,8 @@ def delayed_forces(group, rotation, point):
         looked_back = False
         for piece in range(pieces):
             whole, part = spindle_bin(edges, tooth, piece, rotation.whole, rotation.part)
-            position = signed_bin(edges, whole, part)
-            entry, leave = cut.entry[piece], cut.exit[piece]
+            position = _position(rotation, edges, whole, part)
+            entry, leave = cut.entry[piece] - heading, cut.exit[piece] - heading
             at_entry = abs(edges.half_lag[tooth, piece] + cut.entry_rise[piece])
             at_exit = abs(edges.half_lag[tooth, piece] + cut.exit_rise[piece])
             steep_in, steep_out = at_entry < 0.5 * advance, at_exit < 0.5 * advance
@@ -171,12 +206,12 @@ def delayed_forces(group, rotation, point):
             if not settled:
                 # at a jump the limit from the right: one tooth leaves as another one enters
                 seen = position + _NUDGE if steep_in or steep_out else position
-                force = part_of_slice(cut, tooth, piece, seen)
+                force = part_of_slice(cut, tooth, piece, seen, heading)
             force = _add_flank_force(cut.flank, cut, tooth, piece, rotation, point, force)
             mean = force
             if not settled and (steep_in or steep_out):
                 if (steep_in or inside) and (steep_out or ahead):
-                    mean = straight_mean(cut, tooth, piece, position, rotation)
+                    mean = straight_mean(cut, tooth, piece, position, rotation, heading)
                     mean = _add_flank_force(cut.flank, cut, tooth, piece, rotation, point, mean)
                     _note_blur(point, mean, force)
                 if steep_in and position - advance < entry <= position + _NUDGE:
@@ -258,7 +293,8 @@ def _store_motion(cut, rotation, point):
 @register_jitable(**INLINED)
 def _store_surface(cut, tooth, piece, position, rotation, point):
     """Let the flank store what surface lies behind the edge now."""
-    if position < cut.entry[piece] or position > cut.exit[piece]:
+    along = position + _heading(rotation, cut.edges)
+    if along < cut.entry[piece] or along > cut.exit[piece]:
         end_contact(cut.flank, tooth, piece)
         return
     sine, cosine = direction(cut.edges, tooth, piece, 0, rotation)
@@ -279,8 +315,9 @@ def _surfaces_behind(flank, cut, rotation, point):  # noqa: ARG001
         looked_back = False
         for piece in range(pieces):
             whole, part = spindle_bin(edges, tooth, piece, rotation.whole, rotation.part)
-            position = signed_bin(edges, whole, part)
-            if position < cut.entry[piece] - _MARGIN or position > cut.exit[piece] + _MARGIN:
+            position = _position(rotation, edges, whole, part)
+            along = position + _heading(rotation, edges)
+            if along < cut.entry[piece] - _MARGIN or along > cut.exit[piece] + _MARGIN:
                 continue
             if cut.helices > 1 or not looked_back:
                 _motion_since(cut, tooth, piece if cut.helices > 1 else 0, rotation, now)

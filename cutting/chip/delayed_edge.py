@@ -187,12 +187,13 @@ def _slice_at(cut, tooth, segment, position):
 
 
 @register_jitable(**INLINED)
-def _inside_arc(cut, tooth, segment, position):
+def _inside_arc(cut, tooth, segment, position, heading):
     """Part of a slice, from one t to another, that is between entry and exit."""
     lag = cut.edges.half_lag[tooth, segment]
     low, high = -1.0, 1.0
-    beyond, falls = position - cut.entry[segment], lag + cut.entry_rise[segment]
-    before, rises = cut.exit[segment] - position, lag + cut.exit_rise[segment]
+    entry, leave = cut.entry[segment] - heading, cut.exit[segment] - heading
+    beyond, falls = position - entry, lag + cut.entry_rise[segment]
+    before, rises = leave - position, lag + cut.exit_rise[segment]
     # beyond - t falls and before + t rises are not below zero
     if (falls == 0.0 and beyond < 0.0) or (rises == 0.0 and before < 0.0):
         return low, low
@@ -208,18 +209,18 @@ def _inside_arc(cut, tooth, segment, position):
 
 
 @register_jitable(**INLINED)
-def part_of_slice(cut, tooth, segment, position):
-    """Force of the part of a slice that is in the cut."""
-    low, high = _inside_arc(cut, tooth, segment, position)
+def part_of_slice(cut, tooth, segment, position, heading):
+    """Force of the part of a slice that is in the cut, whose feed has a heading, bins."""
+    low, high = _inside_arc(cut, tooth, segment, position, heading)
     return _part_of_span(cut, tooth, segment, _slice_at(cut, tooth, segment, position), low, high)
 
 
 @register_jitable(**INLINED)
-def straight_mean(cut, tooth, segment, position, rotation):
+def straight_mean(cut, tooth, segment, position, rotation, heading):
     """Force of a straight edge over the turn of a step, so that a jump keeps its impulse."""
     half = 0.5 * rotation.advance
-    low = max((cut.entry[segment] - position) / half, -1.0)
-    high = min((cut.exit[segment] - position) / half, 1.0)
+    low = max((cut.entry[segment] - heading - position) / half, -1.0)
+    high = min((cut.exit[segment] - heading - position) / half, 1.0)
     return _part_of_span(cut, tooth, segment, Span(position, -half, 0.0), low, high)
 
 

@@ -67,7 +67,7 @@ def delayed_cut(
         earlier=earlier,
         delay=np.ascontiguousarray(delay[:, :1] if alike else delay),
         radial_offset=np.ascontiguousarray(offset[earlier, pieces] - offset[:, :, None]),
-        history=_history(path),
+        history=motion_before(path),
         since=np.zeros((len(offset), 3)),
     )
 
@@ -87,7 +87,7 @@ def _rise(points: NDArray[np.float64], cutting: NDArray[np.bool_]) -> NDArray[np
     return rise
 
 
-def _history(path: NDArray[np.float64]) -> NDArray[np.float64]:
+def motion_before(path: NDArray[np.float64]) -> NDArray[np.float64]:
     """Motion over the last turn before the start, of a tool that has not vibrated: (2, bins, 3)."""
     bins = path.shape[1] - 1
     history = np.zeros((2, bins, 3))

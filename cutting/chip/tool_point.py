@@ -48,6 +48,27 @@ class Rotation(NamedTuple):
     y_before: float
 
 
+class TurningRotation(NamedTuple):
+    """Rotation on a path whose direction of feed turns; the fields of `Rotation`, and that."""
+
+    whole: int
+    part: float
+    sine: float
+    cosine: float
+    sine_before: float
+    cosine_before: float
+    whole_before: int
+    part_before: float
+    advance: float  # bins from the step before
+    speed: float  # rad/s
+    step: float  # s
+    x: float  # m
+    y: float
+    x_before: float
+    y_before: float
+    heading: float  # of the feed from +x towards +y, bins, 0 to a revolution
+
+
 def tool_point() -> ToolPoint:
     """Return a tool point at rest."""
     return ToolPoint(

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
@@ -45,6 +45,7 @@ class Block:
     feed: float  # m/s; infinite for as fast as the limits let it
     stops: bool = False  # at its end
     dwell: float = 0.0  # at rest behind its end, s
+    source: int = 0  # number of what it was made of, which a rounding keeps
 
 
 @dataclass(frozen=True)
@@ -93,11 +94,13 @@ def rounded(blocks: Sequence[Block], tolerance: float, limits: PathLimits) -> li
             end = element.end if after is None else _start(after)
             if math.dist(start, end) > 1e-9 * element.length:
                 element = SpatialLine(start, end)
-                found.append(Block(element, block.feed, block.stops, block.dwell))
+                found.append(replace(block, element=element))
         else:
             found.append(block)
         if number < len(arcs) and arcs[number] is not None:
-            found.append(Block(arcs[number], min(block.feed, blocks[number + 1].feed)))
+            following = blocks[number + 1]
+            feed = min(block.feed, following.feed)
+            found.append(Block(arcs[number], feed, source=following.source))
     return found
 
 

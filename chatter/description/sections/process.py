@@ -17,6 +17,7 @@ from chatter.description.quantities import (
     whole_number,
 )
 from chatter.description.section import Section, raise_if_any
+from chatter.description.sections.program import Program
 from chatter.description.units import rpm
 
 if TYPE_CHECKING:
@@ -261,11 +262,23 @@ class Simulation(Section):
     path: tuple[PlanePoint, ...] | None = Field(
         None, description="corners of the tool path, [x, y] each; dexel and voxel chips follow it"
     )
+    program: Program | None = Field(
+        None, description="NC program or recorded set points that the tool follows"
+    )
+
+    @property
+    def has_own_path(self) -> bool:
+        """Whether the tool follows a path that is not the straight one of [cut]."""
+        return self.path is not None or self.program is not None
 
     @model_validator(mode="after")
     def _check_length(self) -> Simulation:
-        both = self.duration is not None and self.revolutions is not None
-        raise_if_any([("", "give duration or revolutions, not both")] if both else [])
+        problems = []
+        if self.duration is not None and self.revolutions is not None:
+            problems.append(("", "give duration or revolutions, not both"))
+        if self.path is not None and self.program is not None:
+            problems.append(("", "give path or program, not both"))
+        raise_if_any(problems)
         return self
 
     @field_validator("path")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -48,8 +49,13 @@ def limits_of(section: MoveSection) -> PathLimits:
 def program_motion(
     program: NcProgram, limits: PathLimits, tolerance: float | None = None
 ) -> BlockMotion:
-    """Motion along all blocks of a program, its corners rounded within a tolerance, m, if given."""
-    blocks: Sequence[Block] = [one.block for one in program.blocks]
+    """Motion along all blocks of a program, its corners rounded within a tolerance, m, if given.
+
+    Blocks of the motion have the number of that of the program as their source.
+    """
+    blocks: Sequence[Block] = [
+        replace(one.block, source=number) for number, one in enumerate(program.blocks)
+    ]
     if tolerance is not None:
         blocks = rounded(blocks, tolerance, limits)
     return BlockMotion(tuple(blocks), limits)
