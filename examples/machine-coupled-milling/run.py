@@ -4,6 +4,7 @@ Blows on the table while Y moves, at rest and without friction; the contact of a
 the work, by torque impulses at the motor; hysteresis loop and torque over speed of Y.
 """
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,10 @@ from chatter.simulation.virtual_tests.frf import FrfResult, peaks
 from dynamics.frf.container import Frf
 
 HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE))
+
+from boring import BoringTrial, boring_trial, picture_of_trial  # noqa: E402
+
 BLOWS = ("moving", "rest", "no_friction")
 BORING = ("boring", "boring_in_cut")
 #: frequency raised by the contact, Hz, and share of the peak that it leaves (Figure 7a)
@@ -39,14 +44,18 @@ def main(out: Path) -> list[Path]:
     machine = chatter.load_machine(HERE / "machine.toml")
     blows = chatter.frf(machine, BLOWS)
     boring = chatter.frf(machine, BORING)
+    trial = boring_trial(machine)
     loop = chatter.move(machine, "circle")
     speed = torque_over_speed(machine)
     written = blows.save(out / "blows") + boring.save(out / "boring")
     written.append(picture_of_responses(blows, boring, out / "responses.png"))
+    picture_of_trial(trial).savefig(out / "boring.png")
+    written.append(out / "boring.png")
     written.append(picture_of_friction(loop, speed, out / "friction.png"))
     findings = [
         *of_blows(blows),
         *of_contact(boring, identified_contact(machine)),
+        *of_trial(trial),
         *of_friction(machine, loop, speed),
     ]
     written.append(write_findings(findings, out))
@@ -100,6 +109,19 @@ def of_contact(boring: FrfResult, identified: tuple[float, float]) -> list[Findi
         Finding("peak with them over without", LOWERED, held[1] / free[1], "", "Figure 7a"),
         Finding("contact stiffness identified", 2.50, stiffness * 1e-6, "N/um", "section 5"),
         Finding("contact damping identified", 3.35, damping * 1e-3, "kN s/m", "section 5"),
+    ]  # fmt: skip
+
+
+def of_trial(trial: BoringTrial) -> list[Finding]:
+    """Figure 6 beside the boring trial in time."""
+    source = "Figure 6, section 5"
+    return [
+        Finding("time of the pulse", 4.7, trial.released, "s", source, SELECTED),
+        Finding("vibration behind the pulse lasts", 0.2, trial.residual, "s", source),
+        Finding("force in y changed by the pulse, over its turning size", "a spike", trial.spike,
+                "", source),
+        Finding("insert from +y where the force in x is largest", 0.0, trial.angle_of_largest_fx,
+                "deg", source),
     ]  # fmt: skip
 
 

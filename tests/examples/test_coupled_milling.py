@@ -139,3 +139,28 @@ def test_contact_is_identified_from_the_pair_of_responses(machine):
     assert held[0] - free[0] == pytest.approx(2.0, abs=0.05)
     assert held[1] / free[1] == pytest.approx(0.627, rel=0.01)
     assert stiffness == pytest.approx(2.50e6, rel=0.15)
+
+
+def test_boring_trial_shows_the_spike_of_figure_6(machine):
+    trial = example_module("machine-coupled-milling", "boring").boring_trial(machine)
+    # the insert is at +y, after whole revolutions
+    assert trial.released * 3.0 == pytest.approx(round(trial.released * 3.0), abs=1e-3)
+    assert trial.released == pytest.approx(4.7, abs=0.05)
+    assert trial.residual == pytest.approx(0.2, rel=0.15)
+    assert trial.spike > 1.0
+    behind = trial.time > trial.released
+    before = (trial.time > 3.5) & ~behind
+    assert (
+        np.abs(trial.acceleration[behind]).max() > 20.0 * np.abs(trial.acceleration[before]).max()
+    )
+
+
+def test_the_force_of_boring_turns_with_the_insert(machine):
+    """Without contact: 1800 MPa on 2.5 by 0.1 mm and 40 N/mm on 2.5 mm make 550 N."""
+    boring = example_module("machine-coupled-milling", "boring")
+    free = machine.patch({"contact.stiffness": 1e-3, "contact.damping": 1e-3})
+    trial = boring.boring_trial(free)
+    before = (trial.time > 1.0) & (trial.time < trial.released)
+    size = np.hypot(*trial.force[before].T)
+    assert size == pytest.approx(np.full(size.size, 550.0), rel=1e-6)
+    assert trial.angle_of_largest_fx == pytest.approx(0.0, abs=0.5)
