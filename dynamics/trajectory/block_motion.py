@@ -25,13 +25,14 @@ from dynamics.trajectory.jerk_limited import reachable_speed, speed_change, spee
 from dynamics.trajectory.motion import Motion, TrajectoryError, require_positive
 from dynamics.trajectory.path_motion import Pieces
 from dynamics.trajectory.spatial_path import (
-    Element,
+    PathElement,
     SpatialArc,
     SpatialLine,
     SpatialPath,
     angle_between,
     rounding_arc,
 )
+from dynamics.trajectory.transition import Clothoid, eased_arc
 
 #: change of direction that counts as none, rad
 _STRAIGHT = 1e-6
@@ -41,7 +42,7 @@ _STRAIGHT = 1e-6
 class Block:
     """An element of a path, and how it is run through."""
 
-    element: Element
+    element: PathElement
     feed: float  # m/s; infinite for as fast as the limits let it
     stops: bool = False  # at its end
     dwell: float = 0.0  # at rest behind its end, s
@@ -66,6 +67,8 @@ class PathLimits:
         speed = min(self.velocity, block.feed)
         if element.bend == 0.0:
             return PathLimits(speed, self.acceleration, self.jerk)
+        if isinstance(element, Clothoid):
+            return self._on_transition(element, speed)
         across = self.acceleration / math.sqrt(2.0)
         speed = min(
             speed,
@@ -75,6 +78,60 @@ class PathLimits:
         # (j/4 + j/4)^2 + (3 p'' v a)^2 <= j^2
         along = min(across, math.sqrt(3.0) * self.jerk / (6.0 * element.bend * speed))
         return PathLimits(speed, along, 0.25 * self.jerk)
+
+    def _on_transition(self, element: Clothoid, speed: float) -> PathLimits:
+        """Limits on a transition, which is so short that nearly all of the jerk may turn it.
+
+        (0.8 j + 0.1 j)^2 + (3 p'' v a)^2 <= j^2
+        """
+        speed = min(
+            speed,
+            math.sqrt(0.9 * self.acceleration / element.bend),
+            (0.8 * self.jerk / element.twist) ** (1.0 / 3.0),
+        )
+        left = math.sqrt(1.0 - 0.9**2)
+        along = min(left * self.acceleration, left * self.jerk / (3.0 * element.bend * speed))
+        return PathLimits(speed, along, 0.1 * self.jerk)
+
+
+def eased(blocks: Sequence[Block], tolerance: float) -> list[Block]:
+    """Blocks with transitions between lines and their tangent arcs within a tolerance, m.
+
+    The acceleration then does not jump there. Arcs without two tangent lines, of more than 160
+    degrees, helices, and arcs too short for transitions stay as they are.
+    """
+    require_positive("motion of blocks", "tolerance", tolerance)
+    found = list(blocks)
+    for number in range(len(found) - 2, 0, -1):
+        before, block, after = found[number - 1 : number + 2]
+        arc = block.element
+        if (
+            not isinstance(arc, SpatialArc)
+            or not _passed(before, block)
+            or not _passed(block, after)
+        ):
+            continue
+        one, two = before.element, after.element
+        if not (isinstance(one, SpatialLine) and isinstance(two, SpatialLine)):
+            continue
+        made = eased_arc(one, arc, two, tolerance)
+        if made is None:
+            continue
+        ends = _start(made.into), _end(made.out)
+        found[number - 1 : number + 2] = [
+            replace(before, element=SpatialLine(one.start, ends[0])),
+            replace(block, element=made.into),
+            replace(block, element=made.arc),
+            replace(block, element=made.out),
+            replace(after, element=SpatialLine(ends[1], two.end)),
+        ]
+    return found
+
+
+def _passed(one: Block, two: Block) -> bool:
+    """Whether two blocks go on in one direction without a stop."""
+    stop = one.stops or one.dwell > 0.0
+    return not stop and angle_between(one.element, two.element) <= _STRAIGHT
 
 
 def rounded(blocks: Sequence[Block], tolerance: float, limits: PathLimits) -> list[Block]:
@@ -128,11 +185,11 @@ def _worth_rounding(
     return arc if 2.0 * slow_time + arc.length / slow + saved_way / feed < 2.0 * stop_time else None
 
 
-def _start(element: Element) -> tuple[float, float, float]:
+def _start(element: PathElement) -> tuple[float, float, float]:
     return tuple(element.at(np.array(0.0)).position.tolist())
 
 
-def _end(element: Element) -> tuple[float, float, float]:
+def _end(element: PathElement) -> tuple[float, float, float]:
     return tuple(element.at(np.array(element.length)).position.tolist())
 
 
@@ -202,8 +259,7 @@ class BlockMotion:
         """Speeds at the start, between blocks, and at the end."""
         speeds = [0.0]
         for number, (one, two) in enumerate(pairwise(self.blocks)):
-            stop = one.stops or one.dwell > 0.0
-            passed = not stop and angle_between(one.element, two.element) <= _STRAIGHT
+            passed = _passed(one, two)
             both = (limits[number].velocity, limits[number + 1].velocity)
             speeds.append(min(both) if passed else 0.0)
         speeds.append(0.0)

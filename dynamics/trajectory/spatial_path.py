@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -146,6 +146,28 @@ class SpatialArc:
 Element = SpatialLine | SpatialArc
 
 
+class PathElement(Protocol):
+    """What a path is made of: a line, an arc, or a transition between them."""
+
+    @property
+    def length(self) -> float:
+        """From start to end, m."""
+
+    @property
+    def bend(self) -> float:
+        """Largest size of d2p/ds2, 1/m."""
+
+    @property
+    def twist(self) -> float:
+        """Largest size of d3p/ds3, 1/m^2."""
+
+    def at(self, length: NDArray[np.float64]) -> PathPoint:
+        """Places at lengths (...), m."""
+
+    def distance(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Distance of points (n, 3) from the element, m."""
+
+
 @dataclass(frozen=True)
 class SpatialPath:
     """Elements one after the other.
@@ -153,7 +175,7 @@ class SpatialPath:
     TrajectoryError if there is none, or one does not start where the one before ends.
     """
 
-    elements: tuple[Element, ...]
+    elements: tuple[PathElement, ...]
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "elements", tuple(self.elements))
@@ -214,17 +236,17 @@ class PathInSpace:
         return self.path.distance(points)
 
 
-def start_of(element: Element) -> PathPoint:
+def start_of(element: PathElement) -> PathPoint:
     """Point where an element begins; each (3,)."""
     return element.at(np.array(0.0))
 
 
-def end_of(element: Element) -> PathPoint:
+def end_of(element: PathElement) -> PathPoint:
     """Point where an element ends; each (3,)."""
     return element.at(np.array(element.length))
 
 
-def angle_between(before: Element, after: Element) -> float:
+def angle_between(before: PathElement, after: PathElement) -> float:
     """Angle between the end of an element and the start of the next, rad."""
     one, two = end_of(before).tangent, start_of(after).tangent
     return math.atan2(float(np.linalg.norm(np.cross(one, two))), float(one @ two))

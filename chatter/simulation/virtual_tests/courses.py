@@ -15,7 +15,7 @@ from chatter.io.headings import named
 from chatter.io.nc_program.program import NcProgram, read_program
 from chatter.io.stated_columns import read_signal_table
 from dynamics.frf.container import MeasurementError
-from dynamics.trajectory.block_motion import Block, BlockMotion, PathLimits, rounded
+from dynamics.trajectory.block_motion import Block, BlockMotion, PathLimits, eased, rounded
 from dynamics.trajectory.motion import SomeCoordinates, TrajectoryError
 from dynamics.trajectory.recorded import RecordedMotion
 from dynamics.trajectory.spatial_path import PathInSpace
@@ -49,7 +49,9 @@ def limits_of(section: MoveSection) -> PathLimits:
 def program_motion(
     program: NcProgram, limits: PathLimits, tolerance: float | None = None
 ) -> BlockMotion:
-    """Motion along all blocks of a program, its corners rounded within a tolerance, m, if given.
+    """Motion along all blocks of a program, within a tolerance, m, if given.
+
+    Corners are then rounded, and the curvature between lines and arcs does not jump.
 
     Blocks of the motion have the number of that of the program as their source.
     """
@@ -57,7 +59,7 @@ def program_motion(
         replace(one.block, source=number) for number, one in enumerate(program.blocks)
     ]
     if tolerance is not None:
-        blocks = rounded(blocks, tolerance, limits)
+        blocks = eased(rounded(blocks, tolerance, limits), tolerance)
     return BlockMotion(tuple(blocks), limits)
 
 
