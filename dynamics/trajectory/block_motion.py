@@ -105,11 +105,7 @@ def eased(blocks: Sequence[Block], tolerance: float) -> list[Block]:
     for number in range(len(found) - 2, 0, -1):
         before, block, after = found[number - 1 : number + 2]
         arc = block.element
-        if (
-            not isinstance(arc, SpatialArc)
-            or not _passed(before, block)
-            or not _passed(block, after)
-        ):
+        if not isinstance(arc, SpatialArc) or not passed(before, block) or not passed(block, after):
             continue
         one, two = before.element, after.element
         if not (isinstance(one, SpatialLine) and isinstance(two, SpatialLine)):
@@ -128,7 +124,7 @@ def eased(blocks: Sequence[Block], tolerance: float) -> list[Block]:
     return found
 
 
-def _passed(one: Block, two: Block) -> bool:
+def passed(one: Block, two: Block) -> bool:
     """Whether two blocks go on in one direction without a stop."""
     stop = one.stops or one.dwell > 0.0
     return not stop and angle_between(one.element, two.element) <= _STRAIGHT
@@ -259,9 +255,8 @@ class BlockMotion:
         """Speeds at the start, between blocks, and at the end."""
         speeds = [0.0]
         for number, (one, two) in enumerate(pairwise(self.blocks)):
-            passed = _passed(one, two)
             both = (limits[number].velocity, limits[number + 1].velocity)
-            speeds.append(min(both) if passed else 0.0)
+            speeds.append(min(both) if passed(one, two) else 0.0)
         speeds.append(0.0)
         lengths = [block.element.length for block in self.blocks]
         for n, (length, limit) in enumerate(zip(lengths, limits, strict=True)):

@@ -86,6 +86,9 @@ class MoveSection(StateSection):
     tolerance: quantity("length", above=0.0) | None = Field(
         None, description="by which corners of an NC program may be rounded; exact by default"
     )
+    planner: Literal["blocks", "time-optimal"] | None = Field(
+        None, description="of an NC program: by blocks (default), or as fast as every axis lets it"
+    )
     cycle: quantity("time", above=0.0) | None = Field(
         None, description="interpolation cycle; that of the slowest position loop by default"
     )
@@ -197,7 +200,7 @@ COURSES: dict[str, CourseKind] = {
 OF_FILES: dict[str, dict[str, bool]] = {
     "nc program": {
         **dict.fromkeys(("file", *_LIMITS), True),
-        **dict.fromkeys(("addresses", "start", "tolerance"), False),
+        **dict.fromkeys(("addresses", "start", "tolerance", "planner"), False),
     },
     "recorded": {"file": True, **dict.fromkeys(_LIMITS, False)},
 }

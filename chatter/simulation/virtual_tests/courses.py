@@ -19,6 +19,7 @@ from dynamics.trajectory.block_motion import Block, BlockMotion, PathLimits, eas
 from dynamics.trajectory.motion import SomeCoordinates, TrajectoryError
 from dynamics.trajectory.recorded import RecordedMotion
 from dynamics.trajectory.spatial_path import PathInSpace
+from dynamics.trajectory.time_optimal import TimeOptimalMotion
 
 _LETTERS = "XYZ"
 #: instants between two recorded ones at which limits are looked at
@@ -78,7 +79,10 @@ def _of_program(section: MoveSection) -> Course:
                     f"{program.path}: line {one.line}: {letter} moves, but the move has "
                     f"{', '.join(section.letters)}"
                 )
-    motion = program_motion(program, limits_of(section), section.tolerance)
+    limits = limits_of(section)
+    motion: BlockMotion | TimeOptimalMotion = program_motion(program, limits, section.tolerance)
+    if section.planner == "time-optimal":
+        motion = TimeOptimalMotion(motion.blocks, limits)
     # corners that are rounded count as a contour error, as they do on a machine
     exact = BlockMotion(tuple(one.block for one in program.blocks), limits_of(section))
     return Course(SomeCoordinates(motion, coordinates), PathInSpace(exact.path, coordinates))
