@@ -20,6 +20,7 @@ from dynamics.machine.description import (
     Machine,
     MachineAxis,
     MachineParts,
+    ModeDamping,
     machine,
 )
 from dynamics.reduction.imported_part import ImportedPart, reduced_part
@@ -122,6 +123,7 @@ def machine_parts(
             )
         ],
         damping_ratio=file.damping_ratio,
+        mode_damping=[ModeDamping(band.from_, band.to, band.ratio) for band in file.mode_damping],
         allowed_rigid_motions=file.allowed_rigid_motions,
         highest_frequency=file.highest_frequency,
     )

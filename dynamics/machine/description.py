@@ -67,6 +67,14 @@ class FrictionAt:
     mode: int | None = None
 
 
+class ModeDamping(NamedTuple):
+    """Damping ratio of the modes whose undamped frequencies lie in a band."""
+
+    lowest: float  # Hz
+    highest: float  # Hz
+    ratio: float  # 1
+
+
 @dataclass(frozen=True, eq=False)
 class MachineParts:
     """Everything a machine is made of, at one position of its axes.
@@ -79,6 +87,8 @@ class MachineParts:
     frictions : sequence of FrictionAt
     damping_ratio : float
         Of every elastic mode, on top of the dampers; 1.
+    mode_damping : sequence of ModeDamping
+        Damping ratios of the modes in bands of frequency, in place of that.
     allowed_rigid_motions : int
         Free motions that are meant, besides those of free or controlled axes.
     highest_frequency : float, optional
@@ -96,6 +106,7 @@ class MachineParts:
     axes: Sequence[MachineAxis] = ()
     frictions: Sequence[FrictionAt] = ()
     damping_ratio: float = 0.0
+    mode_damping: Sequence[ModeDamping] = ()
     allowed_rigid_motions: int = 0
     highest_frequency: float | None = None
     kept_points: Sequence[str] | None = None
@@ -183,7 +194,7 @@ def machine(parts: MachineParts, conditions: Mapping[str, Condition] | None = No
         [rotor for drive in driven.values() for rotor in drive.rotors],
         [*parts.couplings, *(one for drive in driven.values() for one in drive.couplings), *brakes],
     )
-    structure = with_modal_damping(whole.structure, parts.damping_ratio)
+    structure = with_modal_damping(whole.structure, parts.damping_ratio, parts.mode_damping)
     full = Machine(
         structure,
         tuple(
@@ -238,18 +249,26 @@ def reduced(full: Machine, highest: float, kept_points: Sequence[str] | None = N
     )
 
 
-def with_modal_damping(structure: LinearStructure, ratio: float) -> LinearStructure:
-    """Structure with a damping ratio of all elastic modes on top of its dampers.
+def with_modal_damping(
+    structure: LinearStructure, ratio: float, bands: Sequence[ModeDamping] = ()
+) -> LinearStructure:
+    """Structure with damping ratios of its elastic modes on top of its dampers.
 
-    StructureError if the ratio is negative or not finite.
+    The ratio holds for all modes but those in bands, which have their own; of bands that overlap
+    the last one holds. StructureError if a ratio is negative or not finite.
     """
-    if not (np.isfinite(ratio) and ratio >= 0.0):
-        raise StructureError(f"damping ratio is {ratio}; it must be 0 or more")
-    if ratio == 0.0:
+    for one in (ratio, *(band.ratio for band in bands)):
+        if not (np.isfinite(one) and one >= 0.0):
+            raise StructureError(f"damping ratio is {one}; it must be 0 or more")
+    if ratio == 0.0 and not bands:
         return structure
     modes = undamped_modes(structure)
+    ratios = np.full(len(modes.frequency), ratio)
+    for band in bands:
+        inside = (modes.frequency >= band.lowest) & (modes.frequency <= band.highest)
+        ratios[inside] = band.ratio
     moved = structure.mass @ modes.shapes
-    added = (moved * (4.0 * np.pi * ratio * modes.frequency)) @ moved.T
+    added = (moved * (4.0 * np.pi * ratios * modes.frequency)) @ moved.T
     return replace(structure, damping=structure.damping + added)
 
 

@@ -213,7 +213,7 @@ def state_space_deviation(machine: MachineFile) -> float:
     """Largest deviation of the modal state space from the full model, over its largest value."""
     full = assembled_machine(machine.patch({"highest_frequency": None}), BRAKES, S2).structure
     modes = undamped_modes(full, 200.0)
-    modal = truncated(full, modes, machine.damping_ratio, residual_at=("tool", "work"))
+    modal = truncated(full, modes, residual_at=("tool", "work"))
     port = PointPort("tool", [1.0, 0.0, 0.0], "work")
     system = state_space(modal, [port], [port])
     row = port.row(full)

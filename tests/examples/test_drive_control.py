@@ -75,7 +75,7 @@ def test_higher_velocity_gain_raises_the_first_mode_and_lowers_its_frequency(mac
 
 def test_modal_state_space_below_200_hz_is_the_full_model(machine):
     full = assembled_machine(machine.patch({"highest_frequency": None}), BRAKES, S2).structure
-    modal = truncated(full, undamped_modes(full, 200.0), 0.015, residual_at=("tool", "work"))
+    modal = truncated(full, undamped_modes(full, 200.0), residual_at=("tool", "work"))
     port = PointPort("tool", [1.0, 0.0, 0.0], "work")
     system = state_space(modal, [port], [port])
     row = port.row(full)

@@ -175,3 +175,18 @@ class ContactSection(Section):
     stiffness: quantity("stiffness", at_least=0.0)
     damping: quantity("damping", at_least=0.0) = 0.0
     directions: tuple[Literal["x", "y", "z"], ...] = Field(("x", "y", "z"), min_length=1)
+
+
+class ModeDampingSection(Section):
+    """Damping ratio of the modes whose undamped frequencies lie in a band."""
+
+    from_: quantity("frequency", at_least=0.0) = Field(alias="from")
+    to: quantity("frequency", above=0.0)
+    ratio: quantity("number", at_least=0.0, below=1.0)
+
+    @model_validator(mode="after")
+    def _check_order(self) -> ModeDampingSection:
+        if self.from_ >= self.to:
+            text = f"from ({self.from_:g} Hz) is not less than to ({self.to:g} Hz)"
+            raise_if_any([("", f"the band is empty: {text}")])
+        return self

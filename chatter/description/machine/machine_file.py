@@ -14,6 +14,7 @@ from chatter.description.machine.bodies import (
     BodySection,
     ConnectorSection,
     ContactSection,
+    ModeDampingSection,
     PointSection,
 )
 from chatter.description.machine.compose import Composition
@@ -65,6 +66,9 @@ class MachineFile(Description):
     workpiece: str | None = Field(None, description="point that it is measured against")
     damping_ratio: quantity("number", at_least=0.0, below=1.0) = Field(
         0.0, description="of every elastic mode, on top of the dampers"
+    )
+    mode_damping: tuple[ModeDampingSection, ...] = Field(
+        (), description="damping ratios of the modes in bands of frequency, in place of that"
     )
     highest_frequency: quantity("frequency", above=0.0) | None = Field(
         None,

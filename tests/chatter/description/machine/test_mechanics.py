@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 import scipy.linalg
 
+from chatter import InputError
 from chatter.compile.machine_parts import assembled_machine, machine_parts
 from chatter.description.machine.machine_file import MachineFile
 from dynamics.beam.shaft import BeamLine, Bearing, Material, Segment
+from dynamics.reduction.modal_truncation import damping_ratios, undamped_modes
 from dynamics.structure.assembly import assemble
 from dynamics.structure.bodies import Body, Connector, Point
 
@@ -173,3 +175,35 @@ def test_disc_by_size_and_material_of_a_segment(head_on_beam):
     tube = 2700.0 * 0.2 * math.pi / 4 * (0.05**2 - 0.02**2)
     bar = 7850.0 * math.pi / 4 * 0.09**2
     assert weight == pytest.approx(bar + tube + made.discs[0].mass)
+
+
+def test_damping_by_mode():
+    """Two masses on springs, 20 and 50 Hz: the band takes one of them, the ratio the other."""
+    spring = {"ry": 1e9, "rx": 1e9, "rz": 1e9, "y": 1e9, "z": 1e9}
+    machine = MachineFile.from_dict(
+        {
+            "damping_ratio": 0.01,
+            "mode_damping": [{"from": "15 Hz", "to": "25 Hz", "ratio": "4 %"}],
+            "body": {
+                name: {"mass": 10.0, "inertia": [1.0, 1.0, 1.0], "centre": [at, 0.0, 0.0]}
+                for name, at in (("slow", 0.0), ("fast", 1.0))
+            },
+            "connector": {
+                name: {
+                    "between": [name, "ground"],
+                    "at": [at, 0.0, 0.0],
+                    "stiffness": spring | {"x": 10.0 * (2.0 * np.pi * frequency) ** 2},
+                }
+                for name, at, frequency in (("slow", 0.0, 20.0), ("fast", 1.0, 50.0))
+            },
+        }
+    )
+    structure = assembled_machine(machine).structure
+    modes = undamped_modes(structure)
+    assert modes.frequency[:2] == pytest.approx([20.0, 50.0], rel=1e-9)
+    assert damping_ratios(structure, modes)[:3] == pytest.approx([0.04, 0.01, 0.01], rel=1e-6)
+
+
+def test_an_empty_band_of_damping_is_refused():
+    with pytest.raises(InputError, match=r"mode_damping.*band is empty"):
+        MachineFile.from_dict({"mode_damping": [{"from": "25 Hz", "to": "15 Hz", "ratio": 0.04}]})
