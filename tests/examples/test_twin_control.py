@@ -87,3 +87,21 @@ def test_preload_closes_over_the_teeth_and_torque_is_shared(gepro, run):
     pushing = np.mean(np.sum(fast.teeth[accelerating], axis=1))
     assert pushing == pytest.approx(12_000.0 * 2.0, rel=0.02)
     assert np.ptp(fast.torque - fast.torque[:, :1], axis=0) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_heights_at_the_tip_are_near_those_of_the_chapter(hammered, run):
+    """Across within a factor of two of its measurement, along of its model."""
+    for name, frequency, model, measured in run.HEIGHTS:
+        height = run.peak_near(hammered[name], frequency, tested=True)["magnitude"] / 9.81
+        published = model if name == "tip_z" else measured
+        assert 0.5 < height / published < 2.0, (name, frequency)
+
+
+def test_the_frame_in_six_configurations(comau, run):
+    assert len(run.CONFIGURATIONS) == 6
+    for curve in run.in_configurations(comau):
+        for frequency in run.PUBLISHED["frame_x"]:
+            found = [run.peak_near(curve, frequency, tested) for tested in (False, True)]
+            # the chapter's own margin, and a little for positions that it does not give
+            assert found[0]["frequency_Hz"] == pytest.approx(frequency, rel=0.13)
+            assert found[1]["frequency_Hz"] == pytest.approx(found[0]["frequency_Hz"], rel=1e-3)
