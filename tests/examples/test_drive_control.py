@@ -7,10 +7,11 @@ import chatter
 from chatter.compile.linearised_friction import linearised_frf
 from chatter.compile.machine_parts import assembled_machine
 from chatter.simulation.virtual_tests.frf import peaks
+from chatter.simulation.virtual_tests.from_file import one_frf
 from dynamics.frf.container import Frf
 from dynamics.receptance.coupling import PointPort
 from dynamics.reduction.modal_truncation import state_space, truncated, undamped_modes
-from tests.places import EXAMPLES
+from tests.places import EXAMPLES, example_module
 
 EXAMPLE = EXAMPLES / "machine-drive-control" / "machine.toml"
 BRAKES = {"X": "brake", "Y": "brake", "Z": "brake"}
@@ -84,3 +85,19 @@ def test_modal_state_space_below_200_hz_is_the_full_model(machine):
         exact = row @ np.linalg.solve(dynamic, row)
         inner = np.linalg.solve(1j * omega * np.eye(len(system.a)) - system.a, system.b)
         assert (system.c @ inner + system.d)[0, 0] == pytest.approx(exact, rel=0.01)
+
+
+def test_the_shaker_shows_its_mode_and_adds_its_mass(machine):
+    """On a rigid tool alone F/F_motor is 1 / (1 - (f / 250)^2); FRFs over the force keep peaks."""
+    shaker = example_module("machine-drive-control", "shaker")
+    tested = shaker.shaken(machine, S2, BRAKES)
+    quiet = (tested.frequency > 45.0) & (tested.frequency < 65.0)
+    wanted = 1.0 / (1.0 - (tested.frequency[quiet] / shaker.NATURAL) ** 2)
+    assert tested.transmitted[quiet] == pytest.approx(wanted, rel=0.05)
+    assert tested.transmitted[-1] > 1.5
+    ideal = one_frf(machine, "brake", machine.frf["brake"]).tested
+    for frequency in (38.0, 110.0):
+        near = np.abs(tested.frequency / frequency - 1.0) < 0.04
+        lines = np.abs(ideal.frequency / frequency - 1.0) < 0.04
+        ratio = np.abs(tested.receptance[near]).max() / np.abs(ideal.values[lines]).max()
+        assert ratio == pytest.approx(1.0, abs=0.15)
