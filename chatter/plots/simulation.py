@@ -14,6 +14,7 @@ from chatter.description.arrays import Array
 from chatter.description.units import rpm
 from chatter.plots import style
 from chatter.plots.workpiece import draw_workpiece
+from chatter.simulation.tool_course import ToolCourse
 from cutting.chip.discrete_chip import DiscreteCut
 
 if TYPE_CHECKING:
@@ -28,6 +29,8 @@ _SHOWN_TURNS = 3.0
 #: feed shown of a profile, in revolutions
 _PROFILE_TURNS = 12.0
 _TITLE_WIDTH = 140
+#: parts of a programmed path that are coloured
+_PARTS_OF_PATH = 1500
 #: a component smaller than this share of the largest is left out
 _NOTHING = 1e-6
 #: the spectrum goes this far above the highest mode, or to this harmonic of the tooth passing
@@ -60,9 +63,46 @@ def plot_simulation(result: SimulationResult) -> Figure:
             panel.set_title(f"workpiece {height:.2g} mm above the tip", loc="left")
             draw_workpiece(panel, result, layer)
         return figure
+    if isinstance(result.setup.path, ToolCourse):
+        draw_course(figure.add_subplot(bottom[0]), result)
+        draw_feed(figure.add_subplot(bottom[1]), result)
+        return figure
     draw_wall(figure.add_subplot(bottom[0]), result)
     draw_profiles(figure.add_subplot(bottom[1]), result)
     return figure
+
+
+def draw_course(axes: Axes, result: SimulationResult) -> None:
+    """Draw the path of the tool along a program, coloured by the force on it."""
+    x, y = 1e3 * result.setup.path.position_at(result.time)
+    size = np.linalg.norm(result.force, axis=1)
+    a_part = max(1, len(size) // _PARTS_OF_PATH)
+    count = len(size) // a_part
+    largest = size[: count * a_part].reshape(count, a_part).max(axis=1)
+    at = slice(0, count * a_part, a_part)
+    axes.plot(x, y, color=style.GREY, linewidth=0.8)
+    drawn = axes.scatter(x[at], y[at], c=largest, s=9.0, cmap="viridis", zorder=3)
+    axes.figure.colorbar(drawn, ax=axes, label="largest force [N]")
+    axes.set_aspect("equal", "datalim")
+    axes.set_title("path of the tool", loc="left")
+    axes.set_xlabel("x [mm]")
+    axes.set_ylabel("y [mm]")
+    style.finish(axes)
+
+
+def draw_feed(axes: Axes, result: SimulationResult) -> None:
+    """Draw feed and spindle speed along a program over time."""
+    x, y = result.setup.path.position_at(result.time)
+    feed = 60e3 * np.hypot(np.gradient(x, result.time), np.gradient(y, result.time))
+    axes.plot(result.time, feed, color=style.BLUE, linewidth=1.2)
+    axes.set_title("feed, and spindle speed", loc="left")
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel("feed [mm/min]", color=style.BLUE)
+    style.finish(axes)
+    other = axes.twinx()
+    other.plot(result.time, rpm(result.spindle_speed), color=style.ORANGE, linewidth=1.2)
+    other.set_ylabel("spindle speed [rpm]", color=style.ORANGE)
+    other.set_ylim(0.0, None)
 
 
 def _shows_workpiece(result: SimulationResult) -> bool:

@@ -198,3 +198,11 @@ def test_a_saved_case_finds_its_program(tmp_path):
     Case.from_file(tmp_path / "case.toml").save(tmp_path / "deep" / "case.toml")
     again = Case.from_file(tmp_path / "deep" / "case.toml")
     assert simulate(again).setup.path.duration == pytest.approx(0.134, abs=0.01)
+
+
+def test_the_picture_shows_path_and_feed(tmp_path):
+    result = simulate(programmed(tmp_path, "G1 X2 F900\nG1 Y2\n")())
+    titles = [axes.get_title(loc="left") for axes in result.plot().axes]
+    assert "path of the tool" in titles
+    assert "feed, and spindle speed" in titles
+    assert {path.name for path in result.save(tmp_path / "out")} >= {"simulate.png", "summary.json"}
