@@ -8,6 +8,8 @@ options_as_one    commands of many options take them as one dataclass
 imported_commands commands are imported when they are called, and help imports none
 progress          progress bars; what the first use takes
 results           what every command does with its result
+report            `--report` of every command
+command_line      words of the command line as they were typed
 errors            one clear message and an exit code for every error
 ================= ============================================================================
 """

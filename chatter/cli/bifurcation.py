@@ -18,6 +18,7 @@ from chatter.description.errors import InputError
 from chatter.description.path import field_at, parse_path
 from chatter.description.ranges import without_count
 from chatter.description.usual_units import usual_unit
+from chatter.report.console import print_line
 
 if TYPE_CHECKING:
     from chatter.studies.bifurcation import BifurcationDiagram
@@ -83,9 +84,9 @@ def _print_onsets(diagram: BifurcationDiagram) -> None:
     def value_of(point: dict) -> str:
         return f"{point['value'] * unit.factor:.5g} {unit.name}".rstrip()
 
-    typer.echo(f"{value_of(points[0])}: {points[0]['verdict']}")
+    print_line(f"{value_of(points[0])}: {points[0]['verdict']}")
     for before, point in itertools.pairwise(points):
         if point["verdict"] != before["verdict"]:
             frequency = point["chatter_frequency_Hz"]
             at = f" at {frequency:.1f} Hz ({point['bifurcation']})" if frequency else ""
-            typer.echo(f"from {value_of(point)}: {point['verdict']}{at}")
+            print_line(f"from {value_of(point)}: {point['verdict']}{at}")

@@ -8,7 +8,9 @@ import typer
 
 from chatter.cli import options
 from chatter.cli.progress import progress_bar
-from chatter.report.console import print_json, print_line, print_notes, print_table, print_written
+from chatter.cli.results import print_result, print_sentences
+from chatter.report.console import print_notes, print_table, print_written
+from chatter.report.recording import document
 
 if TYPE_CHECKING:
     from chatter.stability.check import StabilityCheck
@@ -36,10 +38,14 @@ def check(
     with progress_bar("critical depth at this speed") as progress:
         result = run_check(description, method, progress)
     options.print_coefficients(description)
-    if json:
-        print_json(result.summary())
-    else:
-        _print_verdict(result)
+    print_result(result, json=json, words=_print_verdict)
+    report = document()
+    if report is not None:
+        from chatter.plots.check import plot_check
+        from chatter.plots.style import png_of
+        from chatter.report.document import Picture
+
+        report.pictures.append(Picture("stability over axial depth", png_of(plot_check(result))))
     print_notes(result.notes)
     if out is not None:
         print_written(result.save(out))
@@ -48,6 +54,5 @@ def check(
 
 
 def _print_verdict(result: StabilityCheck) -> None:
-    for line in result.sentences():
-        print_line(line)
+    print_sentences(result)
     print_table("", ["quantity", "value"], result.rows())

@@ -11,7 +11,7 @@ from chatter.cli import options
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
 from chatter.description.errors import InputError
-from chatter.report.console import print_table, print_written
+from chatter.report.console import print_line, print_notes, print_table, print_written
 
 if TYPE_CHECKING:
     from chatter.cutting_coefficients.result import Coefficients
@@ -61,8 +61,8 @@ def _print_coefficients(found: Coefficients) -> None:
     print_table(title, ["coefficient", "value", "+-", "unit"], rows)
     if summary["holdout_error"]:
         worst = max(summary["holdout_error"].values())
-        typer.echo(f"mean forces of a cut held out are predicted to {worst:.1%} or better")
+        print_line(f"mean forces of a cut held out are predicted to {worst:.1%} or better")
     for name, sign in summary["signs"].items():
-        typer.echo(f"{name} is taken {'as it is' if sign > 0.0 else 'with its sign turned'}")
+        print_line(f"{name} is taken {'as it is' if sign > 0.0 else 'with its sign turned'}")
     for note in summary["notes"]:
-        typer.echo(f"note: {note}", err=True)
+        print_notes([note])

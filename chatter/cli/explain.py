@@ -11,7 +11,7 @@ import typer
 from chatter.cli import options
 from chatter.cli.progress import progress_bar, report_stage
 from chatter.cli.results import present
-from chatter.report.console import print_table
+from chatter.report.console import print_answer, print_line, print_table
 
 if TYPE_CHECKING:
     from chatter.explain.explanation import Explanation
@@ -48,7 +48,7 @@ def print_checks(checks: list[dict[str, str]]) -> None:
 
     fatal = [one for one in checks if one["severity"] == "fatal"]
     for one in fatal or checks:
-        typer.echo(f"{one['description']} ({FOLLOWS[one['severity']]})")
+        print_line(f"{one['description']} ({FOLLOWS[one['severity']]})")
 
 
 def _print_explanation(result: Explanation) -> None:
@@ -56,7 +56,7 @@ def _print_explanation(result: Explanation) -> None:
     from chatter.explain.selection.discriminating_test import in_words
 
     summary = result.summary()
-    typer.echo(f"verdict: {summary['verdict']}")
+    print_answer(f"verdict: {summary['verdict']}")
     print_checks(summary["checks"])
     for effect in summary["effects"]:
         rows = [
@@ -73,21 +73,21 @@ def _print_explanation(result: Explanation) -> None:
         )
         print_table(title, ["parameter", "value", "unit", "95 % interval"], rows)
         if effect["confounded_with"]:
-            typer.echo(
+            print_line(
                 f"the data do not discriminate against: {', '.join(effect['confounded_with'])}"
             )
         for name, test in effect["discriminating_test"].items():
-            typer.echo(f"  {in_words(name, test)}")
+            print_line(f"  {in_words(name, test)}")
     helping = [one["name"] for one in summary.get("partial", ())]
     if helping:
-        typer.echo(f"may explain a part, not added: {', '.join(helping)}")
+        print_line(f"may explain a part, not added: {', '.join(helping)}")
     for term in summary.get("empirical", ()):
-        typer.echo(
+        print_line(
             f"learnt over the {term['over']}, explains nothing: error of holdout runs "
             f"{term['holdout_before']:.4g} to {term['holdout_after']:.4g} of the signal"
         )
     for one in summary["out_of_tolerance"]:
-        typer.echo(
+        print_line(
             f"out of tolerance: {one['path']} declared {one['declared']:.5g}, refitted "
             f"{one['refitted']:.5g} ({one['standard_deviations']:+.1f} standard deviations)"
         )
@@ -96,14 +96,14 @@ def _print_explanation(result: Explanation) -> None:
     rows = [[key, f"{value:.4g}"] for key, value in error.items() if isinstance(value, float)]
     print_table("error, rms over signal", ["", ""], rows)
     if summary["next_measurement"] is not None:
-        typer.echo(in_words_next(summary["next_measurement"]))
+        print_line(in_words_next(summary["next_measurement"]))
     signature = summary["signature"]
     if signature["refitted"] is None:
         return
     dependence = signature["residual_dependence"]
     if dependence is not None:
-        typer.echo(f"residual dependence: {dependence['description']}")
-    typer.echo("residual of the refitted case:")
+        print_line(f"residual dependence: {dependence['description']}")
+    print_line("residual of the refitted case:")
     print_diagnostics(signature["refitted"])
 
 
@@ -124,13 +124,13 @@ def _print_refitted(summary: dict[str, Any]) -> None:
         columns = ["declared value", "declared [SI]", "refitted [SI]", "change", "tolerances"]
         print_table("refitted", columns, rows)
     for remark in summary.get("remarks", ()):
-        typer.echo(remark)
+        print_line(remark)
 
 
 def print_diagnostics(signature: dict) -> None:
     """Print what the diagnostics of a residual find."""
     for one in signature["diagnostics"]:
         if one["significant"]:
-            typer.echo(f"  {one['description']}")
+            print_line(f"  {one['description']}")
     if signature["no_significant_dependence"]:
-        typer.echo(f"  {signature['no_significant_dependence']}")
+        print_line(f"  {signature['no_significant_dependence']}")

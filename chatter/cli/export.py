@@ -9,7 +9,7 @@ import typer
 from chatter.cli import options
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
-from chatter.report.console import print_table
+from chatter.report.console import print_notes, print_table
 
 if TYPE_CHECKING:
     from chatter.simulation.virtual_tests.export import StateSpaceExport
@@ -47,4 +47,4 @@ def _print_export(found: StateSpaceExport) -> None:
     ]
     print_table(f"{summary['states']} states", ["", "place", "unit"], rows)
     for note in summary["notes"]:
-        typer.echo(f"note: {note}", err=True)
+        print_notes([note])

@@ -14,7 +14,7 @@ from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
 from chatter.description.errors import InputError
 from chatter.description.units import QuantityError, parse
-from chatter.report.console import print_table
+from chatter.report.console import print_line, print_table
 
 if TYPE_CHECKING:
     from chatter.drive_friction.result import DriveFriction
@@ -130,12 +130,12 @@ def _print_friction(found: DriveFriction) -> None:
     for one in summary["laws"]:
         error = one["holdout_error"]
         words = one["reason"] or ("not judged" if error is None else f"{error:.1%}")
-        typer.echo(
+        print_line(
             f"{one['law']}: error on parts held out {words}"
             if error is not None
             else f"{one['law']}: {words}"
         )
-    typer.echo(
+    print_line(
         f"left of the effort below {summary['low_pass_Hz']:g} Hz: {summary['residual']:.1%} of its "
         "deviation"
     )

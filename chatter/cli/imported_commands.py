@@ -12,6 +12,8 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
+from chatter.cli.command_line import TYPED
+
 
 def in_a_line(name: str) -> str:
     """First line of the docstring of a command, read without importing it."""
@@ -56,14 +58,21 @@ class ImportedCommands(MutableMapping[str, Any]):
 
 def _imported(name: str) -> Any:
     from chatter.cli.errors import reports_errors
+    from chatter.cli.report import with_report
 
     alone = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
-    alone.command(name)(reports_errors(getattr(import_module(f"chatter.cli.{name}"), name)))
+    command = with_report(getattr(import_module(f"chatter.cli.{name}"), name))
+    alone.command(name)(reports_errors(command))
     return typer.main.get_command(alone)
 
 
 class CommandGroup(TyperGroup):
     """Group that lists its commands without importing them."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Leave the words as they were typed, for the report."""
+        TYPED.set(tuple(args))
+        return super().parse_args(ctx, args)
 
     def list_commands(self, ctx: Any) -> list[str]:  # noqa: ARG002 (as typer calls it)
         """Names in the order of the list."""

@@ -21,7 +21,7 @@ from chatter.cli.options import (
 from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import progress_bar, report_stage
 from chatter.cli.results import present
-from chatter.report.console import print_table
+from chatter.report.console import print_line, print_table
 
 if TYPE_CHECKING:
     from chatter.learning.learn import Learnt
@@ -86,7 +86,7 @@ def _print_learnt(found: Learnt) -> None:
     print_table(title, ["value", "declared", "+-", "learnt", "+-"], rows)
     verdicts = summary["verdicts"]
     if verdicts["judged"]:
-        typer.echo(
+        print_line(
             f"{verdicts['right']} of {verdicts['judged']} verdicts are as the learnt case has them"
         )
     _print_next_cut(summary)
@@ -95,12 +95,12 @@ def _print_learnt(found: Learnt) -> None:
 def _print_next_cut(summary: dict) -> None:
     chosen = summary["next_cut"]
     if chosen is None:
-        typer.echo("no cut of the diagram is within the risk; allow more by --risk")
+        print_line("no cut of the diagram is within the risk; allow more by --risk")
         return
-    typer.echo(
+    print_line(
         f"next cut: {chosen['axial_depth_mm']:.3g} mm at {chosen['spindle_speed_rpm']:.0f} rpm, "
         f"stable with a probability of {chosen['probability_of_stability']:.0%}, expected to give "
         f"{chosen['expected_information_bit']:.2g} bit"
     )
     if summary["nothing_left_to_learn"]:
-        typer.echo("no cut is expected to say more: the limits are as sure as tests scatter")
+        print_line("no cut is expected to say more: the limits are as sure as tests scatter")

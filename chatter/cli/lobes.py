@@ -24,7 +24,7 @@ from chatter.cli.progress import progress_bar
 from chatter.cli.results import present, print_sentences
 from chatter.description.case import Case
 from chatter.description.errors import InputError
-from chatter.report.console import print_table
+from chatter.report.console import print_answer, print_line, print_table
 
 if TYPE_CHECKING:
     from chatter.stability.diagram import StabilityDiagram
@@ -152,14 +152,14 @@ def _print_diagram(diagram: StabilityDiagram) -> None:
         rows,
     )
     if lowest["critical_depth_mm"] is not None:
-        typer.echo(
+        print_line(
             f"stable at any of these speeds below {_rounded_down(lowest['critical_depth_mm'])} mm "
             f"(lowest limit {lowest['critical_depth_mm']:.4g} mm, "
             f"at {lowest['spindle_speed_rpm']:.0f} rpm, "
             f"chatter at {lowest['chatter_frequency_Hz']:.0f} Hz)"
         )
     limit = operating["critical_depth_mm"]
-    typer.echo(
+    print_answer(
         f"operating point {operating['spindle_speed_rpm']:.0f} rpm, "
         f"{operating['axial_depth_mm']:.4g} mm: "
         f"{'stable' if operating['stable'] else 'chatter'}; "
@@ -167,7 +167,7 @@ def _print_diagram(diagram: StabilityDiagram) -> None:
     )
     error = summary["resolution"]["estimated_error"]
     accuracy = "" if error is None else f"; limits accurate to {max(error, 1e-6):.1g}"
-    typer.echo(f"method: {summary['method']}{accuracy}")
+    print_line(f"method: {summary['method']}{accuracy}")
 
 
 def _millimetres(depth: float | None, max_depth: float) -> str:

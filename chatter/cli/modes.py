@@ -12,7 +12,7 @@ from chatter.cli import options
 from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
-from chatter.report.console import print_table
+from chatter.report.console import print_line, print_table
 
 if TYPE_CHECKING:
     from chatter.studies.modal_test import ModalTest
@@ -82,8 +82,8 @@ def _print_modes(result: ModalTest) -> None:
     ]
     print_table("modes", ["frequency [Hz]", "damping", "mass [kg]", "fit error"], rows)
     for record in summary["records"]["excluded"]:
-        typer.echo(f"excluded {record['record']}: {record['reason']}")
-    typer.echo(
+        print_line(f"excluded {record['record']}: {record['reason']}")
+    print_line(
         f"synthesis error {summary['fit_error']['maximum']:.2%} of the peak at most, "
         f"{summary['fit_error']['rms']:.2%} rms, {summary['band_Hz'][0]:.0f} to "
         f"{summary['band_Hz'][1]:.0f} Hz"

@@ -7,7 +7,7 @@ import typer
 from chatter.cli import options
 from chatter.cli.errors import EXIT_RUN_FAILED
 from chatter.cli.progress import progress_bar
-from chatter.report.console import print_json, print_table, print_written
+from chatter.report.console import print_json, print_line, print_table, print_written
 
 
 def move(
@@ -60,4 +60,4 @@ def _print_errors(summaries: dict) -> None:
         titles = ["axis", "motor [um]", "scale [um]", "tool [um]", "effort"]
         print_table(f"{name}: largest set less actual", titles, rows)
         if summary["contour_error_um"] is not None:
-            typer.echo(f"largest contour error {summary['contour_error_um']:.4g} um")
+            print_line(f"largest contour error {summary['contour_error_um']:.4g} um")

@@ -13,6 +13,7 @@ from chatter.description.case import Case, load
 from chatter.description.material_words import coefficients_in_words, notes_on_material
 from chatter.description.patchable import Description
 from chatter.report.console import print_message, print_notes
+from chatter.report.recording import document
 from chatter.stability.registry import AUTO, METHODS
 
 if TYPE_CHECKING:
@@ -62,6 +63,9 @@ def patched_case(path: Path, assignments: list[str] | None) -> Case:
 
 def print_coefficients(case: Case) -> None:
     """Print the coefficients of a case on stderr, with the source of a named material."""
+    report = document()
+    if report is not None:
+        report.add_description(case)
     sentence = coefficients_in_words(case)
     if sentence is not None:
         print_message(sentence)
@@ -79,6 +83,9 @@ def _patched(described: Described, assignments: list[str] | None) -> Described:
     values = parse_assignments(assignments or [])
     refuse_bare_speed_assignments(type(described), values)
     patched = described.patch(values) if values else described
+    report = document()
+    if report is not None:
+        report.add_description(patched)
     print_notes(patched.notes)
     return patched
 

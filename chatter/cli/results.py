@@ -5,7 +5,16 @@ from pathlib import Path
 from typing import Protocol, TypeVar
 
 from chatter.cli.progress import running
-from chatter.report.console import print_json, print_line, print_notes, print_written
+from chatter.report.console import (
+    print_answer,
+    print_json,
+    print_line,
+    print_notes,
+    print_written,
+    stdout_for_json,
+)
+from chatter.report.methods import methods_of
+from chatter.report.recording import document
 
 
 class Saved(Protocol):
@@ -38,12 +47,23 @@ def present(
     """
     with running("writing the results"):
         written = (save or result.save)(folder)
-    if json:
-        print_json(result.summary())
-    else:
-        words(result)
+    print_result(result, json=json, words=words)
     print_notes(notes)
     print_written(written)
+
+
+def print_result(result: Result, *, json: bool, words: Callable[[Result], None]) -> None:
+    """Print a result, as JSON or in words; a report has the words of both."""
+    report = document()
+    if report is not None:
+        report.methods.extend(methods_of(result.summary()))
+    if not json:
+        words(result)
+        return
+    if report is not None:
+        with stdout_for_json():
+            words(result)
+    print_json(result.summary())
 
 
 class WithSentences(Saved, Protocol):
@@ -56,5 +76,7 @@ class WithSentences(Saved, Protocol):
 
 def print_sentences(result: WithSentences) -> None:
     """Print the sentences of a result."""
-    for line in result.sentences():
+    first, *others = result.sentences()
+    print_answer(first)
+    for line in others:
         print_line(line)

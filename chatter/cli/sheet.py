@@ -10,7 +10,7 @@ import typer
 from chatter.cli import options
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
-from chatter.report.console import print_table
+from chatter.report.console import print_line, print_table
 
 if TYPE_CHECKING:
     from chatter.operator_sheet.sheet import Sheet
@@ -43,7 +43,7 @@ def _print_sheet(found: Sheet) -> None:
         texts = [["" if row[i] is None else f"{row[i]}" for i in _COLUMNS] for row in rows]
         print_table(rows[0][0], [HEADERS[i] for i in _COLUMNS], texts)
         if one.variation is not None:
-            typer.echo(
+            print_line(
                 f"{one.case.name}: spindle-speed variation of {one.variation.amplitude:.0%} at "
                 f"{one.variation.frequency:.2g} Hz raises the limit of the stated cut"
             )

@@ -13,7 +13,7 @@ from chatter.cli.errors import EXIT_RUN_FAILED
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
 from chatter.io.recorded_columns import KINDS, require_kind
-from chatter.report.console import print_table
+from chatter.report.console import print_answer, print_line, print_table
 
 if TYPE_CHECKING:
     from chatter.simulation.result import SimulationResult
@@ -75,21 +75,21 @@ def _print_summary(result: SimulationResult) -> None:
     rows = [[name, f"{peak[name]:.4g}", f"{mean[name]:.4g}"] for name in peak]
     print_table("force on the tool, settled cut", ["", "peak [N]", "mean [N]"], rows)
     power = summary["power"]
-    typer.echo(
+    print_line(
         f"power {power['mean_W']:.4g} W mean, {power['peak_W']:.4g} W peak; "
         f"torque {power['mean_torque_Nm']:.3g} N m mean"
     )
-    typer.echo(
+    print_line(
         f"cutting speed {summary['cutting_speed_m_per_min']:.4g} m/min, "
         f"feed rate {summary['feed_rate_mm_per_min']:.4g} mm/min; "
         f"displacement {summary['peak_displacement_um']:.3g} um peak"
     )
     _print_transient(summary)
     for line in _surface(summary, math.degrees(result.setup.cutter.edge_angle)):
-        typer.echo(line)
+        print_line(line)
     frequency = summary["chatter_frequency_Hz"]
     at = "" if frequency is None else f" at {frequency:.1f} Hz"
-    typer.echo(f"{summary['verdict']}{at}: {summary['reason']}")
+    print_answer(f"{summary['verdict']}{at}: {summary['reason']}")
 
 
 def _surface(summary: dict, edge_angle: float) -> list[str]:
@@ -127,4 +127,4 @@ def _print_transient(summary: dict) -> None:
         if start[key] > _NOTABLE * summary[key]
     ]
     if above:
-        typer.echo(f"at the start, until {start['until_s']:.3g} s: up to {' and '.join(above)}")
+        print_line(f"at the start, until {start['until_s']:.3g} s: up to {' and '.join(above)}")

@@ -22,6 +22,7 @@ from chatter.cli.options import (
 from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import announce_resumed, progress_bar
 from chatter.cli.results import present
+from chatter.report.console import print_line
 
 if TYPE_CHECKING:
     from chatter.studies.uncertainty.monte_carlo import Uncertainty
@@ -69,7 +70,7 @@ def _print_probability(found: Uncertainty) -> None:
     summary = found.summary()
     point, limit = summary["operating_point"], summary["limit_at_operating_speed_mm"]
     low, high = point["confidence_interval_95"]
-    typer.echo(
+    print_line(
         f"{point['axial_depth_mm']:.4g} mm at {point['spindle_speed_rpm']:.0f} rpm is stable with "
         f"a probability of {point['probability_of_stability']:.1%} (95 % confidence: {low:.1%} to "
         f"{high:.1%}, {summary['samples']} samples)"
@@ -78,9 +79,9 @@ def _print_probability(found: Uncertainty) -> None:
         "none found" if limit[key] is None else f"{limit[key]:.4g} mm"
         for key in ("5_percent", "50_percent", "95_percent")
     ]
-    typer.echo(f"critical depth there: median {ends[1]}, 5 % below {ends[0]}, 5 % above {ends[2]}")
+    print_line(f"critical depth there: median {ends[1]}, 5 % below {ends[0]}, 5 % above {ends[2]}")
     for line in _lines_on_variance(found.shares()):
-        typer.echo(line)
+        print_line(line)
 
 
 def _lines_on_variance(shares: dict[str, float | None]) -> list[str]:

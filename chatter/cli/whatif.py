@@ -24,6 +24,7 @@ from chatter.cli.results import present, print_sentences
 from chatter.description.assignments import parse_assignments
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from chatter.report.console import print_line
 
 if TYPE_CHECKING:
     from chatter.studies.whatif.preset_studies import PresetStudy
@@ -139,11 +140,11 @@ def _list_studies() -> None:
     from chatter.studies.whatif.preset_studies import preset_studies
 
     for one in preset_studies().values():
-        typer.echo(f"{one.name}: {one.question}")
-        typer.echo(f"    chatter whatif --study {one.name}      (example {one.example})")
+        print_line(f"{one.name}: {one.question}")
+        print_line(f"    chatter whatif --study {one.name}      (example {one.example})")
         for each in one.vary:
-            typer.echo(f"    --vary '{each}'")
+            print_line(f"    --vary '{each}'")
         for path, value in one.settings.items():
-            typer.echo(f"    with {path} = {value}")
+            print_line(f"    with {path} = {value}")
         flag = " --tornado" if one.tornado else ""
-        typer.echo(f"    --result {one.result}{flag}")
+        print_line(f"    --result {one.result}{flag}")

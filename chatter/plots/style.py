@@ -1,5 +1,6 @@
 """One look for every picture: readable in print, distinguishable without colour vision."""
 
+from io import BytesIO
 from os import PathLike
 from typing import IO, Any
 
@@ -36,6 +37,13 @@ def write_png(figure: Figure, file: str | PathLike | IO[bytes]) -> None:
     picture = Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3])
     resolution = (figure.dpi, figure.dpi)
     picture.save(file, format="png", dpi=resolution, compress_level=_COMPRESSION)
+
+
+def png_of(figure: Figure) -> bytes:
+    """Return a figure of `new_figure` as PNG."""
+    buffer = BytesIO()
+    write_png(figure, buffer)
+    return buffer.getvalue()
 
 
 def mark_cut(axes: Any, cut: Cut, label: str, **look: Any) -> None:

@@ -1,25 +1,43 @@
-"""Tables, lines and notes on the terminal; where files were written."""
+"""Tables, lines and notes on the terminal and in the report; where files were written."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from chatter.report.recording import document
+
 #: messages go to stderr, so that stdout holds results alone
 MESSAGES = Console(stderr=True, highlight=False, soft_wrap=True)
 RESULTS = Console(highlight=False, soft_wrap=True)
 
 
+@contextmanager
+def stdout_for_json() -> Iterator[None]:
+    """Keep words off stdout, which JSON has for itself; a report still takes them."""
+    RESULTS.quiet = True
+    try:
+        yield
+    finally:
+        RESULTS.quiet = False
+
+
 def print_json(summary: dict) -> None:
     """Print a summary as JSON on stdout."""
-    RESULTS.print(json.dumps(summary, indent=2), markup=False)
+    RESULTS.print(json.dumps(summary, indent=2), markup=False, emoji=False)
 
 
 def print_table(title: str, headers: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
     """Print a table on stdout."""
+    report = document()
+    if report is not None:
+        from chatter.report.document import Table as ReportTable
+
+        report.parts.append(ReportTable(title, list(headers), [list(row) for row in rows]))
     # as text: a unit in brackets is no markup
     table = Table(title=Text(title), title_justify="left")
     for header in headers:
@@ -29,23 +47,40 @@ def print_table(title: str, headers: Sequence[str], rows: Sequence[Sequence[str]
     RESULTS.print(table)
 
 
+def print_answer(text: str) -> None:
+    """Print the sentence that answers what the command was asked."""
+    report = document()
+    if report is not None:
+        report.add_answer(text)
+    RESULTS.print(text, markup=False, emoji=False)
+
+
 def print_line(text: str) -> None:
     """Print a line of a result on stdout."""
-    RESULTS.print(text, markup=False)
+    report = document()
+    if report is not None:
+        report.parts.append(text)
+    RESULTS.print(text, markup=False, emoji=False)
 
 
 def print_message(text: str) -> None:
     """Print a message on stderr."""
-    MESSAGES.print(text, markup=False)
+    MESSAGES.print(text, markup=False, emoji=False)
 
 
 def print_notes(notes: Sequence[str]) -> None:
     """Print what the user should know of a result."""
+    report = document()
     for note in notes:
+        if report is not None:
+            report.add_note(note)
         print_message(f"note: {note}")
 
 
 def print_written(paths: Sequence[Path]) -> None:
     """Print where files were written."""
+    report = document()
+    if report is not None:
+        report.add_written(paths)
     for path in paths:
         print_message(f"wrote {path}")
