@@ -41,11 +41,10 @@ def check(
     print_result(result, json=json, words=_print_verdict)
     report = document()
     if report is not None:
-        from chatter.plots.check import plot_check
         from chatter.plots.style import png_of
         from chatter.report.document import Picture
 
-        report.pictures.append(Picture("stability over axial depth", png_of(plot_check(result))))
+        report.pictures.append(Picture("stability over axial depth", png_of(result.plot())))
     print_notes(result.notes)
     if out is not None:
         print_written(result.save(out))

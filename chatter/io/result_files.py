@@ -74,7 +74,15 @@ def short_repr(result: Any) -> str:
     return f"<{type(result).__name__} {words}>".replace(" >", ">")
 
 
-class SavedResult:
+class NotebookResult:
+    """A result with `.plot()`, which a notebook shows with its sentences."""
+
+    def _repr_html_(self) -> str:
+        """Return the sentences and the picture; notebooks ask for them by this name."""
+        return presentation("report.notebook").notebook_page(self)
+
+
+class SavedResult(NotebookResult):
     """A result that draws itself and writes its files: base of results, which give their tables."""
 
     #: module of pictures and function in it, such as "plots.whatif.plot_whatif"

@@ -16,7 +16,13 @@ from chatter.detection.chatter_detection import Detection
 from chatter.engine.record import largest_between_steps
 from chatter.io.presentation import presentation
 from chatter.io.recorded_columns import write_columns
-from chatter.io.result_files import as_json, finite_or_none, short_repr, write_results
+from chatter.io.result_files import (
+    NotebookResult,
+    as_json,
+    finite_or_none,
+    short_repr,
+    write_results,
+)
 from chatter.simulation.carved_workpiece import carving_notes
 from chatter.simulation.finish import Finish, finish_of, scallop_height
 from chatter.simulation.setup import Setup
@@ -31,7 +37,7 @@ _SETTLED_SHARE = 0.5
 
 
 @dataclass(frozen=True, repr=False)
-class SimulationResult:
+class SimulationResult(NotebookResult):
     """Signals of a simulated cut and what follows from them.
 
     Parameters

@@ -1,7 +1,10 @@
 """Verdict on the operating point of a case."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,7 +15,14 @@ from chatter.description.progress import Progress, no_progress
 from chatter.description.questioned import question_of_spectral_radius
 from chatter.description.units import rpm
 from chatter.detection.bifurcation_type import bifurcation_of_multiplier
-from chatter.io.result_files import as_json, finite_or_none, short_repr, write_results
+from chatter.io.result_files import (
+    NotebookResult,
+    as_json,
+    finite_or_none,
+    presentation,
+    short_repr,
+    write_results,
+)
 from chatter.stability.forced_vibration import notes_on_steady_cut
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
@@ -29,12 +39,15 @@ from chatter.stability.stability_method import Multiplier
 from chatter.stability.steady_flank import about_steady_motion
 from cutting.engagement.immersion import slice_engagement
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 #: bifurcation -> words
 _KINDS = {"hopf": "quasi-periodic", "flip": "period doubling", "fold": "cyclic fold"}
 
 
 @dataclass(frozen=True, repr=False)
-class StabilityCheck:
+class StabilityCheck(NotebookResult):
     """Stability of the operating point of a case.
 
     Parameters
@@ -161,6 +174,10 @@ class StabilityCheck:
         reached = self.max_depth >= tool.depth_that_tool_allows * (1.0 - 1e-9)
         why = f", tool.{tool.limiting_length}" if reached else ""
         return f"no limit up to {1e3 * self.max_depth:.4g} mm{why}"
+
+    def plot(self) -> Figure:
+        """Return the stable depths at the operating speed as a matplotlib figure."""
+        return presentation("plots.check").plot_check(self)
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write check.json and return its path in a list."""
