@@ -51,7 +51,7 @@ def print_answer(text: str) -> None:
     """Print the sentence that answers what the command was asked."""
     report = document()
     if report is not None:
-        report.add_answer(text)
+        report.add_answer(text.strip())
     RESULTS.print(text, markup=False, emoji=False)
 
 
@@ -59,7 +59,7 @@ def print_line(text: str) -> None:
     """Print a line of a result on stdout."""
     report = document()
     if report is not None:
-        report.parts.append(text)
+        report.parts.append(text.strip())
     RESULTS.print(text, markup=False, emoji=False)
 
 

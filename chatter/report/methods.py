@@ -59,8 +59,8 @@ METHODS = {
     ),
     "modes": Method(
         "Which modes does the measured response have?",
-        "Rational fraction fit in the frequency domain with a stabilisation diagram, refined by "
-        "nonlinear least squares (Peeters et al., 2004; Golub and Pereyra, 1973).",
+        "Poly-reference least-squares complex frequency with a stabilisation diagram (Peeters et "
+        "al., 2004; Cauberghe et al., 2005), refined by maximum likelihood.",
     ),
     "compare": Method(
         "How far is the prediction of the case from the measurement?",
