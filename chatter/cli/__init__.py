@@ -49,6 +49,7 @@ COMMANDS = (
     "materials",
     "examples",
     "schema",
+    "app",
     "doctor",
 )
 

@@ -1,0 +1,83 @@
+"""Computations of a session, in a thread of their own: the newest one waits, a failure is shown."""
+
+import threading
+from collections.abc import Callable
+from typing import NamedTuple
+
+from chatter.description.errors import InputError, RunError
+from chatter.description.progress import Progress
+
+
+class SupersededError(Exception):
+    """A newer computation waits, or the user has given this one up."""
+
+
+class Computation(NamedTuple):
+    """What to compute, and whether a newer computation may end it."""
+
+    run: Callable[[Progress], None]  # of a callable that may raise to give up
+    may_be_superseded: bool
+
+
+class Computations:
+    """Runs one computation at a time; of those that wait, only the newest is kept.
+
+    Parameters
+    ----------
+    report : callable
+        Called with a sentence for the user, empty when all is well.
+    """
+
+    def __init__(self, report: Callable[[str], None]) -> None:
+        self._report = report
+        self._changed = threading.Condition()
+        self._waiting: tuple[Computation, ...] = ()
+        self._running = False
+        self._cancelled = False
+        threading.Thread(target=self._work, daemon=True).start()
+
+    def start(self, *steps: Computation) -> None:
+        """Compute the steps one after the other, in place of those that still wait."""
+        with self._changed:
+            self._waiting = steps
+            self._changed.notify_all()
+
+    def cancel(self) -> None:
+        """Give up what is computed and what waits."""
+        with self._changed:
+            self._waiting = ()
+            self._cancelled = self._running
+
+    def wait(self, longest: float) -> bool:
+        """Wait until nothing is left to compute; False after the time `longest`, s."""
+        with self._changed:
+            return self._changed.wait_for(lambda: not (self._waiting or self._running), longest)
+
+    def _work(self) -> None:
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: bool(self._waiting))
+                step, *rest = self._waiting
+                self._waiting, later = (), tuple(rest)
+                self._running, self._cancelled = True, False
+            self._run(step)
+            with self._changed:
+                self._running = False
+                if not self._waiting and not self._cancelled:
+                    self._waiting = later
+                self._changed.notify_all()
+
+    def _run(self, step: Computation) -> None:
+        def go_on(*_: object) -> None:
+            if self._cancelled or (step.may_be_superseded and self._waiting):
+                raise SupersededError
+
+        try:
+            step.run(go_on)
+        except SupersededError:
+            if self._cancelled:
+                self._report("cancelled")
+        except (InputError, RunError) as error:
+            self._report(str(error))
+        except Exception as error:  # whatever fails, the page lives on
+            self._report(f"a fault in chatter itself ({type(error).__name__}: {error})")
