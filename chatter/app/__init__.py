@@ -8,5 +8,6 @@ live_case      diagrams, simulated points and case files for values of the slide
 newest_request the newest request wins: older computations are given up
 server         HTTP on the loopback interface alone
 page           HTML, style and script of the page
+workbench      `chatter app`: the cases of a folder, on Panel with Bokeh (extra `app`)
 ============== =====================================================================
 """
