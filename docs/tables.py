@@ -72,9 +72,9 @@ def effects() -> str:
 
 def commands() -> str:
     """Commands with their first line of help."""
-    from chatter.cli import COMMANDS, app
+    from chatter.cli import COMMANDS, program
 
-    group = typer.main.get_command(app)
+    group = typer.main.get_command(program)
     rows = []
     for name in COMMANDS:
         one = group.commands[name]

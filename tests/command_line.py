@@ -3,9 +3,9 @@
 from click.testing import Result
 from typer.testing import CliRunner
 
-from chatter.cli import app
+from chatter.cli import program
 
 
 def chatter_command(*words) -> Result:
     """Result of ``chatter WORDS...``: exit code, what went to stdout and to stderr."""
-    return CliRunner().invoke(app, [str(word) for word in words])
+    return CliRunner().invoke(program, [str(word) for word in words])

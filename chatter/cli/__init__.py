@@ -63,7 +63,7 @@ class _Group(CommandGroup):
         self.commands = ImportedCommands(COMMANDS)
 
 
-app = typer.Typer(
+program = typer.Typer(
     name="chatter",
     cls=_Group,
     help="Chatter and stability of milling, and the machines that it happens on.",
@@ -73,11 +73,11 @@ app = typer.Typer(
 )
 
 
-@app.callback()
+@program.callback()
 def _of_all() -> None:
     """Chatter and stability of milling, and the machines that it happens on."""
 
 
 def main() -> None:
     """Run the command line."""
-    app()
+    program()

@@ -75,8 +75,6 @@ class WithSentences(Saved, Protocol):
 
 
 def print_sentences(result: WithSentences) -> None:
-    """Print the sentences of a result."""
-    first, *others = result.sentences()
-    print_answer(first)
-    for line in others:
-        print_line(line)
+    """Print the sentences of a result; one that found nothing has none."""
+    for number, sentence in enumerate(result.sentences()):
+        (print_line if number else print_answer)(sentence)

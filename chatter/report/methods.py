@@ -115,6 +115,10 @@ METHODS = {
     ),
     "examples": Method("Which examples are shipped?", "List of the examples in the package."),
     "schema": Method("Which keys may a file have?", "JSON schema, made from the descriptions."),
+    "app": Method(
+        "Which cuts are stable, seen in the browser?",
+        "Stability diagrams of the cases of a folder, drawn again at each change of a value.",
+    ),
     "doctor": Method(
         "Is the installation right?", "Versions, cache, and answers known in closed form."
     ),

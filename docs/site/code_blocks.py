@@ -127,7 +127,7 @@ class Runner:
     def _command(self, block: Block, line: str) -> str:
         from typer.testing import CliRunner
 
-        from chatter.cli import app
+        from chatter.cli import program
 
         words = shlex.split(line, comments=True)
         if not words:
@@ -139,7 +139,7 @@ class Runner:
             raise BlockError(f"{self.page}:{block.line}: {words[0]} is not chatter")
         if self.installed:
             return installed_package.command(Path.cwd(), words[1:])
-        result = CliRunner().invoke(app, words[1:])
+        result = CliRunner().invoke(program, words[1:])
         if result.exit_code != 0:
             raise BlockError(f"{self.page}:{block.line}: {line}\n{result.output}")
         return result.stdout + result.stderr

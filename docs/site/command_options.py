@@ -43,7 +43,7 @@ def _section(name: str, command: Any) -> str:
 
 def page() -> str:
     """Return the page."""
-    from chatter.cli import COMMANDS, app
+    from chatter.cli import COMMANDS, program
 
-    group = typer.main.get_command(app)
+    group = typer.main.get_command(program)
     return "\n".join([_HEAD, *(_section(name, group.commands[name]) for name in COMMANDS)])

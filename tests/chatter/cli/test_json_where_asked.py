@@ -5,14 +5,14 @@ import json
 import pytest
 import typer.main
 
-from chatter.cli import COMMANDS, app
+from chatter.cli import COMMANDS, program
 from tests.cases import TOOL_OF_922_HERTZ
 from tests.command_line import chatter_command
 from tests.places import ROOT
 
 #: the result is a JSON schema, or a case file
 WITHOUT_JSON = {"new", "schema"}
-GROUP = typer.main.get_command(app)
+GROUP = typer.main.get_command(program)
 
 CASE = f"""{TOOL_OF_922_HERTZ}
 [lobes]

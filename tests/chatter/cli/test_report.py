@@ -8,7 +8,7 @@ import pytest
 import typer.main
 
 from chatter import __version__
-from chatter.cli import COMMANDS, app
+from chatter.cli import COMMANDS, program
 from chatter.report.methods import METHODS
 from tests.cases import TOOL_OF_922_HERTZ
 from tests.command_line import chatter_command
@@ -60,7 +60,7 @@ def page_of(path):
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_every_command_has_it_and_says_what_it_answers(name):
-    command = typer.main.get_command(app).commands[name]
+    command = typer.main.get_command(program).commands[name]
     assert "--report" in [word for one in command.params for word in one.opts]
     assert METHODS[name].question
     assert METHODS[name].how

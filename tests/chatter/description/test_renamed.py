@@ -3,7 +3,7 @@
 import pytest
 from typer.testing import CliRunner
 
-from chatter.cli import app
+from chatter.cli import program
 from chatter.description.case import Case, loads
 from chatter.description.machine.machine_file import MachineFile
 from chatter.description.renamed import CASE, MACHINE, rename
@@ -135,5 +135,5 @@ def test_both_names_at_once_are_an_error():
 def test_commands_print_the_note(tmp_path):
     path = tmp_path / "case.toml"
     path.write_text(OLD)
-    answer = CliRunner().invoke(app, ["check", str(path)])
+    answer = CliRunner().invoke(program, ["check", str(path)])
     assert 'is now called "full_engagement_share"' in " ".join(answer.output.split())

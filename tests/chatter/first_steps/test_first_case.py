@@ -4,7 +4,7 @@ import pytest
 from typer.testing import CliRunner
 
 import chatter
-from chatter.cli import app
+from chatter.cli import program
 from chatter.description.case import loads
 from chatter.description.errors import InputError
 from chatter.first_steps.first_case import QUESTIONS, first_case
@@ -59,7 +59,7 @@ def test_wrong_answers_are_told(name, answer, said, tmp_path):
 def test_the_questions_are_asked_again_until_answered(tmp_path):
     file = tmp_path / "first.toml"
     words = "16 mm\n16 mm, 2\n\n\n\n\n"
-    shown = CliRunner().invoke(app, ["new", str(file)], input=words)
+    shown = CliRunner().invoke(program, ["new", str(file)], input=words)
     assert shown.exit_code == 0, shown.output
     assert chatter.load(file).tool.teeth == 2
     again = chatter_command("new", file)
@@ -68,7 +68,7 @@ def test_the_questions_are_asked_again_until_answered(tmp_path):
 
 
 def test_nobody_to_ask(tmp_path):
-    shown = CliRunner().invoke(app, ["new", str(tmp_path / "x.toml")], input="")
+    shown = CliRunner().invoke(program, ["new", str(tmp_path / "x.toml")], input="")
     assert shown.exit_code != 0
     assert "--tool" in shown.stderr
 
