@@ -1,5 +1,7 @@
 """MAT files of MATLAB: version 4 to 7 by scipy, version 7.3 (HDF5) by h5py."""
 
+import struct
+import zlib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -17,6 +19,8 @@ from dynamics.frf.container import MeasurementError
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 #: how deep structures of structures are followed
 _DEPTH = 4
+#: type of a compressed data element of version 5, and bytes unpacked at a time
+_COMPRESSED, _BLOCK = 15, 2**20
 
 
 def read_variables(path: Path) -> Table:
@@ -35,6 +39,7 @@ def _of_version_5(path: Path) -> dict[str, np.ndarray]:
     try:
         shapes = [shape for _, shape, _ in scipy.io.whosmat(path)]
         require_size(path, 8.0 * sum(float(np.prod(shape, dtype=float)) for shape in shapes))
+        _require_unpacked_size(path)
         content = scipy.io.loadmat(path)
     except MeasurementError:
         raise
@@ -42,6 +47,28 @@ def _of_version_5(path: Path) -> dict[str, np.ndarray]:
         raise MeasurementError(f"{path}: is no MAT file that can be read: {error}") from error
     variables = {name: one for name, one in content.items() if not name.startswith("__")}
     return dict(_leaves(variables))
+
+
+def _require_unpacked_size(path: Path) -> None:
+    """Unpack the compressed variables of version 5, block by block, as far as is allowed.
+
+    Shapes alone do not bound them: those of a structure say nothing about its fields. Source:
+    MathWorks, MAT-File Format, data element of type miCOMPRESSED.
+    """
+    content = read_content(path)
+    order = {b"IM": "<", b"MI": ">"}.get(content[126:128])
+    unpacked, position = 0, 128
+    while order is not None and position + 8 <= len(content):
+        kind, size = struct.unpack_from(f"{order}II", content, position)
+        packed = content[position + 8 : position + 8 + size]
+        position += 8 + size
+        if kind != _COMPRESSED:
+            continue
+        inflation = zlib.decompressobj()
+        while packed and not inflation.eof:
+            unpacked += len(inflation.decompress(packed, _BLOCK))
+            require_size(path, float(unpacked))
+            packed = inflation.unconsumed_tail
 
 
 def _leaves(variables: dict[str, Any], depth: int = 0) -> Iterator[tuple[str, np.ndarray]]:

@@ -41,6 +41,7 @@ def read_columns(path: Path) -> Table:
 def read_matrices(path: Path) -> list[StoredMatrix]:
     """Matrix of `scipy.sparse.save_npz`, or the one plain array of an archive."""
     with path.open("rb") as file, zipfile.ZipFile(file) as archive:
+        require_size(path, float(sum(one.file_size for one in archive.infolist())))
         names = [Path(name).stem for name in archive.namelist()]
         file.seek(0)
         arrays = np.load(file, allow_pickle=False)

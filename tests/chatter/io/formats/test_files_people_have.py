@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy.io
 
-from chatter.io.formats import named_arrays
+from chatter.io.formats import named_arrays, npz
 from chatter.io.formats.format_list import format_of, read_frfs
 from chatter.io.hammer_records import is_hammer_record, read_hammer_record
 from chatter.io.stated_columns import read_signal_table
@@ -237,6 +237,23 @@ def test_what_unpacks_to_too_much_is_refused(tmp_path, name, monkeypatch):
     assert path.stat().st_size < 2**14
     with pytest.raises(MeasurementError, match="unpacks to 2 MB; at most 1 MB"):
         read(path)
+
+
+def test_fields_of_a_structure_that_unpack_to_too_much_are_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(named_arrays, "LARGEST_FILE", 2**20)
+    path = tmp_path / "tap.mat"
+    scipy.io.savemat(path, {"tap": {"force_N": np.zeros(2**19)}}, do_compression=True)
+    assert path.stat().st_size < 2**14
+    with pytest.raises(MeasurementError, match=r"tap\.mat: its content unpacks to .* at most 1 MB"):
+        read(path)
+
+
+def test_matrix_that_unpacks_to_too_much_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(named_arrays, "LARGEST_FILE", 2**20)
+    path = tmp_path / "mass.npz"
+    np.savez_compressed(path, mass=np.zeros((512, 512)))
+    with pytest.raises(MeasurementError, match=r"mass\.npz: its content unpacks to 2 MB"):
+        npz.read_matrices(path)
 
 
 @pytest.mark.parametrize("separator", ["\t", " ", ",", ";"])
