@@ -3,6 +3,7 @@
 import ast
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -240,6 +241,20 @@ def test_cache_folder_changes_with_every_source(sources):
     assert len(seen) == 4
     (sources / "cutting/force/directional_coefficients.py").rename(sources / "cutting/renamed.py")
     assert source_hash(sources) not in seen
+
+
+def test_layers_above_compiled_code_leave_the_cache_alone(sources):
+    """An edit of a command or a picture compiles nothing anew; these layers have no kernel."""
+    from chatter.engine.presets import ABOVE_COMPILED, source_hash
+
+    first = source_hash(sources)
+    kernel = re.compile(r"^\s*@(\w+\.)?(njit|jit|leaf|overload)\b", re.MULTILINE)
+    for layer in ABOVE_COMPILED:
+        path = sources / "chatter" / layer / "__init__.py"
+        path.write_text(path.read_text(encoding="utf-8") + "\n# edited\n", encoding="utf-8")
+        for module in (sources / "chatter" / layer).rglob("*.py"):
+            assert not kernel.search(module.read_text(encoding="utf-8")), module
+    assert source_hash(sources) == first
 
 
 @pytest.mark.parametrize("library", ["numba", "llvmlite", "numpy", "scipy"])
