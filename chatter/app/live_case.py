@@ -19,6 +19,7 @@ from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.methods.collocation.varying_speed import LOOSE_FIT
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel, milling_model
+from chatter.stability.pockets import Pocket, find_pockets
 from chatter.stability.registry import chosen_method, fixed_steps
 from chatter.stability.search_range import beyond_the_cut, maximum_depth, spindle_speeds
 from dynamics.modal.modes import inside_band
@@ -103,6 +104,9 @@ class LiveCase:
         below = int((operating.crossings[0] < cut.axial_depth).sum())
         lowest = int(np.argmin(curve.critical_depth))
         feed_per_turn = cut.feed_per_tooth * case.tool.teeth
+        removal_area = case.width_of_cut * feed_per_turn / (2.0 * math.pi)
+        limits = curve.critical_depth
+        pockets = find_pockets(curve.spindle_speed, limits, max_depth, removal_area)
         return {
             "stage": stage,
             "spindle_speed_rpm": _numbers(rpm(curve.spindle_speed)),
@@ -113,6 +117,7 @@ class LiveCase:
                 mode.frequency for mode in inside_band(model.structure.modes)
             ],
             "max_axial_depth_mm": max_depth * 1e3,
+            "pockets": [_pocket(one) for one in pockets] if stage == "fine" else [],
             "lowest": {
                 "depth_mm": _number(float(curve.critical_depth[lowest]) * 1e3),
                 "spindle_speed_rpm": rpm(float(curve.spindle_speed[lowest])),
@@ -179,6 +184,15 @@ class LiveCase:
             for path in ("lobes.speeds.from", "lobes.speeds.to"):
                 wanted[path] = self.by_path[path].text(view[path])
         return self.case.patch(wanted).to_toml() if wanted else self.case.to_toml()
+
+
+def _pocket(found: Pocket) -> dict[str, float | None]:
+    return {
+        "spindle_speed_rpm": rpm(found.spindle_speed),
+        "axial_depth_mm": found.axial_depth * 1e3,
+        "critical_depth_mm": _number(found.critical_depth * 1e3),
+        "removal_rate_cm3_per_min": found.removal_rate * 6e7,
+    }
 
 
 def _check_point(view: Mapping[str, float], speed: float, depth: float) -> None:

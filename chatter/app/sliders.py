@@ -158,16 +158,35 @@ def _direction(mode: Any) -> str:
 
 
 def _of_process(case: Case) -> Iterator[Slider]:
-    given, contact, group = case.process_damping, case.contact, "Process damping and contact"
-    if given is not None and given.coefficient is not None:
-        value, path = given.coefficient * 1e-3, "process_damping.coefficient"
-        yield _from_zero(path, group, "process damping", "N/mm", value, 100.0)
+    """What a case may lack, such as process damping, begins at zero: what if it were there."""
+    given, contact, group = case.process_damping, case.contact, "Process damping, wear, friction"
+    if given is None or given.coefficient is not None:
+        value, path = (0.0 if given is None else given.coefficient) * 1e-3, "coefficient"
+        yield _from_zero(f"process_damping.{path}", group, "process damping", "N/mm", value, 100.0)
+    if given is not None:
+        most = max(1.0, given.friction)
+        yield Slider(
+            "process_damping.friction", group, "ploughing friction", "", given.friction, 0.0, most
+        )
+    yield from _of_wear(case, group)
     if given is not None and given.indentation_force is not None:
         path = "process_damping.indentation_force"
         yield _around(path, group, "indentation force", "N/mm^3", given.indentation_force)
     if contact is not None:
         value, path = contact.stiffness * 1e-6, "contact.stiffness"
         yield _from_zero(path, group, "contact stiffness", "N/um", value, 1.0)
+
+
+def _of_wear(case: Case, group: str) -> Iterator[Slider]:
+    worn = _rounded((case.tool.flank_wear or 0.0) * 1e3)
+    yield _from_zero("tool.flank_wear", group, "flank wear", "mm", worn, 0.3)
+    if case.wear is not None:
+        spent = _rounded((case.cut.cut_time or 0.0) / 60.0)
+        yield _from_zero("cut.cut_time", group, "cutting time", "min", spent, 60.0)
+    for name, law in case.friction.items():
+        if law.coulomb is not None:
+            path = f"friction.{name}.coulomb"
+            yield _from_zero(path, group, f"friction {name}", "N", _rounded(law.coulomb), 100.0)
 
 
 #: unit -> dimension, for the factor to SI

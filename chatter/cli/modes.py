@@ -12,6 +12,7 @@ from chatter.cli import options
 from chatter.cli.options_as_one import takes_options
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
+from chatter.description.errors import InputError
 from chatter.report.console import print_line, print_table
 
 if TYPE_CHECKING:
@@ -40,6 +41,14 @@ class ModesOptions:
     mode_count: Annotated[
         int | None, typer.Option("--mode-count", help="Fix the number of modes.")
     ] = None
+    pole: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--pole",
+            metavar="HZ,DAMPING",
+            help="Refine this pole of the stabilisation diagram, such as 922,0.03; repeatable.",
+        ),
+    ] = None
     columns: options.Columns = None
     out: options.OutputFolder = None
     json: options.Json = False
@@ -59,6 +68,7 @@ def modes(options_: ModesOptions) -> None:
             band=options_.band,
             mode_count=options_.mode_count,
             columns=options_.columns,
+            poles=_poles(options_.pole),
         )
     present(
         result,
@@ -67,6 +77,21 @@ def modes(options_: ModesOptions) -> None:
         words=_print_modes,
         notes=[*result.notes, *result.fit.warnings],
     )
+
+
+def _poles(given: list[str] | None) -> list[tuple[float, float]] | None:
+    """Frequencies, Hz, and damping ratios; InputError for what is no pair of numbers."""
+    found = []
+    for text in given or ():
+        try:
+            frequency, damping = map(float, text.split(","))
+        except ValueError:
+            raise InputError(
+                f"--pole {text}: a frequency in Hz and a damping ratio are required, "
+                "such as 922,0.03"
+            ) from None
+        found.append((frequency, damping))
+    return found or None
 
 
 def _print_modes(result: ModalTest) -> None:

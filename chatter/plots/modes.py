@@ -11,7 +11,12 @@ from dynamics.identification.result import FrfModel, ModalFit
 #: FRFs side by side in one picture
 _MOST_COLUMNS = 4
 _CURVE_POINTS = 4000
-_UNIT = {"receptance": ("um/N", 1e6), "mobility": ("mm/s/N", 1e3), "accelerance": ("m/s²/N", 1.0)}
+#: quantity of an FRF -> unit in pictures, factor from SI
+FRF_UNITS = {
+    "receptance": ("um/N", 1e6),
+    "mobility": ("mm/s/N", 1e3),
+    "accelerance": ("m/s²/N", 1.0),
+}
 
 
 def plot_fit(fit: ModalFit, title: str) -> Figure:
@@ -54,7 +59,7 @@ def _fitted_lines(fit: ModalFit) -> np.ndarray:
 
 def draw_magnitude(axes: Axes, fit: ModalFit, frf: Frf, model: FrfModel) -> None:
     """Draw the magnitude, logarithmic, with the modes marked."""
-    unit, factor = _UNIT[frf.quantity]
+    unit, factor = FRF_UNITS[frf.quantity]
     lines = _fitted_lines(fit)
     axes.semilogy(
         frf.frequency,

@@ -154,6 +154,7 @@ def modes(
     band: tuple[float, float] | None = None,
     mode_count: int | None = None,
     columns: str | None = None,
+    poles: Sequence[tuple[float, float]] | None = None,
 ) -> ModalTest:
     """Identify modal parameters from measured FRFs, or from hammer records.
 
@@ -173,6 +174,9 @@ def modes(
     columns : str, optional
         Names and units of the columns of hammer records that have no heading, such as
         ``"time [s], force [N], acceleration [m/s^2]"``.
+    poles : sequence of (float, float), optional
+        Frequencies, Hz, and damping ratios picked in the stabilisation diagram: these modes are
+        refined, none is added or dropped.
 
     Returns
     -------
@@ -191,7 +195,7 @@ def modes(
     try:
         frfs, hammer, notes = _read(given, keep, columns)
         frfs, assumed = _with_default_direction(frfs, direction)
-        fit = with_magnitudes(identify_modes(frfs, band=band, mode_count=mode_count))
+        fit = with_magnitudes(identify_modes(frfs, band=band, mode_count=mode_count, poles=poles))
     except MeasurementError as error:
         raise InputError(str(error)) from error
     notes += assumed

@@ -38,6 +38,7 @@ from dynamics.identification.result import (
 )
 from dynamics.identification.selection import add_missing, drop_unsupported, with_mode_count
 from dynamics.identification.stabilisation import (
+    FREQUENCY_TOLERANCE,
     StabilisationDiagram,
     stabilisation_diagram,
     stable_poles,
@@ -70,6 +71,7 @@ def identify_modes(
     mode_count: int | None = None,
     max_order: int | None = None,
     tool_point: str | None = None,
+    poles: Sequence[tuple[float, float]] | None = None,
 ) -> ModalFit:
     """Identify the modes of a structure from one or several measured FRFs.
 
@@ -94,6 +96,10 @@ def identify_modes(
         Largest order of the stabilisation diagram.
     tool_point : str, optional
         Node at which the modal masses are wanted; that of the first drive point where not given.
+    poles : sequence of (float, float), optional
+        Natural frequencies, Hz, and damping ratios of the modes, as picked in the stabilisation
+        diagram: these are refined, none is added or dropped. A set of FRFs takes those that its
+        own diagram has.
 
     Raises
     ------
@@ -102,17 +108,26 @@ def identify_modes(
     """
     if mode_count is not None and mode_count < 1:
         raise MeasurementError(f"mode_count = {mode_count}; at least 1 mode is needed")
+    for frequency, damping in poles or ():
+        if not (frequency > 0.0 and 0.0 < damping < 1.0):
+            raise MeasurementError(
+                f"pole {frequency:g} Hz, damping {damping:g}: a frequency above 0 and a damping "
+                "ratio between 0 and 1 are required"
+            )
     if max_order is not None and max_order < 4:
         raise MeasurementError(f"max_order = {max_order}; at least 4 is needed")
     measurement = prepare(frfs, band)
     sets = sets_with_common_poles(measurement.frfs, tool_point)
-    found = [_search(measurement, frf_set, mode_count, max_order) for frf_set in sets]
-    poles = [model.poles_in_hertz for _, model in found]
+    if poles is None:
+        found = [_search(measurement, frf_set, mode_count, max_order) for frf_set in sets]
+    else:
+        found = [_from_poles(measurement, frf_set, poles, max_order) for frf_set in sets]
+    in_hertz = [model.poles_in_hertz for _, model in found]
     fitted = widened(
         measurement.clean,
         measurement.searched,
-        np.concatenate([frequency for frequency, _ in poles]),
-        np.concatenate([damping for _, damping in poles]),
+        np.concatenate([frequency for frequency, _ in in_hertz]),
+        np.concatenate([damping for _, damping in in_hertz]),
         float(np.median(np.diff(measurement.records.frequency))),
     )
     fits = [
@@ -163,6 +178,27 @@ def _search(
     if mode_count is not None:
         model = with_mode_count(records, model, mode_count)
     return diagram, model
+
+
+def _from_poles(
+    measurement: Measurement,
+    frf_set: FrfSet,
+    poles: Sequence[tuple[float, float]],
+    max_order: int | None,
+) -> tuple[StabilisationDiagram, ModalModel]:
+    """Complex modes at the poles given, as far as the diagram of the set has them."""
+    records = measurement.of(frf_set.members, measurement.searched)
+    diagram = _diagram(records, [measurement.frfs[i] for i in frf_set.members], max_order)
+    chosen = [pole for pole in sorted(poles) if _has_pole(diagram, *pole)]
+    frequency, damping = np.array(chosen, dtype=np.float64).reshape(-1, 2).T
+    start = fit_residues(records, 2.0 * np.pi * frequency, damping, ALL_TERMS)
+    return diagram, add_curvature(records, refine(records, start))
+
+
+def _has_pole(diagram: StabilisationDiagram, frequency: float, damping: float) -> bool:
+    """Whether any order has a pole within the bandwidth of one given."""
+    reach = max(damping, FREQUENCY_TOLERANCE) * frequency
+    return bool(np.any(np.abs(diagram.frequency - frequency) <= reach))
 
 
 def _fit_set(

@@ -34,7 +34,9 @@ class Computations:
         self._waiting: tuple[Computation, ...] = ()
         self._running = False
         self._cancelled = False
-        threading.Thread(target=self._work, daemon=True).start()
+        self._ended = False
+        self._thread = threading.Thread(target=self._work, daemon=True)
+        self._thread.start()
 
     def start(self, *steps: Computation) -> None:
         """Compute the steps one after the other, in place of those that still wait."""
@@ -48,6 +50,13 @@ class Computations:
             self._waiting = ()
             self._cancelled = self._running
 
+    def end(self) -> None:
+        """Give up everything, and the thread with it."""
+        self.cancel()
+        with self._changed:
+            self._ended = True
+            self._changed.notify_all()
+
     def wait(self, longest: float) -> bool:
         """Wait until nothing is left to compute; False after the time `longest`, s."""
         with self._changed:
@@ -56,7 +65,9 @@ class Computations:
     def _work(self) -> None:
         while True:
             with self._changed:
-                self._changed.wait_for(lambda: bool(self._waiting))
+                self._changed.wait_for(lambda: bool(self._waiting) or self._ended)
+                if self._ended:
+                    return
                 step, *rest = self._waiting
                 self._waiting, later = (), tuple(rest)
                 self._running, self._cancelled = True, False

@@ -1,68 +1,95 @@
-"""The page of a session: case files of the folder, and the views of the one that is chosen."""
+"""The page of a session: the case that is open, and the views of the folder."""
+
+from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import panel as pn
 
-from chatter.app.workbench.stability_view import StabilityView
-from chatter.description.case import load
+from chatter.app.workbench.case_view import CaseView
+from chatter.app.workbench.session import Session
+from chatter.app.workbench.stability_tab import StabilityTab
+from chatter.app.workbench.studies_view import StudiesView
+from chatter.app.workbench.tap_test_view import TapTestView
 from chatter.description.errors import InputError
 
-
-def case_files(folder: Path) -> list[str]:
-    """Names of the case files in a folder, and one level below; links out of it are left out."""
-    root = folder.resolve()
-    found = sorted([*root.glob("*.toml"), *root.glob("*/*.toml")])
-    inside = [path for path in found if path.resolve().is_relative_to(root)]
-    return [path.relative_to(root).as_posix() for path in inside if _is_cut(path)]
-
-
-def _is_cut(path: Path) -> bool:
-    """Whether the file has what a diagram is made of; a file that is no case has not."""
-    try:
-        case = load(path)
-    except InputError:
-        return False
-    return all((case.tool, case.material, case.cut, case.structure))
+_STUDIES = ("optimum", "pitch", "whatif", "uncertainty")
 
 
 class Workbench:
     """Page of one session."""
 
-    def __init__(self, folder: Path, first: str | None = None) -> None:
-        self._folder, self._document = folder.resolve(), pn.state.curdoc
-        files = case_files(folder)
+    def __init__(self, folder: Path, first: str | None = None, method: str | None = None) -> None:
+        self._document = pn.state.curdoc
+        self.session = Session(folder)
+        files = self.session.case_names()
+        self.choice = pn.widgets.Select(label="Case", options=files, width=300)
+        self.message = pn.pane.Str(f"no case yet in {self.session.root.name}: drop hammer records "
+                                   "in Tap test, or make one in Case", width=800)  # fmt: skip
+        show = self._in_the_page
+        self.case = CaseView(self.session, self._opened)
+        self.tap_test = TapTestView(self.session, show, self._modes_taken)
+        self.sheet = StudiesView(self.session, show, ("sheet", "check"))
+        self.studies = StudiesView(self.session, show, _STUDIES)
+        self.stability = StabilityTab(self.session, show, method)
+        self.views: dict[str, Any] = {
+            "Tap test": self.tap_test,
+            "Case": self.case,
+            "Stability": self.stability,
+            "Operator's sheet": self.sheet,
+            "Studies": self.studies,
+        }
+        self.tabs = pn.Tabs(
+            *((name, view.__panel__()) for name, view in self.views.items()), dynamic=True
+        )
+        self.tabs.param.watch(lambda _: self._refresh(), "active")
+        self.session.watch(self._describe)
+        self.choice.param.watch(lambda event: self.open(event.new), "value")
         first = first if first in files else next(iter(files), None)
-        self.choice = pn.widgets.Select(label="Case", options=files, value=first)
-        self.message = pn.pane.Str("" if files else f"no case file of a cut in {folder.name}")
-        self.stability: StabilityView | None = None
-        self._views = pn.Column()
-        self.choice.param.watch(lambda _: self._open(), "value")
-        self._open()
+        if first is not None:
+            self.choice.value = first
+            self.open(first)
+            self.tabs.active = list(self.views).index("Stability")
+        self.tap_test.open_folder()
 
     def __panel__(self) -> pn.viewable.Viewable:
         """Return the page."""
-        return pn.Column(pn.Row(self.choice, self.message), self._views)
+        return pn.Column(pn.Row(self.choice, self.message), self.tabs)
 
     def end(self) -> None:
         """Give up what is computed for this session."""
-        if self.stability is not None:
-            self.stability.computations.cancel()
+        self.stability.end()
+        for view in (self.tap_test, self.sheet, self.studies):
+            view.computations.end()
 
-    def _open(self) -> None:
-        self.end()
-        name = self.choice.value
-        if name is None:
+    def open(self, name: str | None) -> None:
+        """Open a case file of the folder."""
+        if name is None or name == self.session.name:
             return
         try:
-            case = load(self._folder / name)
-            self.stability = StabilityView(case, name, self._in_the_page)
+            self.session.open(name)
         except InputError as error:
-            self.message.object, self._views.objects = str(error), []
-            return
-        self.message.object = case.title
-        self._views.objects = [pn.Tabs(("Stability", self.stability.__panel__()))]
+            self.message.object = str(error).replace(f"{self.session.root}/", "")
+
+    def _opened(self, name: str) -> None:
+        self.choice.options = self.session.case_names()
+        self.choice.value = name
+
+    def _modes_taken(self) -> None:
+        self.tabs.active = list(self.views).index("Case")
+
+    def _refresh(self) -> None:
+        """Bring up to date what follows the case only while it is looked at."""
+        if self.tabs.active == list(self.views).index("Stability"):
+            self.stability.refresh()
+
+    def _describe(self) -> None:
+        case = self.session.case
+        title = case.title if case is not None else "the case has faults: see the view Case"
+        self.message.object = f"{title}{' (not saved)' if self.session.changed else ''}"
+        self._refresh()
 
     def _in_the_page(self, change: Callable[[], None]) -> None:
         """Change the page from another thread; without a browser, at once."""

@@ -19,12 +19,14 @@ class WorkbenchServer:
     Every address begins with the token; a socket is opened only for pages of this server.
     """
 
-    def __init__(self, folder: Path, first: str | None = None, port: int = 0) -> None:
-        pn.extension()
+    def __init__(
+        self, folder: Path, first: str | None = None, port: int = 0, method: str | None = None
+    ) -> None:
+        pn.extension("filedropper")
         token = secrets.token_urlsafe(24)
 
         def page() -> pn.viewable.Viewable:
-            session = Workbench(folder, first)
+            session = Workbench(folder, first, method)
             pn.state.on_session_destroyed(lambda _: session.end())
             return session.__panel__()
 

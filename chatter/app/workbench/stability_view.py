@@ -1,7 +1,5 @@
 """Stability: a diagram that follows sliders, and points of it simulated by a click."""
 
-import csv
-import io
 import shlex
 from collections.abc import Callable
 from typing import Any
@@ -14,10 +12,15 @@ from bokeh.plotting import figure
 from chatter.app.live_case import LiveCase
 from chatter.app.sliders import Slider
 from chatter.app.workbench.computations import Computation, Computations
+from chatter.app.workbench.picture_files import picture
+from chatter.app.workbench.result_panel import CODE
+from chatter.app.workbench.table_files import PageTable, as_csv, as_xlsx
 from chatter.description.case import Case
 from chatter.description.progress import Progress
 
 _STEPS = 400
+#: pixels
+_WIDTH, _WIDTH_BESIDE = 820, 620
 _HEADING = ("spindle_speed [rpm]", "critical_depth [mm]", "chatter_frequency [Hz]", "bifurcation")
 
 
@@ -32,24 +35,45 @@ class StabilityView:
         Its name, for the command that gives the same.
     show : callable
         Called with a function that changes the page, from the thread of the computations.
+    method : str, optional
+        Stability method, as of `chatter.lobes`.
+    beside : StabilityView, optional
+        Another diagram, which this one shares its axes with.
     """
 
-    def __init__(self, case: Case, file: str, show: Callable[[Callable[[], None]], None]) -> None:
-        self._live, self._file, self._show = LiveCase(case, None), file, show
+    def __init__(
+        self,
+        case: Case,
+        file: str,
+        show: Callable[[Callable[[], None]], None],
+        method: str | None = None,
+        beside: "StabilityView | None" = None,
+    ) -> None:
+        self._live, self._file, self._show = LiveCase(case, method), file, show
+        self._method, self._beside = method, beside
         self._diagram: dict[str, Any] = {}
         self.sliders = {one.path: _widget(one) for one in self._live.sliders}
         self.limit = ColumnDataSource(
             {name: [] for name in ("speed", "depth", "stable", "frequency", "kind")}
         )
         self.operating = ColumnDataSource({"speed": [], "depth": [], "colour": []})
+        self.pockets = ColumnDataSource({"speed": [], "depth": [], "limit": [], "rate": []})
+        self.optimum = ColumnDataSource({"speed": [], "depth": []})
+        self.band = ColumnDataSource({"speed": [], "low": [], "high": []})
         self.motion = ColumnDataSource({"revolution": [], "low": [], "high": []})
-        self.message, self.verdict, self.same_call = (_text() for _ in range(3))
+        self.message, self.verdict = _text(), _text()
+        self.same_call = pn.pane.Str("", width=_WIDTH, styles=CODE)
         self.cancel = pn.widgets.Button(label="Cancel")
         self.table = pn.widgets.FileDownload(
-            callback=self._table, filename="lobes.csv", label="Table (CSV)"
+            callback=lambda: as_csv(self.limits()), filename="lobes.csv", label="Table (CSV)"
         )
+        self.workbook = pn.widgets.FileDownload(
+            callback=lambda: as_xlsx(self.limits()), filename="lobes.xlsx", label="Table (XLSX)"
+        )
+        self.reset = pn.widgets.Button(label="Reset")
         self.computations = Computations(lambda text: self._later(self.message, text))
         self.cancel.on_click(lambda _: self.computations.cancel())
+        self.reset.on_click(lambda _: self.put_back())
         self._lobes, self._motion = self._lobes_figure(), self._motion_figure()
         for widget in self.sliders.values():
             widget.param.watch(lambda _: self.draw(), "value")
@@ -68,14 +92,45 @@ class StabilityView:
             for index, group in enumerate(groups)
         ]
         pictures = pn.Column(
-            pn.Row(self.table, self.cancel),
+            pn.Row(self.table, self.workbook, self.reset, self.cancel),
             self.message,
-            pn.pane.Bokeh(self._lobes),
+            picture(self._lobes, "lobes"),
             self.same_call,
             self.verdict,
-            pn.pane.Bokeh(self._motion),
+            picture(self._motion, "motion"),
         )
         return pn.Row(pn.Column(*cards), pictures)
+
+    def diagram_alone(self) -> pn.viewable.Viewable:
+        """Return the diagram without its sliders, as it stands beside another."""
+        return pn.Column(
+            pn.pane.Str(self._live.case.title or self._file), self.message,
+            picture(self._lobes, "lobes-beside"), self.same_call, self.verdict,
+        )  # fmt: skip
+
+    def limits(self) -> PageTable:
+        """Return the limits that are drawn."""
+        rows = self.limit.data
+        columns = (rows["speed"], rows["depth"], rows["frequency"], rows["kind"])
+        return PageTable(_HEADING, list(zip(*columns, strict=True)))
+
+    def put_back(self) -> None:
+        """Put every slider back to the value of the case."""
+        for one in self._live.sliders:
+            self.sliders[one.path].value = one.value
+
+    def patch(self) -> dict[str, Any]:
+        """Return what the sliders change in the case, as a case file writes it."""
+        values = self.moved()
+        return {path: self._live.by_path[path].text(value) for path, value in values.items()}
+
+    def show_band(self, speed: Any, low: Any, high: Any) -> None:
+        """Draw the band of an uncertain limit: speeds in rpm, depths in mm."""
+        self.band.data = {"speed": speed, "low": low, "high": high}
+
+    def mark_optimum(self, speed: float, depth: float) -> None:
+        """Mark a cut: speed in rpm, depth in mm."""
+        self.optimum.data = {"speed": [speed], "depth": [depth]}
 
     def moved(self) -> dict[str, float]:
         """Values of the sliders that have been moved, by path."""
@@ -117,15 +172,23 @@ class StabilityView:
             "frequency": [none if f is None else f for f in diagram["chatter_frequency_Hz"]],
             "kind": diagram["bifurcation"],
         }
+        found = diagram["pockets"]
+        self.pockets.data = {
+            "speed": [one["spindle_speed_rpm"] for one in found],
+            "depth": [one["axial_depth_mm"] for one in found],
+            "limit": [one["critical_depth_mm"] for one in found],
+            "rate": [one["removal_rate_cm3_per_min"] for one in found],
+        }
         self.operating.data = {
             "speed": [cut["spindle_speed_rpm"]],
             "depth": [cut["axial_depth_mm"]],
             "colour": ["#2e7d32" if cut["stable"] else "#c62828"],
         }
-        self._lobes.x_range.update(
-            start=diagram["spindle_speed_rpm"][0], end=diagram["spindle_speed_rpm"][-1]
-        )
-        self._lobes.y_range.update(start=0.0, end=deepest)
+        if self._beside is None:
+            self._lobes.x_range.update(
+                start=diagram["spindle_speed_rpm"][0], end=diagram["spindle_speed_rpm"][-1]
+            )
+            self._lobes.y_range.update(start=0.0, end=deepest)
         self.message.object = "; ".join(diagram["notes"])
 
     def _simulate(
@@ -158,50 +221,68 @@ class StabilityView:
         words = ["chatter", "lobes", self._file]
         words += [word for path, text in texts.items() for word in ("--set", f"{path}={text}")]
         patch = f".patch({texts})" if texts else ""
-        return f"{shlex.join(words)}\nchatter.lobes(chatter.load({self._file!r}){patch})"
-
-    def _table(self) -> io.StringIO:
-        text = io.StringIO()
-        rows = self.limit.data
-        columns = (rows["speed"], rows["depth"], rows["frequency"], rows["kind"])
-        csv.writer(text).writerows([_HEADING, *zip(*columns, strict=True)])
-        text.seek(0)
-        return text
+        words += ["--method", self._method] if self._method else []
+        method = f", {self._method!r}" if self._method else ""
+        return f"{shlex.join(words)}\nchatter.lobes(chatter.load({self._file!r}){patch}{method})"
 
     def _lobes_figure(self) -> Any:
+        of_other = self._beside
         drawn = figure(
-            width=820, height=430, x_range=(0, 1), y_range=(0, 1), tools="pan,wheel_zoom,reset,save"
-        )
+            width=_WIDTH if of_other is None else _WIDTH_BESIDE, height=430,
+            x_range=(0, 1) if of_other is None else of_other._lobes.x_range,
+            y_range=(0, 1) if of_other is None else of_other._lobes.y_range,
+            tools="pan,wheel_zoom,box_zoom,reset,save",
+        )  # fmt: skip
         drawn.xaxis.axis_label, drawn.yaxis.axis_label = "spindle speed [rpm]", "axial depth [mm]"
         drawn.varea(
             "speed", 0.0, "stable", source=self.limit, color="#9ccc9c", fill_alpha=0.45,
             legend_label="stable",
         )  # fmt: skip
+        drawn.varea("speed", "low", "high", source=self.band, color="#E69F00", fill_alpha=0.35,
+                    legend_label="5 to 95 %")  # fmt: skip
         line = drawn.line("speed", "depth", source=self.limit, line_width=2, color="#1f3b57",
                           legend_label="critical axial depth")  # fmt: skip
         drawn.scatter(
             "speed", "depth", source=self.operating, size=11, color="colour",
             legend_label="operating point",
         )  # fmt: skip
+        pockets = drawn.scatter(
+            "speed", "depth", source=self.pockets, size=10, marker="triangle", color="#0072B2",
+            legend_label="pockets",
+        )  # fmt: skip
+        drawn.scatter("speed", "depth", source=self.optimum, size=16, marker="star",
+                      color="#D55E00", legend_label="optimum")  # fmt: skip
         told = [
             ("spindle speed", "@speed{0} rpm"),
             ("critical axial depth", "@depth{0.000} mm"),
             ("chatter frequency", "@frequency{0} Hz"),
             ("bifurcation", "@kind"),
         ]
-        drawn.add_tools(HoverTool(renderers=[line], tooltips=told, mode="vline"))
+        of_pockets = [
+            ("pocket", "@speed{0} rpm, @depth{0.000} mm"),
+            ("limit there", "@limit{0.000} mm"),
+            ("removal rate", "@rate{0.0} cm³/min"),
+        ]
+        drawn.add_tools(
+            HoverTool(renderers=[line], tooltips=told, mode="vline"),
+            HoverTool(renderers=[pockets], tooltips=of_pockets),
+        )
+        legend = drawn.legend[0]
+        legend.update(label_text_font_size="8pt", orientation="horizontal", border_line_alpha=0.0)
+        drawn.add_layout(legend, "above")
+        drawn.legend.click_policy = "hide"
         drawn.on_event(Tap, lambda event: self.simulate(event.x, event.y))
         return drawn
 
     def _motion_figure(self) -> Any:
-        drawn = figure(width=820, height=230, tools="pan,wheel_zoom,reset,save")
+        drawn = figure(width=_WIDTH, height=230, tools="pan,wheel_zoom,reset,save")
         drawn.xaxis.axis_label, drawn.yaxis.axis_label = "revolution", "tool [um]"
         drawn.varea("revolution", "low", "high", source=self.motion, color="#5b84b1")
         return drawn
 
 
 def _text() -> pn.pane.Str:
-    return pn.pane.Str("", width=820, styles={"white-space": "pre-wrap"})
+    return pn.pane.Str("", width=_WIDTH, styles={"white-space": "pre-wrap"})
 
 
 def _widget(one: Slider) -> pn.widgets.Widget:

@@ -14,8 +14,10 @@ from tornado.websocket import websocket_connect
 
 import chatter
 from chatter.app.workbench.computations import Computation, Computations
-from chatter.app.workbench.page import Workbench, case_files
+from chatter.app.workbench.page import Workbench
 from chatter.app.workbench.server import LARGEST_MESSAGE, WorkbenchServer
+from chatter.app.workbench.session import Session
+from chatter.app.workbench.table_files import as_csv
 from tests.places import EXAMPLES
 
 #: s; the first diagram may compile
@@ -34,10 +36,11 @@ def folder(tmp_path_factory):
 
 @pytest.fixture
 def view(folder):
-    stability = Workbench(folder).stability
+    page = Workbench(folder)
+    stability = page.stability.diagram
     assert stability.computations.wait(PATIENCE)
     yield stability
-    stability.computations.cancel()
+    page.end()
 
 
 def lowest(view):
@@ -46,7 +49,7 @@ def lowest(view):
 
 def test_only_case_files_inside_the_folder_are_offered(folder):
     (folder / "link.toml").symlink_to(EXAMPLES / "two-degrees-of-freedom" / "case.toml")
-    assert case_files(folder) == ["case.toml"]
+    assert Session(folder).case_names() == ["case.toml"]
     (folder / "link.toml").unlink()
 
 
@@ -90,7 +93,7 @@ def test_a_point_off_the_diagram_is_told(view):
 
 
 def test_table_holds_the_limit(view):
-    rows = view._table().read().splitlines()
+    rows = as_csv(view.limits()).read().splitlines()
     assert rows[0].startswith("spindle_speed [rpm],critical_depth [mm]")
     assert len(rows) == 1 + len(view.limit.data["speed"])
 

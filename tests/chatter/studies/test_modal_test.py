@@ -78,3 +78,18 @@ def test_single_hammer_record_without_a_heading(tmp_path):
             nearest = min(one.fit.identified, key=lambda m: abs(m.frequency - frequency))
             assert nearest.frequency == pytest.approx(frequency, rel=0.005)
             assert nearest.mass == pytest.approx(mass, rel=0.1)
+
+
+def test_poles_given_are_the_modes(tmp_path):
+    write_set(tmp_path, 0)
+    first, _, third = made.CLOSE.modes
+    poles = [(1.004 * f, 1.2 * z) for f, z, _ in (first, third)]
+    found = chatter.modes(tmp_path, direction="x", poles=poles).fit.identified
+    assert [mode.frequency for mode in found] == pytest.approx([first[0], third[0]], rel=0.01)
+
+
+@pytest.mark.parametrize("pole", [(0.0, 0.1), (700.0, 1.5)])
+def test_poles_out_of_range(tmp_path, pole):
+    write_set(tmp_path, 0)
+    with pytest.raises(InputError, match="damping ratio between"):
+        chatter.modes(tmp_path, poles=[pole])

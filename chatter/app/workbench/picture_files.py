@@ -1,0 +1,40 @@
+"""Pictures of the page as PNG and SVG: what a Bokeh figure shows, drawn again by matplotlib."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from typing import Any
+
+import panel as pn
+
+from chatter.plots.page_picture import drawn_again
+from chatter.plots.style import write_png
+
+
+def picture_file(figure: Any, form: str) -> io.BytesIO:
+    """File of a picture, "png" or "svg"."""
+    content = io.BytesIO()
+    drawing = drawn_again(figure)
+    if form == "svg":
+        drawing.savefig(content, format="svg")
+    else:
+        write_png(drawing, content)
+    content.seek(0)
+    return content
+
+
+def picture(figure: Any, name: str) -> pn.Column:
+    """Figure with the buttons that save it."""
+    buttons = [
+        pn.widgets.FileDownload(
+            callback=_saving(figure, form), filename=f"{name}.{form}", label=form.upper(),
+            width=70, margin=2,
+        )
+        for form in ("png", "svg")
+    ]  # fmt: skip
+    return pn.Column(pn.pane.Bokeh(figure), pn.Row(*buttons))
+
+
+def _saving(figure: Any, form: str) -> Callable[[], io.BytesIO]:
+    return lambda: picture_file(figure, form)

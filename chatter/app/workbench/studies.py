@@ -1,0 +1,153 @@
+"""Long computations of the views: the public call, the command that gives the same, its files."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import chatter
+from chatter.app.workbench.separate_process import Report
+from chatter.app.workbench.session import CaseText, write_call
+from chatter.description.errors import InputError
+from chatter.description.progress import Progress
+
+#: files of a picture that a result draws beside the PNG that it saves
+PICTURE = "picture.svg"
+#: pages of a result of several that are shown
+_MOST_PAGES = 4
+
+
+class Study(NamedTuple):
+    """A study of a case.
+
+    Parameters
+    ----------
+    label, description : str
+    options : mapping of str to object
+        Name in Python -> default.
+    compute : callable
+        Called with the case, the options, the folder and a progress; returns a result.
+    """
+
+    label: str
+    description: str
+    options: Mapping[str, Any]
+    compute: Callable[[Any, Mapping[str, Any], Path, Progress], Any]
+
+
+def _sheet(case: Any, options: Mapping[str, Any], folder: Path, progress: Progress) -> Any:
+    del options, folder
+    return chatter.sheet(case, progress)
+
+
+def _lobes(case: Any, options: Mapping[str, Any], folder: Path, progress: Progress) -> Any:
+    return chatter.lobes(case, options.get("method") or None, False, progress, None, folder)
+
+
+def _check(case: Any, options: Mapping[str, Any], folder: Path, progress: Progress) -> Any:
+    del options, folder
+    return chatter.check(case, None, progress)
+
+
+def _optimum(case: Any, options: Mapping[str, Any], folder: Path, progress: Progress) -> Any:
+    return chatter.optimum(case, progress=progress, folder=folder, **options)
+
+
+def _pitch(case: Any, options: Mapping[str, Any], folder: Path, progress: Progress) -> Any:
+    del options
+    return chatter.pitch(case, progress, folder)
+
+
+def _uncertainty(case: Any, options: Mapping[str, Any], folder: Path, progress: Progress) -> Any:
+    given = dict(options)
+    count = given.pop("count")
+    return chatter.uncertainty(case, count, folder=folder, progress=progress, **given)
+
+
+def _whatif(case: Any, options: Mapping[str, Any], folder: Path, progress: Progress) -> Any:
+    given = {key: value for key, value in options.items() if value not in ("", None)}
+    vary = [one.strip() for one in str(given.pop("vary", "")).splitlines() if one.strip()]
+    if not vary:
+        raise InputError(
+            'vary: a path and its values are required, such as "cut.radial_depth=+-20%"'
+        )
+    return chatter.whatif(case, vary, folder=folder, progress=progress, **given)
+
+
+STUDIES = {
+    "check": Study("Check", "the stated cut: stable or not, and by how much", {}, _check),
+    "lobes": Study("Lobes", "stability lobe diagram with pockets", {}, _lobes),
+    "sheet": Study("Operator's sheet", "cuts worth making, as PDF and XLSX", {}, _sheet),
+    "optimum": Study(
+        "Optimum",
+        "the cut with the highest removal rate within the limits of [optimum]",
+        {"samples": 200, "seed": 1},
+        _optimum,
+    ),
+    "pitch": Study("Pitch design", "pitch angles that raise the limit", {}, _pitch),
+    "whatif": Study(
+        "What if",
+        "what would change if values were others; a path and its values a line",
+        {"vary": "cut.radial_depth=+-20%", "result": "", "tornado": False},
+        _whatif,
+    ),
+    "uncertainty": Study(
+        "Uncertainty",
+        'what values such as "1650 +- 80 MPa" make of the limits',
+        {"count": 200, "seed": 1, "speeds": 31},
+        _uncertainty,
+    ),
+}  # fmt: skip
+#: name of an option in Python -> of the command line
+_OPTION_NAMES = {"count": "samples"}
+
+
+def same_call(name: str, file: str, options: Mapping[str, Any]) -> dict[str, str]:
+    """Command and Python call that give the same as a study of a case file."""
+    words = ["chatter", name, file]
+    for key, value in options.items():
+        if value in ("", None, False):
+            continue
+        option = f"--{_OPTION_NAMES.get(key, key)}"
+        lines = str(value).splitlines() if key == "vary" else [str(value)]
+        words += [option] if value is True else [part for one in lines for part in (option, one)]
+    given = {key: value for key, value in options.items() if value not in ("", None, False)}
+    if "vary" in given:
+        given["vary"] = [one.strip() for one in given["vary"].splitlines() if one.strip()]
+    listed = "".join(f", {key}={value!r}" for key, value in given.items())
+    return {
+        "command": shlex.join(words),
+        "python": f"chatter.{name}(chatter.load({file!r}){listed})",
+    }
+
+
+def run_study(
+    name: str, case: CaseText, options: Mapping[str, Any], folder: Path, report: Report
+) -> None:
+    """Compute a study and write its files; a study that was ended before goes on from there."""
+    study = STUDIES[name]
+
+    def progress(done: int, total: int) -> None:
+        report(study.label, done / total if total else 0.0)
+
+    report(f"{study.label}: starting", 0.0)
+    result = study.compute(case.case(), options, folder, progress)
+    save_result(result, folder, {"title": study.label, **same_call(name, case.name, options)})
+
+
+def save_result(result: Any, folder: Path, call: Mapping[str, Any]) -> None:
+    """Write the files of a result, its picture as SVG, and how it was made."""
+    for stale in (*folder.glob("*.png"), *folder.glob("*.svg"), *folder.glob("*.csv")):
+        stale.unlink()
+    result.save(folder)
+    drawn = result.plot()
+    if isinstance(drawn, (list, tuple)):
+        for number, page in enumerate(drawn[:_MOST_PAGES], start=1):
+            page.savefig(folder / f"page-{number}.png")
+    else:
+        drawn.savefig(folder / PICTURE)
+    sentences = list(result.sentences()) if hasattr(result, "sentences") else []
+    notes = [str(one) for one in getattr(result, "notes", ())]
+    write_call(folder, {**call, "sentences": sentences, "notes": notes})

@@ -1,0 +1,397 @@
+"""Tap test: hammer records or FRFs to modes, with records and poles chosen by hand."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import panel as pn
+import tomlkit
+from bokeh.models import ColumnDataSource, HoverTool, TapTool
+from bokeh.plotting import figure
+
+import chatter
+from chatter.app.workbench.computations import Computation, Computations
+from chatter.app.workbench.picture_files import picture
+from chatter.app.workbench.result_panel import CODE, downloads
+from chatter.app.workbench.session import Session, readable_extensions
+from chatter.app.workbench.table_files import PageTable, as_html
+from chatter.app.workbench.upload import dropper
+from chatter.description.errors import InputError
+from chatter.description.progress import Progress
+from chatter.io.hammer_records import is_hammer_record
+from chatter.plots.modes import FRF_UNITS
+from chatter.studies.modal_test import ModalTest
+
+_TOOLS = "pan,box_zoom,wheel_zoom,reset"
+_WIDTH = 600
+_HEADINGS = ("frequency [Hz]", "damping ratio", "mass [kg]", "fit error", "remark")
+#: poles that belong to one mode lie this close, as a share of the frequency
+_SAME_POLE = 0.005
+
+
+class TapTestView:
+    """Records judged one by one, FRF, stabilisation diagram, modes.
+
+    Parameters
+    ----------
+    session : Session
+    show : callable
+        Called with a function that changes the page, from another thread.
+    taken : callable
+        Called when modes have gone into the case.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        show: Callable[[Callable[[], None]], None],
+        taken: Callable[[], None] = lambda: None,
+    ) -> None:
+        self._session, self._show, self._taken = session, show, taken
+        self.test: ModalTest | None = None
+        self.files: list[Path] = []
+        self.poles: list[tuple[float, float]] = []
+        self.upload = dropper(self.take, "Hammer records or FRF files")
+        self.direction = pn.widgets.Select(label="Direction", options=["x", "y", "z"], width=100)
+        self.side = pn.widgets.Select(label="Side", options=["tool", "workpiece"], width=140)
+        self.columns = pn.widgets.TextInput(
+            label="Columns, where the files have no heading", width=330,
+            placeholder="time [s],force [N],acceleration [m/s^2]",
+        )  # fmt: skip
+        self.records: dict[str, pn.widgets.Checkbox] = {}
+        self._record_list = pn.Column()
+        self.into_case = pn.widgets.Button(label="Modes into the case", color="primary",
+                                           disabled=True)  # fmt: skip
+        self.automatic = pn.widgets.Button(label="Poles found automatically")
+        self.picked = pn.widgets.Button(label="Fit the picked poles")
+        self.message = pn.pane.Str("", width=900, styles={"white-space": "pre-wrap"})
+        self.same_call = pn.pane.Str("", width=900, styles=CODE)
+        self.modes = pn.pane.HTML("", width=700)
+        self._files = pn.FlexBox(min_width=860)
+        self.measured = ColumnDataSource({"f": [], "magnitude": [], "phase": []})
+        self.fitted = ColumnDataSource({"f": [], "magnitude": [], "phase": []})
+        self.coherence = ColumnDataSource({"f": [], "coherence": []})
+        self.behind = ColumnDataSource({"f": [], "magnitude": []})
+        self.diagram = ColumnDataSource({"f": [], "order": [], "damping": [], "colour": []})
+        self.chosen = ColumnDataSource({"xs": [], "ys": []})
+        self._figures = self._make_figures()
+        self.computations = Computations(lambda text: self._later(text))
+        self.into_case.on_click(lambda _: self.put_into_case())
+        self.automatic.on_click(lambda _: self.fit())
+        self.picked.on_click(lambda _: self.fit_picked())
+        for widget in (self.direction, self.side, self.columns):
+            widget.param.watch(lambda _: self._options_changed(), "value")
+
+    def __panel__(self) -> pn.viewable.Viewable:
+        """Return the view for the page."""
+        magnitude, phase, coherence, stabilisation = self._figures
+        return pn.Column(
+            pn.Row(self.upload, pn.Column(pn.Row(self.direction, self.side), self.columns)),
+            self.message,
+            pn.Row(
+                pn.Column(
+                    picture(magnitude, "frf"), picture(phase, "phase"),
+                    picture(coherence, "coherence"),
+                ),
+                pn.Column(
+                    picture(stabilisation, "stabilisation"),
+                    pn.Row(self.picked, self.automatic),
+                    self.modes,
+                    self.into_case,
+                    pn.pane.Markdown("**Records** (a tick: the record is used)"),
+                    self._record_list,
+                ),
+            ),
+            self.same_call,
+            self._files,
+        )  # fmt: skip
+
+    def take(self, files: Mapping[str, bytes]) -> None:
+        """Write uploaded files beside the case and fit modes to them."""
+        try:
+            folder = self._session.store(self._folder_name(), files, readable_extensions())
+        except InputError as error:
+            self.message.object = str(error)
+            return
+        self.files = [folder / name for name in sorted(files)]
+        self.records = {}
+        self.fit()
+
+    def open_folder(self) -> None:
+        """Take up the records that lie in the folder of the direction, as of a session before."""
+        folder = self._session.path(self._folder_name())
+        self.files = [one for one in sorted(folder.glob("*"))
+                      if one.suffix.lower() in readable_extensions()]  # fmt: skip
+        if self.files:
+            self.fit()
+
+    def fit(self, poles: list[tuple[float, float]] | None = None) -> None:
+        """Fit modes to the records that are used, at all poles or at those given."""
+        if not self.files:
+            self.message.object = "no file yet: drop hammer records or FRFs"
+            return
+        self.poles = poles or []
+        self.into_case.disabled = True
+        self.message.object = "fitting modes ..."
+        arguments = self._arguments()
+        self.computations.start(Computation(lambda go_on: self._fit(arguments, go_on), True))
+
+    def pick(self, indices: list[int]) -> None:
+        """Pick poles of the stabilisation diagram by their place in it, as a click does."""
+        self.diagram.selected.indices = indices
+
+    def fit_picked(self) -> None:
+        """Fit modes at the poles that are picked; several orders of one pole count once."""
+        indices = self.diagram.selected.indices
+        if not indices:
+            self.message.object = (
+                "no pole is picked: click poles of the diagram, with shift several"
+            )
+            return
+        drawn = self.diagram.data
+        poles = sorted((drawn["f"][k], drawn["damping"][k]) for k in indices)
+        groups: list[list[tuple[float, float]]] = []
+        for pole in poles:
+            near = groups and pole[0] - groups[-1][-1][0] < _SAME_POLE * pole[0]
+            groups[-1].append(pole) if near else groups.append([pole])
+        means = [np.mean(group, axis=0) for group in groups]
+        self.fit([(float(f"{f:.7g}"), float(f"{d:.4g}")) for f, d in means])
+
+    def overrule(self, record: str, used: bool) -> None:
+        """Use a record, or leave it out, whatever was found."""
+        self.records[record].value = used
+
+    def put_into_case(self) -> None:
+        """Put the modes into the open case, in place of those along the same direction."""
+        if self.test is None:
+            return
+        tables = tomlkit.parse(self.test.to_toml()).unwrap().get("structure", {}).get("mode", [])
+        if not tables:
+            self.message.object = "no mode with a mass: nothing goes into the case"
+            return
+        text = self.test.to_toml()
+        self._session.path(f"modes-{self.direction.value}.toml").write_text(text, encoding="utf-8")
+        if not self._session.name:
+            self.message.object = (
+                f"modes-{self.direction.value}.toml is written; the new case of the view Case "
+                "takes it up"
+            )
+            self._taken()
+            return
+        try:
+            self._session.set_modes(tables)
+        except InputError as error:
+            self.message.object = str(error)
+            return
+        self.message.object = (
+            f"{len(tables)} modes are in {self._session.name}; it is not saved yet"
+        )
+        self._taken()
+
+    def _folder_name(self) -> str:
+        return f"taps-{self.side.value}-{self.direction.value}"
+
+    def _options_changed(self) -> None:
+        if self.files and self.files[0].parent != self._session.path(self._folder_name()):
+            self.files, self.records, self.test = [], {}, None
+            self._record_list.objects = []
+            self.open_folder()
+        elif self.files:
+            self.fit()
+
+    def _arguments(self) -> dict[str, Any]:
+        """Arguments of `chatter.modes` for what is chosen."""
+        columns = self.columns.value.strip() or None
+        hammered = any(is_hammer_record(one, columns) for one in self.files)
+        found: dict[str, Any] = {"direction": self.direction.value, "side": self.side.value}
+        left_out = {name for name, box in self.records.items() if not box.value}
+        found_bad = self._excluded()
+        by_hand = left_out - found_bad
+        if hammered:
+            bad = {name for name, why in self._reasons().items() if why.startswith("unreadable")}
+            found["paths"] = (
+                [one for one in self.files if one.name not in by_hand | bad]
+                if by_hand
+                else self.files[0].parent
+            )
+            found["keep"] = sorted(found_bad - left_out)
+            found["columns"] = columns
+        else:
+            found["paths"] = [one for one in self.files if one.name not in left_out]
+        if self.poles:
+            found["poles"] = self.poles
+        return {key: value for key, value in found.items() if value not in (None, [])}
+
+    def _excluded(self) -> set[str]:
+        return set(self._reasons())
+
+    def _reasons(self) -> dict[str, str]:
+        """Record -> why the examination leaves it out, or would."""
+        if self.test is None or self.test.hammer is None:
+            return {}
+        found: dict[str, str] = {}
+        for one in (*self.test.hammer.excluded, *self.test.hammer.kept):
+            told = f"{one.fault.replace('_', ' ')}: {one.reason}"
+            found[one.record] = f"{found[one.record]}; {told}" if one.record in found else told
+        return found
+
+    def _fit(self, arguments: Mapping[str, Any], go_on: Progress) -> None:
+        try:
+            test = chatter.modes(**arguments)
+        except InputError as error:
+            told = self._short(str(error))
+            self._show(lambda: setattr(self.message, "object", told))
+            return
+        go_on(0, 0)
+        folder = self._session.results(f"modes-{self.direction.value}")
+        test.save(folder)
+        go_on(0, 0)
+        self._show(lambda: self._draw(test, arguments, folder))
+
+    def _draw(self, test: ModalTest, arguments: Mapping[str, Any], folder: Path) -> None:
+        self.test = test
+        self._draw_functions(test)
+        self._draw_diagram(test)
+        self._list_records(test)
+        rows = [
+            (mode.frequency, mode.damping, mode.mass, f"{mode.fit_error:.1%}", mode.warning)
+            for mode in test.fit.identified
+        ]
+        self.modes.object = as_html(PageTable(_HEADINGS, rows))
+        self.into_case.disabled = not test.fit.modes
+        self._files.objects = downloads(folder)
+        self.same_call.object = self._same_call(arguments)
+        self.message.object = self._short("\n".join(test.notes))
+
+    def _short(self, text: str) -> str:
+        """Message with names relative to the folder."""
+        return text.replace(f"{self._session.root}/", "")
+
+    def _draw_functions(self, test: ModalTest) -> None:
+        frf, model, band = test.fit.frfs[0], test.fit.models[0], test.fit.band
+        unit, factor = FRF_UNITS[frf.quantity]
+        inside = (frf.frequency > 0.0) & (frf.frequency <= 1.2 * band.highest)
+        f, values = frf.frequency[inside], frf.values[inside]
+        lines = np.linspace(band.lowest, band.highest, 2000)
+        fitted = model.values(lines)
+        self.measured.data = _function(f, values, factor)
+        self.fitted.data = _function(lines, fitted, factor)
+        shown = test.hammer.frf if test.hammer is not None else frf
+        known = shown.coherence is not None
+        self.coherence.data = {
+            "f": shown.frequency if known else [],
+            "coherence": shown.coherence if known else [],
+        }
+        magnitude, phase, coherence, _ = self._figures
+        magnitude.yaxis.axis_label = f"{frf.quantity} [{unit}]"
+        for one in (magnitude, phase, coherence):
+            one.x_range.update(start=float(f[0]), end=float(f[-1]))
+        size = np.abs(values[values != 0.0]) * factor
+        magnitude.y_range.update(start=0.5 * float(np.percentile(size, 1)), end=2.0 * size.max())
+
+    def _draw_diagram(self, test: ModalTest) -> None:
+        diagrams, band = test.fit.diagrams, test.fit.band
+        stable = np.concatenate([one.stable for one in diagrams])
+        order = np.concatenate([one.order for one in diagrams])
+        self.diagram.selected.indices = []
+        self.diagram.data = {
+            "f": np.concatenate([one.frequency for one in diagrams]),
+            "order": order,
+            "damping": np.concatenate([one.damping for one in diagrams]),
+            "colour": np.where(stable, "#0072B2", "#E69F00"),
+        }
+        top = float(order.max(initial=1)) + 2.0
+        self.chosen.data = {
+            "xs": [[mode.frequency] * 2 for mode in test.fit.identified],
+            "ys": [[0.0, top] for _ in test.fit.identified],
+        }
+        frf = test.fit.frfs[0].band(band.lowest, band.highest)
+        size = np.log10(np.maximum(np.abs(frf.values), 1e-300))
+        span = max(float(np.ptp(size)), 1e-9)
+        self.behind.data = {"f": frf.frequency, "magnitude": (size - size.min()) / span * top}
+        stabilisation = self._figures[-1]
+        stabilisation.x_range.update(start=band.lowest, end=band.highest)
+        stabilisation.y_range.update(start=0.0, end=top)
+
+    def _list_records(self, test: ModalTest) -> None:
+        """One line a record: used or not, and why."""
+        if test.hammer is None:
+            self._record_list.objects = []
+            return
+        reasons = self._reasons()
+        names = [one.name for one in self.files]
+        rows = []
+        for name in names:
+            box = pn.widgets.Checkbox(label=name, value=name in test.hammer.used, width=150)
+            box.param.watch(lambda _: self.fit(self.poles), "value")
+            why = reasons.get(name, "" if box.value else "left out by hand")
+            self.records[name] = box
+            rows.append(
+                pn.Row(box, pn.pane.Str(why, width=440, styles={"white-space": "pre-wrap"}))
+            )
+        self._record_list.objects = rows
+
+    def _same_call(self, arguments: Mapping[str, Any]) -> str:
+        given = dict(arguments)
+        paths = given.pop("paths")
+        names = [self._short(str(one)) for one in (paths if isinstance(paths, list) else [paths])]
+        words = ["chatter", "modes", *names]
+        for key in ("direction", "side", "columns"):
+            words += [f"--{key}", given[key]] if key in given else []
+        words += [part for one in given.get("keep", ()) for part in ("--keep", one)]
+        words += [
+            part for f, d in given.get("poles", ()) for part in ("--pole", f"{f:g}", f"{d:g}")
+        ]
+        called = names[0] if len(names) == 1 else names
+        listed = "".join(f", {key}={value!r}" for key, value in given.items())
+        return f"{shlex.join(words)}\nchatter.modes({called!r}{listed})"
+
+    def _later(self, text: str) -> None:
+        told = self._short(text)
+        self._show(lambda: setattr(self.message, "object", told))
+
+    def _make_figures(self) -> tuple[Any, Any, Any, Any]:
+        magnitude = figure(width=_WIDTH, height=290, y_axis_type="log", tools=_TOOLS,
+                           x_range=(0, 1), y_range=(0.1, 1))  # fmt: skip
+        phase = figure(width=_WIDTH, height=180, tools=_TOOLS, x_range=magnitude.x_range,
+                       y_range=(-190, 190))  # fmt: skip
+        coherence = figure(width=_WIDTH, height=160, tools=_TOOLS, x_range=magnitude.x_range,
+                           y_range=(0, 1.05))  # fmt: skip
+        for drawn, column, label in (
+            (magnitude, "magnitude", "FRF"), (phase, "phase", "phase [deg]"),
+        ):  # fmt: skip
+            drawn.line("f", column, source=self.measured, color="#888888", line_width=1.5,
+                       legend_label="measured")  # fmt: skip
+            drawn.line("f", column, source=self.fitted, color="#D55E00", legend_label="fitted")
+            drawn.yaxis.axis_label = label
+        phase.legend.visible = False
+        coherence.line("f", "coherence", source=self.coherence, color="#0072B2")
+        coherence.yaxis.axis_label = "coherence"
+        coherence.xaxis.axis_label = "frequency [Hz]"
+        return magnitude, phase, coherence, self._stabilisation_figure()
+
+    def _stabilisation_figure(self) -> Any:
+        drawn = figure(width=_WIDTH, height=330, x_range=(0, 1), y_range=(0, 1),
+                       tools=f"{_TOOLS},box_select")  # fmt: skip
+        drawn.line("f", "magnitude", source=self.behind, color="#BBBBBB")
+        drawn.multi_line("xs", "ys", source=self.chosen, color="#009E73", line_width=1.5,
+                         legend_label="modes")  # fmt: skip
+        poles = drawn.scatter(
+            "f", "order", source=self.diagram, size=6, color="colour", fill_alpha=0.5,
+            nonselection_alpha=0.35, selection_line_color="black", selection_line_width=2,
+        )  # fmt: skip
+        told = [("frequency", "@f{0.0} Hz"), ("damping ratio", "@damping{0.0000}"),
+                ("order", "@order")]  # fmt: skip
+        drawn.add_tools(TapTool(renderers=[poles]), HoverTool(renderers=[poles], tooltips=told))
+        drawn.xaxis.axis_label = "frequency [Hz]"
+        drawn.yaxis.axis_label = "model order"
+        drawn.title.text = "poles: blue stable, orange not; click picks one"
+        return drawn
+
+
+def _function(f: Any, values: Any, factor: float) -> dict[str, Any]:
+    return {"f": f, "magnitude": np.abs(values) * factor, "phase": np.degrees(np.angle(values))}

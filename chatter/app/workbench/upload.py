@@ -1,0 +1,53 @@
+"""Files dropped on the page: bounded while they arrive, written under plain names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import panel as pn
+
+from chatter.app.workbench.session import LARGEST_FILE, LARGEST_UPLOAD, MOST_FILES
+
+#: bytes of a part of a file, in one message
+PART = 512 * 1024
+
+
+class BoundedFileDropper(pn.widgets.FileDropper):  # type: ignore[misc, unused-ignore]
+    """File dropper that gives up files larger than allowed, whatever the page sends."""
+
+    def _process_event(self, event: Any) -> None:
+        data = event.data
+        if event.event_name == "delete_event":
+            super()._process_event(event)
+            return
+        name, part = data.get("name"), data.get("data", b"")
+        if not isinstance(name, str) or not isinstance(part, bytes):
+            return
+        if data.get("chunk") != 1 and name not in self._file_buffer:
+            return  # rest of a file that was given up
+        waiting = sum(len(one) for one in self._file_buffer.get(name, ())) + len(part)
+        together = sum(len(one) for parts in self._file_buffer.values() for one in parts)
+        together += sum(map(len, self.value.values())) + len(part)
+        many = len(self._file_buffer) + len(self.value) >= MOST_FILES and data.get("chunk") == 1
+        if waiting > LARGEST_FILE or together > LARGEST_UPLOAD or many:
+            self._file_buffer.pop(name, None)
+            return
+        super()._process_event({**event, "data": data} if isinstance(event, dict) else event)
+
+
+def dropper(take: Callable[[dict[str, bytes]], None], label: str) -> BoundedFileDropper:
+    """File dropper that hands over files as they are complete, by name."""
+    widget = BoundedFileDropper(
+        label=label, multiple=True, chunk_size=PART, max_file_size=f"{LARGEST_FILE >> 20}MB",
+        height=110, width=420,
+    )  # fmt: skip
+
+    def changed(_: Any) -> None:
+        files = {name: content if isinstance(content, bytes) else content.encode()
+                 for name, content in widget.value.items()}  # fmt: skip
+        if files:
+            take(files)
+
+    widget.param.watch(changed, "value")
+    return widget

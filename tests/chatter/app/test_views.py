@@ -1,0 +1,301 @@
+"""Views of the workbench driven in process: upload, pick, slide, click, cancel, save, reopen."""
+
+from __future__ import annotations
+
+import io
+import json
+
+import numpy as np
+import openpyxl
+import pytest
+
+import chatter
+from chatter.app.workbench.computations import Computation, Computations
+from chatter.app.workbench.page import Workbench
+from chatter.app.workbench.picture_files import picture_file
+from chatter.app.workbench.separate_process import in_own_process
+from chatter.app.workbench.session import LARGEST_FILE, Session
+from chatter.app.workbench.table_files import PageTable, as_xlsx
+from chatter.app.workbench.upload import dropper
+from chatter.description.errors import InputError, RunError
+from tests.chatter.app.crash import ends_at_once
+from tests.chatter.studies.test_modal_test import write_set
+from tests.dynamics.frf.hammer.hammer_records import CLOSE
+from tests.places import EXAMPLES
+
+#: s; the first diagram may compile
+PATIENCE = 300.0
+ANSWERS = {
+    "tool": "12 mm, 4",
+    "material": "Al7075-T6",
+    "cut": "8000 rpm, 0.05 mm, 1 mm",
+    "engagement": "down, 6 mm",
+}
+
+
+@pytest.fixture
+def workbench(tmp_path):
+    text = (EXAMPLES / "two-degrees-of-freedom" / "case.toml").read_text()
+    # few speeds, so that studies are quick
+    (tmp_path / "case.toml").write_text(text.replace("count = 400", "count = 60"))
+    page = Workbench(tmp_path)
+    yield page
+    page.end()
+
+
+@pytest.fixture(scope="module")
+def taps(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("taps")
+    write_set(folder, 0)
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+@pytest.fixture
+def tapped(tmp_path, taps):
+    page = Workbench(tmp_path)
+    page.tap_test.take(taps)
+    assert page.tap_test.computations.wait(PATIENCE)
+    yield page
+    page.end()
+
+
+def frequencies(view):
+    return [mode.frequency for mode in view.test.fit.identified]
+
+
+def test_hammer_files_become_a_case_and_its_modes(tapped, tmp_path):
+    view = tapped.tap_test
+    assert {name for name, box in view.records.items() if not box.value} == {"tap2.csv", "tap5.csv"}
+    view.put_into_case()
+    for name, answer in ANSWERS.items():
+        tapped.case.new.answers[name].value = answer
+    tapped.case.new.create()
+    case = chatter.load(tmp_path / "case.toml")
+    found = [(mode.frequency, mode.mass) for mode in case.structure.mode]
+    for (f, m), (frequency, _, mass) in zip(found, CLOSE.modes, strict=True):
+        assert f == pytest.approx(frequency, rel=0.002)
+        assert m == pytest.approx(mass, rel=0.03)
+    assert tapped.session.name == tapped.choice.value == "case.toml"
+
+
+def test_records_are_overruled_both_ways(tapped):
+    view = tapped.tap_test
+    view.overrule("tap2.csv", True)
+    assert view.computations.wait(PATIENCE)
+    assert "tap2.csv" in view.test.hammer.used
+    view.overrule("tap1.csv", False)
+    assert view.computations.wait(PATIENCE)
+    assert "tap1.csv" not in view.test.hammer.used
+    assert "--keep tap2.csv" in view.same_call.object
+    assert "tap1.csv" not in view.same_call.object
+
+
+def test_picked_poles_are_the_modes(tapped):
+    view = tapped.tap_test
+    drawn = np.asarray(view.diagram.data["f"])
+    chosen = [CLOSE.modes[0][0], CLOSE.modes[2][0]]
+    view.pick([int(np.argmin(np.abs(drawn - f))) for f in chosen])
+    view.fit_picked()
+    assert view.computations.wait(PATIENCE)
+    assert frequencies(view) == pytest.approx(chosen, rel=0.01)
+    assert view.same_call.object.count("--pole") == 2
+
+
+def test_files_that_are_no_records_are_reported(workbench):
+    view = workbench.tap_test
+    view.take({"notes.csv": b"a,b\n1,2\n"})
+    assert view.computations.wait(PATIENCE)
+    assert "notes.csv" in view.message.object
+    assert str(workbench.session.root) not in view.message.object
+
+
+def test_form_and_text_follow_each_other_and_comments_stay(workbench, tmp_path):
+    view = workbench.case
+    view.enter("cut.axial_depth", "80 thou")
+    assert 'axial_depth = "80 thou"' in view.text.value or view.errors["cut.axial_depth"].object
+    view.enter("cut.axial_depth", "0.1 in")
+    assert workbench.session.case.cut.axial_depth == pytest.approx(2.54e-3)
+    view.text.value = view.text.value.replace('"0.1 in"', '"3 mm"')
+    assert view.widgets["cut.axial_depth"].value == "3 mm"
+    assert workbench.session.changed
+    view.save()
+    saved = (tmp_path / "case.toml").read_text()
+    comments = [line for line in saved.splitlines() if "#" in line]
+    original = (EXAMPLES / "two-degrees-of-freedom" / "case.toml").read_text()
+    assert comments
+    assert comments == [line for line in original.splitlines() if "#" in line]
+    assert chatter.load(tmp_path / "case.toml").cut.axial_depth == pytest.approx(3e-3)
+
+
+def test_an_error_stands_beside_its_field(workbench):
+    view = workbench.case
+    view.enter("cut.spindle_speed", "20 mm")
+    assert "20 mm" in view.errors["cut.spindle_speed"].object
+    assert not view.errors["cut.axial_depth"].object
+    view.save()
+    assert "spindle_speed" in view.message.object
+    view.text.value = "title = "
+    assert view.message.object
+    view.enter("cut.axial_depth", "2 mm")  # the text is no TOML: nothing breaks
+    assert view.text.value == "title = "
+
+
+def test_a_section_is_added_with_its_errors(workbench):
+    view = workbench.case
+    view.add("process_damping")
+    assert "missing" in view.errors["process_damping.coefficient"].object
+    view.enter("process_damping.coefficient", "12 N/mm")
+    assert workbench.session.case.process_damping.coefficient == pytest.approx(12e3)
+    view.enter("process_damping.coefficient", "")
+    assert workbench.session.case is None
+
+
+def test_sliders_go_into_the_case(workbench):
+    workbench.stability.refresh()
+    diagram = workbench.stability.diagram
+    diagram.sliders["cut.axial_depth"].value = 1.25
+    workbench.stability.keep_sliders()
+    assert workbench.session.case.cut.axial_depth == pytest.approx(1.25e-3)
+    assert workbench.case.widgets["cut.axial_depth"].value == "1.25 mm"
+
+
+def test_two_cases_stand_side_by_side(workbench, tmp_path):
+    case = chatter.load(tmp_path / "case.toml")
+    case.patch({"material.Ktc": "1200 MPa", "material.Krc": "400 MPa"}).save(tmp_path / "hard.toml")
+    tab = workbench.stability
+    tab.refresh()
+    tab.other.value = "hard.toml"
+    for one in (tab.diagram, tab.beside):
+        assert one.computations.wait(PATIENCE)
+    lowest = [np.nanmin(one.limit.data["depth"]) for one in (tab.diagram, tab.beside)]
+    assert lowest[1] == pytest.approx(0.5 * lowest[0], rel=0.01)
+
+
+def test_process_damping_raises_the_limit_of_a_case_without_it(workbench):
+    tab = workbench.stability
+    tab.refresh()
+    assert tab.diagram.computations.wait(PATIENCE)
+    before = np.nanmin(tab.diagram.limit.data["depth"])
+    tab.diagram.sliders["process_damping.coefficient"].value = 50.0
+    assert tab.diagram.computations.wait(PATIENCE)
+    assert np.nanmin(tab.diagram.limit.data["depth"]) > 1.05 * before
+
+
+def test_frfs_take_the_place_of_the_modes(workbench, tmp_path):
+    frequency = np.arange(300.0, 1500.0, 1.0)
+    omega = 2.0 * np.pi * frequency
+    values = 1.0 / (
+        0.05 * ((2.0 * np.pi * 900.0) ** 2 - omega**2 + 0.04j * 2.0 * np.pi * 900.0 * omega)
+    )
+    lines = ["frequency [Hz],real [m/N],imag [m/N]"]
+    lines += [f"{f},{v.real},{v.imag}" for f, v in zip(frequency, values, strict=True)]
+    workbench.stability.take_frfs({"tip.csv": "\n".join(lines).encode()})
+    assert "tip.csv" in workbench.session.text
+    assert "structure.mode" not in workbench.session.text
+
+
+def test_a_study_runs_and_its_results_open_again(workbench, tmp_path):
+    view = workbench.sheet
+    view.start()
+    assert view.computations.wait(PATIENCE)
+    folder = workbench.session.results("sheet")
+    assert (folder / "sheet.pdf").read_bytes().startswith(b"%PDF")
+    assert (folder / "sheet.xlsx").is_file()
+    assert json.loads((folder / "call.json").read_text())["command"] == "chatter sheet case.toml"
+    again = Workbench(tmp_path)
+    assert len(again.sheet._result.objects) >= 3
+    again.end()
+
+
+def test_a_study_is_cancelled_and_goes_on(workbench, tmp_path):
+    text = (tmp_path / "case.toml").read_text().replace('"600 MPa"', '"600 +- 30 MPa"')
+    workbench.session.set_text(text)
+    view = workbench.studies
+    view.choice.value = "uncertainty"
+    view.options["count"].value = 40
+    view.options["speeds"].value = 5
+    done: list[float] = []
+    report = view._report
+    view._report = lambda stage, share: (done.append(share), report(stage, share),
+                                         share > 0.3 and view.computations.cancel())  # fmt: skip
+    view.start()
+    assert view.computations.wait(PATIENCE)
+    assert view.message.object == "cancelled"
+    assert max(done) < 1.0
+    view._report = lambda stage, share: done.append(share)
+    done.clear()
+    view.start()
+    assert view.computations.wait(PATIENCE)
+    # what was finished before is not computed again
+    assert min(share for share in done if share > 0.0) > 0.2
+    assert (workbench.session.results("uncertainty") / "uncertainty.csv").is_file()
+
+
+def test_a_crash_of_a_process_is_a_sentence():
+    with pytest.raises(RunError, match="crashed"):
+        in_own_process(ends_at_once, (), lambda *_: None, lambda *_: None)
+
+
+def test_two_sessions_do_not_overwrite_each_other(workbench, tmp_path):
+    second = Workbench(tmp_path)
+    workbench.case.enter("cut.axial_depth", "1 mm")
+    assert second.session.case.cut.axial_depth != pytest.approx(1e-3)
+    workbench.case.save()
+    second.case.enter("cut.axial_depth", "4 mm")
+    second.case.save()
+    assert "has changed" in second.case.message.object
+    assert chatter.load(tmp_path / "case.toml").cut.axial_depth == pytest.approx(1e-3)
+    second.case.save_name.value = "other.toml"
+    second.case.save()
+    assert chatter.load(tmp_path / "other.toml").cut.axial_depth == pytest.approx(4e-3)
+    second.end()
+
+
+@pytest.mark.parametrize("name", ["../out.toml", "/tmp/x.toml", ".hidden.toml", "a/../../b.toml",
+                                  "x.py", "a\0.toml", ""])  # fmt: skip
+def test_no_file_outside_the_folder_is_written(tmp_path, name):
+    session = Session(tmp_path / "inside")
+    with pytest.raises(InputError):
+        session.store("taps", {name: b"x"}, (".toml",))
+    assert not list(tmp_path.glob("*.toml"))
+
+
+def test_an_upload_without_end_is_given_up():
+    taken: list = []
+    widget = dropper(taken.append, "files")
+
+    class Part:
+        event_name = "upload_event"
+
+    part = b"x" * (8 * 1024**2)
+    for chunk in range(1, LARGEST_FILE // len(part) + 3):
+        event = Part()
+        event.data = {"name": "big.csv", "chunk": chunk, "total_chunks": 1000, "data": part,
+                      "type": "text/csv"}  # fmt: skip
+        widget._process_event(event)
+    assert sum(len(one) for parts in widget._file_buffer.values() for one in parts) == 0
+    assert not taken
+
+
+def test_pictures_and_tables_are_exported(workbench):
+    workbench.stability.refresh()
+    diagram = workbench.stability.diagram
+    assert diagram.computations.wait(PATIENCE)
+    assert picture_file(diagram._lobes, "png").read(8) == b"\x89PNG\r\n\x1a\n"
+    assert b"<svg" in picture_file(diagram._lobes, "svg").read(2000)
+    book = openpyxl.load_workbook(as_xlsx(diagram.limits()))
+    assert book.active["A1"].value == "spindle_speed [rpm]"
+    assert book.active.max_row == 1 + len(diagram.limit.data["speed"])
+
+
+def test_a_text_of_a_table_is_no_formula():
+    content = io.BytesIO(as_xlsx(PageTable(["a"], [["=1+1"]])).read())
+    assert openpyxl.load_workbook(content).active["A2"].value == "'=1+1"
+
+
+def test_an_ended_session_leaves_no_thread():
+    computations = Computations(lambda _: None)
+    computations.start(Computation(lambda go_on: None, False))
+    computations.end()
+    computations._thread.join(10.0)
+    assert not computations._thread.is_alive()
