@@ -14,6 +14,7 @@ import typer
 
 from chatter.cli.command_line import TYPED
 from chatter.description.errors import InputError
+from chatter.description.whole_files import write_whole
 from chatter.report.console import print_message
 from chatter.report.document import Document
 from chatter.report.methods import METHODS
@@ -81,12 +82,11 @@ def _write(document: Document, given: dict[str, Any], path: Path) -> None:
     date = datetime.datetime.now().astimezone().strftime("%Y-%m-%d %H:%M %z")
     path.parent.mkdir(parents=True, exist_ok=True)
     if path.suffix.lower() == ".html":
-        path.write_text(html_page(document, __version__, date), encoding="utf-8")
+        write_whole(path, html_page(document, __version__, date))
     else:
         from chatter.report.pdf_page import write_pdf
 
-        with path.open("wb") as file:
-            write_pdf(document, __version__, date, file)
+        write_whole(path, lambda file: write_pdf(document, __version__, date, file))
     print_message(f"wrote {path}")
 
 

@@ -12,6 +12,7 @@ from pydantic import Field, PrivateAttr, model_validator
 from chatter.description import renamed
 from chatter.description.case_checks import depth_problems, friction_problems, optimum_problems
 from chatter.description.errors import InputError
+from chatter.description.file_access import remember_written
 from chatter.description.patchable import Description
 from chatter.description.renamed import Renamed
 from chatter.description.section import raise_if_any
@@ -43,6 +44,7 @@ from chatter.description.stated_engagement import (
 )
 from chatter.description.toml_document import move_references
 from chatter.description.toml_editing import Layout
+from chatter.description.whole_files import write_whole
 from cutting.engagement.uncut_band import UncutBand
 
 if TYPE_CHECKING:
@@ -219,7 +221,8 @@ class Case(Description):
         moved = self.patch({"structure.machine": str(beside.resolve())})
         super(Case, moved).save(path)
         text = path.read_text(encoding="utf-8").replace(beside.resolve().as_posix(), beside.name)
-        path.write_text(text, encoding="utf-8", newline="")
+        write_whole(path, text)
+        remember_written(text)
 
     def with_machine(self, machine: MachineFile) -> Case:
         """Return the case on another machine than that of the file that it names.

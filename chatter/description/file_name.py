@@ -5,16 +5,24 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 
+from chatter.description.file_access import VARIABLE, is_allowed
 from chatter.description.formatting import formatted
 
 
 def in_case_folder(given: Any, info: ValidationInfo) -> Path:
-    """Path of a file that a case names; ValueError where it is no file name."""
+    """Path of a file that a case names; ValueError where it is no file name, or not allowed."""
     if not isinstance(given, (str, Path)) or not str(given) or not str(given).isprintable():
         raise ValueError(
             f'{formatted(given)} is not a file name; one is required, such as "tap.uff"'
         )
-    return (info.context or {}).get("folder", Path()) / given
+    context = info.context or {}
+    folder = context.get("folder", Path())
+    if context.get("is_foreign") and not is_allowed(folder / given, folder):
+        raise ValueError(
+            f"{formatted(given)} lies outside the folder of this file; where that is meant, "
+            f"allow its folder: {VARIABLE}={(folder / given).parent.resolve()}"
+        )
+    return folder / given
 
 
 #: a file named relative to the folder of the case file

@@ -13,6 +13,7 @@ from pydantic import PrivateAttr, ValidationError
 
 from chatter.description.bare_speeds import give_speeds_their_unit, refuse_bare_speeds
 from chatter.description.errors import InputError
+from chatter.description.file_access import remember_written, was_written
 from chatter.description.formatting import formatted
 from chatter.description.magnitudes import long_lists
 from chatter.description.path import (
@@ -30,6 +31,7 @@ from chatter.description.section import Section
 from chatter.description.toml_document import parse_document, plain, read_text, value_at
 from chatter.description.toml_editing import PLAIN, Layout, set_value
 from chatter.description.units import parse, write
+from chatter.description.whole_files import write_whole
 from chatter.description.wording import nearest, sentences, unknown_key
 
 if TYPE_CHECKING:
@@ -154,9 +156,10 @@ class Description(Section):
             If the file cannot be read or describes nothing; all problems found are in it.
         """
         path = Path(path)
-        document = parse_document(read_text(path, cls.NOUN), str(path))
+        text = read_text(path, cls.NOUN)
+        document = parse_document(text, str(path))
         refuse_bare_speeds(cls, document.unwrap(), str(path))
-        return cls._of_document(document, str(path), path.parent)
+        return cls._of_document(document, str(path), path.parent, is_foreign=not was_written(text))
 
     @classmethod
     def from_text(cls, text: str, name: str = "", folder: str | Path = ".") -> Self:
@@ -173,20 +176,25 @@ class Description(Section):
         return cls._of_document(document, name, Path(folder))
 
     @classmethod
-    def _of_document(cls, document: Any, name: str, folder: Path) -> Self:
+    def _of_document(
+        cls, document: Any, name: str, folder: Path, *, is_foreign: bool = False
+    ) -> Self:
         notes = rename(document, cls.RENAMED)
         plain_data = document.unwrap()
         if long := long_lists(plain_data):
             raise InputError([f"{name}: {text}" for text in long])
-        made = cls._validated(plain_data, name, folder)
+        made = cls._validated(plain_data, name, folder, is_foreign=is_foreign)
         made._document = document
         made._notes = tuple(f"{name}: {note}" for note in notes)
         return made
 
     @classmethod
-    def _validated(cls, data: dict[str, Any], name: str, folder: Path) -> Self:
+    def _validated(
+        cls, data: dict[str, Any], name: str, folder: Path, *, is_foreign: bool = False
+    ) -> Self:
+        context = {"folder": folder, "is_foreign": is_foreign}
         try:
-            made = cls.model_validate(data, context={"folder": folder})
+            made = cls.model_validate(data, context=context)
         except ValidationError as error:
             cls._refuse_other_kind(data, name)
             problems = sentences(error, cls, name)
@@ -308,9 +316,13 @@ class Description(Section):
         document = self._source()
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            if path.parent.resolve() != self._folder.resolve():
+            moved = path.parent.resolve() != self._folder.resolve()
+            if moved:
                 self._move_references(document, self._folder, path.parent)
-            path.write_text(tomlkit.dumps(document), encoding="utf-8", newline="")
+            text = tomlkit.dumps(document)
+            write_whole(path, text)
+            if moved:
+                remember_written(text)
         except OSError as error:
             raise InputError(f"{path}: cannot be written ({error.strerror})") from None
 

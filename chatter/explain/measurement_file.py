@@ -19,8 +19,8 @@ from chatter.explain.records.description import RecordDescription, record_of
 from chatter.io.signals import read_signals
 
 #: keys of [[run]] that are no override of the case
-_OWN_KEYS = ("file", "condition", "direction", "excite", "read", "title")
-_KEYS = (
+OWN_KEYS = ("file", "condition", "direction", "excite", "read", "title")
+KEYS = (
     "title",
     "kind",
     "case",
@@ -33,7 +33,7 @@ _KEYS = (
     "next_measurement",
 )
 #: sections of a case that a short key of a run may mean
-_SECTIONS = ("cut", "tool", "material", "axis")
+SECTIONS = ("cut", "tool", "material", "axis")
 
 
 def read_measurement(folder: str | Path, case: str | Path | Case | None = None) -> Measurement:
@@ -45,10 +45,10 @@ def read_measurement(folder: str | Path, case: str | Path | Case | None = None) 
     path = Path(folder)
     path = path if path.is_file() else path / "measurement.toml"
     content = _content(path)
-    unknown = [key for key in content if key not in _KEYS]
+    unknown = [key for key in content if key not in KEYS]
     if unknown:
         raise InputError(
-            [f"{path}: {key} is not a key; there are {', '.join(_KEYS)}" for key in unknown]
+            [f"{path}: {key} is not a key; there are {', '.join(KEYS)}" for key in unknown]
         )
     name = content.get("kind")
     if name not in KINDS:
@@ -178,9 +178,7 @@ def _run(path: Path, kind: str, number: int, entry: Mapping[str, Any], declared:
     file = _file(path, entry, "file")
     where = f"{where} ({file.name})"
     overrides = {
-        _path_of(where, key, declared): value
-        for key, value in entry.items()
-        if key not in _OWN_KEYS
+        _path_of(where, key, declared): value for key, value in entry.items() if key not in OWN_KEYS
     }
     try:
         declared.patch(overrides)
@@ -216,7 +214,7 @@ def _path_of(where: str, key: str, declared: Case) -> str:
         return key
     if key == "name":
         raise InputError(f"{where}: name: a run has the name of its file; title is free text")
-    for section in _SECTIONS:
+    for section in SECTIONS:
         fields = type(declared).model_fields[section].annotation
         for kind in getattr(fields, "__args__", (fields,)):
             if key in getattr(kind, "model_fields", {}):

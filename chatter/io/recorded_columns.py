@@ -10,6 +10,7 @@ import numpy as np
 
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
+from chatter.description.whole_files import write_whole
 
 #: what a run may write its columns as
 KINDS = ("csv", "parquet", "none")
@@ -44,10 +45,9 @@ def write_columns(
         import pyarrow
         import pyarrow.parquet
 
-        pyarrow.parquet.write_table(pyarrow.table(dict(columns)), path)
-        return [path]
+        table = pyarrow.table(dict(columns))
+        return [write_whole(path, lambda file: pyarrow.parquet.write_table(table, file))]
     text = StringIO()
     table = np.column_stack(list(columns.values()))
     np.savetxt(text, table, fmt=forms, delimiter=",", header=",".join(columns), comments="")
-    path.write_text(text.getvalue(), encoding="utf-8")
-    return [path]
+    return [write_whole(path, text.getvalue())]

@@ -5,15 +5,22 @@ from __future__ import annotations
 import csv
 import json
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from chatter.description.whole_files import write_whole
 from chatter.io.presentation import presentation
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+#: what a formula of a spreadsheet begins with
+_BEGIN_FORMULAS = ("=", "+", "-", "@", "|")
+#: a number with or without unit, which is none, and a dash for nothing
+_QUANTITY = re.compile(r"[+-]?[0-9.]+([eE][+-]?[0-9]+)?( [\w/%*^°²³·]+)?|[+-](inf|nan)|-")
 
 
 def finite_or_none(value: float) -> float | None:
@@ -27,19 +34,25 @@ def as_json(summary: Mapping) -> str:
 
 
 def csv_of_rows(rows: Iterable[Sequence[str]]) -> str:
-    """CSV of rows of texts, which are quoted where they hold a comma."""
+    """CSV of rows of texts, which are quoted where they hold a comma and `inert`."""
     text = StringIO()
-    csv.writer(text, lineterminator="\n").writerows(rows)
+    csv.writer(text, lineterminator="\n").writerows(map(inert, row) for row in rows)
     return text.getvalue()
+
+
+def inert(cell: str) -> str:
+    """Text of a cell that no spreadsheet takes for a formula: "=1+1" gets an apostrophe."""
+    begins = cell.strip().startswith(_BEGIN_FORMULAS)
+    return f"'{cell}" if begins and not _QUANTITY.fullmatch(cell) else cell
 
 
 def csv_text(columns: Mapping[str, tuple[Iterable[Any], str]]) -> str:
     """CSV of columns: heading -> values and their format; empty where a value is none or no number.
 
-    Texts and truth values stand as they are; none of them may hold a comma.
+    Texts and truth values stand as they are, texts `inert`.
     """
     cells = [[_cell(value, form) for value in values] for values, form in columns.values()]
-    return "\n".join(",".join(row) for row in (columns, *zip(*cells, strict=True))) + "\n"
+    return csv_of_rows([list(columns), *zip(*cells, strict=True)])
 
 
 def _cell(value: Any, form: str) -> str:
@@ -60,9 +73,9 @@ def write_results(
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():
-        (folder / name).write_text(text, encoding="utf-8")
+        write_whole(folder / name, text)
     for name, figure in pictures.items():
-        presentation("plots.style").write_png(figure, folder / name)
+        write_whole(folder / name, presentation("plots.style").png_of(figure))
     return [folder / name for name in (*texts, *pictures)]
 
 

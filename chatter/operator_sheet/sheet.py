@@ -11,6 +11,7 @@ from typing import Any
 from chatter.description.case import Case, load
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
+from chatter.description.whole_files import write_whole
 from chatter.io.result_files import as_json, presentation, short_repr, write_results
 from chatter.operator_sheet.cuts import CaseCuts, cuts_of
 from chatter.operator_sheet.variation import variation_that_helps
@@ -53,7 +54,7 @@ class Sheet:
         presentation("plots.sheet").write_pages(self, pages)
         contents = {"sheet.pdf": pages.getvalue(), "sheet.xlsx": workbook_of(self.cases)}
         for name, content in contents.items():
-            (folder / name).write_bytes(content)
+            write_whole(folder / name, content)
         return [*(folder / name for name in contents), *written]
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.units import rpm
+from chatter.description.whole_files import write_whole
 from chatter.io.result_files import SavedResult, csv_of_rows, finite_or_none
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.lowest_limit import LowestLimit
@@ -142,13 +143,12 @@ class StabilityMap(SavedResult):
 
     def save_grid(self, path: Path) -> Path:
         """Write grid.npz of a map over spindle speed [rpm] and axial depth [mm]."""
-        np.savez_compressed(
-            path,
-            spindle_speed=self.x_axis.values,
-            axial_depth=self.y_axis.values,
-            spectral_radius=self.spectral_radius,
-        )
-        return path
+        arrays = {
+            "spindle_speed": self.x_axis.values,
+            "axial_depth": self.y_axis.values,
+            "spectral_radius": self.spectral_radius,
+        }
+        return write_whole(path, lambda file: np.savez_compressed(file, **arrays))
 
 
 @dataclass(frozen=True, repr=False)

@@ -10,6 +10,7 @@ import hashlib
 import json
 import sqlite3
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
@@ -97,7 +98,7 @@ class ResultCache:
             return {}
         try:
             return diskcache.Cache(str(self.path), disk=_TextDisk, eviction_policy="none")
-        except sqlite3.Error as error:
+        except (sqlite3.Error, diskcache.Timeout) as error:
             raise RunError(f"{self.path}: the cache cannot be opened: {error}") from None
 
     def key(self, *inputs: str) -> str:
@@ -110,15 +111,28 @@ class ResultCache:
 
     def __contains__(self, key: str) -> bool:
         """Whether there is a record of a key."""
-        return not self._is_new and key in self._records
+        with self._faults_told("read"):
+            return not self._is_new and key in self._records
 
     def __getitem__(self, key: str) -> Any:
         """Record of a key."""
-        return json.loads(self._records[key])
+        with self._faults_told("read"):
+            return json.loads(self._records[key])
 
     def __setitem__(self, key: str, record: Any) -> None:
         """Keep a record; it is on disk when this returns."""
-        self._records[key] = json.dumps(record)
+        with self._faults_told("written"):
+            self._records[key] = json.dumps(record)
+
+    @contextmanager
+    def _faults_told(self, done: str) -> Iterator[None]:
+        """Say in words what is wrong with the disk; records that are there stay."""
+        try:
+            yield
+        except (sqlite3.Error, diskcache.Timeout, json.JSONDecodeError, OSError) as error:
+            reason = "another run holds it" if isinstance(error, diskcache.Timeout) else error
+            advice = "" if done == "written" else "; if it is damaged, delete it"
+            raise RunError(f"{self.path}: the cache cannot be {done}: {reason}{advice}") from None
 
     @property
     def _is_new(self) -> bool:

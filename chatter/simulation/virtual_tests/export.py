@@ -14,6 +14,7 @@ import scipy
 from chatter.description.errors import InputError
 from chatter.description.machine.frequency_response import StateSection, parse_tested_point
 from chatter.description.machine.machine_file import MachineFile, load_machine
+from chatter.description.whole_files import write_whole
 from chatter.io.result_files import as_json, short_repr, write_results
 from chatter.simulation.virtual_tests.from_file import in_state, is_rotation, row_of_point
 from dynamics.machine.state_space import StateSpace, state_space
@@ -86,11 +87,11 @@ class StateSpaceExport:
         matrices = {key: value for key, value in arrays.items() if key not in names}
         content = io.BytesIO()
         np.savez_compressed(content, **arrays)
-        (folder / "state_space.npz").write_bytes(content.getvalue())
+        write_whole(folder / "state_space.npz", content.getvalue())
         cells = {key: value.astype(object).reshape(-1, 1) for key, value in names.items()}
         content = io.BytesIO()
         scipy.io.savemat(content, {**matrices, **cells}, do_compression=True)
-        (folder / "state_space.mat").write_bytes(content.getvalue())
+        write_whole(folder / "state_space.mat", content.getvalue())
         return [*written, folder / "state_space.npz", folder / "state_space.mat"]
 
 

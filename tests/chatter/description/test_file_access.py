@@ -1,0 +1,73 @@
+"""A case names files below its folder; others where the user allows them."""
+
+import pytest
+
+import chatter
+from chatter import InputError
+from chatter.description.file_access import VARIABLE
+from tests.cases import TOOL_OF_922_HERTZ
+
+TABLE = "secret"
+WITH_TABLE = TOOL_OF_922_HERTZ.replace(
+    'Ktc = "600 MPa"\nKrc = "200 MPa"', 'name = "own"\ntable = "{}"'
+)
+OWN = '[own]\nKtc = "600 MPa"\nKrc = "200 MPa"\nsource = "measured"\n'
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """Folder of the case; the program starts elsewhere."""
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    monkeypatch.delenv(VARIABLE, raising=False)
+    start, case = tmp_path / "start", tmp_path / "elsewhere" / "case"
+    for one in (start, case / "below"):
+        one.mkdir(parents=True)
+    monkeypatch.chdir(start)
+    for place in (case / "below", case.parent, start):
+        (place / "own.toml").write_text(OWN)
+    return case
+
+
+def case_with(folder, table):
+    path = folder / "case.toml"
+    path.write_text(WITH_TABLE.format(table))
+    return path
+
+
+@pytest.mark.parametrize("outside", ["../own.toml", "below/../../own.toml", "{}/own.toml"])
+def test_a_file_outside_is_refused(folder, outside):
+    path = case_with(folder, outside.format(folder.parent))
+    with pytest.raises(InputError, match=rf"case\.toml: material\.table: .*{VARIABLE}=.*elsewhere"):
+        chatter.load(path)
+
+
+def test_a_link_does_not_lead_outside(folder):
+    (folder / "own.toml").symlink_to(folder.parent / "own.toml")
+    with pytest.raises(InputError, match="outside"):
+        chatter.load(case_with(folder, "own.toml"))
+
+
+def test_files_below_and_where_the_program_starts_are_read(folder, tmp_path):
+    for table in ("below/own.toml", tmp_path / "start" / "own.toml"):
+        assert chatter.load(case_with(folder, table)).material.Ktc == 600e6
+
+
+def test_the_user_allows_a_folder(folder, monkeypatch):
+    monkeypatch.setenv(VARIABLE, str(folder.parent))
+    assert chatter.load(case_with(folder, "../own.toml")).material.Ktc == 600e6
+
+
+def test_what_the_user_types_is_allowed(folder):
+    case = chatter.load(case_with(folder, "below/own.toml"))
+    assert case.patch({"material.table": "../own.toml"}).material.Ktc == 600e6
+
+
+def test_a_case_that_was_written_here_may_name_what_the_case_before_named(folder, tmp_path):
+    case = chatter.load(case_with(folder, "below/own.toml"))
+    written = tmp_path / "results" / "case.toml"
+    case.patch({"cut.axial_depth": "2 mm"}).save(written)
+    assert chatter.load(written).material.Ktc == 600e6
+    # the same by another hand
+    written.write_text(written.read_text() + "# changed\n")
+    with pytest.raises(InputError, match="outside"):
+        chatter.load(written)
