@@ -8,6 +8,7 @@ from chatter.compile.empirical import speed_factor
 from chatter.compile.worn_flank import land_forces
 from chatter.description.case import Case
 from chatter.description.errors import InputError
+from chatter.description.sections.process import ProcessDamping
 from cutting.force.law import ForceLaw
 from cutting.force.laws import edge_law_table
 from cutting.process_damping.flank import BareFlank, ProcessDampingLaw
@@ -51,6 +52,10 @@ def cutter_of(case: Case) -> Cutter:
     )
 
 
+#: process damping of a sharp tool; of what wear adds, tangential over radial force
+_NONE_YET = ProcessDamping(coefficient=0.0, friction=0.3)
+
+
 def force_law(case: Case, helix: float) -> ForceLaw:
     """Force law of a case after its cutting time, for an edge inclined by the helix, rad."""
     law = case.material.force_law(helix).scaled(speed_factor(case))
@@ -63,7 +68,8 @@ def force_law(case: Case, helix: float) -> ForceLaw:
         return law
     wear, time = case.wear, case.cut.cut_time
     edges = [wear.increase(key, time) for key in ("edge_tangential", "edge_radial")]
-    return law.worn(wear.increase("cutting", time), [*edges, 0.0])
+    cutting, radial = (wear.increase(key, time) for key in ("cutting", "cutting_radial"))
+    return law.worn([cutting, radial, cutting], [*edges, 0.0])
 
 
 def edge_law(case: Case) -> NamedTuple:
@@ -78,12 +84,9 @@ def process_damping_of(case: Case) -> ProcessDampingLaw | None:
     """
     tool, section = case.tool, case.process_damping
     if section is None:
-        return None
+        return _viscous(case, _NONE_YET)
     if section.indentation_force is None:
-        given = section.coefficient
-        if case.wear is not None and case.cut is not None:
-            given *= 1.0 + case.wear.increase("process_damping", case.cut.cut_time)
-        return ViscousProcessDamping(given, section.friction) if given else None
+        return _viscous(case, section)
     problems = []
     if tool.clearance_angle is None:
         problems.append(
@@ -110,6 +113,16 @@ def process_damping_of(case: Case) -> ProcessDampingLaw | None:
         edge_radius=tool.edge_radius,
         friction=section.friction,
     )
+
+
+def _viscous(case: Case, section: ProcessDamping) -> ViscousProcessDamping | None:
+    """Viscous process damping as far as the tool has worn; None where there is none."""
+    given = section.coefficient
+    if case.wear is not None and case.cut is not None:
+        wear, time = case.wear, case.cut.cut_time
+        given *= 1.0 + wear.increase("process_damping", time)
+        given += wear.increase("ploughing", time)
+    return ViscousProcessDamping(given, section.friction) if given else None
 
 
 def flank_table(case: Case, radius: np.ndarray, step_angle: float) -> NamedTuple:

@@ -43,6 +43,8 @@ def checked(measurement: Measurement) -> Checked:
 
     InputError if the case lacks a section, or a run a column that its kind needs.
     """
+    if measurement.parts:
+        return _checked_parts(measurement)
     kind = KINDS[measurement.kind]
     kind.require(measurement)
     found: list[SignalFinding] = []
@@ -64,6 +66,17 @@ def checked(measurement: Measurement) -> Checked:
         usable = remaining
     ranks = list(FOLLOWS)
     return Checked(usable, tuple(sorted(_once(found), key=lambda one: ranks.index(one.severity))))
+
+
+def _checked_parts(measurement: Measurement) -> Checked:
+    """Check every part of a set-up by itself."""
+    parts = [checked(part) for part in measurement.parts]
+    ranks = list(FOLLOWS)
+    found = sorted(
+        (finding for part in parts for finding in part.findings),
+        key=lambda one: ranks.index(one.severity),
+    )
+    return Checked(measurement.with_parts([one.measurement for one in parts]), tuple(found))
 
 
 def _once(found: Sequence[SignalFinding]) -> list[SignalFinding]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -39,6 +39,7 @@ class Run:
     described: tuple[str, ...] = ()
     whole: Run | None = None  # run of which this one is a part
     part: slice | None = None  # samples of the whole run that the part holds
+    kind: str = ""  # where the measurement is a set-up of several
 
     def weight(self, channel: str) -> NDArray[np.float64]:
         """Weights (n,) of the samples of a channel, 0 where they are excluded."""
@@ -82,7 +83,7 @@ class Run:
 class Measurement:
     """What was measured, and the case that was declared about it."""
 
-    kind: str  # "milling", "axis", "stability", "frf"
+    kind: str  # "milling", "axis", "stability", "frf", "set-up"
     title: str
     folder: Path
     case: Case
@@ -93,6 +94,31 @@ class Measurement:
     record: RecordDescription | None = None  # how the runs were recorded, where it is told
     #: path of the case -> least and largest value, SI, that the next measurement may have
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    #: of a set-up: what was measured of each kind, with the case of the whole; runs are theirs
+    parts: tuple[Measurement, ...] = ()
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """Kinds of the runs: one, but of a set-up."""
+        if not self.parts:
+            return (self.kind,)
+        return tuple(dict.fromkeys(run.kind for run in self.runs))
+
+    def of_kinds(self, kinds: Sequence[str]) -> Measurement:
+        """Return the measurement with its runs of some kinds alone."""
+        if not self.parts or all(name in kinds for name in self.kinds):
+            return self
+        runs = tuple(run for run in self.runs if run.kind in kinds)
+        parts = tuple(part for part in self.parts if part.kind in kinds)
+        if len(parts) != 1:
+            return replace(self, runs=runs, parts=parts)
+        (one,) = parts
+        return replace(one, case=self.case, runs=runs, tolerances=self.tolerances)
+
+    def with_parts(self, parts: Sequence[Measurement]) -> Measurement:
+        """Return a set-up with other parts, and their runs."""
+        runs = [replace(run, kind=part.kind) for part in parts for run in part.runs]
+        return replace(self, parts=tuple(parts), runs=tuple(runs))
 
     def in_parts(self, most: int = _PARTS) -> Measurement:
         """Return the measurement with its runs cut in time where there are too few to judge by.
@@ -110,7 +136,8 @@ class Measurement:
 
     def with_case(self, case: Case) -> Measurement:
         """Same measurement with another case declared."""
-        return replace(self, case=case)
+        parts = tuple(part.with_case(case) for part in self.parts)
+        return replace(self, case=case, parts=parts)
 
     def with_values(self, values: Mapping[str, Any]) -> Case:
         """Return the declared case with values put in by path."""

@@ -12,7 +12,8 @@ from chatter.description.case import Case, load
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
 from chatter.description.units import QuantityError, parse
-from chatter.explain.kinds.kind_list import KINDS
+from chatter.explain.kinds.kind_list import KINDS, OF_PARTS
+from chatter.explain.kinds.set_up import SetUp
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.next_measurement.limits import limits_of
 from chatter.explain.records.description import RecordDescription, record_of
@@ -31,7 +32,12 @@ KEYS = (
     "record",
     "channels",
     "next_measurement",
+    "part",
 )
+#: those of one kind, of a [[part]], and of a set-up of several
+_ONE_KIND_KEYS = tuple(key for key in KEYS if key != "part")
+PART_KEYS = ("title", "kind", "points", "run", "idle_power", "record", "channels")
+SET_UP_KEYS = ("title", "kind", "case", "part", "tolerance", "next_measurement")
 #: sections of a case that a short key of a run may mean
 SECTIONS = ("cut", "tool", "material", "axis")
 
@@ -45,41 +51,81 @@ def read_measurement(folder: str | Path, case: str | Path | Case | None = None) 
     path = Path(folder)
     path = path if path.is_file() else path / "measurement.toml"
     content = _content(path)
-    unknown = [key for key in content if key not in KEYS]
-    if unknown:
-        raise InputError(
-            [f"{path}: {key} is not a key; there are {', '.join(KEYS)}" for key in unknown]
-        )
     name = content.get("kind")
     if name not in KINDS:
         raise InputError(f"{path}: kind: {formatted(name)} is none of {', '.join(KINDS)}")
+    _refuse_unknown(path, "", content, SET_UP_KEYS if name == SetUp.name else _ONE_KIND_KEYS)
     declared = case if isinstance(case, Case) else load(case or _file(path, content, "case"))
     if declared.on_machine:
         # read once, not at every prediction
         declared = declared.with_machine(declared.machine_file())
-    table = KINDS[name].table_key
+    title = str(content.get("title", path.parent.name))
+    whole = Measurement(name, title, path.parent, declared, ())
+    tolerances = _tolerances(path, content.get("tolerance", {}), declared)
+    limits = limits_of(path, content.get("next_measurement", {}), declared)
+    whole = replace(whole, tolerances=tolerances, limits=limits)
+    if name == SetUp.name:
+        return _set_up(path, whole, content)
+    return _of_one_kind(path, "", whole, content)
+
+
+def _refuse_unknown(
+    path: Path, where: str, content: Mapping[str, Any], keys: Sequence[str]
+) -> None:
+    unknown = [key for key in content if key not in keys]
+    if unknown:
+        raise InputError(
+            [f"{path}: {where}{key} is not a key; there are {', '.join(keys)}" for key in unknown]
+        )
+
+
+def _set_up(path: Path, whole: Measurement, content: Mapping[str, Any]) -> Measurement:
+    """Set-up of several parts, each of a kind of its own."""
+    entries = content.get("part", [])
+    if not isinstance(entries, list) or any(not isinstance(one, dict) for one in entries):
+        raise InputError(f"{path}: part: parts are tables [[part]] with a kind each")
+    parts = []
+    for number, entry in enumerate(entries, start=1):
+        where = f"part {number}: "
+        _refuse_unknown(path, where, entry, PART_KEYS)
+        kind = entry.get("kind")
+        if kind not in OF_PARTS:
+            raise InputError(
+                f"{path}: {where}kind: {formatted(kind)} is none of {', '.join(OF_PARTS)}"
+            )
+        title = str(entry.get("title", kind))
+        own = replace(whole, kind=kind, title=title)
+        parts.append(_of_one_kind(path, where, own, entry))
+    if not parts:
+        raise InputError(f"{path}: there is no [[part]]")
+    found = whole.with_parts(parts)
+    _refuse_names_twice(path, found.runs)
+    return found
+
+
+def _of_one_kind(
+    path: Path, where: str, whole: Measurement, content: Mapping[str, Any]
+) -> Measurement:
+    """Measurement, or part of a set-up, with its runs."""
+    table = KINDS[whole.kind].table_key
     if table:
         file = _file(path, content, table)
         runs = (Run(file.name, {}, read_signals(file)),)
     else:
         entries = content.get("run", [])
         if not isinstance(entries, list) or any(not isinstance(one, dict) for one in entries):
-            raise InputError(f"{path}: run: runs are tables [[run]] with a file each")
+            raise InputError(f"{path}: {where}run: runs are tables [[run]] with a file each")
         runs = tuple(
-            _run(path, name, number, entry, declared)
+            _run(path, whole.kind, number, entry, whole.case)
             for number, entry in enumerate(entries, start=1)
         )
     if not runs:
-        raise InputError(f"{path}: there is no [[run]]")
+        raise InputError(f"{path}: {where}there is no [[run]]")
     _refuse_names_twice(path, runs)
-    tolerances = _tolerances(path, content.get("tolerance", {}), declared)
     record = record_of(path, content)
     if record is not None:
         runs = tuple(_described(path, run, record) for run in runs)
-    title = str(content.get("title", path.parent.name))
-    idle = _idle_power(path, content)
-    limits = limits_of(path, content.get("next_measurement", {}), declared)
-    return Measurement(name, title, path.parent, declared, runs, tolerances, idle, record, limits)
+    return replace(whole, runs=runs, idle_power=_idle_power(path, content), record=record)
 
 
 def _described(path: Path, run: Run, record: RecordDescription) -> Run:

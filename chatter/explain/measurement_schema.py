@@ -3,7 +3,7 @@
 from typing import Any
 
 from chatter.explain import measurement_file
-from chatter.explain.kinds.kind_list import KINDS
+from chatter.explain.kinds.kind_list import KINDS, OF_PARTS
 from chatter.explain.records import description
 from chatter.stability.case_schema import schema as case_schema
 
@@ -42,7 +42,16 @@ def measurement_schema() -> dict[str, Any]:
             },
         },
     }
-    sections = {"Run": _run(case), "Record": _record(), "Channel": _channel()}
+    properties["part"] = {"type": "array", "items": {"$ref": "#/$defs/Part"}}
+    part = {
+        "type": "object",
+        "description": "What was measured of one kind, where the kind of the whole is set-up.",
+        "properties": {key: properties[key] for key in measurement_file.PART_KEYS},
+        "required": ["kind"],
+        "additionalProperties": False,
+    }
+    part["properties"]["kind"] = {"enum": list(OF_PARTS), "description": "what was measured"}
+    sections = {"Run": _run(case), "Record": _record(), "Channel": _channel(), "Part": part}
     return {
         "$schema": case["$schema"],
         "$defs": {**case["$defs"], **sections},

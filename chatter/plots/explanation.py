@@ -95,7 +95,8 @@ def plot_residuals(residuals: dict[str, Residual], title: str) -> Figure:
     panels = figure.subplots(len(channels), len(runs), squeeze=False)
     for row, channel in enumerate(channels):
         for column, name in enumerate(runs):
-            _draw_residuals(panels[row, column], _parts(residuals, channel, name))
+            own = _parts(residuals, channel, name)
+            _draw_residuals(panels[row, column], own, bool(first.measurement.parts))
             if row == 0:
                 panels[row, column].set_title(name, loc="left")
             style.finish(panels[row, column])
@@ -128,7 +129,10 @@ def _parts(residuals: dict[str, Residual], channel: str, run: str) -> dict[str, 
     }
 
 
-def _draw_residuals(axes: Axes, parts: dict[str, ChannelResidual]) -> None:
+def _draw_residuals(axes: Axes, parts: dict[str, ChannelResidual], of_set_up: bool) -> None:
+    if not parts and of_set_up:
+        axes.set_axis_off()
+        return
     if not parts:
         axes.text(0.5, 0.5, "excluded", ha="center", transform=axes.transAxes)
         return

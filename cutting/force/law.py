@@ -68,13 +68,13 @@ class ForceLaw(ABC):
         h = np.asarray(chip_thickness, dtype=np.float64)
         return np.multiply.outer(power.cutting, (h / power.reference) ** power.exponent)
 
-    def worn(self, cutting_wear: float, edge_wear: Sequence[float]) -> ForceLaw:
+    def worn(self, cutting_wear: float | Sequence[float], edge_wear: Sequence[float]) -> ForceLaw:
         """Law of a worn edge.
 
-        By the share by which the cutting coefficients have grown, and what is added to each of the
-        three edge coefficients, N/m.
+        By the share by which the cutting coefficients have grown, all or each of the three, and
+        what is added to each of the three edge coefficients, N/m.
         """
-        cutting = np.asarray(self.cutting) * (1.0 + cutting_wear)  # type: ignore[attr-defined]
+        cutting = np.asarray(self.cutting) * (1.0 + np.asarray(cutting_wear))  # type: ignore[attr-defined]
         edge = np.asarray(self.edge) + np.asarray(edge_wear)  # type: ignore[attr-defined]
         return replace(self, cutting=tuple(cutting), edge=tuple(edge))  # type: ignore[call-arg]
 

@@ -78,8 +78,14 @@ class Chipping(Section):
     cutting: quantity("number", above=-1.0) = Field(
         0.0, description="of Ktc, Krc and Kac, as a share of them"
     )
+    cutting_radial: quantity("number", above=-1.0) | None = Field(
+        None, description="of Krc alone; as cutting where it is left out"
+    )
     process_damping: quantity("number", above=-1.0) = Field(
         0.0, description="of process_damping.coefficient, as a share of it"
+    )
+    ploughing: quantity("line_force") = Field(
+        0.0, description="added to process_damping.coefficient, also where there was none"
     )
 
 
@@ -91,8 +97,16 @@ class Wear(Section):
     cutting: quantity("rate") = Field(
         0.0, description="of Ktc, Krc and Kac per cutting time, as a share of them"
     )
+    cutting_radial: quantity("rate") | None = Field(
+        None, description="of Krc alone per cutting time; as cutting where it is left out"
+    )
     process_damping: quantity("rate") = Field(
         0.0, description="of process_damping.coefficient per cutting time, as a share of it"
+    )
+    ploughing: quantity("line_force_rate") = Field(
+        0.0,
+        description="added to process_damping.coefficient per cutting time, also where there was "
+        "none",
     )
     flank_pressure: quantity("pressure", at_least=0.0) | None = Field(
         None, description="mean on tool.flank_wear; by default a tenth of the cutting pressure"
@@ -113,9 +127,15 @@ class Wear(Section):
 
     def increase(self, key: str, cut_time: float) -> float:
         """Increase of what a key names after a cutting time (s), by rate and by chipping, SI."""
-        grown = getattr(self, key) * self.grown_time(cut_time)
+        grown = _given(self, key) * self.grown_time(cut_time)
         chipped = self.chipping is not None and cut_time >= self.chipping.time
-        return grown + (getattr(self.chipping, key) if chipped else 0.0)
+        return grown + (_given(self.chipping, key) if chipped else 0.0)
+
+
+def _given(section: Wear | Chipping, key: str) -> float:
+    """Value of a key; of the radial coefficient as of all where it is left out."""
+    value = getattr(section, key)
+    return section.cutting if value is None else value
 
 
 class SensorResonance(Section):

@@ -5,7 +5,8 @@ module          effects
 =============== ====================================================================
 effect          `Effect`: name, label, help, patch, parameters, where it applies
 tool            runout, pitch, wear
-cutting_force   edge force, chip exponent, process damping, dynamometer
+cutting_force   edge force, chip exponent, process damping
+dynamometer     resonances of the force sensor
 structure       missing mode, mode shift, contact, slide friction
 machine         friction of an axis of a machine, its joints, its gains
 axis            friction of a feed axis in its forms; offset, cogging, backlash

@@ -1,8 +1,4 @@
-"""Effects of the cutting force and its sensor: edge force, chip exponent, process damping."""
-
-import itertools
-
-import numpy as np
+"""Effects of the cutting force: edge force, chip exponent, process damping."""
 
 from chatter.description.case import Case
 from chatter.explain.effects.effect import Effect, Patch, Values, free
@@ -13,8 +9,6 @@ from chatter.explain.measurement import Measurement
 _H0 = 1e-4
 #: tangential over radial process damping where the case has none
 _FRICTION = 0.3
-#: start frequencies of a resonance of one axis beside that of another
-_STARTS_AN_AXIS = 10
 
 
 class EdgeForce(Effect):
@@ -87,84 +81,3 @@ class ProcessDamping(Effect):
     def starts(self, measurement: Measurement) -> list[Values]:
         """From none to much."""
         return [{"coefficient": value} for value in (0.0, 5e4, 2e5, 8e5)]
-
-
-class Dynamometer(Effect):
-    """Resonance of the force sensor."""
-
-    name = "dynamometer"
-    label = "dynamometer resonance"
-    help = "the force sensor has a resonance of its own"
-    kinds = ("milling",)
-    section = "dynamometer"
-
-    @property
-    def variants(self) -> tuple[Effect, ...]:
-        """One resonance of all axes, or one of each."""
-        return (self, DynamometerOfAxes())
-
-    def applies(self, measurement: Measurement) -> bool:
-        """Of forces measured by a sensor without a declared resonance."""
-        measured = any("Fx" in run.signals for run in measurement.runs)
-        return measured and measurement.case.dynamometer is None
-
-    def parameters(self, measurement: Measurement) -> list[Parameter]:
-        """Frequency and damping."""
-        return [
-            free("frequency", 2000.0, 30.0, "Hz", lower=100.0, upper=5e4),
-            Parameter("damping", 0.03, 0.02, 0.002, 0.7, True, ""),
-        ]
-
-    def starts(self, measurement: Measurement) -> list[Values]:
-        """Frequencies up to beyond the highest that is recorded."""
-        highest = 0.5 / float(np.median(np.diff(measurement.runs[0].signals["time"])))
-        return [{"frequency": float(f)} for f in np.geomspace(400.0, 1.2 * highest, 14)]
-
-
-class DynamometerOfAxes(Dynamometer):
-    """A resonance of the force sensor along each axis."""
-
-    @property
-    def variants(self) -> tuple[Effect, ...]:
-        """None: it is one of a family."""
-        return (self,)
-
-    def parameters(self, measurement: Measurement) -> list[Parameter]:
-        """Frequency and damping along each axis that is measured."""
-        found = []
-        for axis in _axes(measurement):
-            size = {"lower": 100.0, "upper": 5e4}
-            found.append(free(f"frequency_{axis}", 2000.0, 30.0, "Hz", **size))
-            found.append(Parameter(f"damping_{axis}", 0.03, 0.02, 0.002, 0.7, True, ""))
-        return found
-
-    def patch(self, case: Case, values: Values) -> Patch:
-        """Resonances by axis."""
-        axes = [key.removeprefix("frequency_") for key in values if key.startswith("frequency_")]
-        return {
-            "dynamometer": {
-                "resonance": [
-                    {
-                        "frequency": float(values[f"frequency_{axis}"]),
-                        "damping": float(values[f"damping_{axis}"]),
-                        "axis": axis,
-                    }
-                    for axis in axes
-                ]
-            }
-        }
-
-    def starts(self, measurement: Measurement) -> list[Values]:
-        """Frequencies of the first two axes apart; a third one as the first."""
-        highest = 0.5 / float(np.median(np.diff(measurement.runs[0].signals["time"])))
-        grid = np.geomspace(400.0, 1.2 * highest, _STARTS_AN_AXIS)
-        axes = _axes(measurement)
-        return [
-            {f"frequency_{axis}": float(pair[k % 2]) for k, axis in enumerate(axes)}
-            for pair in itertools.product(grid, repeat=2)
-        ]
-
-
-def _axes(measurement: Measurement) -> list[str]:
-    """Axes along which every run has a force."""
-    return [axis for axis in "xyz" if all(f"F{axis}" in run.signals for run in measurement.runs)]

@@ -15,12 +15,8 @@ from chatter.explain.effects.axis import (
     Stribeck,
     WarmUp,
 )
-from chatter.explain.effects.cutting_force import (
-    ChipExponent,
-    Dynamometer,
-    EdgeForce,
-    ProcessDamping,
-)
+from chatter.explain.effects.cutting_force import ChipExponent, EdgeForce, ProcessDamping
+from chatter.explain.effects.dynamometer import Dynamometer
 from chatter.explain.effects.effect import Effect
 from chatter.explain.effects.machine import AxisFriction, ControlGain, JointStiffness
 from chatter.explain.effects.missing_mode import MissingMode
@@ -66,8 +62,13 @@ def candidates(measurement: Measurement) -> list[Effect]:
         variant
         for effect in EFFECTS
         for variant in effect.variants
-        if measurement.kind in variant.kinds and variant.applies(measurement)
+        if _shows(variant, measurement) and variant.applies(measurement.of_kinds(variant.kinds))
     ]
+
+
+def _shows(effect: Effect, measurement: Measurement) -> bool:
+    """Whether an effect shows in a measurement of any of its kinds."""
+    return any(kind in effect.kinds for kind in measurement.kinds)
 
 
 def rank(effect: Effect) -> int:

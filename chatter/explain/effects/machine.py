@@ -110,7 +110,7 @@ class _Factor(Effect):
         A cut is simulated from few of them.
         """
         (one,) = self.parameters(measurement)
-        factors = _STARTS if measurement.kind == "frf" else _STARTS_OF_CUTS
+        factors = _STARTS_OF_CUTS if "milling" in measurement.kinds else _STARTS
         return [{one.name: float(factor)} for factor in factors]
 
     def patch(self, case: Case, values: Values) -> Patch:

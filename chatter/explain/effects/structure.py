@@ -51,7 +51,7 @@ class ModeShift(Effect):
     def applies(self, measurement: Measurement) -> bool:
         """Of modes at several speeds."""
         speeds = {str(run.overrides.get("cut.spindle_speed")) for run in measurement.runs}
-        return has_modes(measurement) and (measurement.kind == "stability" or len(speeds) > 2)
+        return has_modes(measurement) and ("stability" in measurement.kinds or len(speeds) > 2)
 
     def parameters(self, measurement: Measurement) -> list[Parameter]:
         """Relative change of the frequencies with the speed: one in a thousand at 1000 rpm."""

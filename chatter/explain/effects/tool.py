@@ -97,8 +97,8 @@ class Wear(Effect):
 
     @property
     def richer(self) -> tuple[Effect, ...]:
-        """Less and less, or at once."""
-        return (SaturatingWear(), Chipping())
+        """Less and less, or at once; of every coefficient by itself."""
+        return (SaturatingWear(), Chipping(), WearOfAll())
 
     def applies(self, measurement: Measurement) -> bool:
         """Of runs at several cut times."""
@@ -123,8 +123,44 @@ class Wear(Effect):
         return [free("process_damping", 0.0, size, unit)]
 
 
+class _OfAll(Effect):
+    """Growth of the radial cutting coefficient by itself, and of a process damping from nothing."""
+
+    @property
+    def richer(self) -> tuple[Effect, ...]:
+        """None that has more."""
+        return ()
+
+    def _of_all(self, measurement: Measurement, time: float, per_time: str) -> list[Parameter]:
+        """Growth of each within a time, s; one of a step."""
+        radial = free("cutting_radial", 0.0, 0.02 / time, per_time)
+        if measurement.case.process_damping is not None:
+            return [radial]
+        unit = "N/m/s" if per_time else "N/m"
+        return [radial, free("ploughing", 0.0, 2e4 / time, unit, lower=0.0)]
+
+
+class WearOfAll(_OfAll, Wear):
+    """Every coefficient and the process damping grow with the cut time of the runs."""
+
+    @property
+    def richer(self) -> tuple[Effect, ...]:
+        """The same less and less, or at once."""
+        return (SaturatingWearOfAll(), ChippingOfAll())
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """Growth a second."""
+        longest = max(run.cut_time for run in measurement.runs)
+        return [*super().parameters(measurement), *self._of_all(measurement, longest, "1/s")]
+
+
 class SaturatingWear(Wear):
     """Forces that grow less and less with the cut time of the runs."""
+
+    @property
+    def richer(self) -> tuple[Effect, ...]:
+        """The same of every coefficient by itself."""
+        return (SaturatingWearOfAll(),)
 
     def parameters(self, measurement: Measurement) -> list[Parameter]:
         """Growth at first, and the time in which it dies away."""
@@ -139,8 +175,22 @@ class SaturatingWear(Wear):
         return [{"saturation_time": share * longest} for share in _SATURATIONS]
 
 
+class SaturatingWearOfAll(_OfAll, SaturatingWear):
+    """Every coefficient and the process damping grow less and less."""
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """Growth at first, and the time in which it dies away."""
+        longest = max(run.cut_time for run in measurement.runs)
+        return [*super().parameters(measurement), *self._of_all(measurement, longest, "1/s")]
+
+
 class Chipping(Wear):
     """Forces that grow at once, at some cut time between two runs."""
+
+    @property
+    def richer(self) -> tuple[Effect, ...]:
+        """The same of every coefficient by itself."""
+        return (ChippingOfAll(),)
 
     def parameters(self, measurement: Measurement) -> list[Parameter]:
         """Growth, and when it comes."""
@@ -161,3 +211,11 @@ class Chipping(Wear):
         """Between every two runs."""
         times = sorted({run.cut_time for run in measurement.runs})
         return [{"time": 0.5 * (one + other)} for one, other in pairwise(times)]
+
+
+class ChippingOfAll(_OfAll, Chipping):
+    """Every coefficient and the process damping grow at once."""
+
+    def parameters(self, measurement: Measurement) -> list[Parameter]:
+        """Growth, and when it comes."""
+        return [*super().parameters(measurement), *self._of_all(measurement, 1.0, "")]

@@ -25,6 +25,7 @@ _KNOTS = (5, 9, 17)
 
 def terms_of(residual: Residual) -> list[EmpiricalTerm]:
     """Terms to try on a residual."""
+    residual = residual.kind.leading(residual)
     make = {"milling": _of_cuts, "axis": _of_moves}.get(residual.kind.name)
     found = [] if make is None else make(residual)
     return [term for term in found if term.applies(residual.measurement)]

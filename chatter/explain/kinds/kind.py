@@ -19,6 +19,7 @@ from chatter.explain.measurement import Measurement, Run
 from chatter.explain.next_measurement.information import information_of_signals
 from chatter.explain.residuals.channel_residual import ChannelResidual, white_level
 from chatter.explain.residuals.finding import Finding
+from chatter.explain.residuals.residual import Residual
 from chatter.explain.residuals.variables import Condition, Form, Measure, Variable
 
 Array = NDArray[np.float64]
@@ -207,6 +208,14 @@ class Kind(ABC):
                 level = max(one.run.level(one.channel), 1e-150)
                 shares.setdefault(one.channel, []).append((one.noise / level) ** 2)
         return mean_over_channels(shares)
+
+    def findings(self, residual: Residual) -> tuple[Finding, ...]:
+        """What the diagnostics find in a residual."""
+        return tuple(diagnostic(residual) for diagnostic in self.diagnostics)
+
+    def leading(self, residual: Residual) -> Residual:
+        """Return the part of a residual that is described first; all of it by default."""
+        return residual
 
     def trials(self, measurement: Measurement, noise: Noise) -> Sequence[Trial]:
         """Measurements that might tell apart cases that fit alike; none by default."""

@@ -4,8 +4,11 @@ from chatter.explain.kinds.axis import Axis
 from chatter.explain.kinds.frf import FrequencyResponse
 from chatter.explain.kinds.kind import Kind
 from chatter.explain.kinds.milling import Milling
+from chatter.explain.kinds.set_up import SetUp
 from chatter.explain.kinds.stability import Stability
 
-KINDS: dict[str, Kind] = {
+#: kinds of which a part of a set-up may be
+OF_PARTS: dict[str, Kind] = {
     kind.name: kind for kind in (Milling(), Axis(), Stability(), FrequencyResponse())
 }
+KINDS: dict[str, Kind] = {**OF_PARTS, SetUp.name: SetUp(OF_PARTS)}

@@ -38,7 +38,10 @@ class Signature:
     @cached_property
     def dependence(self) -> ResidualDependence:
         """On what the residual depends most."""
-        return residual_dependence(self.residual, self.findings)
+        kind = self.residual.kind
+        leading = kind.leading(self.residual)
+        findings = self.findings if leading is self.residual else diagnosed(leading)
+        return residual_dependence(leading, findings)
 
     def summary(self) -> dict[str, Any]:
         """Entry of explanation.json."""
@@ -50,7 +53,7 @@ class Signature:
 
 def diagnosed(residual: Residual) -> tuple[Finding, ...]:
     """Findings of every diagnostic of the kind of measurement."""
-    return tuple(diagnostic(residual) for diagnostic in residual.kind.diagnostics)
+    return residual.kind.findings(residual)
 
 
 def signature_of(

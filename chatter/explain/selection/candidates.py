@@ -18,6 +18,7 @@ from chatter.explain.effects.effect_list import candidates, rank
 from chatter.explain.fitting import Fit
 from chatter.explain.measurement import Run
 from chatter.explain.selection.evidence import log_evidence
+from chatter.explain.selection.joint_steps import JointStep, joint_steps
 from chatter.explain.selection.linearised_step import LinearisedStep, linearised
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.significance import is_significant
@@ -47,6 +48,7 @@ class Stage:
     holdout: float  # sum of squares on the holdout runs, by it
     evidence: float  # logarithm, by it
     tried: tuple[Candidate, ...]  # best first
+    together: tuple[JointStep, ...] = ()  # pairs that promise more than each of them
 
     @property
     def best(self) -> Candidate:
@@ -73,7 +75,10 @@ def stage_of(problem: Problem, now: Fit, split: Split, progress: Progress, numbe
         share = _LINEARISED_SHARE + (1.0 - _LINEARISED_SHARE) * index / len(chosen)
         progress(f"fitting {effect.name}", (number + share) / (MOST_EFFECTS + 1))
         tried.append(_roughly_fitted(problem, effect, split, step))
-    return stage_with(problem, now, split, _finished(problem, now, split, tried))
+    found = stage_with(problem, now, split, _finished(problem, now, split, tried))
+    fixed, share = problem.kind.least_gain
+    least = PROMISING * (fixed + share * base.residuals.size)
+    return replace(found, together=tuple(joint_steps(base, steps, least)))
 
 
 def _screening(problem: Problem, now: Fit, split: Split) -> tuple[Problem, Fit, tuple[Run, ...]]:
@@ -141,7 +146,9 @@ def _chosen(
     chosen = []
     for name in names:
         members = [entry for entry in steps if entry[0].name == name]
-        count = {id(effect): len(effect.parameters(problem.measurement)) for effect, _ in members}
+        count = {
+            id(effect): len(effect.parameters(problem.measured_by(effect))) for effect, _ in members
+        }
         best = members[0]
         simplest = min(members, key=lambda entry: (count[id(entry[0])], entry[1].cost))
         if simplest[1].cost <= SIMPLE_ENOUGH * best[1].cost:

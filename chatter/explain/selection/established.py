@@ -87,7 +87,7 @@ def reaches_nothing(path: Path, final: Fit) -> Stage | None:
 
 def _reaches_nothing(final: Fit, effect: Effect, measurement: Measurement) -> bool:
     """Wald's (1943) test of an effect's amounts against none."""
-    nothing = effect.nothing(measurement)
+    nothing = effect.nothing(measurement.of_kinds(effect.kinds))
     names = [one.name for one in final.parameters]
     indices = [names.index(f"{effect.name}.{key}") for key in nothing]
     if not indices:

@@ -18,7 +18,7 @@ from chatter.explain.selection.problem import Problem
 #: finite difference and fractions of a linearised step, in units of a parameter's size
 _DIFFERENCE, _FRACTIONS = 0.05, (1.0, 0.5, 0.2)
 #: weight of a linearised step on parameters without a prior, which keeps it finite
-_WEAK_PRIOR = 1e-3
+WEAK_PRIOR = 1e-3
 
 
 class LinearisedStep(NamedTuple):
@@ -28,6 +28,9 @@ class LinearisedStep(NamedTuple):
     promised: float  # fall of the sum of squares by linearised models, over no effect
     values: dict[str, float]
     jacobian: NDArray[np.float64]
+    begin: dict[str, float]  # where the step begins, and where the Jacobian is from
+    offset: NDArray[np.float64]  # residuals there, less those without the effect
+    added: Sequence[Parameter]  # of the effect
 
 
 def linearised(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) -> LinearisedStep:
@@ -46,35 +49,48 @@ def linearised(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) 
     def from_values(values: dict[str, float]) -> LinearisedStep:
         return _one_step(trial, added, values, now, runs)
 
-    measured = problem.measurement.with_runs(list(runs))
+    measured = problem.measurement.with_runs(list(runs)).of_kinds(effect.kinds)
     predicted = problem.predicted(now.by_name, runs)
     with ThreadPoolExecutor(WORKERS) as pool:
-        begins = [values_at(start) for start in effect.starts(problem.measurement)]
+        begins = [values_at(start) for start in effect.starts(problem.measured_by(effect))]
         if len(begins) > SCREENED_STARTS:
-            costs = list(pool.map(lambda values: _along_secant(trial, values, now, runs), begins))
+            secants = _Secants(trial, now, runs)
+            costs = list(pool.map(secants.cost, begins))
             ranked = sorted(range(len(begins)), key=lambda index: costs[index])
             begins = [begins[index] for index in ranked[:SCREENED_STARTS]]
         begins += [values_at(start) for start in effect.proposed(measured, predicted)]
+        begins = begins or [values_at({})]
         steps = sorted(pool.map(from_values, begins), key=lambda step: step.cost)
         followed = pool.map(lambda step: from_values(step.values), steps[:FOLLOWED_STARTS])
         best = min([*followed, steps[0]], key=lambda step: step.cost)
     return best._replace(promised=max(step.promised for step in steps))
 
 
-def _along_secant(
-    trial: Problem, values: Mapping[str, float], now: Fit, runs: Sequence[Run]
-) -> float:
-    """Least sum of squares on the line from no effect through a start, others moving along.
+class _Secants:
+    """Lines from no effect through its starts, the nuisance parameters moving along."""
 
-    One prediction a run says how well what the effect does there resembles the residual. A start
-    at which the effect does nothing says nothing: it comes first.
-    """
-    secant = trial.residuals(values, runs) - now.residuals
-    if not np.any(secant):
-        return -np.inf
-    jacobian = np.column_stack([now.jacobian, secant])
-    weight = np.append(np.ones(len(now.parameters)), _WEAK_PRIOR)
-    return now.cost - _promised(jacobian, weight, now.residuals)
+    def __init__(self, trial: Problem, now: Fit, runs: Sequence[Run]) -> None:
+        self.trial, self.now, self.runs = trial, now, runs
+        # what all starts have in common
+        self.normal = now.jacobian.T @ now.jacobian + np.eye(len(now.parameters))
+        self.gradient = now.jacobian.T @ now.residuals
+
+    def cost(self, values: Mapping[str, float]) -> float:
+        """Least sum of squares on the line through a start.
+
+        One prediction a run says how well what the effect does there resembles the residual. A
+        start at which the effect does nothing says nothing: it comes first.
+        """
+        now = self.now
+        secant = self.trial.residuals(values, self.runs) - now.residuals
+        if not np.any(secant):
+            return -np.inf
+        across = now.jacobian.T @ secant
+        normal = np.block(
+            [[self.normal, across[:, None]], [across[None], secant @ secant + WEAK_PRIOR]]
+        )
+        gradient = np.append(self.gradient, secant @ now.residuals)
+        return now.cost - float(gradient @ np.linalg.solve(normal, gradient))
 
 
 def _promised(
@@ -102,10 +118,11 @@ def _one_step(
         columns.append((moved - residual) / (step / one.size))
     jacobian = np.column_stack([now.jacobian, *columns])
     weight = np.array(
-        [1.0] * len(now.parameters) + [1.0 if one.prior else _WEAK_PRIOR for one in added]
+        [1.0] * len(now.parameters) + [1.0 if one.prior else WEAK_PRIOR for one in added]
     )
     normal = jacobian.T @ jacobian + np.diag(weight)
     step = -np.linalg.solve(normal, jacobian.T @ residual)
+    offset = residual - now.residuals
     left = float(residual @ residual) - _promised(jacobian, weight, residual)
     promised = now.cost - left
     everything = [*now.parameters, *added]
@@ -118,5 +135,6 @@ def _one_step(
         }
         cost = trial.cost(moved, runs)
         if cost < residual @ residual:
-            return LinearisedStep(cost, promised, moved, jacobian)
-    return LinearisedStep(float(residual @ residual), promised, values, jacobian)
+            return LinearisedStep(cost, promised, moved, jacobian, values, offset, added)
+    cost = float(residual @ residual)
+    return LinearisedStep(cost, promised, values, jacobian, values, offset, added)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -16,14 +16,25 @@ from chatter.explain.criteria import (
     NO_RESIDUAL,
     PAIRED,
 )
+from chatter.explain.effects.effect import Effect
 from chatter.explain.fitting import Fit
 from chatter.explain.measurement import Run
-from chatter.explain.selection.candidates import Progress, Stage, fitted, stage_of, stage_with
+from chatter.explain.selection.candidates import (
+    Candidate,
+    Progress,
+    Stage,
+    fitted,
+    stage_of,
+    stage_with,
+)
 from chatter.explain.selection.evidence import log_evidence
 from chatter.explain.selection.linearised_step import linearised
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.significance import is_significant
 from chatter.explain.selection.split import Split
+
+#: times that members of families give way to richer ones
+_MOST_RICHER = 2
 
 
 class Path(NamedTuple):
@@ -83,25 +94,45 @@ def _forward(begin: Path, stage: Stage, split: Split, progress: Progress, most: 
 def _pairs(begin: Path, first: Stage, best: Path, split: Split) -> list[Path]:
     """Pairs of the first candidates, fitted jointly, of which both are significant together."""
     seen = {frozenset(stage.best.effect.name for stage in best.stages)}
+    proposed = [
+        (one, other.effect, {**other.fit.by_name, **one.fit.by_name})
+        for one, other in itertools.combinations(first.tried[:PAIRED], 2)
+    ]
+    alone = {one.effect.name: one for one in first.tried}
+    for step in first.together:
+        # the one that does more alone is the first
+        one, other = sorted(step.effects, key=lambda effect: effect.name not in alone)
+        candidate = alone.get(one.name)
+        if candidate is None or candidate.effect is not one:
+            candidate = fitted(begin.problem, one, split, step.values)
+        proposed.append((candidate, other, step.values))
     paths = []
-    for one, other in itertools.combinations(first.tried[:PAIRED], 2):
-        names = frozenset((one.effect.name, other.effect.name))
+    for one, other, values in proposed:
+        names = frozenset((one.effect.name, other.name))
         if len(names) < 2 or names in seen:
             continue
         seen.add(names)
-        alone = begin.problem.with_effect(one.effect)
-        joint = fitted(alone, other.effect, split, {**other.fit.by_name, **one.fit.by_name})
-        start = stage_with(begin.problem, begin.now, split, [one])
-        added = Stage(one.fit, one.holdout, one.evidence, (joint,))
-        # the first of them may gain nothing alone
-        if all(
-            is_significant(before, joint, problem, split)
-            for before, problem in ((start, begin.problem), (added, alone))
-        ):
-            problem = alone.with_effect(other.effect).with_noise_beside(joint.fit.by_name)
-            now = problem.fit(split.fitted, joint.fit.by_name)
-            paths.append(Path([start, added], problem, now))
+        paths += _pair(begin, one, other, values, split)
     return paths
+
+
+def _pair(
+    begin: Path, one: Candidate, other: Effect, values: Mapping[str, float], split: Split
+) -> list[Path]:
+    """Path of two effects fitted jointly; none where one of them gains nothing beside the other."""
+    alone = begin.problem.with_effect(one.effect)
+    joint = fitted(alone, other, split, values)
+    start = stage_with(begin.problem, begin.now, split, [one])
+    added = Stage(one.fit, one.holdout, one.evidence, (joint,))
+    # the first of them may gain nothing alone
+    if not all(
+        is_significant(before, joint, problem, split)
+        for before, problem in ((start, begin.problem), (added, alone))
+    ):
+        return []
+    problem = alone.with_effect(other).with_noise_beside(joint.fit.by_name)
+    now = problem.fit(split.fitted, joint.fit.by_name)
+    return [Path([start, added], problem, now)]
 
 
 def tried_again(path: Path, split: Split) -> Path:
@@ -134,14 +165,24 @@ def tried_again(path: Path, split: Split) -> Path:
 
 
 def richer(path: Path, split: Split, progress: Progress) -> Path:
-    """Put other members of families in the place of those added, where the data ask for them."""
+    """Put other members of families in the place of those added, as long as the data ask."""
+    for _ in range(_MOST_RICHER):
+        further = _one_richer(path, split, progress)
+        if further is path or further.over_noise(split.holdout) < NO_RESIDUAL:
+            return further
+        path = further
+    return path
+
+
+def _one_richer(path: Path, split: Split, progress: Progress) -> Path:
+    """Path with the next richer member of each family; itself where the data ask for none."""
     for index, stage in enumerate(path.stages):
         effect = stage.best.effect
         measurement = path.problem.measurement
         others = [
             one
             for one in effect.richer
-            if type(one) is not type(effect) and one.applies(measurement)
+            if type(one) is not type(effect) and one.applies(measurement.of_kinds(one.kinds))
         ]
         if not others:
             continue

@@ -41,6 +41,10 @@ class Problem:
         """Same problem with one effect less."""
         return replace(self, effects=tuple(one for one in self.effects if one is not effect))
 
+    def measured_by(self, effect: Effect) -> Measurement:
+        """Return what was measured of the kinds in which an effect shows."""
+        return self.measurement.of_kinds(effect.kinds)
+
     def with_noise_beside(self, values: Mapping[str, float]) -> Problem:
         """Same problem with the noise estimated from the residual of a case."""
         if not self.kind.estimates_noise:
@@ -58,7 +62,7 @@ class Problem:
         """Nuisance parameters, then those of the effects as "effect.name"."""
         found = {one.name: one for one in self.kind.nuisance_parameters(self.measurement)}
         for effect in self.effects:
-            for one in effect.parameters(self.measurement):
+            for one in effect.parameters(self.measured_by(effect)):
                 name = f"{effect.name}.{one.name}"
                 found.setdefault(name, replace(one, name=name))
         return list(found.values())

@@ -4,13 +4,22 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.signal
 
+from chatter.compile.cutter import force_law, process_damping_of
 from chatter.description.case import loads
-from chatter.explain.effects.cutting_force import DynamometerOfAxes
+from chatter.explain.effects.dynamometer import Dynamometer, DynamometerOfAxes, DynamometerOfTwo
 from chatter.explain.effects.effect_list import candidates
 from chatter.explain.effects.missing_mode import MissingMode
 from chatter.explain.effects.structure import ModeShift, ModeShiftOf, ModeShiftOfEach
-from chatter.explain.effects.tool import Chipping, Runout, SaturatingWear, Wear
+from chatter.explain.effects.tool import (
+    Chipping,
+    ChippingOfAll,
+    Runout,
+    SaturatingWear,
+    Wear,
+    WearOfAll,
+)
 from chatter.explain.fitting import fit
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.reported_effects import parameters_of
@@ -76,7 +85,8 @@ def test_simple_members_come_first_and_richer_ones_once_they_are_found():
     (richer,) = shifts[0].richer
     assert isinstance(richer, ModeShiftOfEach)
     assert len(richer.parameters(cuts())) == 4
-    assert [type(one) for one in Wear().richer] == [SaturatingWear, Chipping]
+    assert [type(one) for one in Wear().richer] == [SaturatingWear, Chipping, WearOfAll]
+    assert [type(one) for one in Dynamometer().richer] == [DynamometerOfTwo]
 
 
 def test_wear_comes_at_once_or_dies_away():
@@ -88,6 +98,30 @@ def test_wear_comes_at_once_or_dies_away():
     values = {"edge_tangential": 0.0, "edge_radial": 0.0, "cutting": 0.1, "saturation_time": 2.0}
     wear = CASE.patch(SaturatingWear().patch(CASE, values)).wear
     assert wear.increase("cutting", 100.0) == pytest.approx(0.2)
+
+
+def test_every_coefficient_wears_by_itself():
+    """Also a process damping that a sharp tool does not have."""
+    effect = WearOfAll()
+    names = [one.name for one in effect.parameters(cuts())]
+    rates = {
+        "edge_tangential": 1e3, "edge_radial": 2e3, "cutting": 0.02, "cutting_radial": 0.05,
+        "ploughing": 3e3,
+    }  # fmt: skip
+    assert set(names) == set(rates)
+    worn = CASE.patch({**effect.patch(CASE, rates), "cut.cut_time": 4.0})
+    law = force_law(worn, 0.0)
+    assert law.cutting[:2] == pytest.approx((800e6 * 1.08, 200e6 * 1.2))
+    assert law.edge[:2] == pytest.approx((10e3 + 4e3, 8e3))
+    assert process_damping_of(worn).coefficient == pytest.approx(12e3)
+    assert process_damping_of(worn.patch({"cut.cut_time": 0.0})) is None
+    # all alike where the radial one is not named
+    alike = {key: value for key, value in rates.items() if key != "cutting_radial"}
+    law = force_law(CASE.patch({**effect.patch(CASE, alike), "cut.cut_time": 4.0}), 0.0)
+    assert law.cutting[:2] == pytest.approx((800e6 * 1.08, 200e6 * 1.08))
+    chipped = {**rates, "time": 3.0}
+    worn = CASE.patch({**ChippingOfAll().patch(CASE, chipped), "cut.cut_time": 4.0})
+    assert process_damping_of(worn).coefficient == pytest.approx(3e3)
 
 
 def test_effects_are_put_in_one_after_the_other():
@@ -147,7 +181,46 @@ def test_a_sensor_has_a_resonance_along_each_axis_that_is_measured():
     assert (along_x.frequency, along_x.damping, along_x.share) == (780.0, 0.05, 1.0)
     assert (along_y.frequency, along_y.damping) == (990.0, 0.04)
     assert case.dynamometer.along("z") == ()
-    # both orders of any two frequencies are tried
-    starts = {(one["frequency_x"], one["frequency_y"]) for one in effect.starts(measured)}
+    # from rest the residual proposes them; in settled cuts both orders of any two are tried
+    assert effect.starts(measured) == []
+    settled = measured.with_runs([replace(run, record=object()) for run in measured.runs])
+    starts = {(one["frequency_x"], one["frequency_y"]) for one in effect.starts(settled)}
     assert {(y, x) for x, y in starts} == starts
+    assert len(starts) == 100
     assert not DynamometerOfAxes().applies(measured.with_case(case))
+
+
+def seen_through(force, time, resonances):
+    """Force through resonances by shares, by another integration of the oscillators."""
+    total = np.zeros_like(force)
+    for frequency, damping, share in resonances:
+        omega = 2.0 * np.pi * frequency
+        system = scipy.signal.lti([omega**2], [1.0, 2.0 * damping * omega, omega**2])
+        total += share * scipy.signal.lsim(system, force, time)[1]
+    return total
+
+
+def test_frequencies_of_a_sensor_are_proposed_axis_by_axis():
+    """What forces before the sensor become, axis by axis; two resonances share the force of x."""
+    random, time = np.random.default_rng(3), np.arange(4000) / 12.8e3
+    sensors = {"Fx": [(620.0, 0.03, 0.6), (1500.0, 0.05, 0.4)], "Fy": [(1100.0, 0.04, 1.0)]}
+    runs, predicted = [], {}
+    for run in cuts().runs:
+        forces = {name: np.cumsum(random.standard_normal(time.size)) for name in sensors}
+        seen = {name: seen_through(forces[name], time, sensors[name]) for name in sensors}
+        runs.append(replace(run, signals={"time": time, **seen}))
+        predicted[run.name] = forces
+    measured = cuts().with_runs(runs)
+    step = 1.2 * 6400.0 / 400.0
+    grid = step ** (1.0 / 35.0)
+    best = DynamometerOfAxes().proposed(measured, predicted)[0]
+    assert best["frequency_y"] == pytest.approx(1100.0, rel=grid - 1.0)
+    (pair,) = DynamometerOfTwo().proposed(measured, predicted)
+    found = sorted((pair["frequency_x_1"], pair["frequency_x_2"]))
+    assert found == pytest.approx([620.0, 1500.0], rel=grid - 1.0)
+    low = pair["share_x_1"] if pair["frequency_x_1"] < 1000.0 else 1.0 - pair["share_x_1"]
+    assert low == pytest.approx(0.6, abs=0.1)
+    case = CASE.patch(DynamometerOfTwo().patch(CASE, {**pair, **{
+        f"damping_{axis}_{k}": 0.03 for axis in "xy" for k in (1, 2)
+    }}))  # fmt: skip
+    assert sum(one.share for one in case.dynamometer.along("x")) == pytest.approx(1.0)

@@ -1,0 +1,131 @@
+"""The search on sums of known shapes: what pays together, and what is next to none."""
+
+import numpy as np
+import pytest
+
+from chatter.description.case import loads
+from chatter.explain.effects.axis import Asymmetry, Offset, QuadraticDrag
+from chatter.explain.kinds.kind import Kind
+from chatter.explain.measurement import Measurement, Run
+from chatter.explain.prediction import Predictions
+from chatter.explain.selection import candidates
+from chatter.explain.selection.joint_steps import joint_steps
+from chatter.explain.selection.linearised_step import linearised
+from chatter.explain.selection.problem import Problem
+from chatter.explain.selection.search import search
+from chatter.explain.selection.split import split_runs
+
+SAMPLES = 8000
+
+
+class Sums(Kind):
+    """Force that is a sum of shapes, one for each value of the case; noise of one."""
+
+    name = "axis"
+    columns = ()
+    estimates_noise = False
+
+    def channels(self, run):
+        return ("force",)
+
+    def known_noise(self, run):
+        return {"force": 1.0}
+
+    def nuisance_parameters(self, measurement):
+        return []
+
+    def predict(self, case, run):
+        axis, shapes = case.axis, run.record
+        given = (axis.asymmetry, axis.offset, axis.quadratic_drag)
+        return {"force": shapes[0] + sum(v * s for v, s in zip(given, shapes[1:], strict=True))}
+
+
+def measured(shapes_of, values, runs=6) -> Measurement:
+    """Runs of a common force, and shapes times their values."""
+    random = np.random.default_rng(8)
+    case = loads('title = "sums"\n[axis]\nmoving_mass = "20 kg"')
+    made = []
+    for number in range(runs):
+        shapes = (20.0 * np.sin(np.arange(SAMPLES) / 50.0), *shapes_of(random))
+        force = shapes[0] + sum(v * s for v, s in zip(values, shapes[1:], strict=True))
+        signals = {
+            "time": 1e-3 * np.arange(SAMPLES),
+            "force": force + random.standard_normal(SAMPLES),
+            "velocity": np.ones(SAMPLES),
+        }
+        made.append(Run(f"run{number}", {}, signals, record=shapes))
+    return Measurement("axis", "sums", None, case, tuple(made))
+
+
+@pytest.fixture(autouse=True)
+def three_effects(monkeypatch):
+    effects = [Asymmetry(), Offset(), QuadraticDrag(lower=0.0)]
+    monkeypatch.setattr(candidates, "candidates", lambda measurement: effects)
+
+
+def found_in(measurement):
+    return search(measurement, Predictions(Sums()), lambda *_: None)
+
+
+def opposite(random):
+    """Two shapes that all but cancel, and one that is nothing like the force."""
+    one, rest, other = random.standard_normal((3, SAMPLES))
+    return 100.0 * one, -100.0 * one + 5.0 * rest, other
+
+
+def test_effects_that_only_pay_together_are_found():
+    """Of two that all but cancel each takes less than a hundredth of the misfit away alone."""
+    measurement = measured(opposite, (1.0, 1.0, 0.0))
+    found = found_in(measurement)
+    assert set(found.effect_names) == {"asymmetry", "offset"}
+    values = found.final.by_name
+    assert values["asymmetry.asymmetry"] == pytest.approx(1.0, abs=0.02)
+    assert values["offset.offset"] == pytest.approx(1.0, abs=0.02)
+    assert found.is_at_noise
+
+
+def test_a_joint_step_promises_what_linear_models_give():
+    measurement = measured(opposite, (1.0, 1.0, 0.0))
+    kind, split = Sums(), split_runs(measurement.runs)
+    noise = {run.name: kind.known_noise(run) for run in measurement.runs}
+    problem = Problem(measurement, Predictions(kind), noise)
+    now = problem.fit(split.fitted, {})
+    steps = [(one, linearised(problem, one, now, split.fitted)) for one in (Asymmetry(), Offset())]
+    (pair,) = joint_steps(now, steps, 40.0)
+    # 5 in units of the noise; in each of four runs
+    count = 4 * SAMPLES
+    assert pair.gain == pytest.approx(25.0 * count, rel=0.03)
+    assert pair.alone < 0.01 * pair.gain
+    assert pair.values["asymmetry.asymmetry"] == pytest.approx(1.0, abs=0.02)
+
+
+def test_an_effect_that_nobody_could_notice_is_not_named_beside_another():
+    """A twentieth of the noise: beyond chance in so many samples, and nothing that matters."""
+
+    def shapes_of(random):
+        return random.standard_normal((3, SAMPLES))
+
+    found = found_in(measured(shapes_of, (3.0, 0.05, 0.0)))
+    assert found.effect_names == ("asymmetry",)
+    assert found.is_at_noise
+
+
+def test_what_is_found_is_kept_beside_something_else():
+    """Of two thirds of the misfit one effect is the cause; of the rest, none that is known."""
+
+    def shapes_of(random):
+        # a line of another phase in every run
+        phase = random.uniform(0.0, 2.0 * np.pi)
+        ripple = 3.0 * np.sin(0.4 * np.arange(SAMPLES) + phase)
+        return ripple, *random.standard_normal((2, SAMPLES))
+
+    made = measured(shapes_of, (1.0, 3.0, 0.0))
+    hidden = [
+        Run(run.name, {}, run.signals, record=(run.record[0], np.zeros(SAMPLES), *run.record[2:]))
+        for run in made.runs
+    ]
+    found = found_in(made.with_runs(hidden))
+    assert found.effect_names == ("offset",)
+    assert not found.is_at_noise
+    assert found.is_certain
+    assert found.final.by_name["offset.offset"] == pytest.approx(3.0, rel=0.02)
