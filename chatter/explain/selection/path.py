@@ -101,18 +101,18 @@ def _pairs(begin: Path, first: Stage, best: Path, split: Split) -> list[Path]:
     alone = {one.effect.name: one for one in first.tried}
     for step in first.together:
         # the one that does more alone is the first
-        one, other = sorted(step.effects, key=lambda effect: effect.name not in alone)
-        candidate = alone.get(one.name)
-        if candidate is None or candidate.effect is not one:
-            candidate = fitted(begin.problem, one, split, step.values)
-        proposed.append((candidate, other, step.values))
+        first_effect, second_effect = sorted(step.effects, key=lambda one: one.name not in alone)
+        candidate = alone.get(first_effect.name)
+        if candidate is None or candidate.effect is not first_effect:
+            candidate = fitted(begin.problem, first_effect, split, step.values)
+        proposed.append((candidate, second_effect, step.values))
     paths = []
-    for one, other, values in proposed:
-        names = frozenset((one.effect.name, other.name))
+    for candidate, effect, values in proposed:
+        names = frozenset((candidate.effect.name, effect.name))
         if len(names) < 2 or names in seen:
             continue
         seen.add(names)
-        paths += _pair(begin, one, other, values, split)
+        paths += _pair(begin, candidate, effect, values, split)
     return paths
 
 
