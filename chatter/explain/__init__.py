@@ -21,6 +21,7 @@ errors              errors of predictions, before and after
 reported_effects    numbers, intervals and probability of an effect
 lobes_before_after  stability lobes before and after
 stability_margin    how far cutting tests are from the limit
+tests_side_by_side  dominant multipliers of tests that share a tool, solved together
 cutting_tests       search, verdict and limits of cutting tests
 explanation         `explain`: verdict, effects, errors; files
 comparison          `compare`: errors of the declared case

@@ -14,15 +14,24 @@ from numpy.typing import NDArray
 from chatter.compile.cutter import force_law, helix_angles, process_damping_of
 from chatter.compile.structure import depends_on_speed, structure_of
 from chatter.description.case import Case
+from chatter.explain.tests_side_by_side import (
+    ScaledPoints,
+    can_be_scaled,
+    is_straight,
+    scaled_multipliers,
+)
 from chatter.stability.methods.collocation.element_cut import element_cut
 from chatter.stability.methods.collocation.multipliers import multipliers
 from chatter.stability.model import MillingModel, milling_model
 from chatter.stability.steady_flank import about_steady_motion, follows_steady_motion
+from cutting.edge_segments.segments import period_angle
 
 Array = NDArray[np.float64]
 
 #: share of the depth over which the growth rate is evaluated
 _STEP = 0.04
+#: ratio of depths between which a growth rate is as good as linear in the logarithm of the depth
+_RATIO = 1.22
 #: Gauss points per element and chatter wavelengths in it: margins to a thousandth near the limit,
 #: which scatters by some percent, at half the time of the usual ones
 _RESOLUTION = (6, 1.0)
@@ -34,6 +43,7 @@ _COLUMNS = {
     "feed_per_tooth": "cut.feed_per_tooth",
     "cut_time": "cut.cut_time",
 }
+_TIME = _COLUMNS["cut_time"]
 
 
 #: models by tool, engagement and directions of motion, of which a search needs many
@@ -105,17 +115,60 @@ def limits_over(case: Case, speeds: Array, depths: Array) -> Array:
 
 
 def first_limits(margins: Array, depths: Array) -> Array:
-    """Depth (...) at which margins (..., d) over depths (d,), m, ascending, first reach zero."""
+    """Depth (...) at which margins (..., d) over depths (d,), m, ascending, first reach zero.
+
+    Margins are shares of the depth: of the depths on both sides the one with the smaller margin
+    tells the limit.
+    """
     unstable = margins <= 0.0
     first = unstable.argmax(axis=-1)
-    above = np.take_along_axis(margins, first[..., None], axis=-1)[..., 0]
     before = np.maximum(first - 1, 0)
-    below = np.take_along_axis(margins, before[..., None], axis=-1)[..., 0]
-    upper, lower = depths[first], depths[before]
-    share = np.where(first > 0, below / np.where(first > 0, below - above, 1.0), 0.0)
-    # below the first depth of the grid, margins are shares of the depth
-    crossing = np.where(first > 0, lower + share * (upper - lower), upper * (1.0 + above))
-    return np.where(unstable.any(axis=-1), np.maximum(crossing, 0.0), np.inf)
+    above, below = (
+        np.take_along_axis(margins, index[..., None], axis=-1)[..., 0] for index in (first, before)
+    )
+    nearer_below = (first > 0) & (below < -above)
+    limit = np.where(nearer_below, depths[before] * (1.0 + below), depths[first] * (1.0 + above))
+    limit = np.clip(limit, np.where(first > 0, depths[before], 0.0), depths[first])
+    return np.where(unstable.any(axis=-1), limit, np.inf)
+
+
+def margins_over(case: Case, speeds: Array, depths: Array) -> Array:
+    """Margins (s, d) of a case over speeds (s,), rad/s, and depths (d,), m, ascending.
+
+    Each is the share of its depth by which a cut is away from the nearest limit at its speed, found
+    between depths that are as many as the growth rate needs.
+    """
+    count = 1 + max(2, math.ceil(math.log(depths[-1] / depths[0]) / math.log(_RATIO)))
+    at = np.geomspace(depths[0], depths[-1], count)
+    rates = growth_rates(case, np.repeat(speeds, count), np.tile(at, speeds.size))
+    return margins_between(rates.reshape(speeds.size, count), at, depths)
+
+
+def margins_between(rates: Array, at: Array, depths: Array) -> Array:
+    """Margins (s, d) at depths (d,), m, from growth rates (s, k) at some depths (k,), ascending."""
+    logs, wanted = np.log(at), np.log(depths)
+    rate = np.stack([np.interp(wanted, logs, row) for row in rates])
+    steps = np.diff(rates, axis=1) / np.diff(logs)
+    crosses = (rates[:, :-1] < 0.0) != (rates[:, 1:] < 0.0)
+    limits = np.where(crosses, logs[:-1] - rates[:, :-1] / np.where(crosses, steps, 1.0), np.inf)
+    nearest = np.abs(limits[:, None, :] - wanted[:, None]).argmin(axis=2)
+    distance = np.take_along_axis(limits, nearest, axis=1) - wanted
+    # where no limit lies between the depths, it is as far as the rate at the end tells
+    own = np.minimum(np.searchsorted(logs, wanted, side="right"), logs.size - 1) - 1
+    slope = np.maximum(steps[:, np.maximum(own, 0)], 0.3 * np.abs(rate) + 1e-3)
+    outside = np.clip(-rate / slope, -_FAR, _FAR)
+    inside = np.abs(np.expm1(np.where(np.isfinite(distance), distance, 0.0)))
+    margin = np.where(np.isfinite(distance), np.where(rate < 0.0, inside, -inside), outside)
+    return np.clip(margin, -_FAR, _FAR)
+
+
+def growth_rates(case: Case, speeds: Array, depths: Array) -> Array:
+    """Logarithm (n,) of the spectral radius over a period of the tool; below 0: stable.
+
+    Speeds (n,), rad/s, and depths (n,), m, are point by point.
+    """
+    found, _ = _multipliers(case, CuttingTests(speeds, depths, {}), (1.0,))
+    return np.log(np.maximum(np.abs(found[0]), 1e-12))
 
 
 def response_of_tests(case: Case, tests: CuttingTests) -> ResponseOfTests:
@@ -124,26 +177,72 @@ def response_of_tests(case: Case, tests: CuttingTests) -> ResponseOfTests:
     A margin follows from the logarithm of the spectral radius at the depth and a little above, as
     if it were linear in the logarithm of the depth.
     """
-    count = tests.speed.size
-    rate, slope, angle, period = (np.empty(count) for _ in range(4))
-    for chosen, model in _models(case, tests):
-        speeds, depths = tests.speed[chosen], tests.depth[chosen]
-        cut = element_cut(model, (1.0 + _STEP) * float(depths.max()), *_RESOLUTION)
-        both = multipliers(
-            cut, np.tile(speeds, 2), np.concatenate([depths, depths * (1.0 + _STEP)])
-        )
-        at, above = np.split(np.log(np.maximum(np.abs(both), 1e-12)), 2)
-        rate[chosen], slope[chosen] = at, (above - at) / np.log1p(_STEP)
-        angle[chosen] = np.abs(np.angle(both[: speeds.size]))
-        period[chosen] = cut.arrays.period_angle / speeds
+    both = np.empty((2, tests.speed.size), dtype=np.complex128)
+    period = np.empty(tests.speed.size)
+    paths = [path for path in tests.varied if path != _TIME and _acts(case, path)]
+    for chosen, own in cases_of(case, tests, paths):
+        both[:, chosen], period[chosen] = _multipliers(own, tests.at(chosen), (1.0, 1.0 + _STEP))
+    at, above = np.log(np.maximum(np.abs(both), 1e-12))
+    rate, slope = at, (above - at) / np.log1p(_STEP)
     # where rate does not rise with depth, its size tells no more than the side
     rising = np.maximum(slope, 0.3 * np.abs(rate) + 1e-3)
-    return ResponseOfTests(np.clip(-rate / rising, -_FAR, _FAR), angle, period)
+    margin = np.clip(-rate / rising, -_FAR, _FAR)
+    return ResponseOfTests(margin, np.abs(np.angle(both[0])), period)
+
+
+def _multipliers(case: Case, tests: CuttingTests, shares: Sequence[float]) -> tuple[Array, Array]:
+    """Multipliers (d, n) of tests in one engagement, at d shares of their depths; their periods.
+
+    Periods (n,) are those after which the cut repeats itself, s.
+    """
+    fresh = _model_of(case.model_copy(update={"wear": None}))
+    differ = case.wear is not None or depends_on_speed(case)
+    if not (differ or is_straight(fresh)) or not can_be_scaled(fresh, float(tests.speed.min())):
+        return _multipliers_one_by_one(case, tests, shares)
+    columns = (tests.speed, tests.depth, *_growth_by_wear(case, tests))
+    points = ScaledPoints(*(np.tile(values, len(shares)) for values in columns))
+    points = points._replace(depth=np.repeat(shares, tests.speed.size) * points.depth)
+    models = [(np.ones(points.speed.size, dtype=bool), fresh)]
+    if depends_on_speed(case):
+        models = [
+            (points.speed == speed, fresh.at_speed(float(speed)))
+            for speed in np.unique(tests.speed)
+        ]
+    found = scaled_multipliers(models, points, _RESOLUTION)
+    return found.reshape(len(shares), -1), period_angle(fresh.cutter) / tests.speed
+
+
+def _growth_by_wear(case: Case, tests: CuttingTests) -> tuple[Array, Array]:
+    """Factors (n,) of the cutting coefficients and of process damping by the time of each test."""
+    if case.wear is None:
+        return np.ones(tests.speed.size), np.ones(tests.speed.size)
+    times = tests.varied.get(_TIME, np.full(tests.speed.size, case.cut.cut_time))
+    cutting, damping = (
+        np.array([1.0 + case.wear.increase(key, time) for time in times.tolist()])
+        for key in ("cutting", "process_damping")
+    )
+    return cutting, damping
+
+
+def _multipliers_one_by_one(
+    case: Case, tests: CuttingTests, shares: Sequence[float]
+) -> tuple[Array, Array]:
+    """The same of tests that share nothing but their engagement."""
+    found = np.empty((len(shares), tests.speed.size), dtype=np.complex128)
+    period = np.empty(tests.speed.size)
+    for chosen, model in _models(case, tests):
+        speeds, depths = tests.speed[chosen], np.outer(shares, tests.depth[chosen])
+        cut = element_cut(model, float(depths.max()), *_RESOLUTION)
+        own = multipliers(cut, np.tile(speeds, len(shares)), depths.ravel())
+        found[:, chosen] = own.reshape(depths.shape)
+        period[chosen] = cut.arrays.period_angle / speeds
+    return found, period
 
 
 def _models(case: Case, tests: CuttingTests) -> Iterator[tuple[NDArray[np.bool_], MillingModel]]:
-    """Tests that share a model, and the model."""
-    for chosen, own in cases_of(case, tests, [path for path in tests.varied if _acts(case, path)]):
+    """Tests that share a model, and the model; of one engagement."""
+    times = [path for path in tests.varied if path == _TIME and case.wear is not None]
+    for chosen, own in cases_of(case, tests, times):
         yield from _models_at(own, tests, chosen)
 
 
@@ -164,8 +263,6 @@ def cases_of(
 
 def _acts(case: Case, path: str) -> bool:
     """Whether the limit depends on what a column of the tests changes."""
-    if path == "cut.cut_time":
-        return case.wear is not None
     if path == "cut.feed_per_tooth":
         # of a linear law the slope does not know the feed
         return case.material.law != "linear" or _ploughs(case)

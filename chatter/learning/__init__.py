@@ -1,15 +1,14 @@
 """Bayesian learning from a few cutting tests: what they leave possible, and the next cut to make.
 
-==================== ===============================================================
-module               responsibility
-==================== ===============================================================
-cuts                 tests from a CSV table or a measurement folder
-prior                values that are uncertain before any cut, and their distribution
-likelihood           how likely verdicts, chatter frequencies and powers are
-posterior            particles by tempering and Markov chains, brought up to date by each cut
-with_or_without_wear both models, in proportion to their evidence
-diagram              margins of all particles over the diagram: probability of stability, limits
-next_cut             the cut of most information, or of most metal within a risk
-learn                `learn`: all of it, and the result
-==================== ===============================================================
+=============== ====================================================================
+module          responsibility
+=============== ====================================================================
+cuts            tests from a CSV table or a measurement folder
+prior           values that are uncertain before any cut, and their distribution
+likelihood      how likely verdicts, chatter frequencies and powers are
+posterior       particles by tempering and Markov chains, brought up to date by each cut
+diagram         margins of all particles over the diagram: probability of stability, limits
+next_cut        the cut of most information, or of most metal within a risk
+learn           `learn`: all of it, and the result
+=============== ====================================================================
 """

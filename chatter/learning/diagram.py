@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.explain.fitting import WORKERS
-from chatter.explain.stability_margin import CuttingTests, first_limits, response_of_tests
+from chatter.explain.stability_margin import first_limits, margins_over
 
 Array = NDArray[np.float64]
 
@@ -59,11 +59,10 @@ def diagram_of(
     cases: Sequence[Case], scatter: Array, speeds: Array, depths: Array
 ) -> ParticleDiagram:
     """Margins of cases, a particle each, over speeds (s,), rad/s, and depths (d,), m."""
-    tests = CuttingTests(np.repeat(speeds, depths.size), np.tile(depths, speeds.size), {})
 
     def margins(case: Case) -> Array:
         try:
-            return response_of_tests(case, tests).margin.reshape(speeds.size, depths.size)
+            return margins_over(case, speeds, depths)
         except (InputError, RunError):
             # what cannot be cut is no cut to make
             return np.full((speeds.size, depths.size), -1.0)

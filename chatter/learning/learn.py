@@ -23,20 +23,21 @@ from chatter.learning.cuts import read_cuts
 from chatter.learning.diagram import ParticleDiagram, diagram_of
 from chatter.learning.likelihood import Likelihood
 from chatter.learning.next_cut import AIMS, INFORMATION, LEAST_INFORMATION, NextCut, next_cut
-from chatter.learning.posterior import Particles, Progress, prior_particles
+from chatter.learning.posterior import Particles, Progress, prior_particles, updated
 from chatter.learning.prior import SCATTER_OF_LIMITS, prior_of, with_wear
-from chatter.learning.with_or_without_wear import learnt_particles
 from chatter.stability.search_range import spindle_speeds
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 DEFAULT_PARTICLES, DEFAULT_RISK = 128, 0.5
-#: points of the diagram where the case gives no range
-_SPEEDS, _DEPTHS = 33, 28
+#: points of the diagram, and particles at the most that it is of
+_SPEEDS, _DEPTHS, _OF_DIAGRAM = 33, 28, 64
 #: deepest cut of the diagram, over the deepest test and the deepest limit that half the particles
 #: exceed
 _DEEPER, _ABOVE_MEDIAN = 1.4, 1.25
+#: first depth of the diagram over the lowest limit, where equal steps would be too coarse
+_BELOW_LOWEST = 0.4
 _LEVELS = (0.05, 0.5, 0.95)
 
 
@@ -251,7 +252,7 @@ def learn(
     prior = prior_of(problem)
     generator = np.random.default_rng(seed)
     before = prior_particles(prior, particles, generator)
-    after = learnt_particles(problem, prior, particles, generator, progress)
+    after = updated(before, Likelihood(problem, prior), generator, progress)
     progress("stability of all particles", 1.0)
     speeds, depths = _ranges(measurement, problem, after)
     last = _diagram(problem, after, speeds, depths, None)
@@ -279,10 +280,11 @@ def problem_of(measurement: Measurement) -> Problem:
 def _diagram(
     problem: Problem, particles: Particles, speeds: Array, depths: Array, cut_time: float | None
 ) -> ParticleDiagram:
-    cases = cases_of(problem, particles)
+    some = particles.some(_OF_DIAGRAM)
+    cases = cases_of(problem, some)
     if cut_time is not None:
         cases = [case.patch({"cut.cut_time": cut_time}) for case in cases]
-    return diagram_of(cases, particles.columns()[SCATTER_OF_LIMITS], speeds, depths)
+    return diagram_of(cases, some.columns()[SCATTER_OF_LIMITS], speeds, depths)
 
 
 def cases_of(problem: Problem, particles: Particles) -> list[Case]:
@@ -305,12 +307,18 @@ def _ranges(
     if np.ptp(speeds) == 0.0:
         speeds = np.linspace(0.7, 1.3, _SPEEDS) * speeds[0]
     given = case.lobes.depths if case.lobes else None
-    if given is not None:
-        return speeds, np.linspace(0.0, given.to, _DEPTHS + 1)[1:]
     deepest = _DEEPER * float(tested[1].max())
-    rough = np.geomspace(0.05, 4.0, 10) * deepest
+    rough = np.geomspace(0.3 * float(tested[1].min()), 4.0 * deepest, 16)
     limits = _diagram(problem, particles, speeds[::4], rough, None).limits
     median = np.median(limits, axis=0)
     finite = median[np.isfinite(median)]
     most = max(deepest, _ABOVE_MEDIAN * float(finite.max())) if finite.size else deepest
-    return speeds, np.linspace(0.0, most, _DEPTHS + 1)[1:]
+    return speeds, _depths(given.to if given is not None else most, finite)
+
+
+def _depths(most: float, limits: Array) -> Array:
+    """Depths of the diagram down to one, m, in equal steps or ratios, as limits (n,), m, ask."""
+    lowest = _BELOW_LOWEST * float(limits.min()) if limits.size else most
+    if most / _DEPTHS > lowest:
+        return np.geomspace(lowest, most, _DEPTHS)
+    return np.linspace(0.0, most, _DEPTHS + 1)[1:]

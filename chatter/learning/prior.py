@@ -32,11 +32,16 @@ _SMALLEST = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Prior:
-    """Independent distributions of p parameters, counted in their sizes from where they start."""
+    """Independent distributions of p parameters, counted in their sizes from where they start.
+
+    Those of an effect that may be absent are at `nothing`, all of them, in half of the particles.
+    """
 
     parameters: tuple[Parameter, ...]
     lower: Array  # (p,), counted
     upper: Array  # (p,), counted
+    optional: NDArray[np.bool_]  # (p,), of an effect that may be absent
+    nothing: Array  # (p,), counted: where it is absent
 
     @property
     def names(self) -> list[str]:
@@ -48,12 +53,25 @@ class Prior:
         cube = scipy.stats.qmc.LatinHypercube(len(self.parameters), seed=generator).random(count)
         low, high = (scipy.stats.t.cdf(end, FREEDOM) for end in (self.lower, self.upper))
         probability = np.clip(low + cube * (high - low), _SMALLEST, 1.0 - _SMALLEST)
-        return scipy.stats.t.ppf(probability, FREEDOM)
+        found = scipy.stats.t.ppf(probability, FREEDOM)
+        if self.optional.any():
+            absent = np.arange(count) % 2 == 1
+            found[np.ix_(absent, self.optional)] = self.nothing[self.optional]
+        return found
+
+    def held(self, counted: Array) -> NDArray[np.bool_]:
+        """What of particles (n, p) is not to be moved: parameters of an effect that is absent."""
+        if not self.optional.any():
+            return np.zeros(counted.shape, dtype=bool)
+        absent = np.all(counted[:, self.optional] == self.nothing[self.optional], axis=1)
+        return absent[:, None] & self.optional
 
     def log_density(self, counted: Array) -> Array:
         """Logarithm (n,) of the density of particles (n, p), but for a constant."""
-        inside = np.all((counted >= self.lower) & (counted <= self.upper), axis=1)
-        log = -0.5 * (FREEDOM + 1.0) * np.log1p(counted**2 / FREEDOM).sum(axis=1)
+        held = self.held(counted)
+        inside = np.all(held | ((counted >= self.lower) & (counted <= self.upper)), axis=1)
+        each = np.where(held, 0.0, np.log1p(counted**2 / FREEDOM))
+        log = -0.5 * (FREEDOM + 1.0) * each.sum(axis=1)
         return np.where(inside, log, -np.inf)
 
     def values(self, counted: Array) -> dict[str, float]:
@@ -74,12 +92,21 @@ def with_wear(problem: Problem) -> Problem:
 
 
 def prior_of(problem: Problem) -> Prior:
-    """Prior of the declared values of a problem, of its effects, and of the scatter of limits."""
+    """Prior of the declared values of a problem, of its effects, and of the scatter of limits.
+
+    An effect may be absent: what wear does to process damping is told by few tests, and would be
+    found where there is none.
+    """
     parameters = [_with_prior(one) for one in problem.parameters()]
     parameters.append(KnownByFactor(SCATTER_OF_LIMITS, SCATTER, _SCATTER_SIZE))
     lower = np.array([_counted(one, one.lower, -np.inf) for one in parameters])
     upper = np.array([_counted(one, one.upper, np.inf) for one in parameters])
-    return Prior(tuple(parameters), lower, upper)
+    names = tuple(f"{effect.name}." for effect in problem.effects)
+    optional = np.array([bool(names) and one.name.startswith(names) for one in parameters])
+    nothing = np.array(
+        [one.counted(0.0) if own else 0.0 for one, own in zip(parameters, optional, strict=True)]
+    )
+    return Prior(tuple(parameters), lower, upper, optional, nothing)
 
 
 def _with_prior(one: Parameter) -> Parameter:

@@ -51,12 +51,12 @@ class Refitted(NamedTuple):
     @property
     def is_determined(self) -> bool:
         """Whether the tests alone determine the value."""
-        return self.deviation < _DETERMINED * self.parameter.per_size(self.pull)
+        return bool(self.deviation < _DETERMINED * self.parameter.per_size(self.pull))
 
     @property
     def is_doubtful(self) -> bool:
         """Whether the value left its tolerance."""
-        return abs(self.pull) > _MOST
+        return bool(abs(self.pull) > _MOST)
 
     def summary(self) -> dict[str, float | str | bool]:
         """Entry of explanation.json."""

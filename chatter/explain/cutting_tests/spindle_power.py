@@ -37,12 +37,33 @@ def cutting_power(case: Case, tests: CuttingTests) -> Array:
     """
     found = np.empty(tests.speed.size)
     feeds = tests.varied.get(_FEED, np.full(found.size, case.cut.feed_per_tooth))
-    wears = (_TIME,) if case.wear is not None else ()
-    paths = [path for path in tests.varied if path in (_WIDTH, *wears)]
+    wears = case.wear is not None
+    at_once = wears and case.material.law == "linear" and _TIME in tests.varied
+    timed = (_TIME,) if wears and not at_once else ()
+    paths = [path for path in tests.varied if path in (_WIDTH, *timed)]
     for chosen, own in cases_of(case, tests, paths):
         speed = cutting_speed(own.tool.diameter, 1.0) * tests.speed[chosen]
-        found[chosen] = mean_line_force(own, feeds[chosen]) * tests.depth[chosen] * speed
+        if at_once:
+            force = _worn_line_force(own, feeds[chosen], tests.varied[_TIME][chosen])
+        else:
+            force = mean_line_force(own, feeds[chosen])
+        found[chosen] = force * tests.depth[chosen] * speed
     return found
+
+
+def _worn_line_force(case: Case, feeds: Array, times: Array) -> Array:
+    """The same as `mean_line_force` of a linear law at the cutting time, s, of each feed."""
+    fresh = case.model_copy(update={"wear": None})
+    whole = mean_line_force(fresh, feeds)
+    # the part in proportion to the chip
+    removing = mean_line_force(fresh, 2.0 * feeds) - whole
+    cutting, rubbing = (
+        np.array([case.wear.increase(key, time) for time in times.tolist()])
+        for key in ("cutting", "edge_tangential")
+    )
+    arc = engagement(case.uncut_band, 0.5 * case.tool.diameter)
+    engaged = case.tool.teeth * (arc.exit - arc.entry) / (2.0 * math.pi)
+    return whole + removing * cutting + rubbing * engaged
 
 
 def mean_line_force(case: Case, feeds: Array) -> Array:

@@ -18,6 +18,9 @@ class WidePrior:
     def log_density(self, counted):
         return np.where(np.all(np.abs(counted) < 30.0, axis=1), 0.0, -np.inf)
 
+    def held(self, counted):
+        return np.zeros(counted.shape, dtype=bool)
+
 
 class GaussianReadings:
     """Readings that are linear in two parameters, with normal scatter."""
@@ -98,6 +101,27 @@ def test_information_is_what_is_not_scatter():
     assert expected_information(np.array([[0.1], [0.9]])) == pytest.approx([1.0 - entropy])
 
 
+class SpikeBesideSlab(WidePrior):
+    """The second parameter is none in half of the particles."""
+
+    def held(self, counted):
+        return (counted[:, 1] == 0.0)[:, None] & np.array([False, True])
+
+
+def test_particles_are_dealt_out_by_the_evidence_of_an_effect_and_of_none():
+    """Bayes factor of none by its ratio of densities (Dickey 1971, Ann. Math. Stat. 42:204)."""
+    likelihood = GaussianReadings(np.eye(2), np.array([1.0, 1.7]), np.array([0.5, 1.0]), [0, 1])
+    counted = np.random.default_rng(3).uniform(-30.0, 30.0, (6000, 2))
+    counted[::2, 1] = 0.0
+    found = updated(Particles(SpikeBesideSlab(), counted), likelihood, np.random.default_rng(1))
+    none = np.exp(-0.5 * 1.7**2)
+    slab = np.sqrt(2.0 * np.pi) / 60.0
+    absent = found.counted[:, 1] == 0.0
+    assert absent.mean() == pytest.approx(none / (none + slab), abs=0.03)
+    assert found.counted[~absent, 1].mean() == pytest.approx(1.7, abs=0.1)
+    assert found.counted[:, 0].mean() == pytest.approx(1.0, abs=0.05)
+
+
 def diagram():
     speeds, depths = np.array([100.0, 200.0]), np.array([1e-3, 2e-3, 3e-3])
     # limits of the particles: 1.5 mm and 2.5 mm at the first speed, 1.5 mm at the second
@@ -126,11 +150,8 @@ def test_no_cut_is_proposed_where_all_are_beyond_the_risk():
     assert next_cut(deep, METAL, 0.5) is None
 
 
-def test_limits_of_particles_are_interpolated_between_depths():
-    limits = diagram().limits
-    # margins are shares of the depth: between 1 mm (+0.5) and 2 mm (-0.25), two thirds of the way
-    assert limits[0] == pytest.approx([1e-3 + 2e-3 / 3.0] * 2)
-    assert np.all(np.isfinite(limits))
+def test_limits_of_particles_follow_from_margins_that_are_shares_of_the_depth():
+    assert diagram().limits == pytest.approx(np.array([[1.5e-3, 1.5e-3], [2.5e-3, 1.5e-3]]))
 
 
 def test_the_evidence_is_the_integral_of_the_likelihood_over_the_prior():
