@@ -140,7 +140,7 @@ def margins_over(case: Case, speeds: Array, depths: Array) -> Array:
     """
     count = 1 + max(2, math.ceil(math.log(depths[-1] / depths[0]) / math.log(_RATIO)))
     at = np.geomspace(depths[0], depths[-1], count)
-    rates = growth_rates(case, np.repeat(speeds, count), np.tile(at, speeds.size))
+    rates = growth_rate_at(case, np.repeat(speeds, count), np.tile(at, speeds.size))
     return margins_between(rates.reshape(speeds.size, count), at, depths)
 
 
@@ -162,7 +162,7 @@ def margins_between(rates: Array, at: Array, depths: Array) -> Array:
     return np.clip(margin, -_FAR, _FAR)
 
 
-def growth_rates(case: Case, speeds: Array, depths: Array) -> Array:
+def growth_rate_at(case: Case, speeds: Array, depths: Array) -> Array:
     """Logarithm (n,) of the spectral radius over a period of the tool; below 0: stable.
 
     Speeds (n,), rad/s, and depths (n,), m, are point by point.

@@ -111,7 +111,7 @@ def _with_modes(cut: ElementCut, model: MillingModel) -> ElementCut:
 
 def _assemblies(model: MillingModel, cut: ElementCut, points: ScaledPoints) -> CouplingAssemblies:
     """Couplings of every point, an assembly each."""
-    group = speed_groups(points.speed)
+    group = neighbouring_speeds(points.speed)
     count = int(group.max()) + 1
     slowest, deepest = np.full(count, np.inf), np.zeros(count)
     np.minimum.at(slowest, group, points.speed)
@@ -144,7 +144,7 @@ def points_of_element(cut: ElementCut) -> tuple[int, int]:
     return cut.points.weight.shape[0], cut.arrays.basis.shape[1]
 
 
-def speed_groups(speed: Array) -> NDArray[np.intp]:
+def neighbouring_speeds(speed: Array) -> NDArray[np.intp]:
     """Number of the group (n,) of each speed: neighbours that are to share their elements."""
     distinct, index, counts = np.unique(speed, return_inverse=True, return_counts=True)
     number = np.zeros(distinct.size, dtype=np.intp)

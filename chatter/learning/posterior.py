@@ -174,7 +174,7 @@ class _Chains:
     def _along_chain(self, nearly: _Regression) -> Array:
         """Particles moved by Metropolis' rule as if the regression were true."""
         now = self.counted
-        free = ~self.prior.held(now)
+        free = ~self.prior.fixed(now)
         steps = _Steps(now, free)
         density = self._density(nearly(now), now)
         count = len(now)

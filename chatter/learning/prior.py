@@ -59,7 +59,7 @@ class Prior:
             found[np.ix_(absent, self.optional)] = self.nothing[self.optional]
         return found
 
-    def held(self, counted: Array) -> NDArray[np.bool_]:
+    def fixed(self, counted: Array) -> NDArray[np.bool_]:
         """What of particles (n, p) is not to be moved: parameters of an effect that is absent."""
         if not self.optional.any():
             return np.zeros(counted.shape, dtype=bool)
@@ -68,9 +68,9 @@ class Prior:
 
     def log_density(self, counted: Array) -> Array:
         """Logarithm (n,) of the density of particles (n, p), but for a constant."""
-        held = self.held(counted)
-        inside = np.all(held | ((counted >= self.lower) & (counted <= self.upper)), axis=1)
-        each = np.where(held, 0.0, np.log1p(counted**2 / FREEDOM))
+        fixed = self.fixed(counted)
+        inside = np.all(fixed | ((counted >= self.lower) & (counted <= self.upper)), axis=1)
+        each = np.where(fixed, 0.0, np.log1p(counted**2 / FREEDOM))
         log = -0.5 * (FREEDOM + 1.0) * each.sum(axis=1)
         return np.where(inside, log, -np.inf)
 

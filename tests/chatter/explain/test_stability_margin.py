@@ -16,7 +16,7 @@ from chatter.explain.stability_margin import (
     margins_over,
     response_of_tests,
 )
-from chatter.explain.tests_side_by_side import speed_groups
+from chatter.explain.tests_side_by_side import neighbouring_speeds
 
 CASE = """
 [tool]
@@ -139,4 +139,4 @@ def test_a_pocket_above_a_limit_is_stable_again():
 
 def test_groups_of_speeds_are_neighbours():
     speed = np.array([100.0, 200.0, 101.0, 110.0, 130.0, 200.0])
-    assert speed_groups(speed).tolist() == [0, 2, 0, 0, 1, 2]
+    assert neighbouring_speeds(speed).tolist() == [0, 2, 0, 0, 1, 2]

@@ -18,7 +18,7 @@ class WidePrior:
     def log_density(self, counted):
         return np.where(np.all(np.abs(counted) < 30.0, axis=1), 0.0, -np.inf)
 
-    def held(self, counted):
+    def fixed(self, counted):
         return np.zeros(counted.shape, dtype=bool)
 
 
@@ -104,7 +104,7 @@ def test_information_is_what_is_not_scatter():
 class SpikeBesideSlab(WidePrior):
     """The second parameter is none in half of the particles."""
 
-    def held(self, counted):
+    def fixed(self, counted):
         return (counted[:, 1] == 0.0)[:, None] & np.array([False, True])
 
 
