@@ -1,6 +1,7 @@
 """Milling runs: forces and displacements predicted by the time-domain engine."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -130,6 +131,16 @@ class Milling(Kind):
         if isinstance(run.record, SteadyRecord):
             return run.record.predicted(case)
         return from_rest(case, run)
+
+    def known_noise(self, run: Run) -> Mapping[str, float]:
+        """Standard deviation of channels whose noise the records tell."""
+        return {name: one.noise for name, one in run.components.items() if one.noise > 0.0}
+
+    def noise_beside(
+        self, run: Run, predicted: Signals, noise: Mapping[str, float]
+    ) -> Mapping[str, float]:
+        """Standard deviation of every channel from the residual, where records do not tell it."""
+        return {**super().noise_beside(run, predicted, noise), **self.known_noise(run)}
 
     def nuisance_parameters(self, measurement: Measurement) -> list[Parameter]:
         """Cutting coefficients and modal parameters."""

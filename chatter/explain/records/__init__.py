@@ -10,6 +10,7 @@ stages              air, entry, cut and exit; the settled part
 steady_cut          revolution of a settled cut, by the time-domain engine
 alignment           start angle, speed, offsets, drifts and filter of a prediction
 orientation         directions and signs that are not told
+slow_channels       spindle power and torques of drives
 steady_record       what a run needs to be predicted in its settled part
 recognition         from runs as read to runs that can be judged
 =================== ================================================================

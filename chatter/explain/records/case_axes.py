@@ -26,10 +26,15 @@ _ALONG = 1e-3
 
 
 class Component(NamedTuple):
-    """What a channel in the axes of the case holds: a quantity of the tool along a direction."""
+    """What a channel in the axes of the case holds: a quantity of the tool along a direction.
+
+    Spindle power and drive torque have none.
+    """
 
     quantity: str
     direction: tuple[float, float, float]
+    noise: float = 0.0  # where it is known before any fit, SI
+    axis: str = ""  # of a drive
 
 
 #: channels that need no description

@@ -14,7 +14,8 @@ FORCE, DISPLACEMENT, VELOCITY, ACCELERATION = "force", "displacement", "velocity
 #: quantities with a direction
 VECTORS = (FORCE, DISPLACEMENT, VELOCITY, ACCELERATION)
 TACHO, SPINDLE_POWER = "once per revolution", "spindle power"
-QUANTITIES = (*VECTORS, TACHO, SPINDLE_POWER, "drive torque", "sound pressure")
+DRIVE_TORQUE = "drive torque"
+QUANTITIES = (*VECTORS, TACHO, SPINDLE_POWER, DRIVE_TORQUE, "sound pressure")
 SIDES = ("tool", "workpiece")
 REST, AIR, CUT = "rest", "air", "cut"
 UNKNOWN = "unknown"

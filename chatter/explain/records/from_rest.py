@@ -8,8 +8,15 @@ from numpy.typing import NDArray
 from chatter.description.case import Case
 from chatter.explain.measurement import Run
 from chatter.explain.records.case_axes import USUAL, Component
-from chatter.explain.records.description import ACCELERATION, FORCE, VELOCITY
+from chatter.explain.records.description import (
+    ACCELERATION,
+    DRIVE_TORQUE,
+    FORCE,
+    SPINDLE_POWER,
+    VELOCITY,
+)
 from chatter.explain.records.simulated import simulated
+from chatter.explain.records.slow_channels import over_revolution
 from chatter.simulation.result import SimulationResult
 
 Array = NDArray[np.float64]
@@ -25,8 +32,9 @@ def from_rest(case: Case, run: Run) -> dict[str, Array]:
     result = simulated(case.patch({"simulation.revolutions": revolutions}))
     components = {**_ALWAYS, **{k: v for k, v in USUAL.items() if k in run.signals}}
     components |= run.components
+    speed = case.cut.spindle_speed
     return {
-        name: np.interp(at, result.time, _signal(result, component))
+        name: np.interp(at, result.time, _signal(result, component, speed))
         for name, component in components.items()
     }
 
@@ -35,7 +43,11 @@ def from_rest(case: Case, run: Run) -> dict[str, Array]:
 _ALWAYS = {name: USUAL[name] for name in ("Fx", "Fy", "Fz", "x", "y", "z")}
 
 
-def _signal(result: SimulationResult, component: Component) -> Array:
+def _signal(result: SimulationResult, component: Component, speed: float) -> Array:
+    if component.quantity == SPINDLE_POWER:
+        return over_revolution(result.power, result.time, speed)
+    if component.quantity == DRIVE_TORQUE:
+        return result.torque_of(component.axis)
     source = result.force if component.quantity == FORCE else result.displacement
     values = source @ np.array(component.direction)
     for _ in range({VELOCITY: 1, ACCELERATION: 2}.get(component.quantity, 0)):

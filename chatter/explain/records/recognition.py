@@ -14,8 +14,15 @@ from chatter.explain.data_checks.finding import FATAL, NOTE, RUN, SignalFinding
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.records.alignment import Recorded
 from chatter.explain.records.case_axes import in_case_axes
-from chatter.explain.records.description import TACHO, UNKNOWN, Channel, RecordDescription
+from chatter.explain.records.description import (
+    SPINDLE_POWER,
+    TACHO,
+    UNKNOWN,
+    Channel,
+    RecordDescription,
+)
 from chatter.explain.records.orientation import oriented
+from chatter.explain.records.slow_channels import POWER, power_channel, with_power, with_torques
 from chatter.explain.records.spindle import TachoReading, speed_by_repetition, tacho_reading
 from chatter.explain.records.stages import Stages, stages_of
 from chatter.explain.records.steady_cut import revolutions_to_settle, steady_cut
@@ -42,6 +49,7 @@ class _Settled:
     stages: Stages
     tacho: TachoReading | None
     description: str
+    idle: float | None = None  # power of the spindle in the air, W
 
     def recorded(self, names: Sequence[str]) -> Recorded:
         """Channels as predictions are laid beside them."""
@@ -62,7 +70,7 @@ def settled_records(
     """
     channels = _present(measurement, record.channels)
     vectors = {name: one for name, one in channels.items() if one.is_vector}
-    findings = _unpredicted(channels)
+    findings: list[SignalFinding] = []
     settled = [_settled(measurement, run, record, channels) for run in measurement.runs]
     settled, new = _without_unsteady(settled)
     findings += new
@@ -73,6 +81,7 @@ def settled_records(
         if any(one.severity == FATAL for one in new):
             return measurement, findings
     found = [_steady(one, channels, record) for one in settled]
+    findings += _unpredicted(channels, found)
     found, new = _with_tachos(found, [one.tacho for one in settled])
     findings += new
     findings += [
@@ -89,8 +98,11 @@ def from_rest_records(
     found = []
     for run in measurement.runs:
         turned, components = in_case_axes(run, record.channels)
-        found.append(replace(turned, components=components))
-    return measurement.with_runs(found), _unpredicted(record.channels)
+        turned = replace(turned, components=components)
+        speed = run.of(measurement.case).cut.spindle_speed
+        turned = with_power(turned, record.channels, measurement.idle_power, speed)
+        found.append(with_torques(turned, record.channels, measurement.case))
+    return measurement.with_runs(found), _unpredicted(record.channels, found)
 
 
 def _present(measurement: Measurement, channels: Mapping[str, Channel]) -> dict[str, Channel]:
@@ -102,13 +114,20 @@ def _present(measurement: Measurement, channels: Mapping[str, Channel]) -> dict[
     }
 
 
-def _unpredicted(channels: Mapping[str, Channel]) -> list[SignalFinding]:
+def _unpredicted(channels: Mapping[str, Channel], runs: Sequence[Run]) -> list[SignalFinding]:
     """Notes on channels that nothing is predicted for."""
-    return [
-        SignalFinding(NOTE, "", name, f"{name}: {one.quantity} is not predicted of this case")
-        for name, one in channels.items()
-        if not one.is_vector and one.quantity != TACHO
-    ]
+    found = []
+    for name, one in channels.items():
+        shown = POWER if one.quantity == SPINDLE_POWER else name
+        if one.is_vector or one.quantity == TACHO or any(shown in run.components for run in runs):
+            continue
+        words = f"{name}: {one.quantity} is not predicted of this case"
+        if one.quantity == SPINDLE_POWER:
+            words = (
+                f"{name}: the power in the air is not known; give idle_power to judge the cut by it"
+            )
+        found.append(SignalFinding(NOTE, "", name, words))
+    return found
 
 
 def _names(run: Run, channels: Mapping[str, Channel]) -> list[str]:
@@ -151,7 +170,13 @@ def _settled(
     )
     cut_out = _cut_out(run, stages, names)
     overrides = {**run.overrides, **own}
-    return _Settled(replace(cut_out, overrides=overrides), case, stages, tacho, description)
+    idle = measurement.idle_power
+    power = power_channel(channels)
+    air = _air(stages)
+    if idle is None and power is not None and air.stop >= _LEAST_AIR:
+        idle = float(np.mean(run.signals[power][air]))
+    cut_out = replace(cut_out, overrides=overrides)
+    return _Settled(cut_out, case, stages, tacho, description, idle)
 
 
 def _speed(
@@ -166,13 +191,17 @@ def _speed(
 def _cut_out(run: Run, stages: Stages, names: Sequence[str]) -> Run:
     """Run of the settled part alone, its offsets in the air taken off."""
     signals = {name: values[stages.settled] for name, values in run.signals.items()}
-    # what is not quite in the air yet does not count
-    air = slice(0, int(0.8 * stages.entry))
+    air = _air(stages)
     if air.stop >= _LEAST_AIR:
         for name in names:
             signals[name] = signals[name] - float(np.median(run.signals[name][air]))
     usable = None if run.usable is None else run.usable[stages.settled]
     return replace(run, signals=signals, usable=usable)
+
+
+def _air(stages: Stages) -> slice:
+    """Samples before the cut; what is not quite in the air yet does not count."""
+    return slice(0, int(0.8 * stages.entry))
 
 
 #: samples in the air that tell an offset
@@ -232,11 +261,12 @@ def _steady(one: _Settled, channels: Mapping[str, Channel], record: RecordDescri
     rows = replace(one, run=turned).recorded(list(components))
     angle = _known_angle(turned, record)
     rows = replace(rows, angle=angle)
-    kept = components
-    steady = SteadyRecord(kept, rows, revolutions_to_settle(one.case), one.description)
+    steady = SteadyRecord(components, rows, revolutions_to_settle(one.case), one.description)
     signals = dict(turned.signals)
     signals["spindle_angle"] = steady.aligned(one.case).angle
-    return replace(turned, signals=signals, record=steady, components=kept)
+    turned = replace(turned, signals=signals, components=components)
+    turned = with_power(turned, channels, one.idle, one.case.cut.spindle_speed)
+    return replace(turned, record=replace(steady, has_power=POWER in turned.components))
 
 
 def _known_angle(run: Run, record: RecordDescription) -> Array | None:

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from chatter.description.case import Case
 from chatter.explain.records.alignment import Alignment, Recorded, aligned
 from chatter.explain.records.case_axes import Component
-from chatter.explain.records.steady_cut import steady_cut
+from chatter.explain.records.slow_channels import POWER
+from chatter.explain.records.steady_cut import SteadyCut, steady_cut
 
 Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,11 +24,12 @@ class SteadyRecord:
     recorded: Recorded
     revolutions: int  # simulated from rest until the cut is settled
     entered_by: str = ""  # stages of the record in words
+    has_power: bool = False  # whether the power of the spindle is predicted
 
     @property
     def channels(self) -> tuple[str, ...]:
         """Channels that are predicted."""
-        return tuple(self.components)
+        return (*self.components, *((POWER,) if self.has_power else ()))
 
     @property
     def knows_tooth(self) -> bool:
@@ -37,16 +38,21 @@ class SteadyRecord:
 
     def aligned(self, case: Case) -> Alignment:
         """Prediction of a case with the overrides of the run, laid beside the record."""
-        return aligned(self._harmonics(case), self.recorded)
+        return self._laid_beside(steady_cut(case, self.revolutions))
 
-    def _harmonics(self, case: Case) -> Complex:
-        cut = steady_cut(case, self.revolutions)
+    def _laid_beside(self, cut: SteadyCut) -> Alignment:
         orders = self.recorded.orders
-        return np.array([cut.harmonics(one, orders) for one in self.components.values()])
+        harmonics = [cut.harmonics(one, orders) for one in self.components.values()]
+        return aligned(np.array(harmonics), self.recorded)
 
     def predicted(self, case: Case) -> dict[str, Array]:
         """Signals at the samples by a case with the overrides of the run."""
-        return dict(zip(self.components, self.aligned(case).predicted, strict=True))
+        cut = steady_cut(case, self.revolutions)
+        found = dict(zip(self.components, self._laid_beside(cut).predicted, strict=True))
+        if self.has_power:
+            # what is settled has the same mean over every revolution
+            found[POWER] = np.full(self.recorded.time.size, cut.power)
+        return found
 
 
 def smallest_symmetry(case: Case) -> float:

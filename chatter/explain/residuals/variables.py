@@ -85,6 +85,8 @@ def reported_unit(channel: str) -> tuple[str, float]:
     """Unit in which a channel is reported, and its value over SI."""
     if channel in _MOTIONS:
         return _MOTIONS[channel]
+    if channel == "spindle_power":
+        return "W", 1.0
     return ("N", 1.0) if channel[0] in "Ff" else ("µm", 1e6)
 
 
