@@ -18,7 +18,7 @@ from chatter.explain.effects.axis import (
 from chatter.explain.effects.cutting_force import ChipExponent, EdgeForce, ProcessDamping
 from chatter.explain.effects.dynamometer import Dynamometer
 from chatter.explain.effects.effect import Effect
-from chatter.explain.effects.machine import AxisFriction, ControlGain, JointStiffness
+from chatter.explain.effects.machine import AxisFriction, ControlDelay, ControlGain, JointStiffness
 from chatter.explain.effects.missing_mode import MissingMode
 from chatter.explain.effects.structure import Contact, ModeShift, SlideFriction
 from chatter.explain.effects.tool import Pitch, Runout, Wear
@@ -52,6 +52,7 @@ EFFECTS: Registry[Effect] = Registry(
         AxisFriction(),
         JointStiffness(),
         ControlGain(),
+        ControlDelay(),
     ),
 )
 

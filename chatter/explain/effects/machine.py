@@ -25,6 +25,8 @@ _HYSTERESIS_SLOPE = 1e4
 _COULOMB, _VISCOUS = 20.0, 200.0
 #: keys of drives and loops that say how stiff they are
 _STIFFNESS, _GAINS = "stiffness", ("position.gain", "velocity.proportional_gain")
+#: keys of loops that delay what they pass on
+_LAGS = ("current.time_constant", "velocity.integral_time")
 
 
 class Joint(NamedTuple):
@@ -56,11 +58,20 @@ def _of_drive(drive: DriveSection | None) -> Iterator[tuple[str, float]]:
 
 def gains(file: MachineFile) -> list[Joint]:
     """Gains of the position and velocity loops of all axes."""
+    return _of_loops(file, _GAINS)
+
+
+def lags(file: MachineFile) -> list[Joint]:
+    """Time constants of the current and velocity loops of all axes."""
+    return _of_loops(file, _LAGS)
+
+
+def _of_loops(file: MachineFile, keys: Sequence[str]) -> list[Joint]:
     return [
         Joint(f"{name}_{key.partition('.')[0]}", {f"axis.{name}.control.{key}": value})
         for name, axis in file.axis.items()
         if axis.control is not None
-        for key in _GAINS
+        for key in keys
         if isinstance(value := file.get(f"axis.{name}.control.{key}"), float)
     ]
 
@@ -142,6 +153,19 @@ class ControlGain(_Factor):
     def listed(self, file: MachineFile) -> Sequence[Joint]:
         """Loops of all axes."""
         return gains(file)
+
+
+class ControlDelay(_Factor):
+    """A time constant of a control loop that is not as declared."""
+
+    name = "control_delay"
+    label = "time constant of a control loop"
+    help = "a control loop of the machine is slower or faster than declared"
+    kinds = ("frf",)
+
+    def listed(self, file: MachineFile) -> Sequence[Joint]:
+        """Loops of all axes."""
+        return lags(file)
 
 
 class AxisFriction(Effect):

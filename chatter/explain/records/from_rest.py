@@ -34,7 +34,7 @@ def from_rest(case: Case, run: Run) -> dict[str, Array]:
     components |= run.components
     speed = case.cut.spindle_speed
     return {
-        name: np.interp(at, result.time, _signal(result, component, speed))
+        name: np.interp(at, result.time, predicted_signal(result, component, speed))
         for name, component in components.items()
     }
 
@@ -43,7 +43,8 @@ def from_rest(case: Case, run: Run) -> dict[str, Array]:
 _ALWAYS = {name: USUAL[name] for name in ("Fx", "Fy", "Fz", "x", "y", "z")}
 
 
-def _signal(result: SimulationResult, component: Component, speed: float) -> Array:
+def predicted_signal(result: SimulationResult, component: Component, speed: float) -> Array:
+    """Signal (n,) of a component of a simulated cut at its own times; speed in rad/s."""
     if component.quantity == SPINDLE_POWER:
         return over_revolution(result.power, result.time, speed)
     if component.quantity == DRIVE_TORQUE:

@@ -7,6 +7,8 @@ import chatter
 from chatter.compile.machine_response import machine_response
 from chatter.description.case import load
 from chatter.description.errors import InputError
+from chatter.explain.effects.effect_list import candidates
+from chatter.explain.measurement import Measurement
 from tests.places import ROOT
 
 EXAMPLE = ROOT / "examples" / "face-mill-chatter"
@@ -130,6 +132,24 @@ def test_missing_friction_of_an_axis_is_named(folder):
     assert [effect["name"] for effect in summary["effects"]] == ["axis_friction"]
     found = summary["effects"][0]["parameters"]
     assert found["presliding_stiffness_Y"]["value"] == pytest.approx(99.2 * 1.15e4, rel=0.1)
+
+
+def test_a_slower_current_loop_is_another_machine(folder):
+    """The factor of the effect is that of the time constant, which the motor shows."""
+    case = load(folder / "case.toml")
+    measurement = Measurement("frf", "loops", folder, case, ())
+    path = "machine.axis.Y.control.current.time_constant"
+    delays = [one for one in candidates(measurement) if one.name == "control_delay"]
+    names = [one.parameters(measurement)[0].name for one in delays]
+    assert names[:2] == ["X_current", "X_velocity"]
+    effect = delays[names.index("Y_current")]
+    slower = case.patch(effect.patch(case, {"Y_current": 3.0}))
+    assert slower.get(path) == pytest.approx(3.0 * 0.4e-3)
+    lines = np.array([60.0, 100.0])
+    before, after = (
+        machine_response(one, "moving", "motor:Y", "motor:Y", lines) for one in (case, slower)
+    )
+    assert np.all(np.abs(after / before - 1.0) > 0.01)
 
 
 def test_what_a_machine_does_not_know_is_told(folder):

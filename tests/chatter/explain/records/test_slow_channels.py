@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 
 from benchmarks.blind_sets.milling_physics import TURN, arc_of
+from chatter.description.case import load
 from chatter.explain.comparison import compare
 from chatter.explain.data_checks.finding import NOTE
+from chatter.explain.measurement import Run
 from chatter.explain.records.description import Channel, RecordDescription
-from chatter.explain.records.slow_channels import over_revolution
+from chatter.explain.records.from_rest import predicted_signal
+from chatter.explain.records.slow_channels import over_revolution, with_torques
 from tests.chatter.explain.records.test_records import (
     CUTS,
     TRUE_SPEED,
@@ -19,6 +22,7 @@ from tests.chatter.explain.records.test_records import (
     cut_off,
     measurement,
 )
+from tests.places import EXAMPLES
 
 __all__ = ["case", "cut_off"]
 
@@ -92,3 +96,24 @@ def test_a_mean_over_a_revolution_forgets_its_ripple():
     inner = slice(150, -150)
     # a window of 200 samples begins at its first: half a sample early
     assert mean[inner] == pytest.approx(5.0 + 2.0 * (time[inner] - 0.5e-4), abs=1e-9)
+
+
+class Machine:
+    """What a cut on a machine tells of its drives."""
+
+    time = np.linspace(0.0, 1.0, 101)
+
+    def torque_of(self, drive):
+        return {"Y": 3.0 * self.time}[drive]
+
+
+def test_torques_are_those_of_the_drives_of_a_machine():
+    """On modes, or of a drive that the machine has not, there is none to predict."""
+    on_machine = load(EXAMPLES / "face-mill-chatter" / "case.toml")
+    channels = {"M": Channel("drive torque", axis="Y"), "other": Channel("drive torque", axis="Q")}
+    run = Run("run", {}, {"time": Machine.time, "M": Machine.time, "other": Machine.time})
+    components = with_torques(run, channels, on_machine).components
+    assert list(components) == ["M"]
+    assert predicted_signal(Machine(), components["M"], 100.0) == pytest.approx(3.0 * Machine.time)
+    modes = on_machine.model_copy(update={"structure": None})
+    assert with_torques(run, channels, modes).components == {}
