@@ -76,6 +76,8 @@ def stage_of(problem: Problem, now: Fit, split: Split, progress: Progress, numbe
         progress(f"fitting {effect.name}", (number + share) / (MOST_EFFECTS + 1))
         tried.append(_roughly_fitted(problem, effect, split, step))
     found = stage_with(problem, now, split, _finished(problem, now, split, tried))
+    if problem.effects:
+        return found
     fixed, share = problem.kind.least_gain
     least = PROMISING * (fixed + share * base.residuals.size)
     return replace(found, together=tuple(joint_steps(base, steps, least)))

@@ -13,7 +13,7 @@ from chatter.explain.fitting import Fit, Parameter
 from chatter.explain.selection.linearised_step import WEAK_PRIOR, LinearisedStep
 
 #: pairs that are proposed at the most
-_PROPOSED = 3
+_PROPOSED = 2
 
 
 class JointStep(NamedTuple):
