@@ -1,6 +1,7 @@
 """Signals of a run that begins from rest as the tool meets full immersion."""
 
 import math
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from chatter.explain.records.description import (
 from chatter.explain.records.simulated import simulated
 from chatter.explain.records.slow_channels import over_revolution
 from chatter.simulation.result import SimulationResult
+from chatter.simulation.simulate import MachineResult
 
 Array = NDArray[np.float64]
 
@@ -48,7 +50,8 @@ def predicted_signal(result: SimulationResult, component: Component, speed: floa
     if component.quantity == SPINDLE_POWER:
         return over_revolution(result.power, result.time, speed)
     if component.quantity == DRIVE_TORQUE:
-        return result.torque_of(component.axis)
+        # such a component is of a case on a machine alone
+        return cast("MachineResult", result).torque_of(component.axis)
     source = result.force if component.quantity == FORCE else result.displacement
     values = source @ np.array(component.direction)
     for _ in range({VELOCITY: 1, ACCELERATION: 2}.get(component.quantity, 0)):
