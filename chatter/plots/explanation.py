@@ -89,17 +89,18 @@ def plot_residuals(residuals: dict[str, Residual], title: str) -> Figure:
     """Draw measured signals of some runs, and their residuals by what the legend says."""
     first = next(iter(residuals.values()))
     runs = _shown(first)
-    channels = first.channels
-    figure = style.new_figure(3.8 * len(runs) + 0.4, 1.2 + 1.9 * len(channels))
+    channels = {name: _channels(first, name) for name in runs}
+    rows = max(len(names) for names in channels.values())
+    figure = style.new_figure(3.8 * len(runs) + 0.4, 1.2 + 1.9 * rows)
     figure.suptitle(title, fontsize=11.0, x=0.01, ha="left")
-    panels = figure.subplots(len(channels), len(runs), squeeze=False)
-    for row, channel in enumerate(channels):
-        for column, name in enumerate(runs):
-            own = _parts(residuals, channel, name)
-            _draw_residuals(panels[row, column], own, bool(first.measurement.parts))
-            if row == 0:
-                panels[row, column].set_title(name, loc="left")
-            style.finish(panels[row, column])
+    panels = figure.subplots(rows, len(runs), squeeze=False)
+    for column, name in enumerate(runs):
+        panels[0, column].set_title(name, loc="left")
+        for axes in panels[len(channels[name]) :, column]:
+            axes.set_axis_off()
+        for axes, channel in zip(panels[:, column], channels[name], strict=False):
+            _draw_residuals(axes, _parts(residuals, channel, name))
+            style.finish(axes)
     legends = [axes.get_legend_handles_labels() for axes in panels.ravel()]
     figure.legend(
         *max(legends, key=lambda one: len(one[1])),
@@ -112,11 +113,24 @@ def plot_residuals(residuals: dict[str, Residual], title: str) -> Figure:
 
 
 def _shown(residual: Residual) -> list[str]:
-    """First run, the one in the middle, and the one that is farthest from its noise."""
+    """First run, the one in the middle, and the one that is farthest from its noise.
+
+    Of a set-up the one that is farthest from its noise of every kind.
+    """
     names = list(dict.fromkeys(part.run.name for part in residual.parts))
-    worst = max(residual.parts, key=lambda part: part.over_noise).run.name
-    wanted = list(dict.fromkeys([worst, names[0], names[len(names) // 2], *names]))
+    ranked = sorted(residual.parts, key=lambda part: -part.over_noise)
+    if residual.measurement.parts:
+        worst = {part.run.kind: part.run.name for part in reversed(ranked)}
+        return [name for name in names if name in worst.values()]
+    wanted = list(dict.fromkeys([ranked[0].run.name, names[0], names[len(names) // 2], *names]))
     return [name for name in names if name in wanted[:_SHOWN_RUNS]]
+
+
+def _channels(residual: Residual, run: str) -> tuple[str, ...]:
+    """Channels to draw of a run: all, also where one was excluded; of a set-up those it has."""
+    if not residual.measurement.parts:
+        return residual.channels
+    return tuple(part.channel for part in residual.parts if part.run.name == run)
 
 
 def _parts(residuals: dict[str, Residual], channel: str, run: str) -> dict[str, ChannelResidual]:
@@ -129,10 +143,7 @@ def _parts(residuals: dict[str, Residual], channel: str, run: str) -> dict[str, 
     }
 
 
-def _draw_residuals(axes: Axes, parts: dict[str, ChannelResidual], of_set_up: bool) -> None:
-    if not parts and of_set_up:
-        axes.set_axis_off()
-        return
+def _draw_residuals(axes: Axes, parts: dict[str, ChannelResidual]) -> None:
     if not parts:
         axes.text(0.5, 0.5, "excluded", ha="center", transform=axes.transAxes)
         return
