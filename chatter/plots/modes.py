@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 
 from chatter.plots import style
 from dynamics.frf.container import Frf
+from dynamics.identification.mode_indicators import mode_indicator_function
 from dynamics.identification.result import FrfModel, ModalFit
 
 #: FRFs side by side in one picture
@@ -107,8 +108,8 @@ def draw_phase(axes: Axes, fit: ModalFit, frf: Frf, model: FrfModel) -> None:
 
 def plot_stabilisation(fit: ModalFit, title: str) -> Figure:
     """Draw the poles of all model orders over frequency, with the FRFs behind them."""
-    figure = style.new_figure(8.0, 4.6)
-    axes = figure.subplots()
+    figure = style.new_figure(8.0, 6.2)
+    axes, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
     behind = axes.twinx()
     for frf in fit.frfs:
         behind.semilogy(frf.frequency, np.abs(frf.values), color="#BBBBBB", linewidth=0.8)
@@ -134,7 +135,11 @@ def plot_stabilisation(fit: ModalFit, title: str) -> Figure:
             )
     for mode in fit.identified:
         axes.axvline(mode.frequency, color=style.GREEN, linewidth=0.8)
-    axes.set(xlim=(fit.band.lowest, fit.band.highest), xlabel="frequency [Hz]")
+        below.axvline(mode.frequency, color=style.GREEN, linewidth=0.8)
+    below.plot(*mode_indicator_function(fit.undelayed_frfs), color=style.BLUE, linewidth=1.0)
+    below.set(xlim=(fit.band.lowest, fit.band.highest), xlabel="frequency [Hz]")
+    below.set(ylim=(0.0, 1.05), ylabel="mode indicator\nfunction [1]")
+    style.finish(below)
     axes.set(ylabel="model order", title=f"{title}: stabilisation diagram, modes chosen in green")
     style.finish(axes)
     axes.legend(fontsize=8, loc="upper right")

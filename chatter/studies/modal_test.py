@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from chatter.compile.measured_frf import with_direction, with_magnitudes
 from chatter.description.errors import InputError
 from chatter.io.formats.format_list import read_frfs
@@ -22,6 +24,7 @@ from dynamics.frf.container import Frf, MeasurementError
 from dynamics.frf.hammer.averaging import HammerTest, hammer_test
 from dynamics.frf.hammer.record import Finding
 from dynamics.identification.fit import identify_modes
+from dynamics.identification.mode_indicators import modal_assurance, mode_indicator_function
 from dynamics.identification.result import IdentifiedMode, ModalFit
 from dynamics.modal.modes import Side
 
@@ -53,11 +56,17 @@ class ModalTest:
     def summary(self) -> dict:
         """Return the content of summary.json."""
         errors = self.fit.errors
+        indicator = mode_indicator_function(self.fit.undelayed_frfs)
         return {
             "title": self.title,
             "band_Hz": [self.fit.band.lowest, self.fit.band.highest],
             "band_reason": self.fit.band.reason,
-            "modes": [_mode_summary(mode) for mode in self.fit.identified],
+            "modes": [
+                _mode_summary(mode, float(np.interp(mode.frequency, *indicator)))
+                for mode in self.fit.identified
+            ],
+            "channel_delay_s": [model.delay for model in self.fit.models],
+            "modal_assurance": _modal_assurance(self.fit),
             "fit_error": {
                 "metric": "deviation of fitted from measured over the band, relative to the peak",
                 "maximum": max(error.maximum for error in errors),
@@ -97,9 +106,17 @@ class ModalTest:
         )
 
 
-def _mode_summary(mode: IdentifiedMode) -> dict:
+def _modal_assurance(fit: ModalFit) -> list[list[float]] | None:
+    """MAC between the modes; None of one FRF, where all shapes are alike."""
+    if len(fit.frfs) < 2 or not fit.identified:
+        return None
+    return modal_assurance(np.stack([mode.residues for mode in fit.identified])).tolist()
+
+
+def _mode_summary(mode: IdentifiedMode, indicator: float) -> dict:
     return {
         "frequency_Hz": mode.frequency,
+        "mode_indicator": indicator,
         "damping": mode.damping,
         "mass_kg": mode.mass,
         "direction": None if mode.direction is None else list(mode.direction),

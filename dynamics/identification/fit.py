@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from dynamics.frf.container import Frf, MeasurementError
 from dynamics.identification.band import Band, widened
 from dynamics.identification.beyond_band import modes_beyond
+from dynamics.identification.delay import channel_delay, without_delay
 from dynamics.identification.mode_quality import LEAST_MISFIT
 from dynamics.identification.polynomial import polyreference_poles
 from dynamics.identification.prepare import (
@@ -61,7 +62,8 @@ class _SetFit:
     diagram: StabilisationDiagram
     complex_model: ModalModel
     tool: ToolPointFit | None
-    records: Records
+    records: Records  # without the delay
+    delay: float  # of the response channels, found before the residues, s
 
 
 def identify_modes(
@@ -130,8 +132,9 @@ def identify_modes(
         np.concatenate([damping for _, damping in in_hertz]),
         float(np.median(np.diff(measurement.records.frequency))),
     )
+    fewest = mode_count or len(poles or ())
     fits = [
-        _fit_set(frf_set, diagram, model, measurement.of(frf_set.members, fitted))
+        _fit_set(frf_set, diagram, model, measurement.of(frf_set.members, fitted), fewest)
         for frf_set, (diagram, model) in zip(sets, found, strict=True)
     ]
     result = _assemble(measurement, fitted, fits)
@@ -202,15 +205,18 @@ def _has_pole(diagram: StabilisationDiagram, frequency: float, damping: float) -
 
 
 def _fit_set(
-    frf_set: FrfSet, diagram: StabilisationDiagram, model: ModalModel, records: Records
+    frf_set: FrfSet, diagram: StabilisationDiagram, model: ModalModel, records: Records, fewest: int
 ) -> _SetFit:
     """Refine the complex modes on the lines of the band, then real ones."""
+    drives = np.array([pair is not None and pair[0] == pair[1] for pair in frf_set.pairs])
+    delay = channel_delay(records, model, drives)
+    records = without_delay(records, delay)
     start = fit_residues(records, model.natural_frequency, model.damping, model.terms)
     model = choose_terms(records, refine(records, start))
     tool = None
     if not frf_set.reason and model.count:
-        tool = fit_tool_point(tool_point_records(records, frf_set), model)
-    return _SetFit(frf_set, diagram, model, tool, records)
+        tool = fit_tool_point(tool_point_records(records, frf_set), model, fewest)
+    return _SetFit(frf_set, diagram, model, tool, records, delay)
 
 
 def _diagram(records: Records, frfs: Sequence[Frf], max_order: int | None) -> StabilisationDiagram:
@@ -240,7 +246,7 @@ def _assemble(measurement: Measurement, band: Band, fits: Sequence[_SetFit]) -> 
         senses = measurement.senses[list(fit.frf_set.members)]
         for k, i in enumerate(fit.frf_set.members):
             complex_models[i] = models[i] = complex_frf_model(
-                fit.records, fit.complex_model, k, senses[k]
+                fit.records, fit.complex_model, k, senses[k], fit.delay
             )
         found = identified_complex_modes(fit.records, fit.complex_model)
         if fit.tool is not None:
@@ -248,13 +254,13 @@ def _assemble(measurement: Measurement, band: Band, fits: Sequence[_SetFit]) -> 
         if fit.tool is not None and fit.tool.model is not None:
             for k, i in enumerate(fit.frf_set.members):
                 models[i] = real_frf_model(
-                    fit.tool.tool, fit.tool.model, k, senses[k] * fit.tool.senses[k]
+                    fit.tool.tool, fit.tool.model, k, senses[k] * fit.tool.senses[k], fit.delay
                 )
-            found = identified_real_modes(fit.tool.tool, fit.tool.model, fit.complex_model)
-            notes += _delay_note(fit.tool)
+            found = identified_real_modes(fit.tool.tool, fit.tool.model)
             beyond.append(modes_beyond(fit.tool.tool, fit.tool.model))
         else:
             reasons.append(fit.frf_set.reason if fit.tool is None else fit.tool.reason)
+        notes += _delay_note(fit)
         identified += [_spread(mode, fit.frf_set, senses, count) for mode in found]
     identified.sort(key=lambda mode: mode.frequency)
     modes = tuple(mode_of(mode) for mode in identified if mode.mass is not None)
@@ -307,15 +313,15 @@ def _spread(
     return replace(mode, residues=residues)
 
 
-def _delay_note(tool: ToolPointFit) -> list[str]:
-    model = tool.model
-    if model is None or model.delay is None:
+def _delay_note(fit: _SetFit) -> list[str]:
+    """Say what lag was taken off, where its phase at the highest mode matters."""
+    delay, highest = fit.delay, float(np.max(fit.complex_model.natural_frequency, initial=0.0))
+    if fit.tool is not None and fit.tool.model is not None:
+        delay += fit.tool.model.delay or 0.0
+        highest = float(np.max(fit.tool.model.natural_frequency))
+    if abs(delay) * highest < NOTED_DELAY_PHASE:
         return []
-    if abs(model.delay) * float(np.max(model.natural_frequency)) < NOTED_DELAY_PHASE:
-        return []
-    return [
-        f"the response lags the force by {model.delay * 1e6:.2f} us; this was taken off the modes"
-    ]
+    return [f"the response lags the force by {delay * 1e6:.2f} us; this was taken off the modes"]
 
 
 def add_curvature(records: Records, model: ModalModel) -> ModalModel:

@@ -14,7 +14,7 @@ from dynamics.identification.residues import (
     residual_columns,
 )
 from dynamics.identification.tall import gram, product
-from dynamics.least_squares import least_squares
+from dynamics.least_squares import PRECISE, least_squares
 
 
 @dataclass(frozen=True)
@@ -73,11 +73,10 @@ class RealModel:
             s, self.natural_frequency, self.damping, records.derivative
         )
         values = np.sum(shapes.unit * self.residues(tool.pairs)[:, k], axis=1)
-        values = values * np.exp(-s * (self.delay or 0.0))
         offset = self.free[k].size - len(self.terms)
         for i, power in enumerate(self.terms):
             values = values + self.free[k][offset + i] * s ** (records.derivative + power)
-        return values
+        return values * np.exp(-s * (self.delay or 0.0))
 
 
 #: the delay is iterated in microseconds, to be of the size of the other unknowns
@@ -139,6 +138,7 @@ def refine_real_modes(
     vectors: NDArray[np.float64],
     terms: tuple[int, ...],
     delay: float | None,
+    least_gain: float = PRECISE,
 ) -> RealModel:
     """Weighted nonlinear least-squares fit of real modes with positive mass.
 
@@ -153,12 +153,34 @@ def refine_real_modes(
     def evaluate(parameters: NDArray[np.float64]) -> RealModel:
         return _evaluate(tool, parameters, modes, axes, terms)
 
-    lag = [] if delay is None else [delay / DELAY_UNIT]
-    start = np.concatenate(
-        [np.log(natural_frequency), np.log(damping), vectors.ravel(), np.array(lag)]
-    )
+    start = _parameters(natural_frequency, damping, vectors, delay)
     others = np.maximum(np.abs(start[2 * modes :]), 1e-3)
-    return least_squares(evaluate, start, np.concatenate([pole_reach(damping), others]))
+    reach = np.concatenate([pole_reach(damping), others])
+    return least_squares(evaluate, start, reach, least_gain)
+
+
+def evaluate_real_modes(
+    tool: ToolPointRecords,
+    natural_frequency: NDArray[np.float64],
+    damping: NDArray[np.float64],
+    vectors: NDArray[np.float64],
+    terms: tuple[int, ...],
+    delay: float | None,
+) -> RealModel:
+    """Model of the given modes, linear unknowns fitted; arguments as `refine_real_modes`."""
+    parameters = _parameters(natural_frequency, damping, vectors, delay)
+    modes, axes = vectors.shape
+    return _evaluate(tool, parameters, modes, axes, terms)
+
+
+def _parameters(
+    natural_frequency: NDArray[np.float64],
+    damping: NDArray[np.float64],
+    vectors: NDArray[np.float64],
+    delay: float | None,
+) -> NDArray[np.float64]:
+    lag = np.zeros(0) if delay is None else np.array([delay / DELAY_UNIT])
+    return np.concatenate([np.log(natural_frequency), np.log(damping), vectors.ravel(), lag])
 
 
 def _evaluate(
@@ -181,7 +203,7 @@ def _evaluate(
     unit, by_frequency, by_damping = (
         a * lag for a in (shapes.unit, shapes.by_frequency, shapes.by_damping)
     )
-    residual = residual_columns(s, terms, records.derivative)
+    residual = lag * residual_columns(s, terms, records.derivative)
     normal = np.zeros((parameters.size, parameters.size))
     gradient = np.zeros(parameters.size)
     chi_square = 0.0
@@ -202,7 +224,9 @@ def _evaluate(
         slope[:, :modes] = by_frequency * amplitude
         slope[:, modes : 2 * modes] = by_damping * amplitude
         if delayed:
-            slope[:, end] = -s * DELAY_UNIT * np.sum(unit * amplitude, axis=1)
+            elastic = np.sum(unit * amplitude, axis=1)
+            beyond = residual @ solution[solution.size - len(terms) :]
+            slope[:, end] = -s * DELAY_UNIT * (elastic + beyond)
         if pair is not None:
             i, j = pair
             by_vector = slope[:, 2 * modes : end].reshape(s.size, modes, axes)

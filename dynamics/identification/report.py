@@ -6,9 +6,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.identification.delay import without_delay
 from dynamics.identification.mode_quality import TINY, near_mode, peak_share
 from dynamics.identification.real_modes import RealModel, ToolPointRecords
-from dynamics.identification.refinement import ModalModel
+from dynamics.identification.refinement import ModalModel, fit_residues
 from dynamics.identification.residues import Records
 from dynamics.identification.result import FrfModel, IdentifiedMode
 from dynamics.identification.tool_point import share_of_real_mode
@@ -33,7 +34,9 @@ DOUBTFUL_PHASE = 20.0
 _UNIT = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
-def complex_frf_model(records: Records, model: ModalModel, k: int, sense: float) -> FrfModel:
+def complex_frf_model(
+    records: Records, model: ModalModel, k: int, sense: float, delay: float
+) -> FrfModel:
     """Model of FRF k of a set with complex modes, in the sense of the sensors."""
     modes = model.count
     rest = sense * model.coefficients[2 * modes :, k]
@@ -44,12 +47,14 @@ def complex_frf_model(records: Records, model: ModalModel, k: int, sense: float)
         model.damping,
         sense * model.coefficients[:modes, k],
         sense * model.coefficients[modes : 2 * modes, k],
-        0.0,
+        delay,
         tuple((p, float(c)) for p, c in zip(model.terms, rest, strict=True)),
     )
 
 
-def real_frf_model(tool: ToolPointRecords, model: RealModel, k: int, sense: float) -> FrfModel:
+def real_frf_model(
+    tool: ToolPointRecords, model: RealModel, k: int, sense: float, delay: float
+) -> FrfModel:
     """Model of FRF k of a set with real modes, in the sense of the sensors."""
     rest = sense * model.free[k][model.free[k].size - len(model.terms) :]
     return FrfModel(
@@ -59,7 +64,7 @@ def real_frf_model(tool: ToolPointRecords, model: RealModel, k: int, sense: floa
         model.damping,
         sense * model.residues(tool.pairs)[:, k],
         np.zeros(model.count),
-        model.delay or 0.0,
+        delay + (model.delay or 0.0),
         tuple((p, float(c)) for p, c in zip(model.terms, rest, strict=True)),
     )
 
@@ -132,16 +137,19 @@ def identified_complex_modes(records: Records, model: ModalModel) -> list[Identi
     for one in _resonances(records, model, model.synthesis(records), covariance_of(model.normal)):
         r = one.mode
         residues = model.coefficients[r] + 1j * model.coefficients[model.count + r]
-        weight, phase = peak_share(records, model, r), _phase_deviation(residues, 0.0)
+        weight, phase = peak_share(records, model, r), _phase_deviation(residues)
         warning = _warning(one, None, weight, phase)
         found.append(_identified(one, residues, weight, phase, warning))
     return found
 
 
-def identified_real_modes(
-    tool: ToolPointRecords, model: RealModel, complex_model: ModalModel
-) -> list[IdentifiedMode]:
-    """Report of real modes with mass and direction at the tool point."""
+def identified_real_modes(tool: ToolPointRecords, model: RealModel) -> list[IdentifiedMode]:
+    """Report of real modes with mass and direction at the tool point.
+
+    How far each is off a real mode comes from complex residues of the same poles, delay removed.
+    """
+    undelayed = without_delay(tool.records, model.delay or 0.0)
+    free = fit_residues(undelayed, model.natural_frequency, model.damping, model.terms)
     covariance = covariance_of(model.normal)
     residues = model.residues(tool.pairs).astype(np.complex128)
     axes = len(tool.axes)
@@ -156,7 +164,7 @@ def identified_real_modes(
         mass_std = 2.0 * one.inflation * np.sqrt(max(variance, 0.0)) / inverse_mass**2
         mass = 1.0 / inverse_mass
         weight = share_of_real_mode(tool, model, r)
-        phase = _complex_phase(complex_model, model.natural_frequency[r], model.delay or 0.0)
+        phase = _phase_deviation(free.coefficients[r] + 1j * free.coefficients[model.count + r])
         warning = _warning(one, mass_std / mass, weight, phase)
         felt = mass_std < UNFELT_STD * mass
         if not felt:
@@ -216,24 +224,11 @@ def _fit_error(
     return float(deviation / max(float(np.max(np.abs(records.values[near]))), TINY))
 
 
-def _phase_deviation(residues: NDArray[np.complex128], lag: float) -> float:
-    """Mean angle of the residues off the real axis, degrees, weighted by their size.
-
-    Residues are (k,); the measuring chain lags at the mode by a phase, rad.
-    """
-    turned = residues * np.exp(1j * lag)
-    size = np.abs(turned)
-    angle = np.abs(np.arctan2(turned.imag, np.abs(turned.real)))
+def _phase_deviation(residues: NDArray[np.complex128]) -> float:
+    """Mean angle of the residues (k,) off the real axis, degrees, weighted by their size."""
+    size = np.abs(residues)
+    angle = np.abs(np.arctan2(residues.imag, np.abs(residues.real)))
     return float(np.degrees(np.sum(angle * size**2) / max(float(np.sum(size**2)), 1e-300)))
-
-
-def _complex_phase(model: ModalModel, natural_frequency: float, delay: float) -> float:
-    """Phase deviation of the complex mode nearest to a real one."""
-    if model.count == 0:
-        return 0.0
-    r = int(np.argmin(np.abs(model.natural_frequency - natural_frequency)))
-    residues = model.coefficients[r] + 1j * model.coefficients[model.count + r]
-    return _phase_deviation(residues, natural_frequency * delay)
 
 
 def _warning(one: _Resonance, relative_mass_std: float | None, weight: float, phase: float) -> str:

@@ -1,6 +1,6 @@
 """What a modal identification found, and how well it describes the measurement."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -103,9 +103,8 @@ class FrfModel:
         """The function as measured, with its delay and window, (n,)."""
         f = np.atleast_1d(np.asarray(frequency, dtype=np.float64))
         s = self.added_decay + 2j * np.pi * f
-        elastic = self._elastic(s) * np.exp(-s * self.delay)
         rest = sum(coefficient * s**power for power, coefficient in self.residual)
-        return (elastic + rest) * s**self.derivative
+        return (self._elastic(s) + rest) * np.exp(-s * self.delay) * s**self.derivative
 
     def values_of_modes(self, frequency: ArrayLike) -> NDArray[np.complex128]:
         """Modes with mass lines and compliances, without delay and quadrature, (n,)."""
@@ -183,6 +182,14 @@ class ModalFit:
             One column an FRF.
         """
         return np.stack([model.values(frequency) for model in self.models], axis=1)
+
+    @property
+    def undelayed_frfs(self) -> tuple[Frf, ...]:
+        """The measured functions without the lag of their response channels."""
+        return tuple(
+            replace(frf, values=frf.values * np.exp(2j * np.pi * frf.frequency * model.delay))
+            for frf, model in zip(self.frfs, self.models, strict=True)
+        )
 
     @property
     def worst_error(self) -> float:

@@ -5,19 +5,35 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.identification.mode_quality import LEAST_PEAK_SHARE, largest_share, peak_share
+from dynamics.identification.discrepancy import effective_samples, with_discrepancy
+from dynamics.identification.mode_quality import LEAST_PEAK_SHARE, TINY, largest_share, peak_share
 from dynamics.identification.real_modes import (
     RealModel,
     ToolPointRecords,
+    evaluate_real_modes,
     refine_real_modes,
     starting_vectors,
 )
 from dynamics.identification.refinement import ModalModel
-from dynamics.identification.residues import ALL_TERMS
+from dynamics.identification.residues import ALL_TERMS, Records
+from dynamics.least_squares import PRECISE, ROUGH
 
 #: a mode of the wrong sign with more than this share of the peak tells that the FRF is none of a
 #: drive point
 MOST_WRONG_SHARE = 0.2
+
+#: peak receptance of a mode, over that of the largest, below which it is a small resonance where
+#: the model misses more than the noise; and how much more, in power
+MATERIAL_SHARE, MORE_THAN_NOISE = 0.1, 2.0
+
+#: lines in the half-power band of the narrowest mode, and lines in all, by which modes are judged
+LINES_IN_A_MODE, LEAST_JUDGED = 6, 400
+
+#: deviation beside a mode of negative mass that was left out from which it is told
+MOST_MISSED = 0.05
+
+#: lines beside a mode, relative to its frequency
+NEAR = 0.02
 
 #: share of a second mode in the residue matrix of a pole from which it is tried as a mode
 LEAST_SECOND_SHARE = 0.01
@@ -34,10 +50,11 @@ class ToolPointFit:
     notes: tuple[str, ...]
 
 
-def fit_tool_point(tool: ToolPointRecords, model: ModalModel) -> ToolPointFit:
+def fit_tool_point(tool: ToolPointRecords, model: ModalModel, fewest: int = 0) -> ToolPointFit:
     """Fit real modes with positive mass to the FRFs of the tool point.
 
-    The model has complex modes of the same FRFs.
+    The model has complex modes of the same FRFs; `fewest` modes are kept although the data may
+    not bear them.
     """
     tool, model, senses, notes = _with_senses(tool, model)
     vectors, eigenvalues = starting_vectors(tool, model)
@@ -48,18 +65,9 @@ def fit_tool_point(tool: ToolPointRecords, model: ModalModel) -> ToolPointFit:
     ]
     lowest, highest = tool.records.frequency[0], tool.records.frequency[-1]
     wrong = [(share, hertz) for share, hertz in wrong if lowest <= hertz <= highest]
-    large = [hertz for share, hertz in wrong if share > MOST_WRONG_SHARE]
-    if large or not np.any(right):
-        listed = ", ".join(f"{hertz:.1f} Hz" for hertz in large)
-        reason = f"not a drive point: the modes at {listed} have the opposite sign of the others"
-        if not np.any(right):
-            reason = "no mode with a positive mass was found"
+    if not np.any(right):
+        reason = "no mode with a positive mass was found"
         return ToolPointFit(None, tool, senses, reason, tuple(notes))
-    for share, hertz in wrong:
-        notes.append(
-            f"a mode at {hertz:.1f} Hz ({100 * share:.1f} % of the peak) would have a negative "
-            "mass and was left out"
-        )
     real = refine_real_modes(
         tool,
         model.natural_frequency[right],
@@ -68,12 +76,36 @@ def fit_tool_point(tool: ToolPointRecords, model: ModalModel) -> ToolPointFit:
         tuple(dict.fromkeys((*ALL_TERMS, *model.terms))),
         0.0,
     )
+    large = [
+        hertz
+        for share, hertz in wrong
+        if share > MOST_WRONG_SHARE and _missed(tool, real, hertz) > MOST_WRONG_SHARE
+    ]
+    if large:
+        listed = ", ".join(f"{hertz:.1f} Hz" for hertz in large)
+        reason = f"not a drive point: the modes at {listed} have the opposite sign of the others"
+        return ToolPointFit(None, tool, senses, reason, tuple(notes))
     real = _with_second_vectors(tool, real, model, right)
-    real = _drop_weak(tool, real)
+    tool, real = _drop_weak(tool, real, fewest)
     real = _choose_terms(tool, real)
     if real.count == 0:
         return ToolPointFit(None, tool, senses, "no mode with a positive mass was found", ())
+    for share, hertz in wrong:
+        if share > LEAST_PEAK_SHARE and _missed(tool, real, hertz) > MOST_MISSED:
+            notes.append(
+                f"a mode at {hertz:.1f} Hz ({100 * share:.1f} % of the peak) would have a "
+                "negative mass and was left out"
+            )
     return ToolPointFit(real, tool, senses, "", tuple(notes))
+
+
+def _missed(tool: ToolPointRecords, real: RealModel, hertz: float) -> float:
+    """Largest deviation of a fit near a frequency over the largest value there."""
+    near = np.abs(tool.records.frequency - hertz) <= NEAR * hertz
+    near[np.argmin(np.abs(tool.records.frequency - hertz))] = True
+    values = tool.records.values[near]
+    error = np.abs(values - real.synthesis(tool)[near])
+    return float(np.max(np.max(error, axis=0) / np.maximum(np.max(np.abs(values), axis=0), TINY)))
 
 
 def _with_senses(
@@ -142,6 +174,11 @@ def _with_second_vectors(
 
 def share_of_real_mode(tool: ToolPointRecords, real: RealModel, mode: int) -> float:
     """Largest contribution of a mode relative to the peak of an FRF, all FRFs of the set."""
+    return largest_share(tool.records, _contribution(tool, real, mode))
+
+
+def _contribution(tool: ToolPointRecords, real: RealModel, mode: int) -> NDArray[np.complex128]:
+    """What one mode adds to each FRF, (n, k)."""
     one = replace(
         real,
         natural_frequency=real.natural_frequency[mode : mode + 1],
@@ -153,16 +190,77 @@ def share_of_real_mode(tool: ToolPointRecords, real: RealModel, mode: int) -> fl
             for f, pair in zip(real.free, tool.pairs, strict=True)
         ),
     )
-    return largest_share(tool.records, one.synthesis(tool))
+    return one.synthesis(tool)
 
 
-def _drop_weak(tool: ToolPointRecords, real: RealModel) -> RealModel:
-    """Leave out modes whose real part does not matter, weakest first."""
-    while real.count:
-        shares = [share_of_real_mode(tool, real, r) for r in range(real.count)]
-        weakest = int(np.argmin(shares))
-        keep = np.arange(real.count) != weakest
-        lesser = refine_real_modes(
+def _drop_weak(
+    tool: ToolPointRecords, real: RealModel, fewest: int
+) -> tuple[ToolPointRecords, RealModel]:
+    """Leave out modes that the data do not bear beyond noise and discrepancy, weakest first.
+
+    A small resonance of a joint or of the machine is then part of the residual; the noise of the
+    records that are returned includes what the model misses.
+    """
+    fewer = replace(tool, records=_judged_lines(tool.records, real))
+    kept = real
+    judged = replace(fewer, records=with_discrepancy(fewer.records, kept.synthesis(fewer)))
+    kept = _again(judged, kept, kept.terms, kept.delay, ROUGH)
+    while kept.count > fewest:
+        lesser = _without(judged, kept, _weakest(judged, kept))
+        if _worth_a_mode(judged, kept, lesser):
+            immaterial = _immaterial(judged, fewer, kept)
+            if immaterial is None:
+                break
+            lesser = _without(judged, kept, immaterial)
+        kept = lesser
+        judged = replace(fewer, records=with_discrepancy(fewer.records, kept.synthesis(fewer)))
+    if kept.count == 0:
+        return tool, kept
+    if kept.count == real.count:
+        kept = real
+    judged = replace(tool, records=with_discrepancy(tool.records, kept.synthesis(tool)))
+    return judged, _again(judged, kept, kept.terms, kept.delay)
+
+
+def _immaterial(judged: ToolPointRecords, tool: ToolPointRecords, real: RealModel) -> int | None:
+    """The least of the modes that are too small to be written down, None where none is.
+
+    On lines that a few real modes describe to the noise, every mode is one. Where more than the
+    noise is missed, what moves the tool little beside its largest mode is a small resonance of
+    everything else: no model of real modes is right at that level.
+    """
+    shares = np.array([share_of_real_mode(judged, real, r) for r in range(real.count)])
+    if np.min(shares) <= LEAST_PEAK_SHARE:
+        return int(np.argmin(shares))
+    missed = np.median(judged.records.noise**2) > MORE_THAN_NOISE * np.median(tool.records.noise**2)
+    if not missed:
+        return None
+    peaks = _peak_receptances(real)
+    least = int(np.argmin(peaks))
+    return least if peaks[least] < MATERIAL_SHARE * float(np.max(peaks)) else None
+
+
+def _peak_receptances(real: RealModel) -> NDArray[np.float64]:
+    """Receptance of each mode along itself at its resonance, m/N: 1 / (2 zeta k)."""
+    inverse_mass = np.sum(real.vectors**2, axis=1)
+    return inverse_mass / (2.0 * real.damping * real.natural_frequency**2)
+
+
+def _judged_lines(records: Records, real: RealModel) -> Records:
+    """Lines enough to follow the narrowest mode: errors between them are alike."""
+    spacing = float(np.median(np.diff(records.frequency)))
+    narrowest = float(np.min(real.damping * real.natural_frequency)) / np.pi
+    stride = max(1, int(narrowest / (LINES_IN_A_MODE * spacing)))
+    stride = min(stride, max(1, records.frequency.size // LEAST_JUDGED))
+    return records.lines(np.arange(records.frequency.size) % stride == 0)
+
+
+def _weakest(tool: ToolPointRecords, real: RealModel) -> int:
+    """The mode whose absence, poles of the others kept, costs least."""
+    loss = []
+    for r in range(real.count):
+        keep = np.arange(real.count) != r
+        lesser = evaluate_real_modes(
             tool,
             real.natural_frequency[keep],
             real.damping[keep],
@@ -170,11 +268,33 @@ def _drop_weak(tool: ToolPointRecords, real: RealModel) -> RealModel:
             real.terms,
             real.delay,
         )
-        gain = (lesser.chi_square - real.chi_square) / _misfit(tool, real)
-        if gain > _price(tool) and shares[weakest] > LEAST_PEAK_SHARE:
-            return real
-        real = lesser
-    return real
+        # what the other modes could take over, to first order
+        step = np.linalg.lstsq(lesser.normal, lesser.gradient, rcond=1e-12)[0]
+        loss.append(lesser.chi_square - float(lesser.gradient @ step))
+    return int(np.argmin(loss))
+
+
+def _without(tool: ToolPointRecords, real: RealModel, mode: int) -> RealModel:
+    keep = np.arange(real.count) != mode
+    return refine_real_modes(
+        tool,
+        real.natural_frequency[keep],
+        real.damping[keep],
+        real.vectors[keep],
+        real.terms,
+        real.delay,
+        ROUGH,
+    )
+
+
+def _worth_a_mode(tool: ToolPointRecords, larger: RealModel, lesser: RealModel) -> bool:
+    """True where a mode more is worth its unknowns (Schwarz 1978), errors taken as correlated."""
+    error = (tool.records.values - larger.synthesis(tool)) / tool.records.noise
+    samples = effective_samples(error)
+    share = samples / (2.0 * error.size)
+    gain = share * (lesser.chi_square - larger.chi_square) / _misfit(tool, larger)
+    unknowns = 2 + len(tool.axes) + sum(pair is None for pair in tool.pairs)
+    return bool(gain > unknowns * np.log(max(samples, np.e)))
 
 
 def _choose_terms(tool: ToolPointRecords, real: RealModel) -> RealModel:
@@ -193,6 +313,11 @@ def _choose_terms(tool: ToolPointRecords, real: RealModel) -> RealModel:
 
 
 def _again(
-    tool: ToolPointRecords, real: RealModel, terms: tuple[int, ...], delay: float | None
+    tool: ToolPointRecords,
+    real: RealModel,
+    terms: tuple[int, ...],
+    delay: float | None,
+    least_gain: float = PRECISE,
 ) -> RealModel:
-    return refine_real_modes(tool, real.natural_frequency, real.damping, real.vectors, terms, delay)
+    poles = real.natural_frequency, real.damping
+    return refine_real_modes(tool, *poles, real.vectors, terms, delay, least_gain)

@@ -1,0 +1,101 @@
+"""Delay between channels and number of modes where a structure is more than a few real modes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from dynamics.frf.container import Frf, Point
+from dynamics.identification.discrepancy import effective_samples, with_discrepancy
+from dynamics.identification.fit import identify_modes
+from dynamics.identification.residues import Records
+from dynamics.modal.modes import Mode, receptance_matrix
+
+LINES = np.arange(100.0, 3500.0, 2.0)
+OMEGA = 2.0 * np.pi * LINES
+#: peak receptances 0.66, 0.25 and 0.24 um/N
+TOOL = (Mode(1070.0, 0.032, 0.52), Mode(1960.0, 0.035, 0.38), Mode(2640.0, 0.03, 0.25))
+
+
+def blow_on_a_tool(delay: float, seed: int = 1) -> Frf:
+    """Accelerance of three modes among small resonances that are not viscous, little noise."""
+    rng = np.random.default_rng(seed)
+    receptance = receptance_matrix(TOOL, LINES)[:, 0, 0]
+    for _ in range(9):  # each 1 to 4 percent of the peak, up to 40 degrees off a real mode
+        natural = 2.0 * np.pi * rng.uniform(250.0, 3300.0)
+        damping = rng.uniform(0.01, 0.04)
+        peak = rng.uniform(0.01, 0.04) * 0.66e-6 * np.exp(1j * np.radians(rng.uniform(-40, 40)))
+        receptance = receptance + peak * 2.0 * damping * natural**2 / (
+            natural**2 - OMEGA**2 + 2j * damping * natural * OMEGA
+        )
+    values = -(OMEGA**2) * receptance * np.exp(-1j * OMEGA * delay)
+    noise = rng.standard_normal(LINES.size) + 1j * rng.standard_normal(LINES.size)
+    return Frf(LINES, values + 2e-4 * np.max(np.abs(values)) * noise, "accelerance")
+
+
+@pytest.mark.parametrize("delay", [28e-6, -12e-6])
+def test_one_blow_gives_the_modes_of_the_tool_and_no_more(delay):
+    fit = identify_modes([blow_on_a_tool(delay)])
+    assert len(fit.modes) == len(TOOL)
+    for found, true in zip(fit.modes, TOOL, strict=True):
+        assert found.frequency == pytest.approx(true.frequency, rel=0.01)
+        assert 2 * found.damping * found.stiffness == pytest.approx(
+            2 * true.damping * true.stiffness, rel=0.1
+        )
+    assert all(mode.phase_deviation < 15.0 for mode in fit.identified)
+    assert fit.models[0].delay == pytest.approx(
+        delay, abs=6e-6
+    )  # the resonances leave a phase of 5 degrees
+
+
+def test_delay_is_taken_off_where_there_is_no_drive_point():
+    """Residues of a far point are real, of both signs, once 20 us are taken off."""
+    delay = 20e-6
+    first, second, third = (receptance_matrix((mode,), LINES)[:, 0, 0] for mode in TOOL)
+    values = -(OMEGA**2) * (first - 0.7 * second + 0.5 * third) * np.exp(-1j * OMEGA * delay)
+    rng = np.random.default_rng(0)
+    noise = rng.standard_normal(LINES.size) + 1j * rng.standard_normal(LINES.size)
+    values = values + 1e-3 * np.max(np.abs(values)) * noise
+    frf = Frf(LINES, values, "accelerance", Point("2", "x"), Point("1", "x"))
+    fit = identify_modes([frf])
+    assert fit.models[0].delay == pytest.approx(delay, abs=0.5e-6)
+    assert [m.frequency for m in fit.identified] == pytest.approx(
+        [m.frequency for m in TOOL], rel=2e-3
+    )
+    residues = np.array([m.residues[0] for m in fit.identified])
+    expected = np.array([1.0 / 0.52, -0.7 / 0.38, 0.5 / 0.25])
+    assert residues.real == pytest.approx(expected, rel=0.03)
+    assert np.max(np.abs(residues.imag / residues.real)) < 0.05
+
+
+def test_delay_of_an_undelayed_measurement_is_not_made_up():
+    receptance = receptance_matrix(TOOL, LINES)[:, 0, 0]
+    fit = identify_modes([Frf(LINES, receptance)])
+    assert abs(fit.models[0].delay) < 1e-9
+    assert not fit.notes
+
+
+def test_discrepancy_is_the_part_of_the_error_that_is_no_noise():
+    rng = np.random.default_rng(3)
+    size = 4000
+    white = (rng.standard_normal(size) + 1j * rng.standard_normal(size)) / np.sqrt(2.0)
+    records = Records(LINES[:1000], white[:1000, None], np.full((1000, 1), 1.0), 0)
+    zero = np.zeros((1000, 1))
+    assert with_discrepancy(records, zero).noise == pytest.approx(records.noise)
+    larger = replace(records, values=5.0 * records.values)  # 25 = 1 + 24
+    noise = with_discrepancy(larger, zero).noise
+    assert noise**2 == pytest.approx(np.full((1000, 1), 25.0), rel=0.1)
+
+
+def test_errors_that_are_alike_count_as_few():
+    """First-order process with correlation 0.9: 0.1 / 1.9 of the samples."""
+    rng = np.random.default_rng(4)
+    size = 20000
+    drive = rng.standard_normal(size) + 1j * rng.standard_normal(size)
+    error = np.zeros(size, dtype=complex)
+    for k in range(1, size):
+        error[k] = 0.9 * error[k - 1] + drive[k]
+    assert effective_samples(error[:, None]) == pytest.approx(2 * size * 0.1 / 1.9, rel=0.06)
+    assert effective_samples(drive[:, None]) == pytest.approx(2 * size, rel=0.04)
