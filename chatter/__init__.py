@@ -15,6 +15,7 @@ package              responsibility
 cli, app             the command line, a module a command; the page in the browser
 plots                pictures of results
 report               pages of results
+assembly             tool, holder and spindle put together, at any stick-out
 cutting_coefficients coefficients of the force law from the forces of cuts
 drive_friction       friction and inertia of a drive from records of its moves
 monitoring           chatter in recordings of cuts, and what to do about it
@@ -35,6 +36,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from chatter.assembly.assemble import assemble as assemble
     from chatter.cutting_coefficients.identify import coefficients as coefficients
     from chatter.description.case import Case as Case
     from chatter.description.case import load as load
@@ -66,6 +68,7 @@ __version__ = "0.1.0"
 
 #: public name -> module that holds it; imported when first used, so that `import chatter` is quick
 _PUBLIC = {
+    "assemble": "chatter.assembly.assemble",
     "Case": "chatter.description.case",
     "InputError": "chatter.description.errors",
     "RunError": "chatter.description.errors",

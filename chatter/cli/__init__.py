@@ -45,6 +45,7 @@ COMMANDS = (
     "frf",
     "move",
     "export",
+    "assemble",
     "sheet",
     "materials",
     "examples",

@@ -58,7 +58,7 @@ Method = Annotated[
 
 def patched_case(path: Path, assignments: list[str] | None) -> Case:
     """Load a case file and apply the assignments of the command line."""
-    return _patched(load(path), assignments)
+    return patched(load(path), assignments)
 
 
 def print_coefficients(case: Case) -> None:
@@ -76,10 +76,11 @@ def patched_machine(path: Path, assignments: list[str] | None) -> MachineFile:
     """Load a machine file and apply the assignments of the command line."""
     from chatter.description.machine.machine_file import load_machine
 
-    return _patched(load_machine(path), assignments)
+    return patched(load_machine(path), assignments)
 
 
-def _patched(described: Described, assignments: list[str] | None) -> Described:
+def patched(described: Described, assignments: list[str] | None) -> Described:
+    """Apply the assignments of the command line to a description that was read."""
     values = parse_assignments(assignments or [])
     refuse_bare_speed_assignments(type(described), values)
     patched = described.patch(values) if values else described

@@ -30,7 +30,7 @@ MATERIAL_SHARE, MORE_THAN_NOISE = 0.1, 2.0
 LINES_IN_A_MODE, LEAST_JUDGED = 6, 400
 
 #: deviation beside a mode of negative mass that was left out from which it is told
-MOST_MISSED = 0.05
+LARGEST_DEVIATION = 0.05
 
 #: lines beside a mode, relative to its frequency
 NEAR = 0.02
@@ -79,7 +79,7 @@ def fit_tool_point(tool: ToolPointRecords, model: ModalModel, fewest: int = 0) -
     large = [
         hertz
         for share, hertz in wrong
-        if share > MOST_WRONG_SHARE and _missed(tool, real, hertz) > MOST_WRONG_SHARE
+        if share > MOST_WRONG_SHARE and _deviation_near(tool, real, hertz) > MOST_WRONG_SHARE
     ]
     if large:
         listed = ", ".join(f"{hertz:.1f} Hz" for hertz in large)
@@ -91,7 +91,7 @@ def fit_tool_point(tool: ToolPointRecords, model: ModalModel, fewest: int = 0) -
     if real.count == 0:
         return ToolPointFit(None, tool, senses, "no mode with a positive mass was found", ())
     for share, hertz in wrong:
-        if share > LEAST_PEAK_SHARE and _missed(tool, real, hertz) > MOST_MISSED:
+        if share > LEAST_PEAK_SHARE and _deviation_near(tool, real, hertz) > LARGEST_DEVIATION:
             notes.append(
                 f"a mode at {hertz:.1f} Hz ({100 * share:.1f} % of the peak) would have a "
                 "negative mass and was left out"
@@ -99,7 +99,7 @@ def fit_tool_point(tool: ToolPointRecords, model: ModalModel, fewest: int = 0) -
     return ToolPointFit(real, tool, senses, "", tuple(notes))
 
 
-def _missed(tool: ToolPointRecords, real: RealModel, hertz: float) -> float:
+def _deviation_near(tool: ToolPointRecords, real: RealModel, hertz: float) -> float:
     """Largest deviation of a fit near a frequency over the largest value there."""
     near = np.abs(tool.records.frequency - hertz) <= NEAR * hertz
     near[np.argmin(np.abs(tool.records.frequency - hertz))] = True
@@ -232,8 +232,8 @@ def _immaterial(judged: ToolPointRecords, tool: ToolPointRecords, real: RealMode
     shares = np.array([share_of_real_mode(judged, real, r) for r in range(real.count)])
     if np.min(shares) <= LEAST_PEAK_SHARE:
         return int(np.argmin(shares))
-    missed = np.median(judged.records.noise**2) > MORE_THAN_NOISE * np.median(tool.records.noise**2)
-    if not missed:
+    more = np.median(judged.records.noise**2) > MORE_THAN_NOISE * np.median(tool.records.noise**2)
+    if not more:
         return None
     peaks = _peak_receptances(real)
     least = int(np.argmin(peaks))

@@ -1,0 +1,86 @@
+"""Picture of an assembly: response at the tool point, and lobes over the stick-out."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from chatter.description.units import rpm
+from chatter.plots import style
+
+if TYPE_CHECKING:
+    from chatter.assembly.assemble import Assembly
+
+
+def plot_assembly(assembly: Assembly) -> Figure:
+    """Draw the tool point at each stick-out; with a case also its lobes and removal rates."""
+    if assembly.lobes is None:
+        figure = style.new_figure(8.0, 4.8)
+        _draw_receptance(figure.subplots(), assembly)
+        return figure
+    figure = style.new_figure(9.0, 8.6)
+    response, limit, rate = figure.subplots(3, 1, height_ratios=[1.2, 1.3, 0.8])
+    _draw_receptance(response, assembly)
+    _draw_lobes(limit, assembly)
+    _draw_removal_rate(rate, assembly)
+    return figure
+
+
+def _draw_receptance(axes: Axes, assembly: Assembly) -> None:
+    for k, colour, width in _looks(assembly):
+        axes.semilogy(
+            assembly.frequency,
+            1e6 * np.abs(assembly.receptance[k]),
+            color=colour,
+            linewidth=width,
+            label=f"{1e3 * assembly.stick_out[k]:.4g} mm",
+        )
+    axes.set(xlabel="frequency [Hz]", ylabel="receptance at the tool point [um/N]")
+    axes.set_title(assembly.file.title or assembly.file.name)
+    style.finish(axes)
+    axes.legend(title="stick-out", fontsize=7, title_fontsize=8, loc="upper right", ncols=2)
+
+
+def _draw_lobes(axes: Axes, assembly: Assembly) -> None:
+    lobes = assembly.lobes
+    if lobes is None:
+        return
+    for k, colour, width in _looks(assembly):
+        axes.plot(
+            rpm(lobes.spindle_speed), 1e3 * lobes.usable_depth[k], color=colour, linewidth=width
+        )
+    axes.set(
+        xlabel="spindle speed [rpm]", ylabel="critical depth, at most\nlength of the flutes [mm]"
+    )
+    axes.set_ylim(bottom=0.0)
+    style.finish(axes)
+
+
+def _draw_removal_rate(axes: Axes, assembly: Assembly) -> None:
+    lobes = assembly.lobes
+    if lobes is None:
+        return
+    best = assembly.best
+    axes.plot(1e3 * assembly.stick_out, 6e7 * lobes.removal_rate, "o-", color=style.BLUE)
+    axes.plot(
+        1e3 * assembly.stick_out[best],
+        6e7 * lobes.removal_rate[best],
+        "o",
+        color=style.RED,
+        label=f"{1e3 * assembly.stick_out[best]:.4g} mm at {rpm(lobes.best_speed[best]):.0f} rpm",
+    )
+    axes.set(xlabel="stick-out [mm]", ylabel="highest removal\nrate [cm³/min]")
+    axes.set_ylim(bottom=0.0)
+    style.finish(axes)
+    axes.legend(fontsize=8)
+
+
+def _looks(assembly: Assembly) -> list[tuple[int, tuple[float, ...], float]]:
+    """Index, colour and line width of each stick-out; the best one is thick."""
+    count = assembly.stick_out.size
+    shades = colormaps["viridis"](np.linspace(0.0, 0.9, count))
+    return [(k, tuple(shades[k]), 2.0 if k == assembly.best else 1.0) for k in range(count)]
