@@ -15,11 +15,16 @@ from chatter.report.recording import document
 if TYPE_CHECKING:
     from chatter.stability.check import StabilityCheck
 
-#: of `--exit-code`, where the cut chatters
-EXIT_CHATTER = 3
+#: of `--exit-code`, where the cut chatters, and where the linear analysis cannot tell
+EXIT_CHATTER, EXIT_NOT_CERTAIN = 3, 4
 
 ExitCode = Annotated[
-    bool, typer.Option("--exit-code", help=f"Leave with {EXIT_CHATTER} where the cut chatters.")
+    bool,
+    typer.Option(
+        "--exit-code",
+        help=f"Leave with {EXIT_CHATTER} where the cut chatters, with {EXIT_NOT_CERTAIN} where "
+        "what the linear analysis leaves out may decide.",
+    ),
 ]
 
 
@@ -34,6 +39,7 @@ def check(
     """Judge the operating point of a case: stable or chatter, and the critical depth."""
     description = options.patched_case(case, assignments)
     from chatter.stability.check import check as run_check
+    from chatter.stability.neglected_effects import CHATTER, STABLE
 
     with progress_bar("critical depth at this speed") as progress:
         result = run_check(description, method, progress)
@@ -48,8 +54,8 @@ def check(
     print_notes(result.notes)
     if out is not None:
         print_written(result.save(out))
-    if exit_code and not result.stable:
-        raise typer.Exit(EXIT_CHATTER)
+    if exit_code and result.verdict != STABLE:
+        raise typer.Exit(EXIT_CHATTER if result.verdict == CHATTER else EXIT_NOT_CERTAIN)
 
 
 def _print_verdict(result: StabilityCheck) -> None:

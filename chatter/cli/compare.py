@@ -9,6 +9,7 @@ from chatter.cli import options
 from chatter.cli.explain import DeclaredCase, MeasurementPath, print_checks, print_diagnostics
 from chatter.cli.progress import progress_bar
 from chatter.cli.results import present
+from chatter.io.headings import signal_unit
 from chatter.report.console import print_table
 
 if TYPE_CHECKING:
@@ -39,13 +40,18 @@ def _print_errors(title: str, result: Comparison) -> None:
         [
             one.run,
             one.channel,
-            f"{one.error:.4g}",
+            _in_usual_unit(one.error, one.channel),
             f"{100.0 * one.relative:.2f}",
             f"{one.over_noise:.2f}",
         ]
         for one in result.errors
     ]
-    headers = ["run", "channel", "rms error [SI]", "of the signal [%]", "times the noise"]
+    headers = ["run", "channel", "rms error", "of the signal [%]", "times the noise"]
     print_table(title, headers, rows)
     if result.signature is not None:
         print_diagnostics(result.signature.summary())
+
+
+def _in_usual_unit(error: float, channel: str) -> str:
+    unit = signal_unit(channel)
+    return f"{error * unit.factor:.4g} {unit.name}".rstrip()

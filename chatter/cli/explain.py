@@ -11,6 +11,8 @@ import typer
 from chatter.cli import options
 from chatter.cli.progress import progress_bar, report_stage
 from chatter.cli.results import present
+from chatter.description.case import Case
+from chatter.description.usual_units import usual_unit
 from chatter.report.console import print_answer, print_line, print_table
 
 if TYPE_CHECKING:
@@ -113,18 +115,23 @@ def _print_refitted(summary: dict[str, Any]) -> None:
     rows = [
         [
             one["name"],
-            f"{one['declared']:.5g}",
-            f"{one['refitted']:.5g}",
+            _in_usual_unit(one["declared"], one["name"]),
+            _in_usual_unit(one["refitted"], one["name"]),
             f"{100.0 * one['change']:+.2g} %",
             f"{one['tolerances']:+.2f}",
         ]
         for one in moved
     ]
     if rows:
-        columns = ["declared value", "declared [SI]", "refitted [SI]", "change", "tolerances"]
+        columns = ["declared value", "declared", "refitted", "change", "tolerances"]
         print_table("refitted", columns, rows)
     for remark in summary.get("remarks", ()):
         print_line(remark)
+
+
+def _in_usual_unit(value: float, path: str) -> str:
+    unit = usual_unit(Case, path)
+    return f"{value * unit.factor:.5g} {unit.name}".rstrip()
 
 
 def print_diagnostics(signature: dict) -> None:

@@ -153,21 +153,36 @@ def _print_diagram(diagram: StabilityDiagram) -> None:
     )
     if lowest["critical_depth_mm"] is not None:
         print_line(
-            f"stable at any of these speeds below {_rounded_down(lowest['critical_depth_mm'])} mm "
-            f"(lowest limit {lowest['critical_depth_mm']:.4g} mm, "
-            f"at {lowest['spindle_speed_rpm']:.0f} rpm, "
-            f"chatter at {lowest['chatter_frequency_Hz']:.0f} Hz)"
+            f"{_stable_below(lowest['stable_below_mm'])} (lowest limit "
+            f"{lowest['critical_depth_mm']:.4g} mm, at {lowest['spindle_speed_rpm']:.0f} rpm, "
+            f"chatter at {lowest['chatter_frequency_Hz']:.0f} Hz{_taken_off(diagram)})"
         )
     limit = operating["critical_depth_mm"]
+    sure = "" if operating["certain"] else " by the linear analysis, not certain"
     print_answer(
         f"operating point {operating['spindle_speed_rpm']:.0f} rpm, "
         f"{operating['axial_depth_mm']:.4g} mm: "
-        f"{'stable' if operating['stable'] else 'chatter'}; "
+        f"{'stable' if operating['stable'] else 'chatter'}{sure}; "
         f"limit there {_millimetres(limit, summary['max_axial_depth_mm'])} mm"
     )
+    if not operating["certain"]:
+        reasons = "; ".join(effect.because for effect in diagram.deciding)
+        print_line(f"{reasons}; `chatter simulate` decides")
     error = summary["resolution"]["estimated_error"]
     accuracy = "" if error is None else f"; limits accurate to {max(error, 1e-6):.1g}"
     print_line(f"method: {summary['method']}{accuracy}")
+
+
+def _stable_below(depth: float) -> str:
+    if depth > 0.0:
+        return f"stable at any of these speeds below {_rounded_down(depth)} mm"
+    return "no depth is stable at any speed for certain"
+
+
+def _taken_off(diagram: StabilityDiagram) -> str:
+    """What is taken off the lowest limit, and why."""
+    off = "".join(f"; less {one.share:.0%}: {one.name}" for one in diagram.neglected_at_all_speeds)
+    return off and f"{off} that set in at a chip of zero"
 
 
 def _millimetres(depth: float | None, max_depth: float) -> str:

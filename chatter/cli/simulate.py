@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
@@ -44,6 +45,7 @@ def simulate(
     from chatter.engine.loop import run
     from chatter.simulation.displaced_too_far import DisplacedTooFarError
     from chatter.simulation.simulate import simulate as run_simulation
+    from chatter.stability.beside_simulation import linear_verdict
     from chatter.stability.verdict_of_displaced import with_linear_verdict
 
     failure = None
@@ -54,6 +56,10 @@ def simulate(
             failure = error
             work.stage("critical depth, for a verdict")
             result = with_linear_verdict(error)
+        work.stage("linear verdict on the same cut")
+        linear = None if failure is not None else linear_verdict(result)
+        if linear is not None:
+            result = replace(result, linear=linear)
     options.print_coefficients(description)
     present(
         result,
@@ -90,6 +96,8 @@ def _print_summary(result: SimulationResult) -> None:
     frequency = summary["chatter_frequency_Hz"]
     at = "" if frequency is None else f" at {frequency:.1f} Hz"
     print_answer(f"{summary['verdict']}{at}: {summary['reason']}")
+    if result.linear is not None:
+        print_line(result.linear.sentence())
 
 
 def _surface(summary: dict, edge_angle: float) -> list[str]:

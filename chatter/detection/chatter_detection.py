@@ -45,6 +45,9 @@ _SLOW = 4.0
 #: part of the mean that counts as motion: a slot with three or more teeth leaves little else
 _PART_OF_MEAN = 0.3
 
+#: change of a deviation in a revolution that is none to a reader
+_NO_CHANGE = 5e-4
+
 
 @dataclass(frozen=True, eq=False)
 class Detection:
@@ -258,8 +261,8 @@ def _decide(trend: _Trend, periods: Periods) -> tuple[str, float, str]:
     if trend.level < trend.floor and _grows(trend, len(periods.values), _GROWN):
         return (
             "chatter", 0.7,
-            f"the deviation from {of_what} to {of_what} is but {trend.level:.2%} of the rms of the "
-            f"motion, but it grows by {math.expm1(growth_rate):.1%} per revolution",
+            f"the motion differs from {of_what} to {of_what} by {trend.level:.2%} of its rms only, "
+            f"but that grows by {math.expm1(growth_rate):.1%} per revolution",
         )  # fmt: skip
     if trend.level < trend.floor:
         sure = 1.0 - 0.4 * trend.level / trend.floor
@@ -273,14 +276,21 @@ def _decide(trend: _Trend, periods: Periods) -> tuple[str, float, str]:
     if decays:
         return (
             "stable", sure,
-            f"the deviation from {of_what} to {of_what} decays by {-math.expm1(growth_rate):.1%} "
-            "per revolution",
+            f"what differs in the motion from {of_what} to {of_what} decays by "
+            f"{-math.expm1(growth_rate):.1%} per revolution",
         )  # fmt: skip
     return (
         "chatter", sure,
-        f"the deviation from {of_what} to {of_what} stays at {trend.level:.1%} of the rms of the "
-        f"motion, with a change of {math.expm1(growth_rate):+.1%} per revolution",
+        f"the motion differs from {of_what} to {of_what} by {trend.level:.0%} of its rms, "
+        f"{_trend_in_words(math.expm1(growth_rate))}",
     )  # fmt: skip
+
+
+def _trend_in_words(change: float) -> str:
+    """How a deviation goes on, by its change in a revolution."""
+    if abs(change) < _NO_CHANGE:
+        return "revolution after revolution"
+    return f"{abs(change):.1%} {'more' if change > 0.0 else 'less'} with every revolution"
 
 
 def _grows(trend: _Trend, count: int, e_folds: float) -> bool:

@@ -11,12 +11,25 @@ _TEXT = {"type": "string"}
 _SHARE = {"type": "number", "minimum": 0.0, "exclusiveMaximum": 10.0}
 _VALUE = {"anyOf": [{"type": "number"}, {"type": "string"}]}
 
+#: own keys of a run -> what they are
+_OWN: dict[str, dict[str, Any]] = {
+    "file": {"examples": ["run01.csv"], "description": "signals of the run"},
+    "condition": {"examples": ["idle"], "description": "of FRFs: idle, in the cut, ..."},
+    "direction": {"examples": ["x"], "description": "of an FRF at the tool point"},
+    "excite": {
+        "examples": ["tool:x"],
+        "description": "of an FRF of a machine: point and direction of the force",
+    },
+    "read": {"description": "the same of the response; by default where it is excited"},
+    "title": {"description": "free text"},
+}
+
 
 def measurement_schema() -> dict[str, Any]:
     """Return the JSON schema (draft 2020-12) of measurement.toml."""
     case = case_schema()
     properties = {
-        "title": _TEXT,
+        "title": {**_TEXT, "description": "free text; by default the name of the folder"},
         "kind": {"enum": list(KINDS), "description": "what was measured"},
         "case": {**_TEXT, "description": "file of the case as declared"},
         "points": {**_TEXT, "description": "table of cutting tests"},
@@ -70,7 +83,8 @@ def _quantity(example: str) -> dict[str, Any]:
 
 def _run(case: dict[str, Any]) -> dict[str, Any]:
     """Own keys of a run, short keys of sections of the case, and dotted paths."""
-    own = dict.fromkeys(measurement_file.OWN_KEYS, _TEXT)
+    own = {key: {**_TEXT, **_OWN.get(key, {})} for key in measurement_file.OWN_KEYS}
+    cut_time = {**_quantity("90 s"), "description": "that the tool had cut before the run"}
     short: dict[str, Any] = {}
     for section in reversed(measurement_file.SECTIONS):
         name = case["properties"][section]["$ref"].rpartition("/")[2]
@@ -78,7 +92,7 @@ def _run(case: dict[str, Any]) -> dict[str, Any]:
     return {
         "type": "object",
         "description": "Signals of a run, and what differs from the case.",
-        "properties": {**short, "cut_time": _quantity("90 s"), **own},
+        "properties": {**short, "cut_time": cut_time, **own},
         "patternProperties": {r"\.": {}},
         "required": ["file"],
         "additionalProperties": False,
@@ -90,9 +104,22 @@ def _record() -> dict[str, Any]:
         "type": "object",
         "description": "How the runs were recorded.",
         "properties": {
-            "begins": {"enum": [description.REST, description.AIR, description.CUT]},
-            "spindle_angle": {**_TEXT, "examples": [description.UNKNOWN]},
-            "speed_tolerance": _quantity("0.5 %"),
+            "begins": {
+                "enum": [description.REST, description.AIR, description.CUT],
+                "default": description.REST,
+                "description": "from rest at full immersion, before the front edge of the block, "
+                "or in the middle of the cut",
+            },
+            "spindle_angle": {
+                **_TEXT,
+                "examples": [description.UNKNOWN],
+                "description": "unknown, or the channel that holds it; by default the column "
+                "spindle_angle, or zero at the start",
+            },
+            "speed_tolerance": {
+                **_quantity("0.5 %"),
+                "description": "share by which the declared spindle speed may be off",
+            },
         },
         "additionalProperties": False,
     }
@@ -104,11 +131,22 @@ def _channel() -> dict[str, Any]:
         "type": "object",
         "description": "What a channel of the files measures.",
         "properties": {
-            "quantity": {"enum": list(description.QUANTITIES)},
-            "on": {"enum": list(description.SIDES)},
-            "direction": {"anyOf": [{"enum": [description.UNKNOWN]}, vector]},
-            "sign": {"enum": [description.UNKNOWN]},
-            "axis": _TEXT,
+            "quantity": {"enum": list(description.QUANTITIES), "description": "what it holds"},
+            "on": {
+                "enum": list(description.SIDES),
+                "default": description.SIDES[0],
+                "description": "side that a force acts on, or that moves",
+            },
+            "direction": {
+                "anyOf": [{"enum": [description.UNKNOWN]}, vector],
+                "description": "in the axes of the case, of a force or a motion; it is found where "
+                "it is unknown",
+            },
+            "sign": {
+                "enum": [description.UNKNOWN],
+                "description": "where the sense of the direction is not known",
+            },
+            "axis": {**_TEXT, "examples": ["X"], "description": "of a drive torque"},
         },
         "required": ["quantity"],
         "additionalProperties": False,

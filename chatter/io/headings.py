@@ -6,6 +6,7 @@ from pathlib import Path
 from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
 from chatter.description.units import QuantityError, dimension_of, measured_unit, parse
+from chatter.description.usual_units import UsualUnit, of_dimension
 
 #: name of a column -> dimension of its unit; "" for one without
 DIMENSIONS = {
@@ -55,6 +56,15 @@ _STROKE = re.compile(
     r"\s*(?P<name>[A-Za-z_ ]+?)\s*(?:/|,)\s*(?P<unit>[A-Za-z\u00b5\u03bc%/^*0-9 ]+)"
 )
 _UNITLESS = ("", "1", "-")
+
+
+def signal_unit(name: str) -> UsualUnit:
+    """Unit that people read a signal in, by the name of its column; without a name if unknown."""
+    dimension = DIMENSIONS.get(name, "")
+    if dimension == "length":
+        # motion, which is small beside the lengths of a case
+        return UsualUnit("um", 1e6)
+    return of_dimension(dimension) if dimension else UsualUnit("", 1.0)
 
 
 def named(path: Path, heading: str) -> tuple[str, float]:

@@ -9,7 +9,6 @@ from chatter.description.case import Case
 from chatter.description.units import rpm
 from chatter.operator_sheet.variation import Variation
 from chatter.stability.diagram import StabilityDiagram
-from chatter.stability.pockets import DEPTH_MARGIN
 
 #: pockets on a sheet
 _MOST_POCKETS = 3
@@ -100,7 +99,7 @@ def _at_any_speed(diagram: StabilityDiagram) -> list[SheetCut]:
             "any speed",
             None,
             None,
-            1e3 * (1.0 - DEPTH_MARGIN) * lowest,
+            1e3 * (1.0 - diagram.depth_margin) * lowest,
             1e3 * case.width_of_cut,
             1e3 * case.cut.feed_per_tooth,
             None,

@@ -13,6 +13,7 @@ from matplotlib.ticker import FuncFormatter
 from chatter.description.arrays import Array
 from chatter.description.units import rpm
 from chatter.explain.residuals.variables import reported_unit
+from chatter.io.headings import signal_unit
 from chatter.plots import style
 from chatter.plots.residual_diagnostics import plot_findings
 
@@ -79,8 +80,9 @@ def plot_signals(measurement: Measurement) -> Figure:
     panels = figure.subplots(len(channels), 1, squeeze=False)
     for axes, channel in zip(panels.ravel(), channels, strict=True):
         x, label = _abscissa(run.signals, run.signals[channel].size)
-        axes.plot(x, run.signals[channel], color=style.BLUE, lw=0.8)
-        axes.set(ylabel=f"{channel} [SI]", xlabel=label)
+        unit = signal_unit(channel)
+        axes.plot(x, run.signals[channel] * unit.factor, color=style.BLUE, lw=0.8)
+        axes.set(ylabel=f"{channel} [{unit.name}]" if unit.name else channel, xlabel=label)
         style.finish(axes)
     return figure
 

@@ -14,7 +14,7 @@ from matplotlib.patches import Patch
 from chatter.description.arrays import Array
 from chatter.description.units import rpm
 from chatter.plots import style
-from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
+from chatter.stability.pockets import SPEED_MARGIN
 from chatter.stability.registry import METHODS
 
 if TYPE_CHECKING:
@@ -159,7 +159,9 @@ def _pocket_list(diagram: StabilityDiagram) -> str:
         for number, pocket in enumerate(diagram.pockets, start=1)
     ]
     rows = ["     ".join(lines[k : k + 2]) for k in range(0, len(lines), 2)]
-    margin = f"pockets ({DEPTH_MARGIN:.0%} below the limit, speed off by {SPEED_MARGIN:.1%}):"
+    margin = (
+        f"pockets ({diagram.depth_margin:.0%} below the limit, speed off by {SPEED_MARGIN:.1%}):"
+    )
     return "\n".join([margin, *rows]) if rows else "no pocket between these speeds"
 
 

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +36,18 @@ if TYPE_CHECKING:
 _SETTLED_SHARE = 0.5
 
 
+class OtherVerdict(Protocol):
+    """Verdict on the same cut by another way."""
+
+    def sentence(self) -> str:
+        """Verdict in words."""
+        ...
+
+    def summary(self) -> dict:
+        """Verdict as JSON knows it."""
+        ...
+
+
 @dataclass(frozen=True, repr=False)
 class SimulationResult(NotebookResult):
     """Signals of a simulated cut and what follows from them.
@@ -62,6 +74,9 @@ class SimulationResult(NotebookResult):
         Chatter or not; None where that cannot be told, or was not asked for (`with_verdict`).
     why_no_verdict : str
         Why there is none; empty where there is one.
+    linear : OtherVerdict, optional
+        What the linear analysis says of the same cut, where it was asked for
+        (`chatter.stability.beside_simulation`).
     """
 
     setup: Setup
@@ -72,6 +87,7 @@ class SimulationResult(NotebookResult):
     interrupted: bool = False
     detection: Detection | None = None
     why_no_verdict: str = "chatter detection was not asked for"
+    linear: OtherVerdict | None = None
 
     @property
     def case(self):
@@ -220,6 +236,7 @@ class SimulationResult(NotebookResult):
         return {
             "title": self.case.title,
             **self._verdict(),
+            **({} if self.linear is None else {"linear_analysis": self.linear.summary()}),
             "spindle_speed_rpm": rpm(cut.spindle_speed),
             "axial_depth_mm": cut.axial_depth * 1e3,
             "cutting_speed_m_per_min": 30.0 * self.case.tool.diameter * cut.spindle_speed,
@@ -255,7 +272,17 @@ class SimulationResult(NotebookResult):
         carving = carving_notes(cut) if isinstance(cut, DiscreteCut) else []
         wanted = self.setup.resolution.revolutions
         stopped = f"interrupted after {self.revolutions:.4g} of {wanted:g} revolutions"
-        return (*self.setup.notes, *carving, *([stopped] if self.interrupted else []))
+        apart, depth = self._uncut_between_passes, self.case.cut.axial_depth
+        strips = (
+            f"cut.stepover: at a depth of {depth * 1e3:.4g} mm the ball cuts "
+            f"{(self.case.cut.stepover - apart) * 1e3:.4g} mm wide; passes "
+            f"{self.case.cut.stepover * 1e3:.4g} mm apart leave strips of {apart * 1e3:.3g} mm "
+            "between them"
+            if apart > 0.0
+            else ""
+        )
+        own = [*([stopped] if self.interrupted else []), *([strips] if strips else [])]
+        return (*self.setup.notes, *carving, *own)
 
     def _carving(self) -> dict:
         cut = self.setup.groups[0]
@@ -274,10 +301,19 @@ class SimulationResult(NotebookResult):
             }
         }
 
+    @property
+    def _uncut_between_passes(self) -> float:
+        """Width, m, that a ball leaves uncut from pass to pass; 0 where the passes meet."""
+        case = self.case
+        if case.tool.kind != "ball" or case.cut.stepover is None:
+            return 0.0
+        wide = 2.0 * self.setup.cutter.radius_at(case.cut.axial_depth)
+        return max(0.0, case.cut.stepover - wide)
+
     def _scallops(self) -> dict:
         """Height of what a ball leaves between passes; nothing for other tools and cuts."""
         tool, stepover = self.case.tool, self.case.cut.stepover
-        if tool.kind != "ball" or stepover is None:
+        if tool.kind != "ball" or stepover is None or self._uncut_between_passes > 0.0:
             return {}
         return {"scallop_height_um": 1e6 * scallop_height(tool.diameter, stepover)}
 

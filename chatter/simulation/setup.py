@@ -10,6 +10,7 @@ import numpy as np
 
 from chatter.compile.cutter import cutter_of, edge_law, flank_table, force_law, helix_angles
 from chatter.compile.empirical import force_factor
+from chatter.compile.inclined_axis import refuse_inclined_axis
 from chatter.compile.teeth_on_the_tool import refuse_teeth_off_the_tool
 from chatter.compile.worn_flank import notes_on_worn_flank
 from chatter.description.case import Case
@@ -172,6 +173,7 @@ def check_case(case: Case) -> None:
     """Refuse a case that lacks what a simulation needs, or whose numbers cannot be meant."""
     case.require("tool", "material", "cut")
     check_plausible(case)
+    refuse_inclined_axis(case)
     refuse_teeth_off_the_tool(case)
 
 

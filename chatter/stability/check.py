@@ -23,17 +23,26 @@ from chatter.io.result_files import (
     short_repr,
     write_results,
 )
-from chatter.stability.forced_vibration import notes_on_steady_cut
+from chatter.stability.forced_vibration import neglected_in_steady_cut, notes_on_dashpot
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import milling_model
+from chatter.stability.neglected_effects import (
+    CHATTER,
+    NOT_CERTAIN,
+    STABLE,
+    NeglectedEffect,
+    deciding,
+    lowest_factor,
+    notes_of,
+)
 from chatter.stability.registry import (
     chosen_method,
     fixed_steps,
     with_chatter_frequency,
     with_multiplier,
 )
-from chatter.stability.resting_friction import notes_on_resting_friction
+from chatter.stability.resting_friction import neglected_resting_friction
 from chatter.stability.search_range import depths_at_one_speed
 from chatter.stability.stability_method import Multiplier
 from chatter.stability.steady_flank import about_steady_motion
@@ -66,6 +75,8 @@ class StabilityCheck(NotebookResult):
     zero_order_depth : float
         Limit by the zeroth-order solution, m.
     notes : tuple of str
+    neglected : tuple of NeglectedEffect
+        What the linear limit leaves out in this cut, with bounds of the true limit.
     """
 
     case: Case
@@ -76,6 +87,7 @@ class StabilityCheck(NotebookResult):
     max_depth: float
     zero_order_depth: float
     notes: tuple[str, ...] = ()
+    neglected: tuple[NeglectedEffect, ...] = ()
 
     @property
     def spectral_radius(self) -> float:
@@ -84,8 +96,26 @@ class StabilityCheck(NotebookResult):
 
     @property
     def stable(self) -> bool:
-        """True where every disturbance dies out."""
+        """True where every small disturbance dies out, by the linear analysis."""
         return self.spectral_radius < 1.0
+
+    @property
+    def deciding(self) -> tuple[NeglectedEffect, ...]:
+        """What the linear analysis leaves out and could turn its verdict; empty where it stands."""
+        depth, crossings = self.case.cut.axial_depth, self.limit.crossings[0]
+        return deciding(self.neglected, depth, crossings, stable=self.stable)
+
+    @property
+    def verdict(self) -> str:
+        """``"stable"`` or ``"chatter"``; ``"not certain"`` where what is left out may decide."""
+        if self.deciding:
+            return NOT_CERTAIN
+        return STABLE if self.stable else CHATTER
+
+    @property
+    def lowest_depth(self) -> float:
+        """Least depth, m, at which the limit may lie by what the linear analysis leaves out."""
+        return self.critical_depth * lowest_factor(self.neglected)
 
     @property
     def bifurcation(self) -> str:
@@ -107,6 +137,7 @@ class StabilityCheck(NotebookResult):
         return {
             "spectral_radius": self.spectral_radius,
             "stable": self.stable,
+            "verdict": self.verdict,
             "chatter_frequency_Hz": finite_or_none(self.chatter_frequency),
             "bifurcation": self.bifurcation,
             "critical_depth_mm": finite_or_none(self.critical_depth * 1e3),
@@ -125,6 +156,7 @@ class StabilityCheck(NotebookResult):
             "method": self.method,
             "steps_per_tooth_period": self.multiplier.steps,
             "spectral_radius_error": self.multiplier.error,
+            "neglected_effects": [effect.summary() for effect in self.neglected],
             "notes": list(self.notes),
         }
 
@@ -132,10 +164,23 @@ class StabilityCheck(NotebookResult):
         """Verdict in words."""
         cut = self.case.cut
         point = f"{cut.axial_depth * 1e3:.4g} mm at {rpm(cut.spindle_speed):.6g} rpm"
-        if self.stable:
-            return [f"stable: {point}"]
-        at = f", {self.chatter_frequency:.0f} Hz" if np.isfinite(self.chatter_frequency) else ""
-        return [f"chatter: {point}{at} ({_KINDS[self.bifurcation]})"]
+        deciding, words = self.deciding, STABLE if self.stable else CHATTER
+        if deciding:
+            words = f"{words} by the linear analysis, not certain"
+        if not self.stable:
+            at = f", {self.chatter_frequency:.0f} Hz" if np.isfinite(self.chatter_frequency) else ""
+            point = f"{point}{at} ({_KINDS[self.bifurcation]})"
+        if not deciding:
+            return [f"{words}: {point}"]
+        reasons = "; ".join(effect.because for effect in deciding)
+        return [f"{words}: {point}", f"{reasons}{self._bound()}; `chatter simulate` decides"]
+
+    def _bound(self) -> str:
+        """How low the limit of a cut that is called stable may lie, where a bound is known."""
+        low, limit = self.lowest_depth, self.critical_depth
+        if not (self.stable and np.isfinite(limit) and 0.0 < low < self.case.cut.axial_depth):
+            return ""
+        return f", from {1e3 * limit:.4g} to {1e3 * low:.3g} mm"
 
     def rows(self) -> list[list[str]]:
         """Table of the verdict: what, and how much."""
@@ -148,6 +193,7 @@ class StabilityCheck(NotebookResult):
             effective = [["effective diameter", f"{1e3 * wide:.4g} mm, {there}"]]
         return [
             ["critical depth", self._depth()],
+            *self._lowest(),
             ["chatter frequency at the limit", _hertz(float(self.limit.chatter_frequency[0]))],
             ["spectral radius", f"{self.spectral_radius:.4g} (below 1: stable)"],
             ["cutting speed", f"{60.0 * speed:.4g} m/min"],
@@ -166,6 +212,15 @@ class StabilityCheck(NotebookResult):
             ["width of cut", f"{1e3 * band.width(radius)[0]:.4g} mm"],
             ["tooth in the cut", f"{entry:.4g} to {leave:.4g} deg from +y"],
         ]
+
+    def _lowest(self) -> list[list[str]]:
+        """What the limit is at least, where that is another."""
+        low, limit = self.lowest_depth, self.critical_depth
+        if not np.isfinite(limit) or not low < limit:
+            return []
+        names = ", ".join(one.name for one in self.neglected if one.lowest < 1.0)
+        known = f"{1e3 * low:.3g} mm" if low > 0.0 else "not known"
+        return [[f"at least, with {names}", known]]
 
     def _depth(self) -> str:
         if np.isfinite(self.critical_depth):
@@ -225,6 +280,7 @@ def check(
     frequency = np.nan
     if abs(multiplier.value) >= 1.0:
         frequency = with_chatter_frequency(chosen).chatter_frequency(beside)
+    neglected = (*neglected_resting_friction(model), *neglected_in_steady_cut(model, chosen))
     return StabilityCheck(
         case=case,
         method=chosen.name,
@@ -236,7 +292,8 @@ def check(
         notes=(
             *question_of_spectral_radius(abs(multiplier.value)),
             *model.notes,
-            *notes_on_resting_friction(model),
-            *notes_on_steady_cut(model, chosen),
+            *notes_of(neglected),
+            *notes_on_dashpot(model, chosen),
         ),
+        neglected=neglected,
     )

@@ -20,7 +20,13 @@ from chatter.io.result_files import SavedResult, csv_of_rows, finite_or_none
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.lowest_limit import LowestLimit
 from chatter.stability.methods.zeroth_order.uniform_pitch import ZeroOrderLimit
-from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN, Pocket
+from chatter.stability.neglected_effects import (
+    EDGE_FORCES,
+    NeglectedEffect,
+    deciding,
+    lowest_factor,
+)
+from chatter.stability.pockets import SPEED_MARGIN, Pocket, depth_margin
 
 #: values excluded that are reported on the terminal
 _MOST_REPORTED = 3
@@ -185,6 +191,8 @@ class StabilityDiagram(SavedResult):
         Of the grid on which limits were searched, m.
     grid : StabilityMap or None
         Spectral radius over spindle speed and depth.
+    neglected : tuple of NeglectedEffect
+        Over spindle speed: what the linear limits leave out at the operating point.
     """
 
     drawn_by: ClassVar[str] = "plots.stability_diagram.plot_limits"
@@ -204,6 +212,28 @@ class StabilityDiagram(SavedResult):
     natural_frequencies: Array = field(default_factory=lambda: np.empty((0, 0)))
     depth_step: float = math.nan
     grid: StabilityMap | None = None
+    neglected: tuple[NeglectedEffect, ...] = ()
+
+    @property
+    def neglected_at_all_speeds(self) -> tuple[NeglectedEffect, ...]:
+        """What the linear limits leave out at every speed alike, with a known bound."""
+        return tuple(one for one in self.neglected if one.name == EDGE_FORCES)
+
+    @property
+    def depth_margin(self) -> float:
+        """Part of a limit that pockets keep in hand: the usual, or what edge forces may take."""
+        return depth_margin(self.neglected_at_all_speeds)
+
+    @property
+    def lowest_depth(self) -> float:
+        """Depth, m, below which any speed is stable, with what edge forces may take off."""
+        return self.lowest.critical_depth * lowest_factor(self.neglected_at_all_speeds)
+
+    @property
+    def deciding(self) -> tuple[NeglectedEffect, ...]:
+        """What is left out and could turn the linear verdict on the operating point."""
+        depth, crossings = self.case.cut.axial_depth, self.operating.crossings[0]
+        return deciding(self.neglected, depth, crossings, stable=self.operating_is_stable)
 
     @property
     def is_over_speed(self) -> bool:
@@ -251,6 +281,7 @@ class StabilityDiagram(SavedResult):
             "max_axial_depth_mm": float(self.max_depth[0]) * 1e3,
             "lowest_limit": {
                 "critical_depth_mm": finite_or_none(lowest.critical_depth * 1e3),
+                "stable_below_mm": finite_or_none(self.lowest_depth * 1e3),
                 "spindle_speed_rpm": finite_or_none(rpm(lowest.spindle_speed)),
                 "chatter_frequency_Hz": finite_or_none(lowest.chatter_frequency),
             },
@@ -259,9 +290,11 @@ class StabilityDiagram(SavedResult):
                 "axial_depth_mm": cut.axial_depth * 1e3,
                 "critical_depth_mm": finite_or_none(float(self.operating.critical_depth[0]) * 1e3),
                 "stable": self.operating_is_stable,
+                "certain": not self.deciding,
             },
+            "neglected_effects": [effect.summary() for effect in self.neglected],
             "pockets": [_pocket_summary(pocket) for pocket in self.pockets],
-            "margin": {"depth": DEPTH_MARGIN, "spindle_speed": SPEED_MARGIN},
+            "margin": {"depth": self.depth_margin, "spindle_speed": SPEED_MARGIN},
             "zero_order": {
                 "lowest_limit_mm": finite_or_none(self.zero_order.lowest_depth * 1e3),
                 "chatter_frequency_Hz": self.zero_order.lowest_frequency,

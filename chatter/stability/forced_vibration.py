@@ -14,6 +14,7 @@ import numpy as np
 from chatter.description.units import rpm
 from chatter.stability.edge_force_onset import REPORTED_ONSET, edge_force_onset
 from chatter.stability.model import MillingModel
+from chatter.stability.neglected_effects import EDGE_FORCES, NeglectedEffect, notes_of
 from chatter.stability.stability_method import StabilityMethod
 from chatter.stability.steady_flank import flank_in_motion
 from chatter.stability.steady_motion import SteadyMotion, directions, in_cut, steady_motion
@@ -52,73 +53,129 @@ def forced_vibration(model: MillingModel, speed: float, depth: float) -> ForcedV
     return None if motion is None else _vibration_of(motion, model)
 
 
-def notes_on_steady_cut(model: MillingModel, method: StabilityMethod) -> tuple[str, ...]:
-    """Say where the steady cut of a case is another than linear methods take it for."""
+def neglected_in_steady_cut(
+    model: MillingModel, method: StabilityMethod
+) -> tuple[NeglectedEffect, ...]:
+    """Effects by which the steady cut of a case is another than linear methods take it for."""
     if not method.is_linear:
         return ()
     speed, depth = model.operating_point
     return (
-        *_notes_on_contact(model, speed, depth),
-        *_notes_on_edge_forces(model, depth),
-        *_notes_on_flank(model, speed, depth),
+        *_loss_of_contact(model, speed, depth),
+        *_edge_forces(model, depth),
+        *_flank_beyond_the_land(model, speed, depth),
+        *_left_to_time_domain(model, method),
     )
 
 
-def _notes_on_contact(model: MillingModel, speed: float, depth: float) -> tuple[str, ...]:
+def notes_on_steady_cut(model: MillingModel, method: StabilityMethod) -> tuple[str, ...]:
+    """Say what the linear methods leave out of the steady cut of a case, and how a flank acts."""
+    effects = neglected_in_steady_cut(model, method)
+    return (*notes_of(effects), *notes_on_dashpot(model, method))
+
+
+def _left_to_time_domain(
+    model: MillingModel, method: StabilityMethod
+) -> tuple[NeglectedEffect, ...]:
+    """Contact and friction of modes, which have no slope that a linear method could take."""
+    found = []
+    if any(mode.friction for mode in model.case.structure.mode):
+        found.append(("friction of modes", "friction of modes is left out of the linear analysis"))
+    if model.case.contact is not None and not method.takes_contact:
+        found.append(("contact", f"{method.name} leaves out the contact of tool and work"))
+    return tuple(
+        NeglectedEffect(name, math.nan, 0.0, math.inf, because, "") for name, because in found
+    )
+
+
+def _loss_of_contact(
+    model: MillingModel, speed: float, depth: float
+) -> tuple[NeglectedEffect, ...]:
     found = forced_vibration(model, speed, depth)
     if found is None:
         return ()
     if found.loss_of_contact < _REPORTED_LOSS and found.chip_change < _LARGE_CHANGE * found.chip:
         return ()
-    return (
+    note = (
         f"at {rpm(speed):.0f} rpm and {depth * 1e3:.3g} mm the forced vibration of "
         f"{found.amplitude * 1e6:.3g} um changes the chip of {found.chip * 1e6:.3g} um by up to "
         f"{found.chip_change * 1e6:.3g} um: teeth lose contact over {found.loss_of_contact:.0%} of "
         "their arc, which linear methods leave out; the limit in the time domain may differ "
-        "(--method time-domain)",
+        "(--method time-domain)"
     )
+    because = (
+        f"forced vibration changes the chip by {found.chip_change / found.chip:.0%} and takes "
+        f"teeth out of the cut over {found.loss_of_contact:.0%} of their arc"
+    )
+    share = found.loss_of_contact
+    return (NeglectedEffect("loss of contact", share, 0.0, math.inf, because, note),)
 
 
-def _notes_on_edge_forces(model: MillingModel, depth: float) -> tuple[str, ...]:
+def _edge_forces(model: MillingModel, depth: float) -> tuple[NeglectedEffect, ...]:
     share = edge_force_onset(model, depth)
     if share < REPORTED_ONSET:
         return ()
-    return (
+    note = (
         f"edge forces set in or end where the chip of {model.case.cut.feed_per_tooth * 1e6:.3g} um "
         "a tooth is zero, and vibration shifts these moments: a stiffness of "
         f"{share:.0%} of that of the chip, which linear methods leave out; the limit in the time "
-        "domain may be lower by up to as much (--method time-domain)",
+        "domain may be lower by up to as much (--method time-domain)"
+    )
+    lowest = max(0.0, 1.0 - share)
+    because = (
+        f"edge forces that set in at a chip of zero may lower the limit by {share:.0%}"
+        if lowest > 0.0
+        else f"edge forces that set in at a chip of zero are {share:.3g} times as stiff as the chip"
+    )
+    return (NeglectedEffect(EDGE_FORCES, share, lowest, 1.0, because, note),)
+
+
+def notes_on_dashpot(model: MillingModel, method: StabilityMethod) -> tuple[str, ...]:
+    """Say which share of the dashpot of a flank acts in the steady cut of a case."""
+    flank = flank_in_motion(model)
+    speed, depth = model.operating_point
+    motion = None if flank is None else steady_motion(model, speed, depth)
+    if not method.is_linear or flank is None or motion is None:
+        return ()
+    share = motion.pressed / (0.5 * flank.contact_length**2)
+    still = "0.5 of it" if flank.edge_radius == 0.0 else "all of it"
+    return (
+        f"ploughing: at {rpm(speed):.0f} rpm and {depth * 1e3:.3g} mm small vibration beside the "
+        f"forced vibration meets {share:.2g} of the dashpot K l^2/2 on average; beside a still "
+        f"tool {still}",
     )
 
 
-def _notes_on_flank(model: MillingModel, speed: float, depth: float) -> tuple[str, ...]:
+def _flank_beyond_the_land(
+    model: MillingModel, speed: float, depth: float
+) -> tuple[NeglectedEffect, ...]:
     flank = flank_in_motion(model)
     motion = None if flank is None else steady_motion(model, speed, depth)
     if flank is None or motion is None:
         return ()
-    at = f"at {rpm(speed):.0f} rpm and {depth * 1e3:.3g} mm"
-    share = motion.pressed / (0.5 * flank.contact_length**2)
-    still = "0.5 of it" if flank.edge_radius == 0.0 else "all of it"
-    notes = [
-        f"ploughing: {at} small vibration beside the forced vibration meets {share:.2g} of the "
-        f"dashpot K l^2/2 on average; beside a still tool {still}"
-    ]
+    found = []
     steep = motion.steepest / math.tan(flank.clearance_angle)
     if steep > _STEEP:
-        notes.append(
-            f"ploughing: {at} forced vibration moves the edges at slopes up to "
-            f"{motion.steepest:.2g}, {steep:.0%} of that of the clearance face, which is pressed "
-            "beyond the land; the limit in the time domain may differ (--method time-domain)"
+        slopes = f"slopes up to {motion.steepest:.2g}, {steep:.0%} of that of the clearance face"
+        note = (
+            f"ploughing: at {rpm(speed):.0f} rpm and {depth * 1e3:.3g} mm forced vibration moves "
+            f"the edges at {slopes}, which is pressed beyond the land; the limit in the time "
+            "domain may differ (--method time-domain)"
         )
+        because = f"forced vibration presses the flank at {slopes}"
+        found.append(NeglectedEffect("steep ploughing", steep, 0.0, math.inf, because, note))
     fastest = model.cut(depth).fastest / (2.0 * math.pi)
     waves = flank.contact_length * fastest / (speed * model.cutter.radius)
     if waves > _LONG_LAND:
-        notes.append(
-            f"ploughing: the flank touches over {flank.contact_length * 1e6:.3g} um, {waves:.2g} "
-            f"of the wave that {fastest:.0f} Hz leaves at {rpm(speed):.0f} rpm; it is then no mere "
-            "dashpot, and the limit in the time domain may differ (--method time-domain)"
+        land = f"{flank.contact_length * 1e6:.3g} um, {waves:.2g} of the wave"
+        note = (
+            f"ploughing: the flank touches over {land} that {fastest:.0f} Hz leaves at "
+            f"{rpm(speed):.0f} rpm; it is then no mere dashpot, and the limit in the time domain "
+            "may differ (--method time-domain)"
         )
-    return tuple(notes)
+        because = f"the flank touches over {land} of chatter, and is then no mere dashpot"
+        found.append(NeglectedEffect("long land", waves, 0.0, math.inf, because, note))
+    return tuple(found)
 
 
 def _vibration_of(steady: SteadyMotion, model: MillingModel) -> ForcedVibration:

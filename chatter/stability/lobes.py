@@ -9,15 +9,16 @@ from chatter.description.case import Case
 from chatter.description.progress import Progress, no_progress
 from chatter.description.units import rpm
 from chatter.stability.diagram import DiagramAxis, StabilityDiagram, StabilityMap
-from chatter.stability.forced_vibration import notes_on_steady_cut
+from chatter.stability.forced_vibration import neglected_in_steady_cut, notes_on_dashpot
 from chatter.stability.limit_curve import LimitCurve
 from chatter.stability.lowest_limit import lowest_limit
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel, milling_model
-from chatter.stability.pockets import find_pockets
+from chatter.stability.neglected_effects import EDGE_FORCES, notes_of
+from chatter.stability.pockets import depth_margin, find_pockets
 from chatter.stability.reference_speeds import natural_frequencies
 from chatter.stability.registry import chosen_method, fixed_steps, with_radius
-from chatter.stability.resting_friction import notes_on_resting_friction
+from chatter.stability.resting_friction import neglected_resting_friction
 from chatter.stability.search_range import (
     axial_depths,
     beyond_the_cut,
@@ -65,6 +66,11 @@ def lobes(
         found = with_radius(chosen).radius(model, speed, depth, fixed_steps(case), progress)
         radius = found.reshape(len(depths), len(speeds))
     removal_area = case.width_of_cut * case.cut.feed_per_tooth * case.tool.teeth / (2.0 * math.pi)
+    neglected = (*neglected_resting_friction(model), *neglected_in_steady_cut(model, chosen))
+    margin = depth_margin([one for one in neglected if one.name == EDGE_FORCES])
+    pockets = find_pockets(
+        speeds, limits.critical_depth, max_depth, removal_area, depth_margin=margin
+    )
     return StabilityDiagram(
         case=case,
         method=chosen.name,
@@ -72,11 +78,12 @@ def lobes(
         limits=limits,
         max_depth=np.full(len(speeds), max_depth),
         notes=(
-            *model.notes, *notes_on_resting_friction(model), *notes_on_steady_cut(model, chosen),
-            *notes_on_tolerance(model, limits),
+            *model.notes, *notes_of(neglected),
+            *notes_on_dashpot(model, chosen), *notes_on_tolerance(model, limits),
         ),
         zero_order=zero_order,
-        pockets=find_pockets(speeds, limits.critical_depth, max_depth, removal_area),
+        pockets=pockets,
+        neglected=neglected,
         operating=_operating_limit(model, chosen, max_depth),
         lowest=lowest_limit(chosen, model, limits, depths),
         natural_frequencies=natural_frequencies(model, speeds),

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from chatter.compile.cutter import cutter_of, force_law, helix_angles, process_damping_of
+from chatter.compile.inclined_axis import refuse_inclined_axis
 from chatter.compile.structure import Structure, depends_on_speed, structure_at, structure_of
 from chatter.compile.teeth_on_the_tool import refuse_teeth_off_the_tool
 from chatter.compile.worn_flank import notes_on_limits, notes_on_worn_flank
@@ -259,6 +260,7 @@ def milling_model(case: Case, structure: Structure | None = None) -> MillingMode
     """
     case.require("tool", "material", "cut", "structure")
     check_plausible(case)
+    refuse_inclined_axis(case)
     refuse_teeth_off_the_tool(case)
     if structure is None:
         structure = structure_of(case)

@@ -1,15 +1,25 @@
 """Pockets of a stability diagram: speeds at which a deep cut is stable, with a margin."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from chatter.description.arrays import Array
+from chatter.stability.neglected_effects import NeglectedEffect, lowest_factor
 
 #: part of the critical depth that is kept in hand
 DEPTH_MARGIN = 0.15
 #: spindle speed and natural frequency may be off by this much
 SPEED_MARGIN = 0.015
+
+
+def depth_margin(neglected: Sequence[NeglectedEffect]) -> float:
+    """Part of a limit that is kept in hand: the usual one, or what is left out where that is more.
+
+    Only effects whose bound holds at every speed.
+    """
+    return max(DEPTH_MARGIN, 1.0 - lowest_factor(neglected))
 
 
 class Pocket(NamedTuple):
@@ -30,15 +40,18 @@ def find_pockets(
     max_depth: float,
     removal_rate_per_depth_and_speed: float,
     most: int = 5,
+    depth_margin: float = DEPTH_MARGIN,
 ) -> tuple[Pocket, ...]:
     """Find the pockets with the highest removal rate, the highest first, `most` of them.
 
     Critical depths (n,), m, inf where none was found, at speeds (n,), rad/s, ascending; no pocket
     is deeper than `max_depth`, m, to which was searched. The removal rate over depth and speed,
-    m^2, has radial depth, teeth and feed per tooth in it. A depth that is stable at every speed
-    is no pocket.
+    m^2, has radial depth, teeth and feed per tooth in it. The depth margin is the part of the limit
+    that is kept in hand. A depth that is stable at every speed is no pocket.
     """
-    lowest = limits.min()
+    lowest, kept = limits.min(), 1.0 - depth_margin
+    # what is left of the lowest limit, too, where more than the usual margin is kept
+    lowest = lowest * min(1.0, kept / (1.0 - DEPTH_MARGIN))
     # of limits that are alike everywhere, any speed is as good
     anywhere = -np.inf if not lowest < np.max(limits) else lowest
     robust = lowest_within_margin(speeds, np.minimum(limits, max_depth))
@@ -46,12 +59,12 @@ def find_pockets(
     pockets = [
         Pocket(
             float(speeds[i]),
-            float((1.0 - DEPTH_MARGIN) * robust[i]),
+            float(kept * robust[i]),
             float(limits[i]),
-            float((1.0 - DEPTH_MARGIN) * robust[i] * speeds[i] * removal_rate_per_depth_and_speed),
+            float(kept * robust[i] * speeds[i] * removal_rate_per_depth_and_speed),
         )
         for i in indices
-        if (1.0 - DEPTH_MARGIN) * robust[i] > anywhere
+        if kept * robust[i] > anywhere
     ]
     return tuple(sorted(pockets, key=lambda pocket: -pocket.removal_rate)[:most])
 

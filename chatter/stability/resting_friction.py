@@ -11,6 +11,7 @@ import numpy as np
 from chatter.description.units import rpm
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel
+from chatter.stability.neglected_effects import NeglectedEffect
 
 if TYPE_CHECKING:
     from chatter.compile.linearised_machine import LinearisedMachine
@@ -22,8 +23,8 @@ _REPORTED = 0.02
 _LINE, _SLOW = 1.0, 1e-6
 
 
-def notes_on_resting_friction(model: MillingModel) -> tuple[str, ...]:
-    """Say what the limit at the speed of the case is with resting frictions stuck and without.
+def neglected_resting_friction(model: MillingModel) -> tuple[NeglectedEffect, ...]:
+    """What the limit at the speed of the case is with resting frictions stuck and without.
 
     Zeroth-order limits: what is compared is the structures. None where no friction rests, or where
     it makes no difference.
@@ -50,12 +51,28 @@ def notes_on_resting_friction(model: MillingModel) -> tuple[str, ...]:
     listed = ", ".join(f"{name} {way:.2g}" for name, way in ways.items() if way > 0.0)
     how_far = f"; they slide from (m or rad of their own motion): {listed}" if listed else ""
     taken = "as stuck" if amplitude == 0.0 else f"at vibration of {1e6 * amplitude:g} um"
-    return (
+    note = (
         f"frictions of axes at rest ({', '.join(names)}) are taken {taken} "
         f"(structure.friction_amplitude): at {rpm(speed):.0f} rpm the zeroth-order limit is "
         f"{_shown(here)} so, {_shown(stuck)} with them stuck, as under vanishing vibration, and "
-        f"{_shown(free)} without them{how_far}",
+        f"{_shown(free)} without them{how_far}"
     )
+    low, high = min(stuck, free), max(stuck, free)
+    effect = NeglectedEffect(
+        name="resting friction",
+        share=high / low - 1.0,
+        lowest=min(low / here, 1.0) if math.isfinite(here) else 0.0,
+        highest=max(high / here, 1.0) if math.isfinite(here) else 1.0,
+        because=f"frictions of axes at rest make the limit anything from {_shown(low)} to "
+        f"{_shown(high)}, by the amplitude of vibration (zeroth order)",
+        note=note,
+    )
+    return (effect,)
+
+
+def notes_on_resting_friction(model: MillingModel) -> tuple[str, ...]:
+    """Say what the limit at the speed of the case is with resting frictions stuck and without."""
+    return tuple(effect.note for effect in neglected_resting_friction(model))
 
 
 def _shown(depth: float) -> str:

@@ -17,6 +17,19 @@ Made from the schema (`chatter schema --machine`). How the parts make a machine 
 [the virtual machine](../virtual-machine.md).
 """
 
+_MEASUREMENT_HEAD = """# Keys of the measurement file
+
+Made from the schema (`chatter schema --measurement`). A folder with `measurement.toml` is what
+`compare`, `explain`, `learn`, `coefficients` and `friction` take. How they use it stands in
+[closing the loop](../closing-the-loop.md), the columns of the files in
+[file formats](../file-formats.md).
+"""
+
+_OVERRIDES = (
+    " Any further key is such a difference: a path such as `cut.axial_depth`, or a key of cut, tool,"
+    " material or axis alone."
+)
+
 
 def _definition(schema: dict[str, Any], node: dict[str, Any]) -> str | None:
     """Name of the section that a node of the schema leads to."""
@@ -149,4 +162,12 @@ def machine_page() -> str:
 
 def measurement_page() -> str:
     """Return the page of the measurement file."""
-    return "# Keys of the measurement file\n"
+    from chatter.explain import measurement_file
+    from chatter.explain.measurement_schema import measurement_schema
+
+    schema = measurement_schema()
+    run = schema["$defs"]["Run"]
+    own = {*measurement_file.OWN_KEYS, "cut_time"}
+    run["properties"] = {key: node for key, node in run["properties"].items() if key in own}
+    run["description"] += _OVERRIDES
+    return _page(_MEASUREMENT_HEAD, schema)

@@ -80,6 +80,12 @@ class Cut(Section):
         None, description="of a tooth at the full radius, clockwise from +y, where feed is along +x"
     )
     exit_angle: quantity("angle", above=0.0, at_most=math.pi) | None = None
+    lead: quantity("angle", above=-0.5 * math.pi, below=0.5 * math.pi) = Field(
+        0.0, description="of the tool axis, towards the feed; anything but 0 is refused as yet"
+    )
+    tilt: quantity("angle", above=-0.5 * math.pi, below=0.5 * math.pi) = Field(
+        0.0, description="of the tool axis, across the feed; anything but 0 is refused as yet"
+    )
     speed_variation: SpeedVariation | None = None
     cut_time: quantity("time", at_least=0.0) = Field(
         0.0, description="that the tool has cut before, for [wear]"

@@ -20,8 +20,8 @@ SIDES = ("tool", "workpiece")
 REST, AIR, CUT = "rest", "air", "cut"
 UNKNOWN = "unknown"
 
-_RECORD_KEYS = ("begins", "spindle_angle", "speed_tolerance")
-_CHANNEL_KEYS = ("quantity", "on", "direction", "sign", "axis")
+RECORD_KEYS = ("begins", "spindle_angle", "speed_tolerance")
+CHANNEL_KEYS = ("quantity", "on", "direction", "sign", "axis")
 #: largest tolerance of a spindle speed that can be meant
 _MOST_TOLERANCE = 0.2
 
@@ -72,9 +72,9 @@ def record_of(path: Path, content: Mapping[str, Any]) -> RecordDescription | Non
     if not isinstance(table, dict):
         raise InputError(f"{path}: record: {formatted(table)} is not a table")
     for key in table:
-        if key not in _RECORD_KEYS:
+        if key not in RECORD_KEYS:
             problems.append(
-                f"{path}: record.{key} is not a key; there are {', '.join(_RECORD_KEYS)}"
+                f"{path}: record.{key} is not a key; there are {', '.join(RECORD_KEYS)}"
             )
     begins = table.get("begins", REST)
     if begins not in (REST, AIR, CUT):
@@ -120,9 +120,9 @@ def _channels(path: Path, given: Any, problems: list[str]) -> dict[str, Channel]
             )
             continue
         problems += [
-            f"{where}.{key} is not a key; there are {', '.join(_CHANNEL_KEYS)}"
+            f"{where}.{key} is not a key; there are {', '.join(CHANNEL_KEYS)}"
             for key in entry
-            if key not in _CHANNEL_KEYS
+            if key not in CHANNEL_KEYS
         ]
         found[name] = _channel(where, entry, problems)
     return found

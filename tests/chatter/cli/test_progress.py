@@ -6,7 +6,7 @@ import time
 import pytest
 
 from chatter.cli import COMMANDS, progress
-from chatter.cli.progress import RunningWork, in_words, progress_bar, running
+from chatter.cli.progress import RunningWork, elapsed_in_words, in_words, progress_bar, running
 from tests.places import ROOT
 
 #: commands that compute nothing
@@ -133,3 +133,9 @@ def test_every_command_that_computes_shows_its_progress(command):
     tree = ast.parse((ROOT / "chatter" / "cli" / f"{command}.py").read_text(encoding="utf-8"))
     used = [node for node in ast.walk(tree) if isinstance(node, ast.With)]
     assert any("progress_bar(" in ast.unparse(node.items[0]) for node in used)
+
+
+def test_elapsed_time_goes_on_from_line_to_line():
+    assert elapsed_in_words(47.2) == "47 s"
+    assert elapsed_in_words(107.0) == "1 min 47 s"
+    assert elapsed_in_words(122.0) == "2 min 2 s"

@@ -1,0 +1,157 @@
+"""What linear limits leave out is carried by the verdict itself, in check, lobes and simulate."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import chatter
+from chatter.stability.neglected_effects import NeglectedEffect, deciding
+from chatter.stability.pockets import DEPTH_MARGIN, depth_margin, find_pockets
+from tests.command_line import chatter_command
+
+CASE = """
+[tool]
+kind = "end mill"
+teeth = 2
+diameter = "16 mm"
+helix = "30 deg"
+[material]
+Ktc = "700 MPa"
+Krc = "200 MPa"
+Kte = "20 N/mm"
+Kre = "15 N/mm"
+[cut]
+mode = "down"
+spindle_speed = "4100 rpm"
+feed_per_tooth = "0.1 mm"
+axial_depth = "3 mm"
+radial_depth = "5 mm"
+[structure]
+mode = [
+    { frequency = "900 Hz", damping = 0.03, stiffness = "10 N/um", direction = [1, 0, 0] },
+    { frequency = "1000 Hz", damping = 0.03, stiffness = "10 N/um", direction = [0, 1, 0] },
+]
+[lobes]
+speeds = { from = "3000 rpm", to = "6000 rpm", count = 40 }
+"""
+
+
+@pytest.fixture
+def case_file(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(CASE, encoding="utf-8")
+    return path
+
+
+def effect(lowest, highest, share=0.2):
+    return NeglectedEffect("made up", share, lowest, highest, "because", "note")
+
+
+LOWER, UNKNOWN, EITHER = effect(0.8, 1.0), effect(0.0, math.inf), effect(0.9, 1.3)
+
+
+@pytest.mark.parametrize(
+    ("effects", "depth", "crossings", "stable", "decides"),
+    [
+        ((LOWER,), 0.79, (1.0,), True, 0),
+        ((LOWER,), 0.81, (1.0,), True, 1),
+        # together they leave 0.72 of the limit
+        ((LOWER, EITHER), 0.73, (1.0,), True, 2),
+        ((LOWER, EITHER), 0.71, (1.0,), True, 0),
+        # what can but lower a limit never makes chatter stable
+        ((LOWER,), 1.01, (1.0,), False, 0),
+        ((LOWER, EITHER), 1.29, (1.0,), False, 1),
+        ((LOWER, EITHER), 1.31, (1.0,), False, 0),
+        ((UNKNOWN,), 0.01, (1.0,), True, 1),
+        ((UNKNOWN,), 0.01, (), True, 1),
+        ((LOWER,), 0.01, (), True, 0),
+        ((UNKNOWN,), 5.0, (1.0,), False, 1),
+        # an island: stable between 2 and 3, whose upper end may be at 2.4
+        ((LOWER,), 2.3, (1.0, 2.0, 3.0), True, 0),
+        ((LOWER,), 2.5, (1.0, 2.0, 3.0), True, 1),
+        ((), 0.5, (1.0,), True, 0),
+    ],
+)
+def test_a_verdict_stands_where_no_bound_reaches_the_cut(
+    effects, depth, crossings, stable, decides
+):
+    assert len(deciding(effects, depth, np.array(crossings), stable=stable)) == decides
+
+
+def test_check_says_that_a_cut_just_below_the_limit_is_not_certain(case_file):
+    found = chatter.check(case_file)
+    (edge,) = found.neglected
+    # down-milled to a chip of zero: half of each edge force over the feed counts, the chip itself
+    # over the arc; the closed form of a slot is that of tests/validation
+    assert edge.name == "edge forces"
+    assert edge.lowest == pytest.approx(1.0 - edge.share)
+    limit = found.critical_depth
+    at = {share: chatter.check(chatter.load(case_file).patch({"cut.axial_depth": share * limit}))
+          for share in (0.8 * edge.lowest, 0.97, 1.1)}  # fmt: skip
+    assert [one.verdict for one in at.values()] == ["stable", "not certain", "chatter"]
+    unsure = at[0.97]
+    assert unsure.stable
+    first, reason = unsure.sentences()
+    assert first.startswith("stable by the linear analysis, not certain: ")
+    assert f"{edge.share:.0%}" in reason
+    assert f"{1e3 * limit:.4g} to {1e3 * limit * edge.lowest:.3g} mm" in reason
+    assert unsure.summary()["verdict"] == "not certain"
+    assert unsure.summary()["neglected_effects"][0]["limit_at_least"] == edge.lowest
+    (sure,) = at[0.8 * edge.lowest].sentences()
+    assert sure.startswith("stable: ")
+
+
+@pytest.mark.parametrize(("depth", "code"), [("1 mm", 0), ("3.2 mm", 4), ("4 mm", 3)])
+def test_exit_code_for_scripts(case_file, depth, code):
+    result = chatter_command(
+        "check", str(case_file), "--exit-code", "--set", f"cut.axial_depth={depth}"
+    )
+    assert result.exit_code == code
+
+
+def test_pockets_keep_what_edge_forces_may_take(case_file):
+    small = chatter.load(case_file).patch({"cut.feed_per_tooth": 4e-5})
+    usual, more = chatter.lobes(case_file), chatter.lobes(small)
+    for diagram in (usual, more):
+        (edge,) = diagram.neglected
+        assert diagram.depth_margin == pytest.approx(max(DEPTH_MARGIN, edge.share))
+        assert diagram.lowest_depth == pytest.approx(
+            (1.0 - edge.share) * diagram.lowest.critical_depth
+        )
+        for pocket in diagram.pockets:
+            assert pocket.axial_depth <= (1.0 - edge.share) * pocket.critical_depth
+    assert more.depth_margin > usual.depth_margin
+    assert depth_margin([effect(0.9, 1.0)]) == DEPTH_MARGIN
+    speeds = np.linspace(100.0, 200.0, 101)
+    limits = 1e-3 + 1e-3 * np.exp(-(((speeds - 150.0) / 10.0) ** 2))
+    (half,) = find_pockets(speeds, limits, 10e-3, 1e-6, depth_margin=0.5)
+    (usually,) = find_pockets(speeds, limits, 10e-3, 1e-6)
+    assert half.axial_depth == pytest.approx(0.5 / (1.0 - DEPTH_MARGIN) * usually.axial_depth)
+
+
+def test_lobes_says_it_of_the_operating_point(case_file, tmp_path):
+    out = tmp_path / "out"
+    arguments = ("--set", "cut.axial_depth=3.2 mm", "--out", str(out))
+    result = chatter_command("lobes", str(case_file), *arguments)
+    assert "3.2 mm: stable by the linear analysis, not certain" in result.stdout
+    assert "edge forces that set in at a chip of zero may lower the limit" in result.stdout
+    assert json.loads((out / "summary.json").read_text())["operating_point"]["certain"] is False
+
+
+def test_simulate_names_the_other_verdict_and_the_number_that_decides(case_file, tmp_path):
+    limit = chatter.check(case_file).critical_depth
+    depth = ("--set", f"cut.axial_depth={0.97 * 1e3 * limit:.4f} mm")
+    out = ("--out", str(tmp_path / "out"), "--signals", "none")
+    result = chatter_command("simulate", str(case_file), *depth, *out)
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert summary["verdict"] == "chatter"
+    linear = summary["linear_analysis"]
+    assert linear["verdict"] == "stable"
+    assert not linear["agrees"]
+    assert linear["spectral_radius"] < 1.0
+    share = linear["neglected_effects"][0]["share"]
+    assert f"may lower the limit by {share:.0%}" in result.stdout
+    deep = chatter_command("simulate", str(case_file), "--set", "cut.axial_depth=1 mm", *out)
+    assert "the linear analysis agrees" in deep.stdout
