@@ -39,9 +39,9 @@ def refuse_inclined_axis(case: Case) -> None:
         wide = effective_diameter_of_ball(tool.diameter, cut.axial_depth, angle)
         speed = 30.0 * wide * cut.spindle_speed
         words += (
-            f". Inclined by {math.degrees(angle):.4g} deg the ball cuts up to an effective diameter "
-            f"of {1e3 * wide:.4g} mm, at {speed:.4g} m/min there; leave lead and tilt out for the "
-            "limits and forces of the upright tool, which has its tip in the cut as well"
+            f". Inclined by {math.degrees(angle):.4g} deg the ball cuts up to an effective "
+            f"diameter of {1e3 * wide:.4g} mm, at {speed:.4g} m/min there; leave lead and tilt out "
+            "for the limits and forces of the upright tool, which has its tip in the cut as well"
         )
     else:
         words += "; leave lead and tilt out for the upright tool"

@@ -46,10 +46,10 @@ def _cutting_pressure(case: Case, law: ForceLaw) -> float:
 
 
 def notes_on_worn_flank(case: Case, law: ForceLaw) -> list[str]:
-    """What the user should know of a worn land."""
+    """What the user should know of a worn land, and of the life of the edge."""
     land = case.tool.flank_wear
     if not land:
-        return []
+        return _notes_on_life(case)
     found = land_forces(case, law)
     notes = []
     if case.wear is None or case.wear.flank_pressure is None:
@@ -64,7 +64,21 @@ def notes_on_worn_flank(case: Case, law: ForceLaw) -> list[str]:
             f"tool.flank_wear: {land * 1e3:g} mm is beyond the usual end of life, "
             f"{END_OF_LIFE * 1e3:g} mm (ISO 8688-2)"
         )
-    return notes
+    return notes + _notes_on_life(case)
+
+
+def _notes_on_life(case: Case) -> list[str]:
+    """Say that the edge is worn out by the time that it has cut, where the case states its life."""
+    if case.tool_life is None:
+        return []
+    speed = 0.5 * case.tool.diameter * case.cut.spindle_speed
+    life = case.tool_life.life_at(speed)
+    if case.cut.cut_time <= life:
+        return []
+    return [
+        f"cut.cut_time: {case.cut.cut_time / 60.0:.3g} min is beyond the life of the edge at "
+        f"{60.0 * speed:.4g} m/min, {life / 60.0:.3g} min (tool_life)"
+    ]
 
 
 def notes_on_limits(case: Case) -> list[str]:

@@ -29,6 +29,7 @@ from chatter.description.sections.process import (
     ProcessDamping,
     Simulation,
     Stock,
+    ToolLife,
     Uncertainty,
     Wear,
 )
@@ -90,6 +91,7 @@ class Case(Description):
     process_damping: ProcessDamping | None = None
     contact: Contact | None = None
     wear: Wear | None = None
+    tool_life: ToolLife | None = None
     dynamometer: Dynamometer | None = None
     empirical: tuple[Empirical, ...] = ()
     friction: dict[str, Friction] = Field(default_factory=dict)

@@ -14,6 +14,7 @@ from matplotlib.patches import Patch
 from chatter.description.arrays import Array
 from chatter.description.units import rpm
 from chatter.plots import style
+from chatter.stability.neglected_effects import lowest_factor
 from chatter.stability.pockets import SPEED_MARGIN
 from chatter.stability.registry import METHODS
 
@@ -74,6 +75,7 @@ def draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
             x, np.where(np.isfinite(zero_order), zero_order, math.nan) * 1e3, color=style.GREY,
             linewidth=1.0, linestyle=(0, (4, 2)), label=f"limit, {METHODS['zero-order'].label}",
         )  # fmt: skip
+    _hatch_what_is_not_certain(axes, diagram, top)
     none = np.isinf(limits.critical_depth)
     if none.any():
         searched = float(np.nanmax(diagram.max_depth)) * 1e3
@@ -89,6 +91,8 @@ def draw_limits(axes: Axes, diagram: StabilityDiagram) -> None:
         word, look = "chatter", {"marker": "X", "color": style.RED}
         if diagram.operating_is_stable:
             word, look = "stable", {"marker": "o", "color": style.GREEN}
+        if diagram.deciding:
+            word, look = "not certain", {"marker": "o", "color": style.ORANGE}
         style.mark_cut(axes, diagram.case.cut, f"operating point, {word}", **look)
     else:
         _mark_case(axes, diagram.axis.case_value, diagram.case.cut.axial_depth * 1e3, x)
@@ -131,6 +135,19 @@ def _fill(axes: Axes, diagram: StabilityDiagram, top: float) -> None:
         zorder=0.5,
         rasterized=True,
     )
+
+
+def _hatch_what_is_not_certain(axes: Axes, diagram: StabilityDiagram, top: float) -> None:
+    """Hatch, below each limit, how far edge forces that are left out may lower it."""
+    kept = lowest_factor(diagram.neglected_at_all_speeds)
+    if kept == 1.0:
+        return
+    limit = np.minimum(diagram.limits.critical_depth, top) * 1e3
+    axes.fill_between(
+        diagram.axis.values, kept * limit, limit, where=np.isfinite(limit), facecolor="none",
+        edgecolor=style.ORANGE, hatch="///", linewidth=0.0, alpha=0.55, zorder=0.8,
+        label="not certain: edge forces",
+    )  # fmt: skip
 
 
 def _mark_case(axes: Axes, x: float, y: float, inside: Array) -> None:

@@ -199,9 +199,16 @@ class StabilityCheck(NotebookResult):
             ["cutting speed", f"{60.0 * speed:.4g} m/min"],
             *effective,
             *self._engagement(),
+            *self._life(speed),
             ["feed rate", f"{60e3 * self.case.feed_speed:.4g} mm/min"],
             ["method", self.method],
         ]
+
+    def _life(self, speed: float) -> list[list[str]]:
+        """Life of the edge at a cutting speed, m/s, where the case states one."""
+        if self.case.tool_life is None:
+            return []
+        return [["tool life", f"{self.case.tool_life.life_at(speed) / 60.0:.3g} min"]]
 
     def _engagement(self) -> list[list[str]]:
         """Width and angles where the edge is at the depth of the cut."""

@@ -56,6 +56,9 @@ class Optimum(Section):
     max_surface_error: PositiveLength | None = Field(
         None, description="location of the wall, largest over its height, either way"
     )
+    min_tool_life: quantity("time", above=0.0) | None = Field(
+        None, description="cutting time that the edge must last, by [tool_life]"
+    )
     confidence: quantity("number", at_least=0.5, below=1.0) = Field(
         0.95, description="probability of stability, where values of the case are uncertain"
     )

@@ -138,6 +138,24 @@ def _given(section: Wear | Chipping, key: str) -> float:
     return section.cutting if value is None else value
 
 
+class ToolLife(Section):
+    """Life of the edge over the cutting speed: v T^n = C (Taylor 1907, Trans. ASME 28:31)."""
+
+    cutting_speed: quantity("velocity", above=0.0) = Field(description="at which the life is known")
+    life: quantity("time", above=0.0) = Field(description="cutting time at that speed")
+    exponent: quantity("number", above=0.0, below=1.0) = Field(
+        description="n of Taylor: some 0.1 to 0.15 for high-speed steel, 0.2 to 0.3 for carbide"
+    )
+
+    def life_at(self, cutting_speed: float) -> float:
+        """Life (s) at a cutting speed, m/s."""
+        return self.life * (self.cutting_speed / cutting_speed) ** (1.0 / self.exponent)
+
+    def cutting_speed_for(self, life: float) -> float:
+        """Cutting speed (m/s) at which the edge lasts for a time, s."""
+        return self.cutting_speed * (self.life / life) ** self.exponent
+
+
 class SensorResonance(Section):
     """One of several resonances of the sensor that measures the forces."""
 

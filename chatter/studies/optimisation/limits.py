@@ -8,7 +8,9 @@ import numpy as np
 
 from chatter.description.arrays import Array
 from chatter.description.case import Case
+from chatter.description.errors import InputError
 from chatter.description.sections.optimisation import Feeds, Optimum, RadialDepths
+from chatter.description.units import rpm
 from chatter.stability.methods.zeroth_order.limits import zero_order_of
 from chatter.stability.model import MillingModel
 from chatter.stability.pockets import DEPTH_MARGIN, SPEED_MARGIN
@@ -29,6 +31,8 @@ _HALVINGS = 4
 _SPEEDS_A_MARGIN = 2
 _LEAST_SPEEDS, _MOST_SPEEDS = 8, 400
 _COARSEST_STEP = 0.01
+#: highest over lowest speed below which there is nothing to search
+_LEAST_RANGE = 1.001
 
 
 @dataclass(frozen=True)
@@ -108,9 +112,30 @@ def _speeds(case: Case, section: Optimum, margin: float) -> Array:
         first, last = section.speeds.from_, section.speeds.to
     else:
         first, last = spindle_speeds(case)[[0, -1]]
+    last = _lasting(case, section, float(first), float(last))
     step = min(margin / _SPEEDS_A_MARGIN, _COARSEST_STEP) or _COARSEST_STEP
     count = math.ceil(math.log(last / first) / math.log1p(step)) + 1
     return np.geomspace(first, last, min(max(count, _LEAST_SPEEDS), _MOST_SPEEDS))
+
+
+def _lasting(case: Case, section: Optimum, first: float, last: float) -> float:
+    """Highest speed, rad/s, up to the last one at which the edge lasts as long as it must."""
+    if section.min_tool_life is None:
+        return last
+    if case.tool_life is None:
+        raise InputError(
+            f"{case.name}: optimum.min_tool_life: needs [tool_life] with cutting_speed, life and "
+            "exponent"
+        )
+    fastest = case.tool_life.cutting_speed_for(section.min_tool_life)
+    highest = 2.0 * fastest / case.tool.diameter
+    if highest <= first * _LEAST_RANGE:
+        raise InputError(
+            f"{case.name}: optimum.min_tool_life: an edge that lasts "
+            f"{section.min_tool_life / 60.0:.3g} min cuts at {60.0 * fastest:.4g} m/min at the "
+            f"most, {rpm(highest):.4g} rpm; the search begins at {rpm(first):.4g} rpm"
+        )
+    return min(last, highest)
 
 
 def _depths(case: Case, section: Optimum, model: MillingModel) -> Array:

@@ -208,6 +208,13 @@ def _notes(case: Case, limits: Limits, drawn: Samples | None) -> list[str]:
             f"nothing in the case is uncertain: stability keeps {limits.depth_margin:.3g} of the "
             f"critical depth and {limits.speed_margin:.3g} of the speed as margins"
         )
+    section = case.optimum
+    if section is not None and section.min_tool_life is not None:
+        fastest = case.tool_life.cutting_speed_for(section.min_tool_life)
+        notes.append(
+            f"optimum.min_tool_life: an edge lasts {section.min_tool_life / 60.0:.3g} min up to "
+            f"{60.0 * fastest:.4g} m/min; no higher speed is searched"
+        )
     modes = case.structure.mode if case.structure else ()
     if any(mode.frequency_slope for mode in modes):
         notes.append("the search takes the modes at the speed of the case, not at each speed")

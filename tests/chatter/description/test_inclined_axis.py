@@ -39,11 +39,6 @@ def test_effective_diameter_of_a_ball():
 @pytest.mark.parametrize("key", ["lead", "tilt"])
 def test_every_method_refuses_it_with_the_effective_diameter(call, key):
     case = Case.from_dict({**BALL, "cut": {**BALL["cut"], key: "-15 deg"}})
-    case = (
-        case.patch({"optimum": {"axial_depths": {"to": "1 mm"}}})
-        if call is chatter.optimum
-        else case
-    )
     with pytest.raises(InputError, match=rf"cut\.{key}: an inclined tool axis") as refused:
         call(case)
     assert "effective diameter of 6.54 mm, at 123.3 m/min" in str(refused.value)
