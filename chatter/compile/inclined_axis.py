@@ -8,26 +8,26 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError
 
 
-def inclination(case: Case) -> float:
+def angle_to_surface_normal(case: Case) -> float:
     """Angle of the tool axis from the normal of the surface, rad: cos = cos(lead) cos(tilt)."""
     return math.acos(math.cos(case.cut.lead) * math.cos(case.cut.tilt))
 
 
-def effective_diameter_of_ball(diameter: float, axial_depth: float, inclination: float) -> float:
+def effective_diameter_of_ball(diameter: float, axial_depth: float, axis_angle: float) -> float:
     """Largest diameter, m, on which a ball that is inclined cuts.
 
-    D sin(inclination + acos(1 - 2 a_p/D)), at most D, lengths in m, the inclination in rad (Sandvik
-    Coromant, technical guide of milling, profile milling; exact where the axis leans towards what
-    is cut).
+    D sin(a + acos(1 - 2 a_p/D)), at most D, with the axis at the angle a, rad, from the normal,
+    lengths in m (Sandvik Coromant, technical guide of milling, profile milling; exact where the
+    axis leans towards what is cut).
     """
-    reached = inclination + math.acos(max(-1.0, 1.0 - 2.0 * axial_depth / diameter))
+    reached = axis_angle + math.acos(max(-1.0, 1.0 - 2.0 * axial_depth / diameter))
     return diameter * math.sin(min(reached, 0.5 * math.pi))
 
 
 def refuse_inclined_axis(case: Case) -> None:
     """InputError where the tool axis is inclined; it names the effective diameter of a ball."""
     cut, tool = case.cut, case.tool
-    angle = inclination(case)
+    angle = angle_to_surface_normal(case)
     if angle == 0.0:
         return
     key = "lead" if cut.lead else "tilt"
@@ -41,8 +41,8 @@ def refuse_inclined_axis(case: Case) -> None:
         words += (
             f". Inclined by {math.degrees(angle):.4g} deg the ball cuts up to an effective "
             f"diameter of {1e3 * wide:.4g} mm, at {speed:.4g} m/min there; leave lead and tilt out "
-            "for the limits and forces of the upright tool, which has its tip in the cut as well"
+            "for the limits and forces of an axis normal to the surface, with the tip in the cut"
         )
     else:
-        words += "; leave lead and tilt out for the upright tool"
+        words += "; leave lead and tilt out for an axis normal to the surface"
     raise InputError(words)

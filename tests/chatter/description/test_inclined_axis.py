@@ -49,5 +49,5 @@ def test_other_tools_are_refused_and_an_upright_axis_is_not():
     assert upright.cut.lead == 0.0
     end_mill = {**BALL["tool"], "kind": "end mill"}
     cut = {**BALL["cut"], "stepover": "4 mm", "lead": "2 deg"}
-    with pytest.raises(InputError, match="for the upright tool"):
+    with pytest.raises(InputError, match="for an axis normal to the surface"):
         chatter.check(Case.from_dict({**BALL, "tool": end_mill, "cut": cut}))
