@@ -26,8 +26,8 @@ Made from the schema (`chatter schema --measurement`). A folder with `measuremen
 """
 
 _OVERRIDES = (
-    " Any further key is such a difference: a path such as `cut.axial_depth`, or a key of cut, tool,"
-    " material or axis alone."
+    " Any further key is such a difference: a path such as `cut.axial_depth`, or a key of cut, "
+    "tool, material or axis alone."
 )
 
 
