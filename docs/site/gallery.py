@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-_PICTURES = ROOT / "docs" / "pictures" / "gallery"
+DOCS = ROOT / "docs"
 #: seconds of each example, written by ``python docs/site/run_examples.py``
 _RUN_TIMES = ROOT / "docs" / "site" / "run-times.json"
 
@@ -28,6 +28,9 @@ def page() -> str:
         seconds = measured["seconds"].get(one.name)
         if seconds is not None:
             parts.append(f"Run time: {seconds:.0f} s.\n" if seconds >= 1 else "Run time: 1 s.\n")
-        if (_PICTURES / f"{one.name}.png").exists():
-            parts.append(f"![{one.name}](/pictures/gallery/{one.name}.png)\n")
+        # an example that takes long has the picture of the page that tells of it
+        for place in ("pictures/gallery", "pictures"):
+            if (DOCS / place / f"{one.name}.png").exists():
+                parts.append(f"![{one.name}](/{place}/{one.name}.png)\n")
+                break
     return "\n".join(parts)
