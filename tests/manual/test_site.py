@@ -39,7 +39,7 @@ def site(tmp_path_factory):
         [sys.executable, "-m", "sphinx", *words, str(ROOT / "docs"), str(folder / "html")],
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=900,
     )
     assert built.returncode == 0, built.stderr[-3000:]
     return folder / "html"
