@@ -90,8 +90,47 @@ def machine_cut(case: Case, friction: bool | None = None) -> MachineCut:
     wanted = section.friction if friction is None else friction
     if wanted is False:
         machine = machine.without_friction()
+    return cut_on(case, file, machine, section.position or {})
+
+
+def cut_on(
+    case: Case, file: MachineFile, machine: Machine, positions: Mapping[str, float]
+) -> MachineCut:
+    """Cut of a case on a machine with its axes at positions, m. InputError as `machine_cut`."""
+    name = _spindle_axis(case, file, machine)
+    tool, spindle, sense = _rows(case, file, machine, positions, name)
+    travels = _travels(machine, tool, [one for one in machine.axes if one != name])
+    feeds = travels.get("x", {})
+    return MachineCut(file, machine, tool, spindle, name, sense, feeds, travels)
+
+
+def rows_of_cut(
+    case: Case, file: MachineFile, machine: Machine, positions: Mapping[str, float]
+) -> dict[str, NDArray[np.float64]]:
+    """Rows that a run of the cut reads, by name, on a machine with its axes at positions, m."""
+    name = _spindle_axis(case, file, machine)
+    tool, spindle, _ = _rows(case, file, machine, positions, name)
+    return named_rows(tool, spindle)
+
+
+def named_rows(
+    tool: NDArray[np.float64], spindle: NDArray[np.float64] | None
+) -> dict[str, NDArray[np.float64]]:
+    """Rows of tool and spindle by the names of their ports."""
+    rows = {f"tool {axis}": row for axis, row in zip("xyz", tool, strict=True)}
+    return rows if spindle is None else {**rows, "tool turn": spindle}
+
+
+def _rows(
+    case: Case,
+    file: MachineFile,
+    machine: Machine,
+    positions: Mapping[str, float],
+    spindle_axis: str | None,
+) -> tuple[NDArray[np.float64], NDArray[np.float64] | None, float]:
+    """Rows of the tool, and of the spindle with the sense of its axis where one turns it."""
     axes = cut_directions(case)
-    tip, workpiece = _ends(file, section.position or {})
+    tip, workpiece = _ends(file, positions)
     tool = np.array(
         [
             machine.row(
@@ -100,13 +139,9 @@ def machine_cut(case: Case, friction: bool | None = None) -> MachineCut:
             for direction in axes
         ]
     )
-    name = _spindle_axis(case, file, machine)
-    spindle, sense = None, 1.0
-    if name is not None:
-        spindle, sense = _spindle_row(case, file, machine, name, workpiece, axes[2])
-    travels = _travels(machine, tool, [one for one in machine.axes if one != name])
-    feeds = travels.get("x", {})
-    return MachineCut(file, machine, tool, spindle, name, sense, feeds, travels)
+    if spindle_axis is None:
+        return tool, None, 1.0
+    return tool, *_spindle_row(case, file, machine, spindle_axis, positions, axes[2])
 
 
 def _refuse_unknown_axes(case: Case, file: MachineFile) -> None:
@@ -169,7 +204,7 @@ def _spindle_row(
     file: MachineFile,
     machine: Machine,
     name: str,
-    workpiece: str,
+    positions: Mapping[str, float],
     upwards: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], float]:
     """Row of the turning tool against the workpiece, and the sense of the axis."""
@@ -183,7 +218,7 @@ def _spindle_row(
         )
     # seen from above the tool turns clockwise: about the direction to its tip
     sense = -math.copysign(1.0, along)
-    tip, _ = _ends(file, case.structure.position or {})
+    tip, workpiece = _ends(file, positions)
     about = np.concatenate([np.zeros(3), sense * direction])
     rotor = f"{name}: motor"
     turning = rotor if rotor in machine.assembly.parts else tip.body

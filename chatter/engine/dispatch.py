@@ -22,16 +22,24 @@ from dynamics.machine.groups import (
     nothing,
 )
 from dynamics.machine.modal_structure import ModalEnergy, modal_energy_forces
+from dynamics.machine.moving_structure import (
+    EnergyAccount,
+    MovingStructure,
+    energy_commit,
+    moving_forces,
+)
 from dynamics.machine.travel_limit import TravelLimit, travel_limit_commit
 
 #: table -> kernels of its forces and its commit
 LAWS = {
+    MovingStructure: (moving_forces, nothing),
     ControlledDrives: (drive_forces, nothing),
     ConstantForces: (constant_forces, nothing),
     Loads: (load_forces, nothing),
     CutOnPorts: (cut_forces, cut_commit),
     FrictionsOnPorts: (friction_forces, friction_commit),
     ModalEnergy: (modal_energy_forces, nothing),
+    EnergyAccount: (nothing, energy_commit),
     TravelLimit: (nothing, travel_limit_commit),
     CutRecord: (nothing, cut_record_commit),
     PortRecord: (nothing, port_record_commit),

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.compile.linearised_friction import rigid_motion
-from chatter.compile.machine_cut import MachineCut, machine_cut
+from chatter.compile.machine_along_axes import machine_along_axes, machine_at_start
+from chatter.compile.machine_cut import MachineCut, cut_on, machine_cut, named_rows, rows_of_cut
 from chatter.description.case import Case
 from chatter.description.errors import InputError
 from chatter.engine.loop_stability import refuse_unstable_control
@@ -16,6 +17,7 @@ from chatter.simulation.structure_in_time import StructureInTime
 from chatter.simulation.tool_course import ToolCourse
 from cutting.tool.cutter import Cutter
 from dynamics.control.sampling import ControlError
+from dynamics.machine.moving_structure import MachinesAlong
 from dynamics.machine.tables import StructureTables, machine_tables
 from dynamics.structure.linear_structure import StructureError
 from dynamics.trajectory.set_points import SetPoints
@@ -63,13 +65,16 @@ def machine_in_time(
     else:
         points = _set_points_of(cut, course, (before + 10) * step + duration, before * step)
         speed = float(course.spindle.speed_at(np.zeros(1))[0])
+    along = _along(case, cut, points)
+    if along is not None:
+        cut = cut_on(case, cut.file, machine_at_start(along), case.structure.position or {})
     return StructureInTime(
         modes,
         resolution,
         step,
         max(1, round(duration / step)),
-        _tables(cut, speed, step, points),
-        _notes(cut),
+        _tables(cut, speed, step, points, along),
+        _notes(cut, along),
         cut,
         before,
     )
@@ -182,14 +187,34 @@ def _set_points_of(
     return SetPoints(position, velocity, acceleration, round(cycle / cut.file.step))
 
 
-def _tables(cut: MachineCut, speed: float, step: float, points: SetPoints) -> StructureTables:
-    outputs = {f"tool {axis}": row for axis, row in zip("xyz", cut.tool, strict=True)}
-    if cut.spindle is not None:
-        outputs["tool turn"] = cut.spindle
+def _along(case: Case, cut: MachineCut, points: SetPoints) -> MachinesAlong | None:
+    """Machine along the axes that the cut sends far enough to change its structure."""
+    section = case.structure
+    moved = {*cut.feeds, *(axis for shares in cut.travels.values() for axis in shares)}
+    travelled = {}
+    for column, axis in enumerate(cut.machine.axes):
+        if axis in moved:
+            positions = points.position[:, column]
+            travelled[axis] = (float(positions.min()), float(positions.max()))
+    return machine_along_axes(
+        cut.file,
+        travelled,
+        lambda machine, places: rows_of_cut(case, cut.file, machine, places),
+        section.travel_positions,
+        section.condition,
+        section.position,
+        section.friction is not False,
+    )
+
+
+def _tables(
+    cut: MachineCut, speed: float, step: float, points: SetPoints, along: MachinesAlong | None
+) -> StructureTables:
+    outputs = named_rows(cut.tool, cut.spindle)
     parts = round(cut.file.step / step)
     points = points._replace(steps=points.steps * parts)
     try:
-        return machine_tables(cut.machine, step, points, {}, outputs, _start(cut, speed))
+        return machine_tables(cut.machine, step, points, {}, outputs, _start(cut, speed), along)
     except (StructureError, ControlError) as error:
         raise InputError(f"{cut.file.name}: {error}") from error
 
@@ -201,8 +226,14 @@ def _start(cut: MachineCut, speed: float) -> NDArray[np.float64]:
     return rigid_motion(cut.machine, {cut.spindle_axis: cut.sense * speed})
 
 
-def _notes(cut: MachineCut) -> tuple[str, ...]:
+def _notes(cut: MachineCut, along: MachinesAlong | None) -> tuple[str, ...]:
     notes = list(cut.file.notes)
+    if along is not None:
+        travel = "; ".join(
+            f"{axis} from {1e3 * one[0]:g} to {1e3 * one[-1]:g} mm at {len(one)} positions"
+            for axis, one in zip(along.axes, along.positions, strict=True)
+        )
+        notes.append(f"the structure changes as the axes travel: {travel}")
     if not cut.feeds:
         notes.append("no axis under control feeds the tool: its path is prescribed")
     if cut.spindle is None:

@@ -22,6 +22,7 @@ from chatter.simulation.setup import Setup, set_up
 from chatter.simulation.verdict import with_verdict
 from dynamics.machine.groups import FrictionsOnPorts
 from dynamics.machine.modal_structure import stored_energy
+from dynamics.machine.tables import energy_of_structure
 from dynamics.matrix_exponential import exact_step
 
 #: a run may be this long, in steps
@@ -114,9 +115,12 @@ def run_setup(setup: Setup, progress: Progress = no_progress) -> tuple[Simulatio
 
 
 def _energy(cut: CutRun) -> dict[str, float]:
-    """Work of the cutting force on modes, energy dissipated in them and stored, J."""
+    """Work of the cutting force on modes, energy dissipated in them and stored, J.
+
+    Of a machine whose structure follows its axes: work of all forces, and of the travel as well.
+    """
     if cut.setup.on_machine is not None:
-        return {}
+        return energy_of_structure(cut.setup.structure.tables)
     account, *frictions = cut.setup.structure.tables.implicit
     work, dissipated = account.energy
     rubbed = sum(group.work[0] for group in frictions if isinstance(group, FrictionsOnPorts))

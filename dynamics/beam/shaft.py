@@ -223,6 +223,10 @@ class BeamLine:
         found = [self._station(position) for position in positions]
         return replace(self, stations=(*self.stations, *found))
 
+    def with_stations(self, stations: Iterable[float]) -> BeamLine:
+        """Same line with nodes at stations, m, those asked for before left out."""
+        return replace(self, stations=tuple(stations))
+
     def motion_at(self, position: ArrayLike) -> NDArray[np.float64]:
         """Displacements and rotations at a position per freedom of the nodes.
 

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from dynamics.control.cascade import DriveController
 from dynamics.drive.parts import DrivenAxis, DriveParts, Motor
 from dynamics.friction.laws import FrictionLaw
-from dynamics.reduction.modal_truncation import undamped_modes, with_static_shapes
-from dynamics.structure.assembly import Assembly, assembly
+from dynamics.reduction.modal_truncation import Modes, undamped_modes, with_static_shapes
+from dynamics.structure.assembly import Assembly, assembly, with_nodes_where_joined
 from dynamics.structure.bodies import Connector, MeshedPart, Part, Point
 from dynamics.structure.linear_structure import LinearStructure, StructureError
 from dynamics.structure.spring_coupling import Coupling, Term
@@ -150,6 +150,8 @@ class Machine:
     assembly: Assembly  # parts, for further rows
     #: (full, n), motion of the assembly's freedoms per coordinate
     basis: NDArray[np.float64] | None = None
+    #: undamped modes of the structure, where they were needed to assemble it
+    modes: Modes | None = None
 
     def row(self, who: str, terms: Sequence[Term]) -> NDArray[np.float64]:
         """Row (n,) of the sum of motions of parts, as a port of the structure."""
@@ -176,26 +178,32 @@ def machine(parts: MachineParts, conditions: Mapping[str, Condition] | None = No
         If an axis is unknown, asked to be controlled without controller, or the structure makes
         no sense.
     """
+    full = full_machine(parts, conditions)
+    if parts.highest_frequency is None:
+        return full
+    return reduced(full, parts.highest_frequency, parts.kept_points)
+
+
+def full_machine(parts: MachineParts, conditions: Mapping[str, Condition] | None = None) -> Machine:
+    """Assemble a machine as `machine` does, with all of its modes."""
     held = _conditions(parts.axes, conditions or {})
     driven = {axis.name: axis.drive.parts(axis.geometry) for axis in parts.axes}
-    brakes = [
-        Coupling(f"{axis.name}: brake of {motor.name}", motor.angle, *axis.brake)
-        for axis in parts.axes
-        if held[axis.name] == "brake"
-        for motor in driven[axis.name].motors
-    ]
+    connectors, couplings = _links(parts, held, driven)
     moving = sum(condition != "brake" for condition in held.values())
     whole = assembly(
         parts.bodies,
-        [*parts.connectors, *(one for drive in driven.values() for one in drive.connectors)],
+        connectors,
         parts.points,
         parts.beams,
         parts.allowed_rigid_motions + moving,
         [rotor for drive in driven.values() for rotor in drive.rotors],
-        [*parts.couplings, *(one for drive in driven.values() for one in drive.couplings), *brakes],
+        couplings,
     )
-    structure = with_modal_damping(whole.structure, parts.damping_ratio, parts.mode_damping)
-    full = Machine(
+    structure, modes = whole.structure, None
+    if parts.damping_ratio != 0.0 or parts.mode_damping:
+        modes = undamped_modes(structure)
+        structure = with_modal_damping(structure, parts.damping_ratio, parts.mode_damping, modes)
+    return Machine(
         structure,
         tuple(
             drive
@@ -215,10 +223,33 @@ def machine(parts: MachineParts, conditions: Mapping[str, Condition] | None = No
         ),
         tuple(axis.name for axis in parts.axes),
         whole,
+        modes=modes,
     )
-    if parts.highest_frequency is None:
-        return full
-    return reduced(full, parts.highest_frequency, parts.kept_points)
+
+
+def meshed_beams(
+    parts: MachineParts, conditions: Mapping[str, Condition] | None = None
+) -> list[MeshedPart]:
+    """Beams of a machine with nodes wherever something is joined to them."""
+    driven = {axis.name: axis.drive.parts(axis.geometry) for axis in parts.axes}
+    links = _links(parts, _conditions(parts.axes, conditions or {}), driven)
+    return with_nodes_where_joined(parts.beams, *links, parts.points)
+
+
+def _links(
+    parts: MachineParts, held: Mapping[str, Condition], driven: Mapping[str, DriveParts]
+) -> tuple[list[Connector], list[Coupling]]:
+    """Connectors and couplings of a machine with those of its drives and brakes."""
+    brakes = [
+        Coupling(f"{axis.name}: brake of {motor.name}", motor.angle, *axis.brake)
+        for axis in parts.axes
+        if held[axis.name] == "brake"
+        for motor in driven[axis.name].motors
+    ]
+    drives = driven.values()
+    connectors = [*parts.connectors, *(one for drive in drives for one in drive.connectors)]
+    couplings = [*parts.couplings, *(one for drive in drives for one in drive.couplings), *brakes]
+    return connectors, couplings
 
 
 def reduced(full: Machine, highest: float, kept_points: Sequence[str] | None = None) -> Machine:
@@ -236,10 +267,24 @@ def reduced(full: Machine, highest: float, kept_points: Sequence[str] | None = N
         *(preload.row for preload in full.preloads),
     ]
     loads = np.array([*points, *forces]).reshape(-1, structure.size)
-    compact, basis = with_static_shapes(structure, undamped_modes(structure, highest), loads)
+    compact, basis = with_static_shapes(structure, _modes_up_to(full, highest), loads)
+    return in_coordinates(full, compact, basis)
+
+
+def _modes_up_to(full: Machine, highest: float) -> Modes:
+    """Undamped modes of a machine up to a frequency, Hz."""
+    if full.modes is None:
+        return undamped_modes(full.structure, highest)
+    kept = int(np.searchsorted(full.modes.frequency, highest, side="right"))
+    return Modes(full.modes.frequency[:kept], full.modes.shapes[:, :kept])
+
+
+def in_coordinates(full: Machine, structure: LinearStructure, basis: NDArray) -> Machine:
+    """Machine whose structure is given in other coordinates; basis (n, m), motion of each."""
     return replace(
         full,
-        structure=compact,
+        structure=structure,
+        modes=None,
         drives=tuple(
             one._replace(row=one.row @ basis, scale=one.scale @ basis) for one in full.drives
         ),
@@ -250,19 +295,23 @@ def reduced(full: Machine, highest: float, kept_points: Sequence[str] | None = N
 
 
 def with_modal_damping(
-    structure: LinearStructure, ratio: float, bands: Sequence[ModeDamping] = ()
+    structure: LinearStructure,
+    ratio: float,
+    bands: Sequence[ModeDamping] = (),
+    modes: Modes | None = None,
 ) -> LinearStructure:
     """Structure with damping ratios of its elastic modes on top of its dampers.
 
     The ratio holds for all modes but those in bands, which have their own; of bands that overlap
-    the last one holds. StructureError if a ratio is negative or not finite.
+    the last one holds. All undamped modes are found, unless they are given.
+    StructureError if a ratio is negative or not finite.
     """
     for one in (ratio, *(band.ratio for band in bands)):
         if not (np.isfinite(one) and one >= 0.0):
             raise StructureError(f"damping ratio is {one}; it must be 0 or more")
     if ratio == 0.0 and not bands:
         return structure
-    modes = undamped_modes(structure)
+    modes = undamped_modes(structure) if modes is None else modes
     ratios = np.full(len(modes.frequency), ratio)
     for band in bands:
         inside = (modes.frequency >= band.lowest) & (modes.frequency <= band.highest)

@@ -12,6 +12,14 @@ from dynamics.friction.laws import friction_groups
 from dynamics.machine.description import Machine
 from dynamics.machine.groups import ConstantForces, ControlledDrives, Loads, frictions_on_ports
 from dynamics.machine.modal_structure import ModalSteps, modal_energy, modal_structure
+from dynamics.machine.moving_structure import (
+    EnergyAccount,
+    MachinesAlong,
+    MovingStructure,
+    energy_account,
+    energy_of,
+    moving_structure,
+)
 from dynamics.machine.steps import StructureSteps, structure_steps
 from dynamics.modal.modes import Mode
 from dynamics.structure.linear_structure import StructureError
@@ -40,6 +48,7 @@ def machine_tables(
     loads: Mapping[str, tuple[NDArray[np.float64], NDArray[np.float64]]] | None = None,
     outputs: Mapping[str, NDArray[np.float64]] | None = None,
     velocity: NDArray[np.float64] | None = None,
+    along: MachinesAlong | None = None,
 ) -> StructureTables:
     """Compile a machine, unstrained.
 
@@ -48,6 +57,9 @@ def machine_tables(
     between; outputs are rows (n,) that will be read. The freedoms start with a velocity (n,). Rest
     by default. StructureError if a name is used twice or the set points have another number of
     axes, ControlError if a sample time is not a multiple of the step.
+
+    The structure follows its axes where it is given at positions along them, of which the machine
+    is that at the start; the outputs there are rows of loads and outputs.
     """
     points = resting_set_points(len(machine.axes)) if points is None else points
     if points.position.shape[1] != max(len(machine.axes), 1):
@@ -62,8 +74,15 @@ def machine_tables(
         rows[name] = row
     port = {name: index for index, name in enumerate(rows)}
     matrix = np.array(list(rows.values())).reshape(-1, machine.structure.size)
-    bus = structure_steps(machine.structure, matrix, step, velocity)
     explicit: tuple = ()
+    accounts: tuple = ()
+    bus: StructureSteps
+    if along is None:
+        bus = structure_steps(machine.structure, matrix, step, velocity)
+    else:
+        bus, moving = _following(along, rows, port, step, velocity)
+        explicit += (moving,)
+        accounts += (energy_account(moving, bus),)
     if machine.drives:
         explicit += (_controlled(machine, step, points, port),)
     if machine.preloads:
@@ -77,7 +96,32 @@ def machine_tables(
         [one.law for one in machine.frictions], [port[_friction(one)] for one in machine.frictions]
     )
     implicit = (frictions_on_ports(frictions, bus.step_compliance),) if frictions else ()
-    return StructureTables(bus, explicit, implicit, port)
+    return StructureTables(bus, explicit, (*implicit, *accounts), port)
+
+
+def energy_of_structure(tables: StructureTables) -> dict[str, float]:
+    """Energy of a structure that follows its axes, J, as `energy_of`; empty of others."""
+    for group in tables.implicit:
+        if isinstance(group, EnergyAccount):
+            return energy_of(group, tables.bus)
+    return {}
+
+
+def _following(
+    along: MachinesAlong,
+    rows: Mapping[str, NDArray[np.float64]],
+    port: Mapping[str, int],
+    step: float,
+    velocity: NDArray[np.float64] | None,
+) -> tuple[StructureSteps, MovingStructure]:
+    """Structure that follows its axes, and the group that makes it."""
+    matrices = []
+    for machine, outputs in zip(along.machines, along.outputs, strict=True):
+        there = dict(_rows(machine, {}, outputs))
+        matrices.append(np.array([there[name] for name in rows]))
+    drives = {drive.axis: drive.name for drive in reversed(along.machines[0].drives)}
+    travel = np.array([port[f"scale {drives[axis]}"] for axis in along.axes], dtype=np.int64)
+    return moving_structure(along, matrices, travel, step, velocity)
 
 
 def modal_tables(

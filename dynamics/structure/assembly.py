@@ -67,7 +67,7 @@ def assembly(
     is there to move, or parts move freely.
     """
     joints = [*connectors, *(bearing for beam in beams for bearing in beam.connectors)]
-    meshed = _with_nodes_where_joined(beams, joints, points, couplings)
+    meshed = with_nodes_where_joined(beams, connectors, couplings, points)
     parts = _named("body or beam", [*bodies, *meshed, *rotors])
     for kind, items in (("connector", joints), ("coupling", couplings), ("point", points)):
         _named(kind, items)
@@ -111,12 +111,14 @@ def assemble(
     ).structure
 
 
-def _with_nodes_where_joined(
+def with_nodes_where_joined(
     beams: Sequence[MeshedPart],
-    joints: Sequence[Connector],
-    points: Sequence[Point],
+    connectors: Sequence[Connector],
     couplings: Sequence[Coupling],
+    points: Sequence[Point],
 ) -> list[MeshedPart]:
+    """Beams with nodes wherever connectors, their bearings, couplings or points are on them."""
+    joints = [*connectors, *(bearing for beam in beams for bearing in beam.connectors)]
     positions = [(part, joint.at) for joint in joints for part in (joint.first, joint.second)]
     positions += [(point.body, point.at) for point in points]
     positions += [(term.part, term.at) for one in couplings for term in one.terms]

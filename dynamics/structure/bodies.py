@@ -56,8 +56,15 @@ class MeshedPart(Part, Protocol):
     def connectors(self) -> Sequence[Connector]:
         """The part's own bearings."""
 
+    @property
+    def stations(self) -> Sequence[float]:
+        """Where nodes are asked for, from the part's own beginning, m."""
+
     def with_nodes_at(self, positions: Iterable[ArrayLike]) -> MeshedPart:
         """Same part with nodes at positions (3,) in m."""
+
+    def with_stations(self, stations: Iterable[float]) -> MeshedPart:
+        """Same part with nodes at stations, m."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from chatter.description.file_name import FileName
 from chatter.description.machine.frequency_response import StateSection
-from chatter.description.quantities import QuantityField, quantity
+from chatter.description.quantities import QuantityField, quantity, whole_number
 from chatter.description.section import raise_if_any
 from chatter.description.wording import key_problems
 from dynamics.trajectory.jerk_limited import JerkLimitedMove
@@ -94,10 +94,17 @@ class MoveSection(StateSection):
     )
     standstill: quantity("time", at_least=0.0) = Field(0.0, description="before the move")
     afterwards: quantity("time", at_least=0.0) = Field(0.1, description="simulated behind its end")
+    travel_positions: whole_number(1, 101, "numbers of positions") | None = Field(
+        None,
+        description="along the travel of each axis at which the structure is assembled, to change "
+        "between them; as many as its natural frequencies need by default; 1: it stays as at the "
+        "start",
+    )
 
     @model_validator(mode="after")
     def _check(self) -> MoveSection:
-        always = ("axes", "cycle", "standstill", "afterwards", *StateSection.model_fields)
+        always = ("axes", "cycle", "standstill", "afterwards", "travel_positions")
+        always = (*always, *StateSection.model_fields)
         problems = key_problems(self, "kind", _keys_of(self.kind), always)
         plane = self.kind in ("circle", "square", "polyline")
         if plane and len(self.axes) != 2:

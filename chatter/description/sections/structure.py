@@ -19,7 +19,7 @@ from pydantic import (
 
 from chatter.description.file_name import FileName
 from chatter.description.formatting import formatted
-from chatter.description.quantities import quantity, quantity_list
+from chatter.description.quantities import quantity, quantity_list, whole_number
 from chatter.description.section import Section, raise_if_any
 
 #: vibration, m, at which resting frictions are linearised: what a cut that is hardly stable has
@@ -242,6 +242,7 @@ OF_MACHINE = (
     "friction",
     "friction_amplitude",
     "settling",
+    "travel_positions",
 )
 
 
@@ -280,6 +281,12 @@ class StructureSection(Section):
     )
     settling: quantity("time", at_least=0.0) | None = Field(
         None, description="time that the machine runs in the air before the cut; 1 s by default"
+    )
+    travel_positions: whole_number(1, 101, "numbers of positions") | None = Field(
+        None,
+        description="along the travel of each axis of the machine, at which its structure is "
+        "assembled, to change between them; as many as its natural frequencies need by default; "
+        "1: it stays as at the start",
     )
 
     @property

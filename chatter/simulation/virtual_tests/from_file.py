@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chatter.compile.linearised_friction import linearised_frf
+from chatter.compile.machine_along_axes import machine_along_axes, machine_at_start
 from chatter.compile.machine_parts import assembled_machine
 from chatter.description.errors import InputError
 from chatter.description.machine.frequency_response import (
@@ -27,6 +28,7 @@ from chatter.simulation.virtual_tests.move import MovePlan, MoveResult, move_axe
 from chatter.simulation.virtual_tests.virtual_tests import FrfTest, frf_by_test
 from dynamics.frf.container import Frf
 from dynamics.machine.description import Machine
+from dynamics.machine.moving_structure import MachinesAlong
 from dynamics.structure.linear_structure import StructureError
 from dynamics.trajectory.motion import TrajectoryError
 
@@ -35,6 +37,8 @@ Section = TypeVar("Section", FrfSection, MoveSection)
 _AXES = ("x", "y", "z", "rx", "ry", "rz")
 #: velocity below which an axis rests, m/s
 _RESTING = 1e-12
+#: instants at which a move is looked at for how far it goes
+_SAMPLES = 2000
 
 
 def in_state(file: MachineFile, state: StateSection) -> Machine:
@@ -210,19 +214,60 @@ def file_move(
     plan = MovePlan(
         course.trajectory, section.axes, cycle, section.standstill, section.afterwards, course.path
     )
-    tool = None
-    if file.tool_point is not None:
-        tool = np.array(
-            [
-                machine.structure.port(file.tool_point, direction, file.workpiece)
-                for direction in np.eye(3)
-            ]
-        )
     title = file.title or file.name
     with _told_with(where, file.name):
-        result = move_axes(f"{title}: {name}", machine, file.step, plan, tool, progress)
+        along = _along(file, section, machine, plan)
+        if along is not None:
+            machine = machine_at_start(along)
+        result = move_axes(
+            f"{title}: {name}",
+            machine,
+            file.step,
+            plan,
+            _tool_rows(file, machine) if file.tool_point is not None else None,
+            progress,
+            along,
+        )
     units = ("N" if file.axis[one].drive.motor_is_linear else "N*m" for one in section.axes)
     return replace(result, effort_units=tuple(units))
+
+
+def _along(
+    file: MachineFile, section: MoveSection, machine: Machine, plan: MovePlan
+) -> MachinesAlong | None:
+    """Machine along the axes that the move sends far enough to change its structure."""
+    controlled = {drive.axis for drive in machine.drives}
+    if not set(plan.axes) <= controlled:
+        return None  # refused where the move begins
+    wanted = plan.trajectory.at(np.linspace(0.0, plan.trajectory.duration, _SAMPLES)).position
+    travel = wanted - wanted[0]
+    ranges = {
+        axis: (float(travel[:, column].min()), float(travel[:, column].max()))
+        for column, axis in enumerate(plan.axes)
+    }
+    return machine_along_axes(
+        file,
+        ranges,
+        lambda one, _: {} if file.tool_point is None else _named_rows(_tool_rows(file, one)),
+        section.travel_positions,
+        section.condition,
+        section.position,
+        section.friction,
+    )
+
+
+def _tool_rows(file: MachineFile, machine: Machine) -> NDArray[np.float64]:
+    """Rows (3, n) of the tool against the workpiece."""
+    return np.array(
+        [
+            machine.structure.port(file.tool_point, direction, file.workpiece)
+            for direction in np.eye(3)
+        ]
+    )
+
+
+def _named_rows(rows: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    return {f"tool {direction}": row for direction, row in zip("xyz", rows, strict=True)}
 
 
 @contextmanager

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
@@ -18,6 +18,7 @@ from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, write_results
 from chatter.simulation.virtual_tests.run import MachineRun, RunInputs, run_machine
 from dynamics.machine.description import Drive, Machine
+from dynamics.machine.moving_structure import MachinesAlong
 from dynamics.trajectory.motion import Trajectory, TrajectoryError
 from dynamics.trajectory.path import Path, contour_error
 from dynamics.trajectory.set_points import SetPoints, set_points
@@ -62,6 +63,10 @@ class MoveResult:
     interrupted: bool
     #: of each axis, "N" of linear motors and "N*m" of others; none where motors are not known
     effort_units: tuple[str, ...] = ()
+    #: J, over the move, of a structure that follows its axes: work of motors, frictions and
+    #: preloads, work of the travel through the strained structure, dissipated in it, stored in
+    #: addition; empty where the structure stays as it is at the start
+    energy: dict[str, float] = field(default_factory=dict)
 
     def effort_unit(self, column: int) -> str:
         """Unit of the effort of an axis."""
@@ -86,12 +91,14 @@ class MoveResult:
                 error = (self.wanted - self.tool)[:, column]
                 axes[axis]["tool_error_um"] = _largest(error, 1e6)
         contour = None if self.contour is None else _largest(self.contour, 1e6)
+        energy = {"energy_J": self.energy} if self.energy else {}
         return {
             "machine": self.name,
             "duration_s": float(self.time[-1]) if self.time.size else 0.0,
             "axes": axes,
             "contour_error_um": contour,
             "interrupted": self.interrupted,
+            **energy,
         }
 
     def plot(self) -> Figure:
@@ -128,11 +135,13 @@ def move_axes(
     plan: MovePlan,
     tool: NDArray[np.float64] | None = None,
     progress: Progress = no_progress,
+    along: MachinesAlong | None = None,
 ) -> MoveResult:
     """Move the axes of a machine along a trajectory.
 
     The name is that of the machine, the step in s; `tool` (3, n) holds the rows of the tool's
-    displacement against the workpiece, x, y, z. InputError if an axis is unknown or not under
+    displacement against the workpiece, x, y, z. The structure follows the axes where it is given
+    along them; the machine is that at their start. InputError if an axis is unknown or not under
     control, a loop is unstable, or the interpolation cycle does not fit the step; RunError if the
     machine runs away.
     """
@@ -144,7 +153,7 @@ def move_axes(
     )
     duration = len(points.position) * points.steps * step + plan.afterwards
     finer = _records_a_cycle(machine, points.steps)
-    inputs = RunInputs(duration, points, outputs=rows, stride=points.steps // finer)
+    inputs = RunInputs(duration, points, outputs=rows, stride=points.steps // finer, along=along)
     run = _by_cycle(run_machine(machine, step, inputs, progress), finer)
     columns = [machine.axes.index(axis) for axis in plan.axes]
     # a row is read at the end of its cycle, when the next set point holds
@@ -170,6 +179,7 @@ def move_axes(
         contour,
         {one.name: -run.force[f"friction {one.name}"] for one in machine.frictions},
         run.interrupted,
+        energy=dict(run.energy),
     )
 
 
@@ -210,6 +220,7 @@ def _by_cycle(run: MachineRun, finer: int) -> MachineRun:
         {name: last(values) for name, values in run.velocity.items()},
         {name: mean(values) for name, values in run.force.items()},
         run.interrupted,
+        run.energy,
     )
 
 

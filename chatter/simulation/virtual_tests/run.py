@@ -14,7 +14,8 @@ from chatter.engine.record import port_record
 from dynamics.control.sampling import ControlError
 from dynamics.machine.description import Machine
 from dynamics.machine.groups import ControlledDrives
-from dynamics.machine.tables import machine_tables
+from dynamics.machine.moving_structure import MachinesAlong
+from dynamics.machine.tables import energy_of_structure, machine_tables
 from dynamics.machine.travel_limit import TravelLimit
 from dynamics.structure.linear_structure import StructureError
 from dynamics.trajectory.set_points import SetPoints
@@ -38,6 +39,9 @@ class MachineRun:
     velocity: Mapping[str, NDArray[np.float64]]  # m/s or rad/s
     force: Mapping[str, NDArray[np.float64]]  # N or N m
     interrupted: bool = False
+    #: J, since the start, of a structure that follows its axes: work of all forces, of the travel
+    #: through the strained structure, dissipated, stored in addition; empty of others
+    energy: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +58,7 @@ class RunInputs:
     injected: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
     outputs: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)  # (n,), rows read
     stride: int = 1  # steps from one recorded row to the next
+    along: MachinesAlong | None = None  # structure along axes that it follows
 
 
 def run_machine(
@@ -69,7 +74,9 @@ def run_machine(
         raise InputError(f"the run of {inputs.duration:g} s is shorter than a step of {step:g} s")
     _check_lengths(machine, inputs, total)
     try:
-        tables = machine_tables(machine, step, inputs.points, inputs.loads, inputs.outputs)
+        tables = machine_tables(
+            machine, step, inputs.points, inputs.loads, inputs.outputs, along=inputs.along
+        )
     except (StructureError, ControlError) as error:
         raise InputError(str(error)) from error
     stride = inputs.stride
@@ -101,7 +108,7 @@ def run_machine(
         for what in ("displacement", "velocity", "force")
     }
     time = step * stride * np.arange(1, rows + 1)
-    return MachineRun(time, **signals, interrupted=interrupted)
+    return MachineRun(time, **signals, interrupted=interrupted, energy=energy_of_structure(tables))
 
 
 def _check_lengths(machine: Machine, inputs: RunInputs, total: int) -> None:

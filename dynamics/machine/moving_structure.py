@@ -1,0 +1,433 @@
+"""Structure that changes as axes travel, stepped on its ports: tables and kernels.
+
+The structure is known at positions of the axes, in the same coordinates (`machine.along_axes`). Its
+matrices and the rows of its ports are interpolated by splines: a stiffness goes with the square of
+the rows of its springs, so that a linear interpolation would hold a carriage at two places at once
+and be too stiff. Exact steps at many positions in between are blended linearly by where the axes
+are. The state stays what it is, so that nothing jumps; the blend of stable steps is stable. What
+the travel of the axes through a strained structure does to its energy is accounted for.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numba.extending import register_jitable
+from numpy.typing import NDArray
+
+from dynamics.compiled import INLINED
+from dynamics.machine.description import Machine
+from dynamics.machine.steps import StructureSteps
+from dynamics.matrix_exponential import exact_step
+from dynamics.reduction.modal_truncation import undamped_modes
+from dynamics.structure.linear_structure import StructureError
+
+#: steps after which the structure may follow the axes again, and the shares of the distance between
+#: two positions that they must have travelled for it
+_STEPS, _SHARES = 16, 32.0
+#: of a stiffness, over the largest: resistance of a rigid motion that is rounding
+_NO_RESISTANCE = 1e-9
+
+
+class MachinesAlong(NamedTuple):
+    """A machine at a grid of positions of some axes, in the same coordinates."""
+
+    axes: tuple[str, ...]
+    positions: tuple[NDArray[np.float64], ...]  # of each axis from the start, ascending, m
+    machines: tuple[Machine, ...]  # the last axis varies fastest
+    outputs: tuple[Mapping[str, NDArray[np.float64]], ...]  # rows (n,) read, at each position
+    #: parts of each distance between two positions, by axis, at whose ends there are exact steps
+    parts: tuple[int, ...]
+
+
+class MovingStructure(NamedTuple):
+    """Steps of a structure at t positions of its axes, and where the blend of them stands.
+
+    s coordinates, n freedoms, p ports, a axes.
+    """
+
+    port: NDArray[np.int64]  # travel of each axis, (a,)
+    count: NDArray[np.int64]  # positions of each axis, (a,)
+    position: NDArray[np.float64]  # (a, most)
+    reach: NDArray[np.float64]  # travel that the structure need not follow, m, (a,)
+    place: NDArray[np.float64]  # of the axes at which the blend stands, m, (a,)
+    cell: NDArray[np.int64]  # position before the place, (a,)
+    share: NDArray[np.float64]  # of the one behind it, (a,)
+    dense: NDArray[np.float64]  # columns of `StructureSteps` at every position, (t, s, s)
+    constant: NDArray[np.float64]  # (t, p, s)
+    ramp: NDArray[np.float64]  # (t, p, s)
+    displacement: NDArray[np.float64]  # (t, s, p)
+    velocity: NDArray[np.float64]  # (t, s, p)
+    stiffness: NDArray[np.float64]  # of unit masses, 1/s^2, (t, n, n)
+    damping: NDArray[np.float64]  # 1/s, (t, n, n)
+    stiffness_now: NDArray[np.float64]  # (n, n)
+    damping_now: NDArray[np.float64]  # (n, n)
+    unit: NDArray[np.float64]  # coordinate per displacement of a freedom, 1/s, (n,)
+    work: NDArray[np.float64]  # of the axes on the structure that they travel through, J, (1,)
+
+
+class EnergyAccount(NamedTuple):
+    """Account of the energy of a moving structure; it puts on no force."""
+
+    stiffness: NDArray[np.float64]  # as it is now, (n, n)
+    damping: NDArray[np.float64]  # (n, n)
+    unit: NDArray[np.float64]  # (n,)
+    middle: NDArray[np.float64]  # velocity in the middle of the step, (n,)
+    sums: NDArray[
+        np.float64
+    ]  # work of all forces on ports and dissipation since the start, J, (2,)
+    travel: NDArray[np.float64]  # work of the axes on the structure, J, (1,)
+    at_start: float  # stored energy, J
+
+
+def moving_structure(
+    along: MachinesAlong,
+    rows: Sequence[NDArray[np.float64]],
+    travel: NDArray[np.int64],
+    step: float,
+    velocity: NDArray[np.float64] | None = None,
+) -> tuple[StructureSteps, MovingStructure]:
+    """Return a structure unstrained with its axes at 0, and what lets it follow them.
+
+    Parameters
+    ----------
+    along : MachinesAlong
+    rows : sequence of (p, n) array of float
+        Of the ports, at every position.
+    travel : (a,) array of int
+        Ports that tell where the axes are.
+    step : float
+        s.
+    velocity : (n,) array of float, optional
+        Of the freedoms at the start, m/s (rad/s); at rest by default.
+
+    Raises
+    ------
+    StructureError
+        If an axis has fewer than two positions, or 0 is not among them.
+    """
+    start = _start(along)
+    reference = along.machines[start].structure
+    modes = undamped_modes(reference)
+    count = modes.frequency.size
+    omega = 2.0 * np.pi * modes.frequency
+    unit = np.where(omega > 0.0, omega, 1.0)
+    stiffness, damping = (
+        np.array(
+            [modes.shapes.T @ getattr(one.structure, what) @ modes.shapes for one in along.machines]
+        )
+        for what in ("stiffness", "damping")
+    )
+    shapes = np.array([np.asarray(one) @ modes.shapes for one in rows])
+    positions, (stiffness, damping, shapes) = _refined(along, (stiffness, damping, shapes))
+    along = along._replace(positions=positions)
+    start = _start(along)
+    _free(stiffness, omega == 0.0)
+    tables = [
+        _columns(k, c, seen, unit, step)
+        for k, c, seen in zip(stiffness, damping, shapes, strict=True)
+    ]
+    columns = {name: np.ascontiguousarray([table[name] for table in tables]) for name in tables[0]}
+    ports = shapes[0].shape[0]
+    bus = _bus(columns, start, step, ports)
+    if velocity is not None:
+        moving = modes.shapes.T @ (reference.mass @ velocity)
+        bus.state[count:] = moving
+    bus.v[:] = bus.velocity.T @ bus.state
+    axes = len(along.axes)
+    most = max(len(one) for one in along.positions)
+    position = np.full((axes, most), np.inf)
+    for axis, one in enumerate(along.positions):
+        position[axis, : len(one)] = one
+    group = MovingStructure(
+        port=np.asarray(travel, dtype=np.int64),
+        count=np.array([len(one) for one in along.positions], dtype=np.int64),
+        position=position,
+        reach=np.array([np.min(np.diff(one)) / _SHARES for one in along.positions]),
+        place=np.zeros(axes),
+        cell=np.zeros(axes, dtype=np.int64),
+        share=np.zeros(axes),
+        **columns,
+        stiffness=stiffness,
+        damping=damping,
+        stiffness_now=stiffness[start].copy(),
+        damping_now=damping[start].copy(),
+        unit=unit,
+        work=np.zeros(1),
+    )
+    return bus, group
+
+
+def energy_account(group: MovingStructure, bus: StructureSteps) -> EnergyAccount:
+    """Return the account of a structure at its start."""
+    return EnergyAccount(
+        group.stiffness_now,
+        group.damping_now,
+        group.unit,
+        np.zeros(group.unit.size),
+        np.zeros(2),
+        group.work,
+        _stored(group.stiffness_now, group.unit, bus),
+    )
+
+
+def _stored(
+    stiffness: NDArray[np.float64], unit: NDArray[np.float64], bus: StructureSteps
+) -> float:
+    q, v = bus.state[: unit.size] / unit, bus.state[unit.size :]
+    # a run that was left early may end far out
+    with np.errstate(over="ignore", invalid="ignore"):
+        return float(0.5 * (v @ v + q @ stiffness @ q))
+
+
+def energy_of(account: EnergyAccount, bus: StructureSteps) -> dict[str, float]:
+    """Energy since the start, J: work of forces and of travel, dissipated, and stored in addition.
+
+    The work of friction is among that of the forces.
+    """
+    return {
+        "work": float(account.sums[0]),
+        "travel": float(account.travel[0]),
+        "dissipated": float(account.sums[1]),
+        "stored": _stored(account.stiffness, account.unit, bus) - account.at_start,
+    }
+
+
+def _refined(
+    along: MachinesAlong, known: Sequence[NDArray[np.float64]]
+) -> tuple[tuple[NDArray[np.float64], ...], list[NDArray[np.float64]]]:
+    """Positions with those between them, and what is known at the positions (t, ...) there too."""
+    from scipy.interpolate import make_interp_spline
+
+    counts = [len(one) for one in along.positions]
+    finer = tuple(
+        np.append(np.linspace(one[:-1], one[1:], parts, endpoint=False, axis=1).ravel(), one[-1])
+        for one, parts in zip(along.positions, along.parts, strict=True)
+    )
+    refined = []
+    for values in known:
+        shape = values.shape[1:]
+        grid = values.reshape(*counts, *shape)
+        for axis, (one, between) in enumerate(zip(along.positions, finer, strict=True)):
+            degree = min(3, len(one) - 1)
+            grid = make_interp_spline(one, grid, degree, axis=axis)(between)
+        refined.append(np.ascontiguousarray(grid.reshape(-1, *shape)))
+    return finer, refined
+
+
+def _start(along: MachinesAlong) -> int:
+    """Number of the machine at the start."""
+    number = 0
+    for axis, positions in zip(along.axes, along.positions, strict=True):
+        if len(positions) < 2 or not np.any(positions == 0.0):
+            raise StructureError(
+                f'axis "{axis}": positions {positions.tolist()}; two or more are needed, '
+                "0 among them"
+            )
+        number = number * len(positions) + int(np.argmin(np.abs(positions)))
+    return number
+
+
+def _free(stiffness: NDArray[np.float64], rigid: NDArray[np.bool_]) -> None:
+    """Take the rounding out of what resists motions that nothing resists at any position.
+
+    Axes travel far along them, so that rounding would be a force.
+    """
+    largest = np.max(np.abs(stiffness), initial=0.0)
+    for mode in np.flatnonzero(rigid):
+        if np.max(np.abs(stiffness[:, mode])) <= _NO_RESISTANCE * largest:
+            stiffness[:, mode, :] = 0.0
+            stiffness[:, :, mode] = 0.0
+
+
+def _columns(
+    stiffness: NDArray[np.float64],
+    damping: NDArray[np.float64],
+    shapes: NDArray[np.float64],
+    unit: NDArray[np.float64],
+    step: float,
+) -> dict[str, NDArray[np.float64]]:
+    """Columns of the steps at one position; coordinates are displacements times `unit`, rates."""
+    count = unit.size
+    rate = np.zeros((2 * count, 2 * count))
+    rate[:count, count:] = np.diag(unit)
+    rate[count:, :count] = -stiffness / unit
+    rate[count:, count:] = -damping
+    nothing = np.zeros_like(shapes)
+    over = exact_step(rate, np.vstack([nothing.T, shapes.T]), step)
+    return {
+        "dense": over.transition.T,
+        "constant": over.constant.T,
+        "ramp": over.ramp.T,
+        "displacement": np.hstack([shapes / unit, nothing]).T,
+        "velocity": np.hstack([nothing, shapes]).T,
+    }
+
+
+def _bus(
+    columns: Mapping[str, NDArray[np.float64]], start: int, step: float, ports: int
+) -> StructureSteps:
+    """Table whose columns are overwritten as the structure follows its axes."""
+    now = {name: column[start].copy() for name, column in columns.items()}
+    size = len(now["dense"])
+    answers = {
+        f"{force}_{kind}": now[way] @ now[motion]
+        for force, way in (("step", "constant"), ("ramp", "ramp"))
+        for kind, motion in (("compliance", "displacement"), ("mobility", "velocity"))
+    }
+    signals = ("force", "change", "next_force", "u_before", "v_before", "u", "v")
+    return StructureSteps(
+        step=step,
+        pairs=np.zeros((4, 0)),
+        **now,
+        **answers,
+        state=np.zeros(size),
+        after=np.zeros(size),
+        **{name: np.zeros(ports) for name in signals},
+        halted=np.zeros(1, dtype=np.int64),
+    )
+
+
+@register_jitable(**INLINED)
+def _place(group, bus, a):
+    """Where an axis is in the middle of the steps before the structure may follow it again, m."""
+    p = group.port[a]
+    return bus.u_before[p] + 0.5 * _STEPS * bus.step * bus.v_before[p]
+
+
+@register_jitable(**INLINED)
+def _locate(group, bus):
+    """Find the positions beside every axis, and the share of the one behind."""
+    for a in range(group.port.shape[0]):
+        group.place[a] = _place(group, bus, a)
+        last = group.count[a] - 1
+        place = min(max(group.place[a], group.position[a, 0]), group.position[a, last])
+        cell = 0
+        while cell < last - 1 and place >= group.position[a, cell + 1]:
+            cell += 1
+        before, behind = group.position[a, cell], group.position[a, cell + 1]
+        group.cell[a] = cell
+        group.share[a] = (place - before) / (behind - before)
+
+
+@register_jitable(**INLINED)
+def _corner(group, number):
+    """Table of a corner of the cell that the axes are in, and its weight."""
+    table, weight = 0, 1.0
+    for a in range(group.port.shape[0]):
+        behind = (number >> a) & 1
+        table = table * group.count[a] + group.cell[a] + behind
+        weight *= group.share[a] if behind == 1 else 1.0 - group.share[a]
+    return table, weight
+
+
+@register_jitable(**INLINED)
+def _blend(into, tables, table, weight, first):
+    """Add a table by its weight to what is blended; the first one begins it."""
+    for i in range(into.shape[0]):
+        for j in range(into.shape[1]):
+            added = weight * tables[table, i, j]
+            into[i, j] = added if first else into[i, j] + added
+
+
+@register_jitable(**INLINED)
+def _strain_energy(stiffness, unit, state):
+    """Strain energy of the state, J."""
+    energy = 0.0
+    for i in range(unit.shape[0]):
+        row = 0.0
+        for j in range(unit.shape[0]):
+            row += stiffness[i, j] * state[j] / unit[j]
+        energy += 0.5 * row * state[i] / unit[i]
+    return energy
+
+
+@register_jitable(**INLINED)
+def _answer(answer, way, motion):
+    """Motion of ports per force on ports."""
+    for p in range(answer.shape[0]):
+        for q in range(answer.shape[1]):
+            answer[p, q] = 0.0
+        for i in range(way.shape[1]):
+            moved = way[p, i]
+            for q in range(answer.shape[1]):
+                answer[p, q] += moved * motion[i, q]
+
+
+@register_jitable(**INLINED)
+def _publish(bus):
+    """Motion of the ports where the step begins."""
+    for p in range(bus.u_before.shape[0]):
+        u, v = 0.0, 0.0
+        for i in range(bus.state.shape[0]):
+            u += bus.displacement[i, p] * bus.state[i]
+            v += bus.velocity[i, p] * bus.state[i]
+        bus.u_before[p], bus.v_before[p] = u, v
+
+
+@register_jitable(**INLINED)
+def _follow(group, bus):
+    """Blend the steps anew where the axes are now."""
+    _locate(group, bus)
+    strained = _strain_energy(group.stiffness_now, group.unit, bus.state)
+    for number in range(1 << group.port.shape[0]):
+        table, weight = _corner(group, number)
+        first = number == 0
+        if weight == 0.0 and not first:
+            continue
+        _blend(bus.dense, group.dense, table, weight, first)
+        _blend(bus.constant, group.constant, table, weight, first)
+        _blend(bus.ramp, group.ramp, table, weight, first)
+        _blend(bus.displacement, group.displacement, table, weight, first)
+        _blend(bus.velocity, group.velocity, table, weight, first)
+        _blend(group.stiffness_now, group.stiffness, table, weight, first)
+        _blend(group.damping_now, group.damping, table, weight, first)
+    _answer(bus.step_compliance, bus.constant, bus.displacement)
+    _answer(bus.step_mobility, bus.constant, bus.velocity)
+    _answer(bus.ramp_compliance, bus.ramp, bus.displacement)
+    _answer(bus.ramp_mobility, bus.ramp, bus.velocity)
+    group.work[0] += _strain_energy(group.stiffness_now, group.unit, bus.state) - strained
+    _publish(bus)
+
+
+@register_jitable(**INLINED)
+def moving_forces(group, bus, clock):
+    """Let the structure follow its axes, before anything else in a step; it puts on no force."""
+    if clock.number % _STEPS != 0:
+        return
+    travelled = False
+    for a in range(group.port.shape[0]):
+        if abs(_place(group, bus, a) - group.place[a]) > group.reach[a]:
+            travelled = True
+    if travelled:
+        _follow(group, bus)
+
+
+@register_jitable(**INLINED)
+def energy_commit(group, bus, clock):  # noqa: ARG001
+    """Add work and dissipation of the step.
+
+    The work is exact but for the mean of a displacement, which is by Hermite quadrature; the
+    dissipation by Simpson's rule, with the velocity in the middle from a cubic.
+    """
+    h, n = bus.step, group.unit.shape[0]
+    work = 0.0
+    for p in range(bus.u.shape[0]):
+        u0, u1 = bus.u_before[p], bus.u[p]
+        mean = 0.5 * (u0 + u1) + h / 12.0 * (bus.v_before[p] - bus.v[p])
+        work += bus.force[p] * (u1 - u0) + bus.change[p] * (u1 - mean)
+    for i in range(n):
+        moved = (bus.after[i] - bus.state[i]) / group.unit[i]
+        group.middle[i] = 1.5 * moved / h - 0.25 * (bus.state[n + i] + bus.after[n + i])
+    dissipated = 0.0
+    for i in range(n):
+        before, middle, behind = 0.0, 0.0, 0.0
+        for j in range(n):
+            rate = group.damping[i, j]
+            before += rate * bus.state[n + j]
+            middle += rate * group.middle[j]
+            behind += rate * bus.after[n + j]
+        dissipated += bus.state[n + i] * before + 4.0 * group.middle[i] * middle
+        dissipated += bus.after[n + i] * behind
+    group.sums[0] += work
+    group.sums[1] += h / 6.0 * dissipated
