@@ -78,8 +78,8 @@ def machine_along_axes(
         name: axis.position for name, axis in file.axis.items() if axis.travelling
     } | file.positions(positions or {})
 
-    def at(places: Sequence[Mapping[str, float]]) -> tuple[Machine, ...]:
-        everywhere = [start | {axis: start[axis] + x for axis, x in one.items()} for one in places]
+    def at(offsets: Sequence[Mapping[str, float]]) -> tuple[Machine, ...]:
+        everywhere = [start | {axis: start[axis] + x for axis, x in one.items()} for one in offsets]
         parts = [machine_parts(file, one) for one in everywhere]
         with machine_errors(file.name):
             machines = machines_at(parts, conditions)
@@ -103,18 +103,18 @@ def machine_along_axes(
         for number, one in zip(cells.values(), grid, strict=True)
     )
     changing = tuple(cells)
-    places = [dict(zip(changing, one, strict=True)) for one in product(*grid)]
-    first = next(number for number, place in enumerate(places) if not any(place.values()))
-    order = [first, *(number for number in range(len(places)) if number != first)]
-    assembled = dict(zip(order, at([places[number] for number in order]), strict=True))
-    machines = tuple(assembled[number] for number in range(len(places)))
+    offsets = [dict(zip(changing, one, strict=True)) for one in product(*grid)]
+    first = next(number for number, offset in enumerate(offsets) if not any(offset.values()))
+    order = [first, *(number for number in range(len(offsets)) if number != first)]
+    assembled = dict(zip(order, at([offsets[number] for number in order]), strict=True))
+    machines = tuple(assembled[number] for number in range(len(offsets)))
     return MachinesAlong(
         changing,
         grid,
         machines,
         tuple(
-            outputs(machine, start | {axis: start[axis] + x for axis, x in place.items()})
-            for machine, place in zip(machines, places, strict=True)
+            outputs(machine, start | {axis: start[axis] + x for axis, x in offset.items()})
+            for machine, offset in zip(machines, offsets, strict=True)
         ),
         parts,
     )
@@ -122,8 +122,8 @@ def machine_along_axes(
 
 def machine_at_start(along: MachinesAlong) -> Machine:
     """Machine where the axes start."""
-    places = product(*along.positions)
-    return next(one for one, place in zip(along.machines, places, strict=True) if not any(place))
+    offsets = product(*along.positions)
+    return next(one for one, offset in zip(along.machines, offsets, strict=True) if not any(offset))
 
 
 def _changes(machines: Sequence[Machine]) -> bool:

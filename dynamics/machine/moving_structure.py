@@ -50,8 +50,8 @@ class MovingStructure(NamedTuple):
     count: NDArray[np.int64]  # positions of each axis, (a,)
     position: NDArray[np.float64]  # (a, most)
     reach: NDArray[np.float64]  # travel that the structure need not follow, m, (a,)
-    place: NDArray[np.float64]  # of the axes at which the blend stands, m, (a,)
-    cell: NDArray[np.int64]  # position before the place, (a,)
+    travel: NDArray[np.float64]  # of the axes at which the blend stands, m, (a,)
+    cell: NDArray[np.int64]  # position before the travel, (a,)
     share: NDArray[np.float64]  # of the one behind it, (a,)
     dense: NDArray[np.float64]  # columns of `StructureSteps` at every position, (t, s, s)
     constant: NDArray[np.float64]  # (t, p, s)
@@ -144,7 +144,7 @@ def moving_structure(
         count=np.array([len(one) for one in along.positions], dtype=np.int64),
         position=position,
         reach=np.array([np.min(np.diff(one)) / _SHARES for one in along.positions]),
-        place=np.zeros(axes),
+        travel=np.zeros(axes),
         cell=np.zeros(axes, dtype=np.int64),
         share=np.zeros(axes),
         **columns,
@@ -289,7 +289,7 @@ def _bus(
 
 
 @register_jitable(**INLINED)
-def _place(group, bus, a):
+def _travel(group, bus, a):
     """Where an axis is in the middle of the steps before the structure may follow it again, m."""
     p = group.port[a]
     return bus.u_before[p] + 0.5 * _STEPS * bus.step * bus.v_before[p]
@@ -299,15 +299,15 @@ def _place(group, bus, a):
 def _locate(group, bus):
     """Find the positions beside every axis, and the share of the one behind."""
     for a in range(group.port.shape[0]):
-        group.place[a] = _place(group, bus, a)
+        group.travel[a] = _travel(group, bus, a)
         last = group.count[a] - 1
-        place = min(max(group.place[a], group.position[a, 0]), group.position[a, last])
+        travelled = min(max(group.travel[a], group.position[a, 0]), group.position[a, last])
         cell = 0
-        while cell < last - 1 and place >= group.position[a, cell + 1]:
+        while cell < last - 1 and travelled >= group.position[a, cell + 1]:
             cell += 1
         before, behind = group.position[a, cell], group.position[a, cell + 1]
         group.cell[a] = cell
-        group.share[a] = (place - before) / (behind - before)
+        group.share[a] = (travelled - before) / (behind - before)
 
 
 @register_jitable(**INLINED)
@@ -397,7 +397,7 @@ def moving_forces(group, bus, clock):
         return
     travelled = False
     for a in range(group.port.shape[0]):
-        if abs(_place(group, bus, a) - group.place[a]) > group.reach[a]:
+        if abs(_travel(group, bus, a) - group.travel[a]) > group.reach[a]:
             travelled = True
     if travelled:
         _follow(group, bus)

@@ -7,11 +7,12 @@ import scipy.optimize
 import scipy.sparse
 import scipy.sparse.linalg
 
+import chatter
 from dynamics.reduction.craig_bampton import super_element
 from dynamics.reduction.modal_truncation import undamped_modes
 from dynamics.structure.bodies import rigid_motion
 from dynamics.structure.linear_structure import LinearStructure
-from tests.places import example_module
+from tests.places import EXAMPLES, example_module
 
 STATIONS = 1
 HIGHEST = 6000.0  # Hz, of the fixed-interface modes here
@@ -277,3 +278,45 @@ def test_positions_that_mirror_each_other_are_alike(machine):
 
 def test_example_draws_its_picture(machine, tmp_path):
     assert all(path.stat().st_size > 10_000 for path in machine.main(tmp_path))
+
+
+# -- the machine of machine.toml -----------------------------------------------------------------
+
+FOLDER = EXAMPLES / "solid-crossbeam"
+
+
+def test_slot_along_the_beam_keeps_its_energy():
+    """The head travels 30 mm along the rails in the cut, under control, friction and chips."""
+    case = chatter.load(FOLDER / "case.toml")
+    result = chatter.simulate(
+        case, {"simulation.duration": "0.25 s", "structure.settling": "0.3 s"}
+    )
+    energy = result.energy
+    balance = energy["work"] + energy["travel"] - energy["dissipated"] - energy["stored"]
+    assert abs(balance) < 1e-3 * energy["dissipated"]
+    assert abs(energy["travel"]) > abs(balance)
+    assert any(note.startswith("the structure changes as the axes travel") for note in result.notes)
+    still = chatter.simulate(
+        case,
+        {
+            "simulation.duration": "0.25 s",
+            "structure.settling": "0.3 s",
+            "structure.travel_positions": 1,
+        },
+    )
+    assert still.energy == {}
+    # over such a distance the beam hardly changes
+    assert result.summary()["mean_force_N"]["Fy"] == pytest.approx(
+        still.summary()["mean_force_N"]["Fy"], rel=1e-4
+    )
+
+
+def test_frequencies_along_the_beam_between_its_points():
+    """The head stands between points of the rails; the solid beam is softer than the tube."""
+    travel = example_module("solid-crossbeam", "travel")
+    file = chatter.load_machine(FOLDER / "machine.toml")
+    middle, right = (travel.frequencies(file, place) for place in (0.0, 0.45))
+    assert right[3] > 1.02 * middle[3]  # nodding on the twisting beam
+    mirrored = travel.frequencies(file, -0.45)
+    # the screw is longer at the right, the beam is symmetric
+    assert mirrored[:3] == pytest.approx(right[:3], rel=0.01)

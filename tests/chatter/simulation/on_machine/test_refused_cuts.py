@@ -7,6 +7,7 @@ import pytest
 import chatter
 from chatter.description.errors import InputError
 from chatter.simulation.setup import set_up
+from dynamics.machine.groups import ControlledDrives
 from tests.chatter.simulation.on_machine.coupled_machines import cut_case, spindle, written
 from tests.chatter.simulation.on_machine.test_feed import slide
 
@@ -99,7 +100,8 @@ def test_no_time_to_come_to_the_feed(tmp_path):
     path = written(tmp_path, slide(True))
     case = cut_case({"machine": str(path), "settling": 0.1})
     setup = set_up(case)
-    points = setup.structure.tables.explicit[0].points
+    explicit = setup.structure.tables.explicit
+    points = next(one.points for one in explicit if isinstance(one, ControlledDrives))
     cycle = points.steps * setup.step
     # feed of 0.1 mm by four teeth and 50 turns a second
     speed = abs(points.velocity[:, 0])
