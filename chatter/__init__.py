@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from chatter.simulation.virtual_tests.export import export as export
     from chatter.simulation.virtual_tests.from_file import frf as frf
     from chatter.simulation.virtual_tests.from_file import move as move
+    from chatter.simulation.virtual_tests.mode_shapes import mode_shapes as mode_shapes
     from chatter.stability.case_schema import schema as schema
     from chatter.stability.check import check as check
     from chatter.studies.bifurcation import bifurcation as bifurcation
@@ -86,6 +87,7 @@ _PUBLIC = {
     "load_machine": "chatter.description.machine.machine_file",
     "lobes": "chatter.studies.diagram_over_axes",
     "lobes_over": "chatter.studies.diagram_over_axes",
+    "mode_shapes": "chatter.simulation.virtual_tests.mode_shapes",
     "modes": "chatter.studies.modal_test",
     "optimum": "chatter.studies.optimisation.process_optimisation",
     "move": "chatter.simulation.virtual_tests.from_file",

@@ -267,7 +267,7 @@ def draw_poincare_section(axes: Axes, result: SimulationResult) -> None:
     axes.set_title("once a revolution", loc="left")
     axes.set(xlabel="x [µm]", ylabel="y [µm]")
     style.finish(axes)
-    points = _once_a_turn(result)
+    points = once_a_revolution(result)
     if not result.setup.modes or len(points) == 0:
         text = "rigid: no motion" if not result.setup.modes else "less than a revolution"
         _say(axes, text)
@@ -283,8 +283,8 @@ def draw_poincare_section(axes: Axes, result: SimulationResult) -> None:
     axes.legend(loc="best", fontsize=7.5, framealpha=0.85)
 
 
-def _once_a_turn(result: SimulationResult) -> Array:
-    """Points (turns, 2), µm."""
+def once_a_revolution(result: SimulationResult) -> Array:
+    """Displacement (revolutions, 2), µm, each time the first tooth is at +y."""
     turns = np.arange(1, result.whole_revolutions + 1)
     if len(turns) == 0 or len(result.rows) < 4:
         return np.zeros((0, 2))

@@ -9,6 +9,9 @@ from typing import Any
 import panel as pn
 
 from chatter.app.workbench.case_view import CaseView
+from chatter.app.workbench.cut_view import CutView
+from chatter.app.workbench.machine_view import MachineView
+from chatter.app.workbench.measurement_view import MeasurementView
 from chatter.app.workbench.session import Session
 from chatter.app.workbench.stability_tab import StabilityTab
 from chatter.app.workbench.studies_view import StudiesView
@@ -34,12 +37,18 @@ class Workbench:
         self.sheet = StudiesView(self.session, show, ("sheet", "check"))
         self.studies = StudiesView(self.session, show, _STUDIES)
         self.stability = StabilityTab(self.session, show, method)
+        self.cut = CutView(self.session, show)
+        self.machine = MachineView(self.session, show)
+        self.measurement = MeasurementView(self.session, show, self._opened)
         self.views: dict[str, Any] = {
             "Tap test": self.tap_test,
             "Case": self.case,
             "Stability": self.stability,
-            "Operator's sheet": self.sheet,
+            "Cut": self.cut,
+            "Machine": self.machine,
+            "Measurement": self.measurement,
             "Studies": self.studies,
+            "Operator's sheet": self.sheet,
         }
         self.tabs = pn.Tabs(
             *((name, view.__panel__()) for name, view in self.views.items()), dynamic=True
@@ -61,8 +70,10 @@ class Workbench:
     def end(self) -> None:
         """Give up what is computed for this session."""
         self.stability.end()
-        for view in (self.tap_test, self.sheet, self.studies):
-            view.computations.end()
+        for quick in (self.tap_test, self.cut):
+            quick.computations.end()
+        for long in (self.machine, self.measurement, self.sheet, self.studies):
+            long.work.computations.end()
 
     def open(self, name: str | None) -> None:
         """Open a case file of the folder."""
@@ -82,8 +93,9 @@ class Workbench:
 
     def _refresh(self) -> None:
         """Bring up to date what follows the case only while it is looked at."""
-        if self.tabs.active == list(self.views).index("Stability"):
-            self.stability.refresh()
+        view = list(self.views.values())[self.tabs.active]
+        if hasattr(view, "refresh"):
+            view.refresh()
 
     def _describe(self) -> None:
         case = self.session.case

@@ -63,6 +63,13 @@ class Session:
             raise InputError(f"{name}: lies outside of the folder {self.root.name}")
         return found
 
+    def new_path(self, name: str) -> Path:
+        """Path of a case file that is not there yet; InputError where it is, or for other names."""
+        path = self.path(checked_name(name, (".toml",)))
+        if path.exists():
+            raise InputError(f"{name}: is there already; give another name")
+        return path
+
     def watch(self, changed: Callable[[], None]) -> None:
         """Call a function whenever the open case has changed."""
         self._watchers.append(changed)
@@ -97,9 +104,7 @@ class Session:
 
     def start(self, name: str, text: str) -> None:
         """Open a new case that is not saved yet; InputError if there is a file of the name."""
-        path = self.path(checked_name(name, (".toml",)))
-        if path.exists():
-            raise InputError(f"{name}: is there already; give another name")
+        self.new_path(name)
         self.name, self._on_disk = name, None
         self.set_text(text)
 

@@ -10,8 +10,7 @@ from typing import Any
 
 import panel as pn
 
-from chatter.app.workbench.computations import Computation, Computations
-from chatter.app.workbench.separate_process import in_own_process
+from chatter.app.workbench.long_work import LongWork
 from chatter.app.workbench.session import Session, readable_extensions
 from chatter.app.workbench.stability_view import StabilityView
 from chatter.app.workbench.studies import STUDIES, run_study
@@ -19,7 +18,6 @@ from chatter.app.workbench.table_files import table_of
 from chatter.app.workbench.upload import dropper
 from chatter.description.case import load
 from chatter.description.errors import InputError
-from chatter.description.progress import Progress
 
 _NONE = "(none)"
 
@@ -48,21 +46,19 @@ class StabilityTab:
         self.keep = pn.widgets.Button(label="Sliders into the case")
         self.optimum = pn.widgets.Button(label="Optimum")
         self.uncertainty = pn.widgets.Button(label="Uncertainty band")
-        self.cancel = pn.widgets.Button(label="Cancel the study")
         self.upload = dropper(self.take_frfs, "FRF files in place of the modes")
-        self.message = pn.pane.Str("", width=900, styles={"white-space": "pre-wrap"})
+        self.work = LongWork(session.root, show)
+        self.message = self.work.message
         self._diagram, self._beside = pn.Column(), pn.Column()
-        self.computations = Computations(self._later)
         self.keep.on_click(lambda _: self.keep_sliders())
         self.optimum.on_click(lambda _: self.study("optimum"))
         self.uncertainty.on_click(lambda _: self.study("uncertainty"))
-        self.cancel.on_click(lambda _: self.computations.cancel())
         self.other.param.watch(lambda _: self._compare(), "value")
 
     def __panel__(self) -> pn.viewable.Viewable:
         """Return the view for the page."""
         return pn.Column(
-            pn.Row(self.keep, self.optimum, self.uncertainty, self.cancel, self.other),
+            pn.Row(self.keep, self.optimum, self.uncertainty, self.work.cancel_button, self.other),
             self.message,
             pn.Row(self._diagram, self._beside),
             pn.Card(self.upload, title="FRF files", collapsed=True, width=460),
@@ -81,7 +77,7 @@ class StabilityTab:
             case = session.sound_case()
             self.diagram = StabilityView(case, session.name, self._show, self._method)
         except InputError as error:
-            self._later(str(error))
+            self.work.tell(str(error))
             self._diagram.objects = []
             return
         self.message.object = ""
@@ -99,7 +95,7 @@ class StabilityTab:
         try:
             self._session.set_text(self._session.sound_case().patch(changes).to_toml())
         except InputError as error:
-            self._later(str(error))
+            self.work.tell(str(error))
             return
         self.message.object = f"{', '.join(changes)}: in the case, which is not saved yet"
 
@@ -114,30 +110,28 @@ class StabilityTab:
             gone = [(f"structure.{key}", None) for key in ("mode", "machine")]
             session.set_values([*gone, ("structure.frf", names)])
         except InputError as error:
-            self._later(str(error))
+            self.work.tell(str(error))
 
     def study(self, name: str) -> None:
         """Compute the optimum or the uncertainty of the case and draw it into the diagram."""
         try:
             case = self._session.case_text
         except InputError as error:
-            self._later(str(error))
+            self.work.tell(str(error))
             return
         folder, drawn = self._session.results(name), self.diagram
-        options = STUDIES[name].options
+        label = STUDIES[name].label
 
-        def compute(go_on: Progress) -> None:
-            in_own_process(run_study, (name, case, options, folder), go_on, self._report)
-            self._later(f"{STUDIES[name].label}: see the view Studies for its tables")
+        def draw() -> None:
             if drawn is not None:
-                self._show(lambda: _DRAWN[name](drawn, folder))
+                _DRAWN[name](drawn, folder)
 
-        self.message.object = f"{STUDIES[name].label}: starting ..."
-        self.computations.start(Computation(compute, False))
+        arguments = (name, case, STUDIES[name].options, folder)
+        self.work.start(run_study, arguments, draw, f"{label}: its tables are in the view Studies")
 
     def end(self) -> None:
         """Give up what is computed."""
-        self.computations.end()
+        self.work.computations.end()
         self._end_diagrams()
 
     def _end_diagrams(self) -> None:
@@ -157,16 +151,9 @@ class StabilityTab:
             case = load(self._session.path(name))
             self.beside = StabilityView(case, name, self._show, self._method, self.diagram)
         except InputError as error:
-            self._later(str(error))
+            self.work.tell(str(error))
             return
         self._beside.objects = [self.beside.diagram_alone()]
-
-    def _report(self, stage: str, share: float) -> None:
-        self._later(f"{stage} ({100.0 * share:.0f} %)")
-
-    def _later(self, text: str) -> None:
-        told = text.replace(f"{self._session.root}/", "")
-        self._show(lambda: setattr(self.message, "object", told))
 
 
 def _draw_band(view: StabilityView, folder: Path) -> None:

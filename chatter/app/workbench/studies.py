@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import chatter
 from chatter.app.workbench.separate_process import Report
-from chatter.app.workbench.session import CaseText, write_call
+from chatter.app.workbench.session import CaseText, read_call, write_call
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress
 
@@ -135,6 +135,76 @@ def run_study(
     report(f"{study.label}: starting", 0.0)
     result = study.compute(case.case(), options, folder, progress)
     save_result(result, folder, {"title": study.label, **same_call(name, case.name, options)})
+
+
+def run_machine(
+    name: str,
+    file: Path,
+    call: Mapping[str, str],
+    tests: Sequence[str],
+    folder: Path,
+    report: Report,
+) -> None:
+    """Compute FRFs, a move or the mode shapes of a machine file and write their files."""
+
+    def progress(done: int, total: int) -> None:
+        report(name, done / total if total else 0.0)
+
+    report(f"{name}: starting", 0.0)
+    machine = chatter.load_machine(file)
+    if name == "frf":
+        result: Any = chatter.frf(machine, list(tests) or None, progress)
+    elif name == "move":
+        result = chatter.move(machine, tests[0], progress)
+    else:
+        result = chatter.mode_shapes(machine)
+    save_result(result, folder, {"title": f"{name} {', '.join(tests)}", **call})
+
+
+def run_measurement(
+    name: str,
+    measurement: Path,
+    case: CaseText | None,
+    call: Mapping[str, str],
+    folder: Path,
+    report: Report,
+) -> None:
+    """Compare or explain a measurement and write the files of it."""  # fmt: skip
+    given = None if case is None else case.case()
+    report(f"{name}: reading the signals", 0.0)
+    if name == "compare":
+        result: Any = chatter.compare(measurement, given)
+        sentences = _of_comparison(result)
+    else:
+        result = chatter.explain(measurement, given, report)
+        sentences = _of_explanation(result.summary())
+    save_result(result, folder, {"title": name, **call})
+    write_call(folder, {**read_call(folder), "sentences": sentences})
+
+
+def _of_comparison(result: Any) -> list[str]:
+    found = [
+        f"{one.run}, {one.channel}: error {100.0 * one.relative:.3g} % of the signal, "
+        f"{one.over_noise:.3g} times the noise"
+        for one in result.errors
+    ]
+    return [f"{one.as_dict()['description']}" for one in result.checks] + found
+
+
+def _of_explanation(summary: Mapping[str, Any]) -> list[str]:
+    """Verdict, effects with their values, and what became of the error."""
+    found = [f"verdict: {summary['verdict']}"]
+    for effect in summary.get("effects", ()):
+        values = ", ".join(
+            f"{key} {one['value']:.4g} {one['unit']} ({one['ci95'][0]:.4g} to {one['ci95'][1]:.4g})"
+            for key, one in effect["parameters"].items()
+        )
+        found.append(f"{effect['name']} (probability {effect['probability']:.3g}): {values}")
+    error = summary.get("error") or {}
+    told = [f"{key.replace('_', ' ')} {value:.4g}" for key, value in error.items()
+            if isinstance(value, float)]  # fmt: skip
+    found += [f"error over the signal: {', '.join(told)}"] if told else []
+    return found + [one["description"] for one in summary.get("checks", ())]
 
 
 def save_result(result: Any, folder: Path, call: Mapping[str, Any]) -> None:

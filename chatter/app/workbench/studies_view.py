@@ -7,14 +7,12 @@ from typing import Any
 
 import panel as pn
 
-from chatter.app.workbench.computations import Computation, Computations
+from chatter.app.workbench.long_work import LongWork
 from chatter.app.workbench.result_panel import result_panel, same_call
-from chatter.app.workbench.separate_process import in_own_process
 from chatter.app.workbench.session import Session
 from chatter.app.workbench.studies import STUDIES, run_study
 from chatter.app.workbench.studies import same_call as call_of
 from chatter.description.errors import InputError
-from chatter.description.progress import Progress
 
 _RESULTS_OF_WHATIF = ("", "lobes", "critical depth", "forces", "surface", "frf")
 
@@ -34,28 +32,26 @@ class StudiesView:
     def __init__(
         self, session: Session, show: Callable[[Callable[[], None]], None], names: tuple[str, ...]
     ) -> None:
-        self._session, self._show = session, show
+        self._session = session
         labels = {STUDIES[name].label: name for name in names}
         self.choice = pn.widgets.Select(label="Study", options=labels, width=220)
         self.start_button = pn.widgets.Button(label="Start", color="primary", width=100)
-        self.cancel_button = pn.widgets.Button(label="Cancel", width=100)
-        self.progress = pn.indicators.Progress(value=0, max=100, width=420, active=False)
-        self.message = pn.pane.Str("", width=900, styles={"white-space": "pre-wrap"})
+        self.work = LongWork(session.root, show)
         self.call = pn.Column()
         self.options: dict[str, Any] = {}
         self._option_row, self._result = pn.FlexBox(min_width=860), pn.Column()
-        self.computations = Computations(self._later)
         self.start_button.on_click(lambda _: self.start())
-        self.cancel_button.on_click(lambda _: self.computations.cancel())
         self.choice.param.watch(lambda _: self._chosen(), "value")
         session.watch(self._show_results)
         self._chosen()
 
     def __panel__(self) -> pn.viewable.Viewable:
         """Return the view for the page."""
-        buttons = pn.Row(self.start_button, self.cancel_button, self.progress)
+        buttons = pn.Row(self.start_button, self.work.cancel_button, self.work.progress)
         choice = [self.choice] if len(self.choice.options) > 1 else []
-        return pn.Column(*choice, self._option_row, buttons, self.message, self.call, self._result)
+        return pn.Column(
+            *choice, self._option_row, buttons, self.work.message, self.call, self._result
+        )
 
     def given(self) -> dict[str, Any]:
         """Options as they are chosen."""
@@ -67,29 +63,12 @@ class StudiesView:
         try:
             case = self._session.case_text
         except InputError as error:
-            self.message.object = str(error)
+            self.work.tell(str(error))
             return
         folder = self._session.results(name)
-
-        def compute(go_on: Progress) -> None:
-            self._later(f"{STUDIES[name].label}: starting ...")
-            try:
-                in_own_process(run_study, (name, case, given, folder), go_on, self._report)
-                self._later(self._unsaved())
-            finally:
-                self._show(lambda: self.progress.param.update(value=0, active=False))
-            self._show(self._show_results)
-
-        self.computations.start(Computation(compute, False))
-
-    def _unsaved(self) -> str:
         changed = self._session.changed
-        return "of the case as it stands here, which is not saved" if changed else ""
-
-    def _report(self, stage: str, share: float) -> None:
-        value = min(100, round(100.0 * share))
-        self._show(lambda: self.progress.param.update(value=value, active=True))
-        self._later(f"{stage} ({value} %)")
+        note = "of the case as it stands here, which is not saved" if changed else ""
+        self.work.start(run_study, (name, case, given, folder), self._show_results, note)
 
     def _chosen(self) -> None:
         study = STUDIES[self.choice.value]
@@ -107,10 +86,6 @@ class StudiesView:
     def _show_results(self) -> None:
         self._show_call()
         self._result.objects = result_panel(self._session.results(self.choice.value))
-
-    def _later(self, text: str) -> None:
-        told = text.replace(f"{self._session.root}/", "")
-        self._show(lambda: setattr(self.message, "object", told))
 
 
 def _widget(name: str, value: Any) -> Any:

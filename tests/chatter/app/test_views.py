@@ -197,7 +197,7 @@ def test_frfs_take_the_place_of_the_modes(workbench, tmp_path):
 def test_a_study_runs_and_its_results_open_again(workbench, tmp_path):
     view = workbench.sheet
     view.start()
-    assert view.computations.wait(PATIENCE)
+    assert view.work.computations.wait(PATIENCE)
     folder = workbench.session.results("sheet")
     assert (folder / "sheet.pdf").read_bytes().startswith(b"%PDF")
     assert (folder / "sheet.xlsx").is_file()
@@ -215,17 +215,23 @@ def test_a_study_is_cancelled_and_goes_on(workbench, tmp_path):
     view.options["count"].value = 40
     view.options["speeds"].value = 5
     done: list[float] = []
-    report = view._report
-    view._report = lambda stage, share: (done.append(share), report(stage, share),
-                                         share > 0.3 and view.computations.cancel())  # fmt: skip
+    report = view.work.report
+
+    def cancels(stage, share):
+        done.append(share)
+        report(stage, share)
+        if share > 0.3:
+            view.work.computations.cancel()
+
+    view.work.report = cancels
     view.start()
-    assert view.computations.wait(PATIENCE)
-    assert view.message.object == "cancelled"
+    assert view.work.computations.wait(PATIENCE)
+    assert view.work.message.object == "cancelled"
     assert max(done) < 1.0
-    view._report = lambda stage, share: done.append(share)
+    view.work.report = lambda stage, share: done.append(share)
     done.clear()
     view.start()
-    assert view.computations.wait(PATIENCE)
+    assert view.work.computations.wait(PATIENCE)
     # what was finished before is not computed again
     assert min(share for share in done if share > 0.0) > 0.2
     assert (workbench.session.results("uncertainty") / "uncertainty.csv").is_file()

@@ -1,0 +1,367 @@
+"""Cut: a simulated cut with its signals, surface, workpiece as it is carved, and sound."""
+
+from __future__ import annotations
+
+import io
+import math
+import shlex
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import panel as pn
+import scipy.io.wavfile
+from bokeh.models import ColumnDataSource
+from bokeh.plotting import figure
+
+import chatter
+from chatter.app.workbench.computations import Computation, Computations
+from chatter.app.workbench.picture_files import picture
+from chatter.app.workbench.result_panel import downloads, result_panel, same_call
+from chatter.app.workbench.session import Session
+from chatter.app.workbench.studies import save_result
+from chatter.app.workbench.table_files import PageTable, as_html
+from chatter.description.errors import InputError
+from chatter.description.progress import Progress
+from chatter.plots.simulation import once_a_revolution, spectrum
+from chatter.plots.workpiece import plan_view
+from chatter.simulation.carving_history import removal_times
+from chatter.simulation.result import SimulationResult
+from cutting.chip.discrete_chip import DiscreteCut
+
+_AXES = "xyz"
+_COLOURS = ("#0072B2", "#E69F00", "#009E73")
+#: points of a curve that a screen shows
+_MOST_POINTS = 6000
+_FRAMES = 100
+_SOUND_RATE, _SHORTEST_SOUND, _LONGEST_SOUND = 44_100, 2.0, 20.0  # Hz, s, s
+_SURFACE_LINES, _SURFACE_POINTS = 24, 400
+_CARVE = {"simulation.chip": "dexel"}
+
+
+class CutView:
+    """The cut of the open case in the time domain.
+
+    Parameters
+    ----------
+    session : Session
+    show : callable
+        Called with a function that changes the page, from another thread.
+    """
+
+    def __init__(self, session: Session, show: Callable[[Callable[[], None]], None]) -> None:
+        self._session, self._show = session, show
+        self.result: SimulationResult | None = None
+        self._removed: Any = None
+        self._shown: tuple[str, str] | None = None
+        self.start_button = pn.widgets.Button(label="Simulate", color="primary")
+        self.carve = pn.widgets.Checkbox(label="carve the workpiece (dexels)", value=False)
+        self.cancel_button = pn.widgets.Button(label="Cancel")
+        self.progress = pn.indicators.Progress(value=0, max=100, width=300, active=False)
+        self.message = pn.pane.Str("", width=900, styles={"white-space": "pre-wrap"})
+        self.player = pn.widgets.Player(
+            label="Time", start=0, end=_FRAMES, value=_FRAMES, interval=80, loop_policy="once",
+            width=400,
+        )  # fmt: skip
+        self.clock = pn.pane.Str("")
+        self.turn = pn.widgets.IntSlider(label="View of the surface [deg]", start=10, end=80,
+                                         value=35, width=260)  # fmt: skip
+        self.summary = pn.pane.HTML("", width=520)
+        self.sound = pn.pane.Audio(None, name="tool velocity as sound")
+        self.sound_file = pn.widgets.FileDownload(
+            callback=self._sound_file, filename="cut.wav", label="Sound (WAV)", disabled=True
+        )
+        axes = [f"{kind}{axis}" for kind in ("F", "") for axis in _AXES]
+        self.signals = ColumnDataSource({name: [] for name in ("time", *axes)})
+        self.spectrum = ColumnDataSource({name: [] for name in ("f", *_AXES)})
+        self.section = ColumnDataSource({"x": [], "y": []})
+        self.orbit = ColumnDataSource({"x": [], "y": []})
+        self.surface = ColumnDataSource({"xs": [], "ys": []})
+        self.workpiece = ColumnDataSource({"image": [], "x": [], "y": [], "dw": [], "dh": []})
+        self.tool = ColumnDataSource({"x": [], "y": []})
+        self._figures = self._make_figures()
+        self.call, self._files, self._before = pn.Column(), pn.FlexBox(min_width=860), pn.Column()
+        self.computations = Computations(self._tell)
+        self.start_button.on_click(lambda _: self.start())
+        self.cancel_button.on_click(lambda _: self.computations.cancel())
+        self.player.param.watch(lambda _: self.draw_time(), "value")
+        self.turn.param.watch(lambda _: self.draw_surface(), "value")
+
+    def __panel__(self) -> pn.viewable.Viewable:
+        """Return the view for the page."""
+        force, moved, lines, section, surface, workpiece = (
+            picture(drawn, name) for name, drawn in self._figures.items()
+        )
+        return pn.Column(
+            pn.Row(self.start_button, self.carve, self.cancel_button, self.progress),
+            self.message,
+            self.call,
+            pn.Row(self.player, self.clock),
+            pn.Row(pn.Column(force, moved, lines), pn.Column(workpiece, section)),
+            pn.Row(pn.Column(surface, self.turn),
+                   pn.Column(self.summary, self.sound, self.sound_file)),
+            self._files,
+            self._before,
+        )  # fmt: skip
+
+    def refresh(self) -> None:
+        """Show what was simulated of the open case before, where nothing newer is shown."""
+        session = self._session
+        stands = session.name, session.text
+        if stands == self._shown or not session.name:
+            return
+        self._shown = stands
+        if self.result is None:
+            self._before.objects = result_panel(session.results("simulate"))
+
+    def start(self) -> None:
+        """Simulate the cut."""
+        try:
+            case = self._session.sound_case()
+            case.require("tool", "material", "cut", "structure")
+        except InputError as error:
+            self._tell(str(error))
+            return
+        changes = _CARVE if self.carve.value and case.get("simulation") is None else {}
+        if self.carve.value and not changes:
+            changes = {} if case.simulation.chip in ("dexel", "voxel") else _CARVE
+        call, folder = self._call(changes), self._session.results("simulate")
+        self.call.objects = [same_call(call)]
+
+        def compute(go_on: Progress) -> None:
+            def progress(done: int, total: int) -> None:
+                go_on(done, total)
+                self._report(done, total)
+
+            try:
+                result = chatter.simulate(case, changes, progress)
+                go_on(0, 0)
+                removed = _removal(result)
+                save_result(result, folder, {"title": "Cut", **call})
+                self._show(lambda: self._draw(result, removed, folder))
+            finally:
+                self._show(lambda: self.progress.param.update(value=0, active=False))
+
+        self.message.object = "simulating ..."
+        self.computations.start(Computation(compute, False))
+
+    def draw_time(self) -> None:
+        """Show the cut at the time that is chosen: the window of the signals, the workpiece."""
+        if self.result is None:
+            return
+        time = self.result.time
+        now = float(time[-1]) * self.player.value / _FRAMES
+        a_window = min(float(time[-1]), 3.0 * float(time[-1]) / max(self.result.revolutions, 3.0))
+        self.clock.object = f"{now:.4g} s"
+        if self.player.value < _FRAMES:
+            self._figures["force"].x_range.update(start=max(0.0, now - a_window), end=now)
+        else:
+            self._figures["force"].x_range.update(start=0.0, end=float(time[-1]))
+        self._draw_workpiece(now)
+
+    def draw_surface(self) -> None:
+        """Draw the wall that the cut leaves, seen from the angle that is chosen."""
+        walls = () if self.result is None else self.result.finish.walls
+        drawn = self._figures["surface"]
+        if not walls:
+            self.surface.data = {"xs": [], "ys": []}
+            drawn.title.text = "surface: the run leaves no finished wall"
+            return
+        profiles = walls[0].profiles
+        x = (profiles.x - profiles.x[0]) * 1e3
+        z, up = profiles.height * 1e3, profiles.deviation * 1e6
+        tilt = math.radians(self.turn.value)
+        reach = max(float(np.ptp(x)), 1e-9)
+        depth = max(float(np.ptp(z)), 1e-9)
+        scale = 0.25 * reach / max(float(np.ptp(up)), 1e-9)
+        rows = np.linspace(0, len(z) - 1, min(_SURFACE_LINES, len(z))).round().astype(int)
+        columns = np.linspace(0, len(x) - 1, min(_SURFACE_POINTS, len(x))).round().astype(int)
+        away = (z / depth) * 0.6 * reach if len(z) > 1 else np.zeros(1)
+        flat_x = x[None, :] + away[:, None] * math.cos(tilt)
+        flat_y = away[:, None] * math.sin(tilt) + up * scale
+        lines = [(flat_x[k, columns], flat_y[k, columns]) for k in rows]
+        across = columns[:: max(1, len(columns) // 60)]
+        lines += [(flat_x[rows, k], flat_y[rows, k]) for k in across] if len(rows) > 1 else []
+        self.surface.data = {"xs": [a for a, _ in lines], "ys": [b for _, b in lines]}
+        drawn.title.text = (
+            f"wall {profiles.side}: deviation {up.min():.3g} to {up.max():.3g} um, "
+            f"{reach:.3g} mm along the feed, {depth:.3g} mm high"
+        )
+        both = [np.concatenate([np.ravel(line[k]) for line in lines]) for k in (0, 1)]
+        for ends, values in zip((drawn.x_range, drawn.y_range), both, strict=True):
+            low, high = float(values.min()), float(values.max())
+            ends.update(
+                start=low - 0.05 * (high - low + 1e-9), end=high + 0.1 * (high - low + 1e-9)
+            )
+
+    def _report(self, done: int, total: int) -> None:
+        value = min(100, round(100.0 * done / total)) if total else 0
+        self._show(lambda: self.progress.param.update(value=value, active=True))
+
+    def _call(self, changes: dict[str, str]) -> dict[str, str]:
+        file = self._session.name
+        words = ["chatter", "simulate", file]
+        words += [part for path, one in changes.items() for part in ("--set", f"{path}={one}")]
+        given = f", {changes!r}" if changes else ""
+        return {
+            "command": shlex.join(words),
+            "python": f"chatter.simulate(chatter.load({file!r}){given})",
+        }
+
+    def _draw(self, result: SimulationResult, removed: Any, folder: Any) -> None:
+        self.result, self._removed = result, removed
+        self._before.objects = []
+        told = result.summary()
+        self.message.object = "\n".join([f"{told['verdict']}: {told['reason']}", *result.notes])
+        self._draw_signals(result)
+        self._draw_motion(result)
+        self.draw_surface()
+        self.sound.object, self.sound.sample_rate = sound_of(result), _SOUND_RATE
+        self.sound_file.disabled = False
+        self.summary.object = as_html(_numbers(told))
+        self._files.objects = downloads(folder)
+        self.player.value = _FRAMES
+        self.draw_time()
+
+    def _draw_signals(self, result: SimulationResult) -> None:
+        kept = _kept(np.linalg.norm(result.force, axis=1))
+        columns = {"time": result.time[kept]}
+        for number, axis in enumerate(_AXES):
+            columns[f"F{axis}"] = result.force[kept, number]
+            columns[axis] = result.displacement[kept, number] * 1e6
+        self.signals.data = columns
+        for name, values in (("force", result.force), ("motion", result.displacement * 1e6)):
+            reach = 1.1 * float(np.abs(values).max()) or 1.0
+            self._figures[name].y_range.update(start=-reach, end=reach)
+
+    def _draw_motion(self, result: SimulationResult) -> None:
+        rows, motion = result.settled, result.displacement * 1e6
+        lines: dict[str, Any] = {"f": [], **{axis: [] for axis in _AXES}}
+        if rows.stop - rows.start >= 16:
+            for number, axis in enumerate(_AXES):
+                lines["f"], lines[axis] = spectrum(result.time[rows], motion[rows, number])
+        top = 3.0 * max((mode.frequency for mode in result.setup.modes), default=2000.0)
+        shown = np.asarray(lines["f"]) <= top
+        self.spectrum.data = {name: np.asarray(values)[shown] for name, values in lines.items()}
+        self._figures["spectrum"].x_range.update(start=0.0, end=top)
+        highest = max(float(np.max(self.spectrum.data[axis], initial=0.0)) for axis in _AXES)
+        self._figures["spectrum"].y_range.update(
+            start=1e-4 * (highest or 1.0), end=2.0 * (highest or 1.0)
+        )
+        points = once_a_revolution(result)
+        self.section.data = {"x": points[:, 0], "y": points[:, 1]}
+        settled = motion[rows][:: max(1, (rows.stop - rows.start) // _MOST_POINTS)]
+        self.orbit.data = {"x": settled[:, 0], "y": settled[:, 1]}
+
+    def _draw_workpiece(self, now: float) -> None:
+        if self._removed is None:
+            self.workpiece.data = {name: [] for name in ("image", "x", "y", "dw", "dh")}
+            return
+        (x0, y0), (x1, y1), times = self._removed
+        self.workpiece.data = {
+            "image": [(times > now).astype(np.uint8)],
+            "x": [1e3 * x0], "y": [1e3 * y0], "dw": [1e3 * (x1 - x0)], "dh": [1e3 * (y1 - y0)],
+        }  # fmt: skip
+        result = self.result
+        x, y = 1e3 * result.setup.path.position_at(np.array([now]))[:, 0]
+        turn, radius = np.linspace(0.0, 2.0 * np.pi, 90), 1e3 * result.setup.cutter.radius
+        self.tool.data = {"x": x + radius * np.sin(turn), "y": y + radius * np.cos(turn)}
+        drawn = self._figures["workpiece"]
+        drawn.x_range.update(start=1e3 * x0, end=1e3 * x1)
+        drawn.y_range.update(start=1e3 * y0, end=1e3 * y1)
+
+    def _sound_file(self) -> io.BytesIO:
+        content = io.BytesIO()
+        scipy.io.wavfile.write(content, _SOUND_RATE, sound_of(self.result))
+        content.seek(0)
+        return content
+
+    def _tell(self, text: str) -> None:
+        told = text.replace(f"{self._session.root}/", "")
+        self._show(lambda: setattr(self.message, "object", told))
+
+    def _make_figures(self) -> dict[str, Any]:
+        force = _figure(620, 230, "time [s]", "force on the tool [N]")
+        motion = _figure(620, 210, "time [s]", "displacement [um]", x_range=force.x_range)
+        lines = _figure(620, 230, "frequency [Hz]", "amplitude [um]", y_axis_type="log")
+        section = _figure(430, 300, "x [um]", "y [um]", match_aspect=True, x_range=None,
+                          y_range=None)  # fmt: skip
+        surface = _figure(760, 380, "along the feed, oblique view [mm]", "deviation, scaled")
+        workpiece = _figure(430, 330, "x [mm]", "y [mm]")
+        for axis, colour in zip(_AXES, _COLOURS, strict=True):
+            force.line("time", f"F{axis}", source=self.signals, color=colour,
+                       legend_label=f"F{axis}")  # fmt: skip
+            motion.line("time", axis, source=self.signals, color=colour, legend_label=axis)
+            lines.line("f", axis, source=self.spectrum, color=colour, legend_label=axis)
+        section.line("x", "y", source=self.orbit, color="#C9D6DF", line_width=0.5)
+        section.scatter("x", "y", source=self.section, size=4, color="#D55E00",
+                        legend_label="once a revolution")  # fmt: skip
+        surface.multi_line("xs", "ys", source=self.surface, color="#0072B2", line_width=0.6)
+        surface.yaxis.visible = False
+        workpiece.image("image", "x", "y", "dw", "dh", source=self.workpiece,
+                        palette=["#FFFFFF", "#9FB4C0"])  # fmt: skip
+        workpiece.line("x", "y", source=self.tool, color="#D55E00", legend_label="tool")
+        for drawn in (force, motion, lines):
+            drawn.legend.update(orientation="horizontal", label_text_font_size="8pt",
+                                click_policy="hide")  # fmt: skip
+        return {"force": force, "motion": motion, "spectrum": lines, "section": section,
+                "surface": surface, "workpiece": workpiece}  # fmt: skip
+
+
+def sound_of(result: SimulationResult) -> Any:
+    """Velocity of the tool as sound, (n,) of int16 at 44.1 kHz; a short run is repeated.
+
+    The settled part of the run, along the direction that moves most.
+    """
+    rows = result.settled
+    time = result.time[rows]
+    axis = int(np.argmax(np.ptp(result.displacement[rows], axis=0)))
+    if len(time) < 4:
+        return np.zeros(_SOUND_RATE, dtype=np.int16)
+    velocity = np.gradient(result.displacement[rows, axis], time)
+    even = np.arange(time[0], time[-1], 1.0 / _SOUND_RATE)[: int(_LONGEST_SOUND * _SOUND_RATE)]
+    heard = np.interp(even, time, velocity - velocity.mean())
+    # settled rows are whole revolutions, so that their repetition has no gap
+    heard = np.tile(heard, max(1, math.ceil(_SHORTEST_SOUND * _SOUND_RATE / max(len(heard), 1))))
+    largest = float(np.abs(heard).max()) or 1.0
+    return np.round(0.8 * 32767.0 * heard / largest).astype(np.int16)
+
+
+def _removal(result: SimulationResult) -> Any:
+    """Corners of the plan of the workpiece, and when its cells go; None where none is carved."""
+    cut = result.setup.groups[0]
+    if not isinstance(cut, DiscreteCut):
+        return None
+    low, high, material = plan_view(cut.stock, 0)
+    return low, high, removal_times(result, material, (low, high), 0)
+
+
+def _kept(size: Any) -> Any:
+    """Places of the rows that are drawn: of each interval the lowest and the highest."""
+    if len(size) <= _MOST_POINTS:
+        return np.arange(len(size))
+    intervals = np.array_split(np.arange(len(size)), _MOST_POINTS // 2)
+    ends = [(part[np.argmin(size[part])], part[np.argmax(size[part])]) for part in intervals]
+    return np.unique(np.array(ends).ravel())
+
+
+def _numbers(told: dict[str, Any]) -> PageTable:
+    location = told.get("surface_location_error_um")
+    rows = [
+        ("verdict", told["verdict"]),
+        ("chatter frequency [Hz]", told["chatter_frequency_Hz"]),
+        ("largest force [N]", told["peak_resultant_N"]),
+        *((f"mean {name} [N]", value) for name, value in told["mean_force_N"].items()),
+        ("largest displacement [um]", told["peak_displacement_um"]),
+        ("mean power [W]", told["power"]["mean_W"]),
+        ("surface location error [um]", location),
+    ]
+    return PageTable(("cut", "value"), rows)
+
+
+def _figure(width: int, height: int, x: str, y: str, **options: Any) -> Any:
+    ends = {"x_range": (0, 1), "y_range": (0.1, 1), **options}
+    ends = {key: value for key, value in ends.items() if value is not None}
+    drawn = figure(width=width, height=height, tools="pan,box_zoom,wheel_zoom,reset", **ends)
+    drawn.xaxis.axis_label, drawn.yaxis.axis_label = x, y
+    return drawn

@@ -1,0 +1,64 @@
+"""A long computation of a view: start, progress, cancel, message, results."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import panel as pn
+
+from chatter.app.workbench.computations import Computation, Computations
+from chatter.app.workbench.separate_process import in_own_process
+from chatter.description.progress import Progress
+
+
+class LongWork:
+    """Runs functions in a process of their own, one at a time, and shows how far they are.
+
+    Parameters
+    ----------
+    root : Path
+        Folder of the session, which messages leave out.
+    show : callable
+        Called with a function that changes the page, from another thread.
+    """
+
+    def __init__(self, root: Path, show: Callable[[Callable[[], None]], None]) -> None:
+        self._root, self._show = root, show
+        self.cancel_button = pn.widgets.Button(label="Cancel", width=100)
+        self.progress = pn.indicators.Progress(value=0, max=100, width=360, active=False)
+        self.message = pn.pane.Str("", width=900, styles={"white-space": "pre-wrap"})
+        self.computations = Computations(self.tell)
+        self.cancel_button.on_click(lambda _: self.computations.cancel())
+
+    def start(
+        self,
+        function: Callable[..., Any],
+        arguments: tuple[Any, ...],
+        done: Callable[[], None],
+        note: str = "",
+    ) -> None:
+        """Start a function; `done` changes the page after it, `note` is what is said then."""
+
+        def compute(go_on: Progress) -> None:
+            try:
+                in_own_process(function, arguments, go_on, self.report)
+                self.tell(note)
+            finally:
+                self._show(lambda: self.progress.param.update(value=0, active=False))
+            self._show(done)
+
+        self.tell("starting ...")
+        self.computations.start(Computation(compute, False))
+
+    def report(self, stage: str, share: float) -> None:
+        """Show what is done, and the share of it."""
+        value = min(100, round(100.0 * share))
+        self._show(lambda: self.progress.param.update(value=value, active=True))
+        self.tell(f"{stage} ({value} %)")
+
+    def tell(self, text: str) -> None:
+        """Show a sentence, with names relative to the folder."""
+        told = str(text).replace(f"{self._root}/", "")
+        self._show(lambda: setattr(self.message, "object", told))

@@ -1,0 +1,288 @@
+"""Measurement: files in, channels assigned, compared, explained, the repaired case accepted."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import panel as pn
+import tomlkit
+
+from chatter.app.workbench.long_work import LongWork
+from chatter.app.workbench.result_panel import result_panel, same_call
+from chatter.app.workbench.session import Session, checked_name, readable_extensions
+from chatter.app.workbench.studies import run_measurement
+from chatter.app.workbench.upload import dropper
+from chatter.description.assignments import parse_assignments
+from chatter.description.case import load
+from chatter.description.errors import InputError
+from chatter.explain.kinds.kind_list import KINDS
+from chatter.explain.measurement_file import read_measurement
+from chatter.explain.records.description import QUANTITIES, SIDES
+from chatter.io.signals import read_signals
+
+_FOLDER, _FILE, _UPDATED = "measurements", "measurement.toml", "case-updated.toml"
+_BEGINS = ("rest", "air", "cut")
+_OPEN_CASE = "the open case"
+_DECLARED = "the one that it names"
+
+
+class MeasurementView:
+    """Measurement folders of the session.
+
+    Parameters
+    ----------
+    session : Session
+    show : callable
+        Called with a function that changes the page, from another thread.
+    opened : callable
+        Called with the name of the case that was accepted.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        show: Callable[[Callable[[], None]], None],
+        opened: Callable[[str], None] = lambda _: None,
+    ) -> None:
+        self._session, self._opened = session, opened
+        self.name = pn.widgets.TextInput(label="Name of the new folder", value="set-1", width=220)
+        self.upload = dropper(self.take, "Records, with measurement.toml where there is one")
+        self.folder = pn.widgets.Select(label="Measurement", options=[], width=300)
+        self.case = pn.widgets.Select(label="Case", options=[_DECLARED, _OPEN_CASE], width=200)
+        self.compare_button = pn.widgets.Button(label="Compare", color="primary")
+        self.explain_button = pn.widgets.Button(label="Explain", color="primary")
+        self.accept_button = pn.widgets.Button(label="Accept the repaired case", disabled=True)
+        self.accepted_name = pn.widgets.TextInput(label="as", value="repaired.toml", width=200)
+        self.text = pn.widgets.TextAreaInput(
+            label=_FILE, width=560, height=330, max_length=200_000,
+            stylesheets=["textarea {font-family: monospace; font-size: 12.5px; white-space: pre}"],
+        )  # fmt: skip
+        self.write_button = pn.widgets.Button(label="Write measurement.toml")
+        self.assignment = ChannelAssignment(self._assigned)
+        self.work = LongWork(session.root, show)
+        self.call, self._result = pn.Column(), pn.Column()
+        self.compare_button.on_click(lambda _: self.start("compare"))
+        self.explain_button.on_click(lambda _: self.start("explain"))
+        self.accept_button.on_click(lambda _: self.accept())
+        self.write_button.on_click(lambda _: self.write())
+        self.folder.param.watch(lambda _: self._show(), "value")
+        self.refresh()
+
+    def __panel__(self) -> pn.viewable.Viewable:
+        """Return the view for the page."""
+        channels = pn.Card(
+            pn.Row(self.assignment, pn.Column(self.text, self.write_button)),
+            title="Runs and channels", collapsed=True, min_width=1000,
+        )  # fmt: skip
+        return pn.Column(
+            pn.Row(self.folder, self.case, pn.Column(self.name, self.upload)),
+            channels,
+            pn.Row(self.compare_button, self.explain_button, self.work.cancel_button,
+                   self.work.progress),
+            self.work.message,
+            self.call,
+            pn.Row(self.accept_button, self.accepted_name),
+            self._result,
+        )  # fmt: skip
+
+    def refresh(self) -> None:
+        """Offer the measurement folders that are there now."""
+        found = self._session.measurement_names()
+        self.folder.options = found
+        if self.folder.value not in found:
+            self.folder.value = next(iter(found), None)
+
+    def take(self, files: Mapping[str, bytes]) -> None:
+        """Write uploaded files into a folder of their own; offer their channels for assignment."""
+        session = self._session
+        try:
+            name = checked_name(f"{self.name.value.strip()}.toml", (".toml",))[:-5]
+            folder = f"{_FOLDER}/{name}"
+            session.store(folder, files, (*readable_extensions(), ".toml"))
+            path = session.path(folder)
+            if not (path / _FILE).exists():
+                records = [path / one for one in sorted(files) if not one.endswith(".toml")]
+                self.assignment.offer(records)
+                self._assigned()
+                self.write(folder)
+        except InputError as error:
+            self.work.tell(str(error))
+            return
+        self.refresh()
+        self.folder.value = folder
+        self._show()
+
+    def write(self, folder: str = "") -> None:
+        """Write measurement.toml as it stands in the text, and say what is wrong with it."""
+        name = folder or self.folder.value
+        if name is None:
+            return
+        path = self._session.path(f"{name}/{_FILE}")
+        path.write_text(self.text.value, encoding="utf-8")
+        try:
+            read_measurement(path.parent)
+        except InputError as error:
+            self.work.tell(str(error))
+        else:
+            self.work.tell(f"{name}/{_FILE} is written")
+
+    def start(self, name: str) -> None:
+        """Compare or explain the measurement that is chosen."""
+        if self.folder.value is None:
+            self.work.tell("no measurement: drop records, or open a folder with measurement.toml")
+            return
+        own = self.case.value == _OPEN_CASE
+        try:
+            case = self._session.case_text if own else None
+        except InputError as error:
+            self.work.tell(str(error))
+            return
+        call = self._call(name, own)
+        self.call.objects = [same_call(call)]
+        path = self._session.path(self.folder.value)
+        arguments = (name, path, case, call, self._results(name))
+        self.work.start(run_measurement, arguments, self._show)
+
+    def accept(self) -> None:
+        """Take the repaired case into the folder as a case of its own, and open it."""
+        session = self._session
+        try:
+            target = session.new_path(self.accepted_name.value.strip())
+            load(self._results("explain") / _UPDATED).save(target)
+        except InputError as error:
+            self.work.tell(str(error))
+            return
+        self.work.tell(f"{target.name} is in the folder, and open")
+        self._opened(target.name)
+
+    def _results(self, name: str) -> Path:
+        stem = str(self.folder.value).replace("/", "-").replace(".", "-")
+        return self._session.path(f"results/{stem}/{name}")
+
+    def _call(self, name: str, own: bool) -> dict[str, str]:
+        folder, file = self.folder.value, self._session.name
+        words = ["chatter", name, folder, *(["--case", file] if own else [])]
+        given = f", {file!r}" if own else ""
+        return {"command": shlex.join(words), "python": f"chatter.{name}({folder!r}{given})"}
+
+    def _show(self) -> None:
+        if self.folder.value is None:
+            return
+        path = self._session.path(f"{self.folder.value}/{_FILE}")
+        if path.is_file():
+            self.text.value = path.read_text(encoding="utf-8", errors="replace")
+        parts: list[Any] = []
+        for name in ("explain", "compare"):
+            parts += result_panel(self._results(name))
+        self._result.objects = parts
+        self.accept_button.disabled = not (self._results("explain") / _UPDATED).is_file()
+
+    def _assigned(self) -> None:
+        """Write the assignment of the channels into the text."""
+        session = self._session
+        folder = session.path(f"{_FOLDER}/{self.name.value.strip()}")
+        case = os.path.relpath(session.path(session.name), folder) if session.name else "case.toml"
+        try:
+            self.text.value = self.assignment.toml(Path(case).as_posix())
+        except InputError as error:
+            self.work.tell(str(error))
+
+
+class ChannelAssignment:
+    """What each channel of the records is, by hand, and what each run differs in from the case.
+
+    Parameters
+    ----------
+    changed : callable
+        Called when an assignment has changed.
+    """
+
+    def __init__(self, changed: Callable[[], None]) -> None:
+        self._changed = changed
+        self.kind = pn.widgets.Select(label="Kind", options=list(KINDS), width=130)
+        self.begins = pn.widgets.Select(label="Record begins", options=list(_BEGINS), width=130)
+        self.angle = pn.widgets.Checkbox(label="spindle angle unknown", value=True)
+        self.channels: dict[str, tuple[Any, Any, Any]] = {}
+        self.runs: dict[str, Any] = {}
+        self._rows = pn.Column(pn.pane.Str("Drop records without a measurement.toml to assign "
+                                           "their channels here."))  # fmt: skip
+        for widget in (self.kind, self.begins, self.angle):
+            widget.param.watch(lambda _: self._changed(), "value")
+
+    def __panel__(self) -> pn.viewable.Viewable:
+        """Return the form for the page."""
+        return pn.Column(pn.Row(self.kind, self.begins), self.angle, self._rows, width=520)
+
+    def offer(self, records: list[Path]) -> None:
+        """Make a row for every channel of the records and for every run."""
+        names: dict[str, None] = {}
+        for path in records:
+            names |= dict.fromkeys(read_signals(path))
+        self.channels = {name: _assignment() for name in names if not _is_time(name)}
+        self.runs = {path.name: pn.widgets.TextInput(
+            label=path.name, placeholder="spindle_speed=8000 rpm; axial_depth=1 mm", width=480)
+            for path in records}  # fmt: skip
+        for widget in (*(one for row in self.channels.values() for one in row),
+                       *self.runs.values()):  # fmt: skip
+            widget.param.watch(lambda _: self._changed(), "value")
+        rows = [
+            pn.Row(pn.pane.Str(name, width=110), *widgets)
+            for name, widgets in self.channels.items()
+        ]
+        self._rows.objects = [*rows, *self.runs.values()]
+
+    def toml(self, case: str) -> str:
+        """Text of measurement.toml; InputError if a run is no list of assignments."""
+        document = tomlkit.document()
+        document["kind"], document["case"] = self.kind.value, case
+        assigned = {
+            name: (quantity.value, side.value, direction.value.strip())
+            for name, (quantity, side, direction) in self.channels.items()
+            if quantity.value
+        }
+        if assigned:
+            record = {"begins": self.begins.value}
+            if self.angle.value:
+                record["spindle_angle"] = "unknown"
+            document["record"] = record
+            channels = tomlkit.table()
+            for name, (quantity, side, direction) in assigned.items():
+                channels[name] = _entry(name, quantity, side, direction)
+            document["channels"] = channels
+        runs = tomlkit.aot()
+        for name, widget in self.runs.items():
+            given = [one.strip() for one in widget.value.split(";") if one.strip()]
+            runs.append(tomlkit.item({"file": name, **parse_assignments(given)}))
+        document["run"] = runs
+        return tomlkit.dumps(document)
+
+
+def _assignment() -> tuple[Any, Any, Any]:
+    """Quantity, side and direction of a channel, to be chosen."""
+    return (
+        pn.widgets.Select(options=["", *QUANTITIES], width=140),
+        pn.widgets.Select(options=list(SIDES), width=90),
+        pn.widgets.TextInput(placeholder="x, [0.7, 0.7, 0], unknown", width=150),
+    )
+
+
+_AXES = {"x": [1, 0, 0], "y": [0, 1, 0], "z": [0, 0, 1]}
+
+
+def _entry(name: str, quantity: str, side: str, direction: str) -> Any:
+    entry: dict[str, Any] = {"quantity": quantity}
+    if quantity in ("force", "displacement", "velocity", "acceleration"):
+        entry["on"] = side
+        given = parse_assignments([f"{name}={direction or 'unknown'}"])[name]
+        entry["direction"] = _AXES.get(direction, given)
+    found = tomlkit.inline_table()
+    found.update(entry)
+    return found
+
+
+def _is_time(name: str) -> bool:
+    return name.strip().lower() in ("time", "t")
