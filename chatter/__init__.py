@@ -37,6 +37,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from chatter.assembly.assemble import assemble as assemble
+    from chatter.app.workbench.explore import explore as explore
     from chatter.cutting_coefficients.identify import coefficients as coefficients
     from chatter.description.case import Case as Case
     from chatter.description.case import load as load
@@ -77,6 +78,7 @@ _PUBLIC = {
     "coefficients": "chatter.cutting_coefficients.identify",
     "check": "chatter.stability.check",
     "compare": "chatter.explain.comparison",
+    "explore": "chatter.app.workbench.explore",
     "detect": "chatter.monitoring.detect",
     "examples": "chatter.io.shipped_examples",
     "export": "chatter.simulation.virtual_tests.export",

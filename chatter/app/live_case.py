@@ -1,4 +1,4 @@
-"""A case on the page: diagrams, simulated points and case files for values of its sliders."""
+"""A case on the page: diagrams and simulated points for values of its sliders."""
 
 import math
 import time
@@ -25,7 +25,7 @@ from chatter.stability.search_range import beyond_the_cut, maximum_depth, spindl
 from dynamics.modal.modes import inside_band
 
 #: stage -> speeds, depths of the grid
-STAGES = {"coarse": (120, 24), "fine": (200, 50)}
+STAGES = {"coarse": (96, 24), "fine": (200, 50)}
 _DRAWN_POINTS = 700
 #: points per element and wavelengths of the highest mode in one, enough for a picture
 _POINTS, _WAVELENGTHS = 6, 1.0
@@ -55,17 +55,8 @@ class LiveCase:
         self.sliders = (*self.view, *case_sliders(case))
         self.by_path: dict[str, Slider] = {one.path: one for one in self.sliders}
 
-    def setup(self) -> dict[str, Any]:
-        """What the page shows before anything is moved."""
-        return {
-            "title": self.case.title or self.case.name,
-            "name": self.case.name.rsplit("/", 1)[-1],
-            "method": self.method,
-            "sliders": [one.as_json() for one in self.sliders],
-        }
-
     def patched(self, given: Any) -> tuple[Case, dict[str, float]]:
-        """Case with the values of a page, and the ranges of the diagram by path.
+        """Case with the values of its sliders, and the ranges of the diagram by path.
 
         InputError if a value is unknown or out of range, or what comes of them is no cut.
         """
@@ -98,10 +89,15 @@ class LiveCase:
         limits_of = _coarse_limits if follows else self._method.limits
         curve = limits_of(model, speeds, depths, steps, progress)
         cut = case.cut
-        to_operating = np.linspace(0.0, beyond_the_cut(case, 1.02 * max_depth), depth_count + 1)[1:]
-        at = np.array([cut.spindle_speed])
-        operating = limits_of(model, at, to_operating, steps, progress)
-        below = int((operating.crossings[0] < cut.axial_depth).sum())
+        inside = span[0] <= cut.spindle_speed <= span[1] and cut.axial_depth <= max_depth
+        if stage == "coarse" and inside:
+            operating, place = curve, int(np.argmin(np.abs(speeds - cut.spindle_speed)))
+        else:
+            deepest = beyond_the_cut(case, 1.02 * max_depth)
+            to_operating = np.linspace(0.0, deepest, depth_count + 1)[1:]
+            at = np.array([cut.spindle_speed])
+            operating, place = limits_of(model, at, to_operating, steps, progress), 0
+        below = int((operating.crossings[place] < cut.axial_depth).sum())
         lowest = int(np.argmin(curve.critical_depth))
         feed_per_turn = cut.feed_per_tooth * case.tool.teeth
         removal_area = case.width_of_cut * feed_per_turn / (2.0 * math.pi)
@@ -125,7 +121,7 @@ class LiveCase:
             "operating": {
                 "spindle_speed_rpm": rpm(cut.spindle_speed),
                 "axial_depth_mm": cut.axial_depth * 1e3,
-                "critical_depth_mm": _number(float(operating.critical_depth[0]) * 1e3),
+                "critical_depth_mm": _number(float(operating.critical_depth[place]) * 1e3),
                 "stable": below % 2 == 0,
             },
             "removal_rate_per_mm_rpm": case.width_of_cut * feed_per_turn * 1e3,  # cm^3/min
@@ -174,16 +170,6 @@ class LiveCase:
             "notes": summary["notes"],
             "seconds": time.perf_counter() - started,
         }
-
-    def case_text(self, given: Any) -> str:
-        """Case file with the values of a page; InputError as of `patched`."""
-        _, view = self.patched(given)
-        wanted = {path: self.by_path[path].text(float(value)) for path, value in given.items()}
-        if any(path.startswith("lobes.speeds.") for path in wanted):
-            # neither end of the range stands alone
-            for path in ("lobes.speeds.from", "lobes.speeds.to"):
-                wanted[path] = self.by_path[path].text(view[path])
-        return self.case.patch(wanted).to_toml() if wanted else self.case.to_toml()
 
 
 def _pocket(found: Pocket) -> dict[str, float | None]:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 from chatter.compile.cutter import force_law
@@ -30,10 +30,6 @@ class Slider:
     whole: bool = False  # only whole numbers
     logarithmic: bool = False  # scale of the slider
     view: bool = False  # a range of the diagram, no part of the cut
-
-    def as_json(self) -> dict[str, Any]:
-        """Return the slider as the page takes it."""
-        return asdict(self)
 
     def text(self, value: float) -> Any:
         """Value as it is written in a case file."""

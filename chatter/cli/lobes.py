@@ -112,25 +112,21 @@ def _over_paths(case: Case, options: LobesOptions) -> None:
 
 
 def _serve(description: Case, options: LobesOptions) -> None:
-    """Serve the page until Ctrl-C."""
+    """Serve the stability view of the case until Ctrl-C."""
+    from chatter.cli.app import refuse_without_panel, serve
+
+    refuse_without_panel()
     from chatter.app.live_case import LiveCase
-    from chatter.app.server import LiveServer
 
     page = LiveCase(description, options.method)
     with progress_bar("first diagram") as progress:
         page.diagram({}, "coarse", progress)
-    server = LiveServer(page, options.port)
-    typer.echo(f"{server.url}  (Ctrl-C ends)")
-    if not options.no_browser:
-        import webbrowser
+        from chatter.app.workbench.server import WorkbenchServer
 
-        webbrowser.open(server.url)
-    try:
-        server.serve_forever(poll_interval=0.2)
-    except KeyboardInterrupt:
-        typer.echo("ended")
-    finally:
-        server.end()
+        text = description.to_toml() if options.assignments else None
+        folder, name = options.case.resolve().parent, options.case.name
+        server = WorkbenchServer(folder, name, options.port, options.method, text)
+    serve(server, json=False, no_browser=options.no_browser)
 
 
 def _print_diagram(diagram: StabilityDiagram) -> None:

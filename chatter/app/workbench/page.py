@@ -24,7 +24,13 @@ _STUDIES = ("optimum", "pitch", "whatif", "uncertainty")
 class Workbench:
     """Page of one session."""
 
-    def __init__(self, folder: Path, first: str | None = None, method: str | None = None) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        first: str | None = None,
+        method: str | None = None,
+        text: str | None = None,
+    ) -> None:
         self._document = pn.state.curdoc
         self.session = Session(folder)
         files = self.session.case_names()
@@ -60,6 +66,8 @@ class Workbench:
         if first is not None:
             self.choice.value = first
             self.open(first)
+            if text is not None:
+                self.session.set_text(text)
             self.tabs.active = list(self.views).index("Stability")
         self.tap_test.open_folder()
 

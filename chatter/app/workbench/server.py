@@ -16,17 +16,25 @@ LARGEST_MESSAGE = 1024 * 1024
 class WorkbenchServer:
     """Server of a folder; port 0 takes a free one, InputError if the port cannot be had.
 
+    `first` is the case that is open at first, `text` what it holds where that differs from its
+    file, `method` that of its diagram.
+
     Every address begins with the token; a socket is opened only for pages of this server.
     """
 
     def __init__(
-        self, folder: Path, first: str | None = None, port: int = 0, method: str | None = None
+        self,
+        folder: Path,
+        first: str | None = None,
+        port: int = 0,
+        method: str | None = None,
+        text: str | None = None,
     ) -> None:
         pn.extension("filedropper")
         token = secrets.token_urlsafe(24)
 
         def page() -> pn.viewable.Viewable:
-            session = Workbench(folder, first, method)
+            session = Workbench(folder, first, method, text)
             pn.state.on_session_destroyed(lambda _: session.end())
             return session.__panel__()
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import signal
 import subprocess
@@ -29,16 +28,16 @@ def test_serves_until_ctrl_c():
     )
     try:
         url = process.stdout.readline().split()[0]
-        assert url.startswith("http://127.0.0.1:")
-        with urllib.request.urlopen(url + "setup", timeout=30) as answer:
-            assert json.load(answer)["method"] == "zero-order"
+        assert url.startswith("http://localhost:")
+        with urllib.request.urlopen(url, timeout=60) as answer:
+            assert b"bokeh" in answer.read()
         process.send_signal(signal.SIGINT)
-        told, errors = process.communicate(timeout=30)
+        _, errors = process.communicate(timeout=60)
     finally:
         process.kill()
         process.wait()
     assert process.returncode == 0, errors
-    assert told == "ended\n"
+    assert "ended" in errors
     assert "Traceback" not in errors
     with pytest.raises(urllib.error.URLError):
         urllib.request.urlopen(url, timeout=5)

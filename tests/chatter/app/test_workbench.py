@@ -8,6 +8,7 @@ import re
 import shutil
 import threading
 
+import panel as pn
 import pytest
 from tornado.httpclient import HTTPClientError, HTTPRequest
 from tornado.websocket import websocket_connect
@@ -18,6 +19,7 @@ from chatter.app.workbench.page import Workbench
 from chatter.app.workbench.server import LARGEST_MESSAGE, WorkbenchServer
 from chatter.app.workbench.session import Session
 from chatter.app.workbench.table_files import as_csv
+from chatter.description.errors import InputError
 from tests.places import EXAMPLES
 
 #: s; the first diagram may compile
@@ -216,3 +218,16 @@ def test_a_malformed_message_leaves_the_page_alive(server):
 
     assert asyncio.run(asyncio.wait_for(send(), 30.0))
     assert answer(server, prefix(server) + "/")[0] == 200
+
+
+def test_a_port_in_use_is_refused(server, folder):
+    with pytest.raises(InputError, match="--port"):
+        WorkbenchServer(folder, port=server.port)
+
+
+def test_a_notebook_shows_the_diagram_of_a_case():
+    shown = chatter.explore(EXAMPLES / "two-degrees-of-freedom" / "case.toml", "zero-order")
+    assert hasattr(shown, "_repr_mimebundle_")
+    sliders = {one.label for one in shown.select(pn.widgets.FloatSlider)}
+    assert "axial depth [mm]" in sliders
+    assert shown.select(pn.pane.Bokeh)

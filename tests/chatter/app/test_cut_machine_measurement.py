@@ -1,0 +1,131 @@
+"""Cut, machine and measurement in the workbench, driven in process."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import scipy.io.wavfile
+import tomlkit
+
+import chatter
+from chatter.app.workbench.cut_view import sound_of
+from chatter.app.workbench.page import Workbench
+from chatter.description.errors import InputError
+from tests.chatter.simulation.virtual_tests.test_mode_shapes import BLOCK
+from tests.places import EXAMPLES
+
+PATIENCE = 600.0
+
+
+@pytest.fixture
+def workbench(tmp_path):
+    shutil.copy(EXAMPLES / "two-degrees-of-freedom" / "case.toml", tmp_path / "case.toml")
+    (tmp_path / "machine.toml").write_text(BLOCK)
+    page = Workbench(tmp_path)
+    yield page
+    page.end()
+
+
+def test_a_cut_is_simulated_and_heard(workbench):
+    view = workbench.cut
+    workbench.session.set_values([("cut.axial_depth", "0.5 mm")])
+    view.start()
+    assert view.computations.wait(PATIENCE)
+    assert view.message.object.startswith("stable")
+    told = json.loads((workbench.session.results("simulate") / "summary.json").read_text())
+    assert np.abs(view.signals.data["Fx"]).max() == pytest.approx(
+        told["peak_force_N"]["Fx"], rel=0.02
+    )
+    rate, heard = scipy.io.wavfile.read(view._sound_file())
+    assert rate == 44_100
+    assert len(heard) >= 2 * rate
+    view.player.value = 50
+    assert view._figures["force"].x_range.end == pytest.approx(0.5 * view.result.time[-1])
+
+
+def test_the_sound_has_the_frequency_of_the_tool():
+    time = np.arange(0.0, 0.5, 2e-5)
+    moved = np.zeros((len(time), 3))
+    moved[:, 1] = 1e-5 * np.sin(2.0 * np.pi * 500.0 * time)
+    heard = sound_of(SimpleNamespace(settled=slice(0, len(time)), time=time, displacement=moved))
+    line = np.argmax(np.abs(np.fft.rfft(heard.astype(float)))) * 44_100 / len(heard)
+    assert line == pytest.approx(500.0, abs=2.0)
+
+
+def test_mode_shapes_swing(workbench):
+    view = workbench.machine
+    view.refresh()
+    assert view.file.value == "machine.toml"
+    view.start("mode_shapes")
+    assert view.work.computations.wait(PATIENCE)
+    assert len(view.rest.data["xs"]) == 12
+    view.player.value = 0
+    assert np.allclose(view.moved.data["xs"], view.rest.data["xs"])
+    view.player.value = 6  # a quarter of the period
+    assert not np.allclose(view.moved.data["xs"], view.rest.data["xs"])
+    assert "chatter.mode_shapes" in view.call.objects[0].object
+
+
+def test_a_machine_without_a_move_says_so(workbench):
+    view = workbench.machine
+    view.refresh()
+    view.start("move")
+    assert "no [move.NAME]" in view.work.message.object
+
+
+def test_channels_are_assigned_by_hand(workbench, tmp_path):
+    view = workbench.measurement
+    time = np.arange(0.0, 0.1, 1e-4)
+    rows = ["time [s],F1 [N],a1 [m/s^2]", *(f"{t},{np.sin(t)},{np.cos(t)}" for t in time)]
+    view.take({"run01.csv": "\n".join(rows).encode()})
+    assert set(view.assignment.channels) == {"F1", "a1"}
+    quantity, side, direction = view.assignment.channels["F1"]
+    quantity.value, side.value, direction.value = "force", "workpiece", "y"
+    view.assignment.runs["run01.csv"].value = "spindle_speed=9000 rpm; axial_depth=1 mm"
+    view.write()
+    written = tomlkit.parse((tmp_path / "measurements/set-1/measurement.toml").read_text())
+    assert written["channels"]["F1"].unwrap() == {
+        "quantity": "force", "on": "workpiece", "direction": [0, 1, 0]
+    }  # fmt: skip
+    assert written["run"][0].unwrap() == {
+        "file": "run01.csv", "spindle_speed": "9000 rpm", "axial_depth": "1 mm"
+    }  # fmt: skip
+    assert (tmp_path / "measurements/set-1" / written["case"]).resolve() == tmp_path / "case.toml"
+
+
+def test_the_repaired_case_is_accepted_under_a_new_name(workbench, tmp_path):
+    view = workbench.measurement
+    folder = tmp_path / "measurements" / "set-1"
+    folder.mkdir(parents=True)
+    (folder / "measurement.toml").write_text('kind = "milling"\ncase = "../../case.toml"\n')
+    view.refresh()
+    results = view._results("explain")
+    results.mkdir(parents=True)
+    chatter.load(tmp_path / "case.toml").patch({"material.Ktc": "700 MPa"}).save(
+        results / "case-updated.toml"
+    )
+    view.accept()
+    assert workbench.session.name == "repaired.toml"
+    assert chatter.load(tmp_path / "repaired.toml").material.Ktc == pytest.approx(700e6)
+    view.accept()
+    assert "is there already" in view.work.message.object
+
+
+def test_a_measurement_that_lacks_its_runs_says_so(workbench, tmp_path):
+    view = workbench.measurement
+    folder = tmp_path / "measurements" / "set-1"
+    folder.mkdir(parents=True)
+    (folder / "measurement.toml").write_text('kind = "milling"\ncase = "../../case.toml"\n')
+    view.refresh()
+    view.start("compare")
+    assert view.work.computations.wait(PATIENCE)
+    assert "there is no [[run]]" in view.work.message.object
+
+
+def test_no_accepted_case_leaves_the_folder(workbench):
+    with pytest.raises(InputError):
+        workbench.session.new_path("../x.toml")

@@ -1,0 +1,108 @@
+"""The workbench in headless chromium: from hammer files to the operator's sheet, by hand."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import chatter
+from chatter.app.workbench.server import WorkbenchServer
+from tests.chatter.app.browser_tab import browser, tab_of
+from tests.chatter.studies.test_modal_test import write_set
+
+pytestmark = pytest.mark.browser
+
+#: s, from the empty page to the sheet
+FIVE_MINUTES = 300.0
+ANSWERS = {
+    "Tool: diameter, teeth": "12 mm, 4",
+    "Material: name of `chatter materials`, or Ktc and Krc": "Al7075-T6",
+    "Cut: spindle speed, feed per tooth, axial depth": "8000 rpm, 0.05 mm, 1 mm",
+    'Engagement: "slot", or "up" or "down" and the radial depth': "down, 6 mm",
+}
+
+
+@pytest.fixture
+def served(tmp_path):
+    folder = tmp_path / "work"
+    folder.mkdir()
+    serving: list[WorkbenchServer] = []
+    ready = threading.Event()
+
+    def serve():
+        asyncio.set_event_loop(asyncio.new_event_loop())
+        serving.append(WorkbenchServer(folder))
+        ready.set()
+        serving[0].serve()
+
+    thread = threading.Thread(target=serve, daemon=True)
+    thread.start()
+    assert ready.wait(60.0)
+    yield folder, serving[0]
+    serving[0].end()
+    thread.join(60.0)
+
+
+@pytest.fixture
+def tab(tmp_path, served):
+    profile = tmp_path / "profile"
+    profile.mkdir()
+    with browser(profile) as port:
+        found = tab_of(port)
+        found.open(served[1].url)
+        yield found
+        found.close()
+
+
+def shot(tab, folder, name):
+    """Look at the page: a picture that is not one colour, and no error on it."""
+    from PIL import Image
+
+    path = folder / f"{name}.png"
+    tab.screenshot(path)
+    colours = np.asarray(Image.open(path).convert("L"))
+    assert len(np.unique(colours)) > 20
+    assert "Traceback" not in tab.value("pageText()")
+
+
+def test_hammer_files_to_the_sheet_within_five_minutes(tab, served, tmp_path):
+    folder, _ = served
+    taps = tmp_path / "taps"
+    taps.mkdir()
+    write_set(taps, 0)
+    begun = time.monotonic()
+    tab.upload(sorted(taps.iterdir()))
+    tab.wait_for_text("1479")
+    tab.wait_for_text("double hit")
+    shot(tab, tmp_path, "tap-test")
+    tab.click_on("Modes into the case")
+    for label, answer in ANSWERS.items():
+        tab.type_into(label, answer)
+    tab.click_on("Make the case")
+    tab.wait_for_text("is made and saved")
+    assert len(chatter.load(folder / "case.toml").structure.mode) == 3
+    shot(tab, tmp_path, "case")
+    tab.click_on("Stability", ".bk-tab")
+    tab.wait_for_text("chatter lobes case.toml")
+    shot(tab, tmp_path, "stability")
+    tab.click_on("Operator's sheet", ".bk-tab")
+    tab.click_on("Start")
+    tab.wait_for_text("sheet.pdf")
+    shot(tab, tmp_path, "sheet")
+    assert time.monotonic() - begun < FIVE_MINUTES
+    assert (folder / "results" / "case" / "sheet" / "sheet.pdf").is_file()
+    # opened again, it is all there
+    tab.open(served[1].url)
+    tab.click_on("Operator's sheet", ".bk-tab")
+    tab.wait_for_text("sheet.pdf")
+
+
+def test_nothing_is_asked_of_the_network(tab, served):
+    asked = tab.value("performance.getEntriesByType('resource').map(one => one.name)")
+    own = served[1].url.split("/")[2]
+    assert asked
+    assert all(f"//{own}/" in one or one.startswith(("data:", "blob:")) for one in asked)

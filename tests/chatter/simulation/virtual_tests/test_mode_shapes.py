@@ -1,0 +1,64 @@
+"""Mode shapes of a block on springs, whose frequencies and shapes are known."""
+
+import math
+
+import numpy as np
+import pytest
+
+import chatter
+from chatter.description.machine.machine_file import MachineFile
+
+BLOCK = """
+title = "block on springs"
+[body.block]
+mass = "100 kg"
+size = ["400 mm", "200 mm", "100 mm"]
+centre = ["0 mm", "0 mm", "50 mm"]
+[connector.springs]
+between = ["block", "ground"]
+at = ["0 mm", "0 mm", "50 mm"]
+stiffness = { x = "10 N/um", y = "40 N/um", z = "90 N/um", rx = "1e7 N*m/rad", ry = "1e7 N*m/rad", rz = "4e5 N*m/rad" }
+"""  # noqa: E501
+
+
+@pytest.fixture(scope="module")
+def shapes():
+    return chatter.mode_shapes(MachineFile.from_text(BLOCK))
+
+
+def test_translations_and_a_rotation_of_a_block(shapes):
+    about_z = 100.0 / 12.0 * (0.4**2 + 0.2**2)
+    wanted = sorted(
+        math.sqrt(k / m) / (2.0 * math.pi)
+        for k, m in ((1e7, 100.0), (4e7, 100.0), (9e7, 100.0), (4e5, about_z))
+    )
+    assert shapes.frequency[:4] == pytest.approx(wanted, rel=1e-6)
+
+
+def test_a_translation_moves_every_corner_alike(shapes):
+    along_x = int(np.argmin(np.abs(shapes.frequency - math.sqrt(1e5) / (2.0 * math.pi))))
+    assert np.abs(shapes.shapes[along_x]) == pytest.approx(
+        np.tile([1.0, 0.0, 0.0], (8, 1)), abs=1e-6
+    )
+
+
+def test_a_rotation_turns_the_corners_about_the_axis(shapes):
+    about_z = 100.0 / 12.0 * (0.4**2 + 0.2**2)
+    turned = int(np.argmin(np.abs(shapes.frequency - math.sqrt(4e5 / about_z) / (2.0 * math.pi))))
+    x, y = shapes.points[:, 0], shapes.points[:, 1]
+    wanted = np.stack((-y, x), axis=1) / math.hypot(0.2, 0.1)
+    found = shapes.shapes[turned][:, :2]
+    assert found * np.sign(found[0, 0] * wanted[0, 0]) == pytest.approx(wanted, abs=1e-6)
+
+
+def test_a_block_has_twelve_edges(shapes):
+    assert shapes.lines.shape == (12, 2)
+    lengths = np.linalg.norm(np.diff(shapes.points[shapes.lines], axis=1)[:, 0], axis=1)
+    assert sorted(set(np.round(lengths, 9))) == [0.1, 0.2, 0.4]
+
+
+def test_files(shapes, tmp_path):
+    shapes.save(tmp_path)
+    with np.load(tmp_path / "mode-shapes.npz", allow_pickle=False) as arrays:
+        assert arrays["frequency"] == pytest.approx(shapes.frequency)
+    assert (tmp_path / "mode-shapes.png").read_bytes().startswith(b"\x89PNG")
