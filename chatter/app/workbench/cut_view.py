@@ -81,7 +81,7 @@ class CutView:
         self.tool = ColumnDataSource({"x": [], "y": []})
         self._figures = self._make_figures()
         self.call, self._files, self._before = pn.Column(), pn.FlexBox(min_width=860), pn.Column()
-        self.computations = Computations(self._tell)
+        self.computations = Computations(self._show_message)
         self.start_button.on_click(lambda _: self.start())
         self.cancel_button.on_click(lambda _: self.computations.cancel())
         self.player.param.watch(lambda _: self.draw_time(), "value")
@@ -120,7 +120,7 @@ class CutView:
             case = self._session.sound_case()
             case.require("tool", "material", "cut", "structure")
         except InputError as error:
-            self._tell(str(error))
+            self._show_message(str(error))
             return
         changes = _CARVE if self.carve.value and case.get("simulation") is None else {}
         if self.carve.value and not changes:
@@ -276,7 +276,7 @@ class CutView:
         content.seek(0)
         return content
 
-    def _tell(self, text: str) -> None:
+    def _show_message(self, text: str) -> None:
         told = text.replace(f"{self._session.root}/", "")
         self._show(lambda: setattr(self.message, "object", told))
 

@@ -29,7 +29,7 @@ class LongWork:
         self.cancel_button = pn.widgets.Button(label="Cancel", width=100)
         self.progress = pn.indicators.Progress(value=0, max=100, width=360, active=False)
         self.message = pn.pane.Str("", width=900, styles={"white-space": "pre-wrap"})
-        self.computations = Computations(self.tell)
+        self.computations = Computations(self.show_message)
         self.cancel_button.on_click(lambda _: self.computations.cancel())
 
     def start(
@@ -44,21 +44,21 @@ class LongWork:
         def compute(go_on: Progress) -> None:
             try:
                 in_own_process(function, arguments, go_on, self.report)
-                self.tell(note)
+                self.show_message(note)
             finally:
                 self._show(lambda: self.progress.param.update(value=0, active=False))
             self._show(done)
 
-        self.tell("starting ...")
+        self.show_message("starting ...")
         self.computations.start(Computation(compute, False))
 
     def report(self, stage: str, share: float) -> None:
         """Show what is done, and the share of it."""
         value = min(100, round(100.0 * share))
         self._show(lambda: self.progress.param.update(value=value, active=True))
-        self.tell(f"{stage} ({value} %)")
+        self.show_message(f"{stage} ({value} %)")
 
-    def tell(self, text: str) -> None:
+    def show_message(self, text: str) -> None:
         """Show a sentence, with names relative to the folder."""
         told = str(text).replace(f"{self._root}/", "")
         self._show(lambda: setattr(self.message, "object", told))

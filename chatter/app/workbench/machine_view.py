@@ -88,11 +88,13 @@ class MachineView:
     def start(self, name: str) -> None:
         """Compute "frf", "move" or "mode_shapes" of the machine as it is chosen."""
         if self.file.value is None:
-            self.work.tell("no machine file in the folder; chatter examples machine-gantry has one")
+            self.work.show_message(
+                "no machine file in the folder; chatter examples machine-gantry has one"
+            )
             return
         tests = {"frf": list(self.tests.value), "move": [self.move.value]}.get(name, [])
         if tests == [None]:
-            self.work.tell(f"{self.file.value}: has no [move.NAME]")
+            self.work.show_message(f"{self.file.value}: has no [move.NAME]")
             return
         call = self._call(name, tests)
         folder = self._folder(name)
@@ -136,7 +138,7 @@ class MachineView:
         try:
             machine = chatter.load_machine(self._session.path(self.file.value))
         except InputError as error:
-            self.work.tell(str(error))
+            self.work.show_message(str(error))
             return
         self.tests.options, self.move.options = list(machine.frf), list(machine.move)
         for name in ("mode_shapes", "move", "frf"):

@@ -110,7 +110,7 @@ class MeasurementView:
                 self._assigned()
                 self.write(folder)
         except InputError as error:
-            self.work.tell(str(error))
+            self.work.show_message(str(error))
             return
         self.refresh()
         self.folder.value = folder
@@ -126,20 +126,22 @@ class MeasurementView:
         try:
             read_measurement(path.parent)
         except InputError as error:
-            self.work.tell(str(error))
+            self.work.show_message(str(error))
         else:
-            self.work.tell(f"{name}/{_FILE} is written")
+            self.work.show_message(f"{name}/{_FILE} is written")
 
     def start(self, name: str) -> None:
         """Compare or explain the measurement that is chosen."""
         if self.folder.value is None:
-            self.work.tell("no measurement: drop records, or open a folder with measurement.toml")
+            self.work.show_message(
+                "no measurement: drop records, or open a folder with measurement.toml"
+            )
             return
         own = self.case.value == _OPEN_CASE
         try:
             case = self._session.case_text if own else None
         except InputError as error:
-            self.work.tell(str(error))
+            self.work.show_message(str(error))
             return
         call = self._call(name, own)
         self.call.objects = [same_call(call)]
@@ -154,9 +156,9 @@ class MeasurementView:
             target = session.new_path(self.accepted_name.value.strip())
             load(self._results("explain") / _UPDATED).save(target)
         except InputError as error:
-            self.work.tell(str(error))
+            self.work.show_message(str(error))
             return
-        self.work.tell(f"{target.name} is in the folder, and open")
+        self.work.show_message(f"{target.name} is in the folder, and open")
         self._opened(target.name)
 
     def _results(self, name: str) -> Path:
@@ -189,7 +191,7 @@ class MeasurementView:
         try:
             self.text.value = self.assignment.toml(Path(case).as_posix())
         except InputError as error:
-            self.work.tell(str(error))
+            self.work.show_message(str(error))
 
 
 class ChannelAssignment:

@@ -77,7 +77,7 @@ class StabilityTab:
             case = session.sound_case()
             self.diagram = StabilityView(case, session.name, self._show, self._method)
         except InputError as error:
-            self.work.tell(str(error))
+            self.work.show_message(str(error))
             self._diagram.objects = []
             return
         self.message.object = ""
@@ -95,7 +95,7 @@ class StabilityTab:
         try:
             self._session.set_text(self._session.sound_case().patch(changes).to_toml())
         except InputError as error:
-            self.work.tell(str(error))
+            self.work.show_message(str(error))
             return
         self.message.object = f"{', '.join(changes)}: in the case, which is not saved yet"
 
@@ -110,14 +110,14 @@ class StabilityTab:
             gone = [(f"structure.{key}", None) for key in ("mode", "machine")]
             session.set_values([*gone, ("structure.frf", names)])
         except InputError as error:
-            self.work.tell(str(error))
+            self.work.show_message(str(error))
 
     def study(self, name: str) -> None:
         """Compute the optimum or the uncertainty of the case and draw it into the diagram."""
         try:
             case = self._session.case_text
         except InputError as error:
-            self.work.tell(str(error))
+            self.work.show_message(str(error))
             return
         folder, drawn = self._session.results(name), self.diagram
         label = STUDIES[name].label
@@ -151,7 +151,7 @@ class StabilityTab:
             case = load(self._session.path(name))
             self.beside = StabilityView(case, name, self._show, self._method, self.diagram)
         except InputError as error:
-            self.work.tell(str(error))
+            self.work.show_message(str(error))
             return
         self._beside.objects = [self.beside.diagram_alone()]
 

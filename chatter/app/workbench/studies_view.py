@@ -63,7 +63,7 @@ class StudiesView:
         try:
             case = self._session.case_text
         except InputError as error:
-            self.work.tell(str(error))
+            self.work.show_message(str(error))
             return
         folder = self._session.results(name)
         changed = self._session.changed

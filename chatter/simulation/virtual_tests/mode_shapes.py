@@ -115,12 +115,12 @@ def mode_shapes(file: MachineFile, count: int = 12) -> ModeShapes:
     )
 
 
-Place = tuple[str, NDArray[np.float64]]
+PartPoint = tuple[str, NDArray[np.float64]]
 
 
-def _outline(file: MachineFile) -> tuple[list[Place], list[tuple[int, int]]]:
+def _outline(file: MachineFile) -> tuple[list[PartPoint], list[tuple[int, int]]]:
     """Part and place (m) of every point that is drawn, and which are joined."""
-    places: list[Place] = []
+    places: list[PartPoint] = []
     lines: list[tuple[int, int]] = []
     for name, at, joined in (*_blocks(file), *_beams(file)):
         lines += [(len(places) + a, len(places) + b) for a, b in joined]
