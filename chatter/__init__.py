@@ -36,8 +36,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from chatter.assembly.assemble import assemble as assemble
     from chatter.app.workbench.explore import explore as explore
+    from chatter.assembly.assemble import assemble as assemble
     from chatter.cutting_coefficients.identify import coefficients as coefficients
     from chatter.description.case import Case as Case
     from chatter.description.case import load as load
