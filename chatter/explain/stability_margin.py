@@ -72,6 +72,7 @@ class ResponseOfTests(NamedTuple):
     margin: Array  # share of its depth by which a cut is away from the limit; above 0: stable
     angle: Array  # of the dominant multiplier, rad, 0 to pi
     period: Array  # after which the cut repeats itself, s
+    rate: Array  # logarithm of the spectral radius over that period
 
     def chatter_frequency(self, near: Array) -> Array:
         """Frequency (Hz) of the dominant motion that is nearest to one given for each test.
@@ -187,7 +188,7 @@ def response_of_tests(case: Case, tests: CuttingTests) -> ResponseOfTests:
     # where rate does not rise with depth, its size tells no more than the side
     rising = np.maximum(slope, 0.3 * np.abs(rate) + 1e-3)
     margin = np.clip(-rate / rising, -_FAR, _FAR)
-    return ResponseOfTests(margin, np.abs(np.angle(both[0])), period)
+    return ResponseOfTests(margin, np.abs(np.angle(both[0])), period, rate)
 
 
 def _multipliers(case: Case, tests: CuttingTests, shares: Sequence[float]) -> tuple[Array, Array]:

@@ -12,9 +12,10 @@ from chatter.description.errors import InputError
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.measurement_file import read_measurement
 from chatter.io.signals import read_signals
+from chatter.learning.records_of_cuts import ANGLE, MAGNITUDE, with_multipliers
 
 #: what of a test can be compared with a prediction
-READINGS = ("stable", "chatter_frequency", "spindle_power")
+READINGS = ("stable", "chatter_frequency", "spindle_power", MAGNITUDE, ANGLE)
 #: number of the test in the order of its table, as a column of every run
 TEST = "test"
 _NEEDED = ("spindle_speed", "axial_depth")
@@ -25,7 +26,8 @@ def read_cuts(path: str | Path, case: Case) -> Measurement:
 
     A table has `spindle_speed`, `axial_depth` and one or more of `stable`, `chatter_frequency` and
     `spindle_power`, with their units; `feed_per_tooth`, `radial_depth` and `cut_time` where they
-    differ from the case. InputError if it is missing or has no such column.
+    differ from the case; `record`, a number n, where the vibration of a stable cut lies in
+    record-n.csv beside the table. InputError if it is missing or has no such column.
     """
     path = Path(path)
     if path.is_dir() or path.suffix == ".toml":
@@ -53,6 +55,7 @@ def with_one_run_a_reading(measurement: Measurement) -> Measurement:
         if not np.all(np.isfinite(values) & (values > 0.0)):
             row = int(np.argmin(np.isfinite(values) & (values > 0.0))) + 1
             raise InputError(f"{where}: {name}, row {row}: {values[row - 1]:g} is not above 0")
+    run = with_multipliers(run, measurement.folder, measurement.case)
     numbered = {**run.signals, TEST: np.arange(run.signals[_NEEDED[0]].size, dtype=float)}
     run = replace(run, signals=numbered)
     runs = [one for name in READINGS if (one := _of_reading(run, name, measurement)) is not None]
@@ -69,7 +72,7 @@ def _of_reading(run: Run, name: str, measurement: Measurement) -> Run | None:
     if name == "spindle_power":
         signals[name] = signals[name] - (measurement.idle_power or 0.0)
     usable = np.isfinite(signals[name])
-    if name != "stable":
+    if name in ("chatter_frequency", "spindle_power"):
         usable &= signals[name] > 0.0
     if name == "chatter_frequency" and "stable" in signals:
         # of a stable test it is that of forced vibration

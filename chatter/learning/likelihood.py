@@ -14,9 +14,12 @@ from chatter.explain.measurement import Run
 from chatter.explain.selection.problem import Problem
 from chatter.learning.cuts import TEST
 from chatter.learning.prior import SCATTER_OF_LIMITS, Prior
+from chatter.learning.records_of_cuts import ANGLE, DEVIATION, MAGNITUDE
 
 Array = NDArray[np.float64]
 
+#: scatter of multipliers beyond that of their records: the model is no better
+_LEAST_OF_MULTIPLIERS = 0.03
 #: logarithm of the likelihood of a test that cannot be predicted
 _IMPOSSIBLE = -1e6
 
@@ -82,6 +85,16 @@ class Likelihood:
         if channel == "stable":
             stable = likely_stable(predicted, scatter)
             return np.log(np.where(measured > 0.5, stable, 1.0 - stable))
+        if channel in (MAGNITUDE, ANGLE):
+            return -0.5 * limited((predicted - measured) / _scatter_of(run)) ** 2
         level = self.problem.kind.first_noise(run)[channel]
         scale = measured * level if channel == "spindle_power" else level
         return -0.5 * limited((predicted - measured) / scale) ** 2
+
+
+def _scatter_of(run: Run) -> Array:
+    """Standard deviations (r,) of the multipliers that records show, of angles in rad."""
+    deviation = run.signals[DEVIATION]
+    if run.record == ANGLE:
+        deviation = deviation / np.maximum(run.signals[MAGNITUDE], 0.1)
+    return np.hypot(deviation, _LEAST_OF_MULTIPLIERS)

@@ -120,11 +120,15 @@ class Stability(Kind):
         return mean_over_channels(shares)
 
     def predict(self, case: Case, run: Run) -> Signals:
-        """Probability of a stable verdict, chatter frequency or power of every test."""
+        """Probability of a stable verdict, frequency, power or multiplier of every test."""
         tests = tests_of(case, run.signals)
         if run.record == "spindle_power":
             return {"spindle_power": cutting_power(case, tests)}
         response = self._responses.of(case, tests)
+        if run.record == "multiplier":
+            return {"multiplier": np.exp(response.rate)}
+        if run.record == "multiplier_angle":
+            return {"multiplier_angle": response.angle}
         if run.record == "chatter_frequency":
             near = run.signals["chatter_frequency"]
             return {"chatter_frequency": response.chatter_frequency(near)}

@@ -118,7 +118,8 @@ def test_every_form_of_wear_reaches_its_increase_at_the_last_test(form):
 
 def test_chatter_frequency_is_that_of_the_motion_nearest_to_what_was_heard():
     period = np.array([0.01, 0.01])
-    response = ResponseOfTests(np.zeros(2), np.array([0.4 * math.pi, 0.4 * math.pi]), period)
+    angle = np.array([0.4 * math.pi, 0.4 * math.pi])
+    response = ResponseOfTests(np.zeros(2), angle, period, np.zeros(2))
     assert response.chatter_frequency(np.array([519.0, 684.0])) == pytest.approx([520.0, 680.0])
 
 
