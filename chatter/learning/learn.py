@@ -24,7 +24,7 @@ from chatter.learning.diagram import ParticleDiagram, diagram_of
 from chatter.learning.likelihood import Likelihood
 from chatter.learning.next_cut import AIMS, INFORMATION, LEAST_INFORMATION, NextCut, next_cut
 from chatter.learning.posterior import Particles, Progress, prior_particles, updated
-from chatter.learning.prior import SCATTER_OF_LIMITS, prior_of, with_wear
+from chatter.learning.prior import SCATTER_OF_LIMITS, of_a_turning_tool, prior_of, with_wear
 from chatter.stability.search_range import spindle_speeds
 
 if TYPE_CHECKING:
@@ -271,7 +271,7 @@ def _check(aim: str, risk: float, particles: int) -> None:
 
 def problem_of(measurement: Measurement) -> Problem:
     """Problem of tests, with wear where they show when they were made."""
-    kind = Stability()
+    kind, measurement = Stability(), of_a_turning_tool(measurement)
     measurement.case.require(*kind.sections)
     noise = {run.name: kind.first_noise(run) for run in measurement.runs}
     return with_wear(Problem(measurement, Predictions(kind), noise))

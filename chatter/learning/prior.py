@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 from chatter.explain.cutting_tests.priors import FREEDOM
 from chatter.explain.cutting_tests.wear import GradualWear, cut_times
 from chatter.explain.fitting import KnownByFactor, Parameter
+from chatter.explain.kinds.milling import structural_paths
 from chatter.explain.kinds.stability import SCATTER
+from chatter.explain.measurement import Measurement
 from chatter.explain.selection.problem import Problem
 
 Array = NDArray[np.float64]
@@ -24,6 +26,8 @@ Array = NDArray[np.float64]
 SCATTER_OF_LIMITS = "scatter of limits"
 #: a factor of two either way
 _SCATTER_SIZE = SCATTER
+#: tolerances, as shares, of modes that were found at rest
+_OF_A_TURNING_TOOL = {"frequency": 0.02, "damping": 0.4}
 #: growth by wear that would be a gain of sharpness, as a share
 _LEAST_GROWTH = -0.1
 #: probability next to the open ends of a distribution
@@ -80,6 +84,20 @@ class Prior:
             one.name: float(one.value(number))
             for one, number in zip(self.parameters, counted, strict=True)
         }
+
+
+def of_a_turning_tool(measurement: Measurement) -> Measurement:
+    """Measurement with the tolerances of modes that were found at rest, where none is declared.
+
+    A spindle that turns and cuts has other modes than at rest: frequencies by a percent or two,
+    damping by much more.
+    """
+    declared, tolerances = measurement.case.deviations(), dict(measurement.tolerances)
+    for path in structural_paths(measurement.case):
+        key = path.rpartition(".")[2]
+        if key in _OF_A_TURNING_TOOL and path not in declared and key not in tolerances:
+            tolerances.setdefault(path, _OF_A_TURNING_TOOL[key])
+    return replace(measurement, tolerances=tolerances)
 
 
 def with_wear(problem: Problem) -> Problem:
