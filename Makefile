@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 
-.PHONY: demo test manual distributions benchmarks clean
+.PHONY: demo test nightly manual distributions benchmarks clean
 
 demo: $(VENV)/.installed
 	$(BIN)/chatter examples flexible-workpiece --run --open --out demo-output
@@ -14,6 +14,12 @@ test: $(VENV)/.installed-dev
 	$(BIN)/lint-imports
 	$(BIN)/mypy
 	$(BIN)/pytest -n auto --dist loadfile
+
+# what takes hours: properties and damaged files in numbers, commands killed at random moments
+nightly: $(VENV)/.installed-dev
+	CHATTER_PROPERTIES=2500 CHATTER_FUZZING=500 $(BIN)/pytest tests/validation/test_properties.py tests/benchmarks/test_fuzzing.py
+	$(BIN)/python -m benchmarks.fuzzing build/nightly/fuzzing --count 100000 --seed $$(date +%Y%m%d)
+	$(BIN)/python -m benchmarks.killed_commands build/nightly/killed --kills 30
 
 # the site in build/manual; no network is needed to build it
 manual: $(VENV)/.installed-dev

@@ -14,9 +14,10 @@ if __name__ == "__main__":
     parser.add_argument("--count", type=int, default=100_000, help="inputs")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--kinds", nargs="+", choices=KINDS, default=KINDS)
+    parser.add_argument("--only", default="", help="sources whose name holds this")
     asked = parser.parse_args()
     warnings.simplefilter("ignore")
     with tempfile.TemporaryDirectory() as folder:
-        found = list(sources(Path(folder), tuple(asked.kinds)))
+        found = [s for s in sources(Path(folder), tuple(asked.kinds)) if asked.only in s.name]
         warmed(found)
         print(table(campaign(asked.out, found, asked.count, asked.seed)))

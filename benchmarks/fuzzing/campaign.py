@@ -22,7 +22,9 @@ _JOURNAL = "journal.jsonl"
 
 
 def _named(source: Source) -> tuple[str, ...]:
-    return source.path.name, source.path.parent.name
+    """Names of which a refusal holds one: the file, its folder, what lies beside it."""
+    beside = (one.name for one in source.path.parent.iterdir())
+    return source.path.name, source.path.parent.name, *beside
 
 
 def answer_in_words(sources: Sequence[Source], source: int, answer: int) -> str:

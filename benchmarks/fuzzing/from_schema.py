@@ -82,10 +82,14 @@ def alternatives(node: Schema, root: Schema) -> Iterator[Schema]:
     """Nodes that a value may follow, with references followed."""
     node = resolved(node, root)
     choices = [*node.get("anyOf", []), *node.get("oneOf", [])]
+    # a table may say by alternatives which keys go together
+    rest = {key: value for key, value in node.items() if key not in ("anyOf", "oneOf")}
     if not choices:
         yield node
     for one in choices:
-        yield from alternatives(one, root)
+        for each in alternatives(one, root):
+            required = [*rest.get("required", []), *each.get("required", [])]
+            yield {**rest, **each, **({"required": required} if required else {})}
 
 
 @st.composite
@@ -171,6 +175,12 @@ def _fitting(node: Schema, root: Schema) -> st.SearchStrategy[Any]:
     return _string(node) if kind == "string" else WILD
 
 
-def documents(schema: Schema) -> st.SearchStrategy[dict[str, Any]]:
-    """Whole documents with what the schema requires and a few of the other keys."""
-    return _object(schema, schema)
+@st.composite
+def documents(draw: st.DrawFn, schema: Schema) -> dict[str, Any]:
+    """Whole documents: two thirds of the sections that the schema has, and all that it requires."""
+    properties, required = schema.get("properties", {}), schema.get("required", [])
+    return {
+        key: draw(values(node, schema))
+        for key, node in properties.items()
+        if key in required or draw(st.integers(0, 2))
+    }

@@ -24,9 +24,6 @@ _PUNCH = """DMIG    KAAX           0       6       2       0                    
 DMIG    KAAX           8       1               8       1     4.0
                3       1    -4.0
 DMIG    KAAX           3       1               3       1     4.0
-DMIG    MAAX           0       6       2       0                       4
-DMIG    MAAX           3       1               3       1     2.0
-DMIG    MAAX           8       1               8       1     3.0
 """
 _TEXTS = {
     "model.pch": _PUNCH,

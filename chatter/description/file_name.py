@@ -1,5 +1,6 @@
 """File names in a case: relative to the folder of the case file."""
 
+import os
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -8,10 +9,23 @@ from pydantic import BeforeValidator, ValidationInfo, WithJsonSchema
 from chatter.description.file_access import VARIABLE, is_allowed
 from chatter.description.formatting import formatted
 
+#: longest part of a path that file systems hold, bytes
+_LONGEST_PART = 255
+
+
+def is_file_name(given: Any) -> bool:
+    """Whether a value can name a file."""
+    return (
+        isinstance(given, (str, Path))
+        and bool(str(given))
+        and str(given).isprintable()
+        and all(len(os.fsencode(part)) <= _LONGEST_PART for part in Path(given).parts)
+    )
+
 
 def in_case_folder(given: Any, info: ValidationInfo) -> Path:
     """Path of a file that a case names; ValueError where it is no file name, or not allowed."""
-    if not isinstance(given, (str, Path)) or not str(given) or not str(given).isprintable():
+    if not is_file_name(given):
         raise ValueError(
             f'{formatted(given)} is not a file name; one is required, such as "tap.uff"'
         )

@@ -10,6 +10,7 @@ import tomlkit
 
 from chatter.description.case import Case, load
 from chatter.description.errors import InputError
+from chatter.description.file_name import is_file_name
 from chatter.description.formatting import formatted
 from chatter.description.units import QuantityError, parse
 from chatter.explain.kinds.kind_list import KINDS, OF_PARTS
@@ -52,7 +53,7 @@ def read_measurement(folder: str | Path, case: str | Path | Case | None = None) 
     path = path if path.is_file() else path / "measurement.toml"
     content = _content(path)
     name = content.get("kind")
-    if name not in KINDS:
+    if not isinstance(name, str) or name not in KINDS:
         raise InputError(f"{path}: kind: {formatted(name)} is none of {', '.join(KINDS)}")
     _refuse_unknown(path, "", content, SET_UP_KEYS if name == SetUp.name else _ONE_KIND_KEYS)
     declared = case if isinstance(case, Case) else load(case or _file(path, content, "case"))
@@ -210,7 +211,7 @@ def _file(path: Path, content: Mapping[str, Any], key: str) -> Path:
     name = content.get(key)
     if name is None:
         raise InputError(f"{path}: {key} is missing; a file name is required")
-    if not isinstance(name, str):
+    if not is_file_name(name):
         raise InputError(f"{path}: {key}: {formatted(name)} is not a file name")
     return path.parent / name
 
@@ -219,7 +220,7 @@ def _run(path: Path, kind: str, number: int, entry: Mapping[str, Any], declared:
     where = f"{path}: run {number}"
     if "file" not in entry:
         raise InputError(f'{where}: file is missing; a run names its signals, such as "run01.csv"')
-    if not isinstance(entry["file"], str):
+    if not is_file_name(entry["file"]):
         raise InputError(f"{where}: file: {formatted(entry.get('file'))} is not a file name")
     file = _file(path, entry, "file")
     where = f"{where} ({file.name})"

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import struct
+import tokenize
 import zipfile
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +18,12 @@ from chatter.io.formats.model_parts import StoredMatrix
 from chatter.io.formats.named_arrays import require_size, table_of_arrays
 from chatter.io.table import Table
 from dynamics.frf.container import MeasurementError
+
+#: what NumPy, zipfile and zlib raise on a damaged archive: codecs and passwords that are none, too
+_FAULTS = (
+    *(OSError, ValueError, EOFError, KeyError, MemoryError, RuntimeError, SyntaxError),
+    *(zipfile.BadZipFile, zlib.error, struct.error, tokenize.TokenError),
+)
 
 
 def read_columns(path: Path) -> Table:
@@ -29,7 +38,7 @@ def read_columns(path: Path) -> Table:
             arrays = {name: content[name] for name in content.files}
     except MeasurementError:
         raise
-    except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+    except _FAULTS as error:
         raise MeasurementError(f"{path}: cannot be read: {error}") from error
     except AttributeError as error:  # a single array, not a file of several
         raise MeasurementError(

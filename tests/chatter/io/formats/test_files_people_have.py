@@ -1,5 +1,6 @@
 """LVM, MAT, XLSX, Parquet, NPZ, headerless text: what is written by others comes back in SI."""
 
+import contextlib
 import zipfile
 
 import numpy as np
@@ -286,3 +287,13 @@ def test_export_of_dynoware(tmp_path):
     assert [column.heading for column in table.columns] == ["Time [s]", "Fx [N]", "Fy [kN]"]
     np.testing.assert_allclose(table.numbers(1), FORCE, atol=1e-8)
     np.testing.assert_allclose(table.numbers(2), -FORCE / 1e3, atol=1e-11)
+
+
+def test_an_archive_damaged_within_its_data_is_refused(tmp_path):
+    path = tmp_path / "tap.npz"
+    np.savez_compressed(path, **{"time [s]": TIME, "force [N]": FORCE})
+    whole = path.read_bytes()
+    for at in range(40, len(whole), 97):
+        path.write_bytes(whole[:at] + bytes([whole[at] ^ 0xFF]) + whole[at + 1 :])
+        with contextlib.suppress(MeasurementError):
+            read(path)
