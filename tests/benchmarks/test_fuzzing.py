@@ -112,6 +112,7 @@ def _faulty(number):
     return in_words(answer, ("case.toml",))
 
 
+@pytest.mark.filterwarnings("ignore")
 def test_what_is_planted_is_found():
     worker = Worker(_faulty)
     said = [worker.ask(number, seconds=1) for number in range(6)]
@@ -124,6 +125,7 @@ def test_what_is_planted_is_found():
     assert said[5] == "memory"
 
 
+@pytest.mark.filterwarnings("ignore")
 def test_a_campaign_goes_on_where_it_ended(found, tmp_path):
     files = [one for one in found if one.name in ("tap.csv", "tap.txt")]
     first = campaign(tmp_path, files, 100, seed=5)
