@@ -19,7 +19,6 @@ from chatter.app.workbench.page import Workbench
 from chatter.app.workbench.server import LARGEST_MESSAGE, WorkbenchServer
 from chatter.app.workbench.session import Session
 from chatter.app.workbench.table_files import as_csv
-from chatter.description.errors import InputError
 from tests.places import EXAMPLES
 
 #: s; the first diagram may compile
@@ -218,11 +217,6 @@ def test_a_malformed_message_leaves_the_page_alive(server):
 
     assert asyncio.run(asyncio.wait_for(send(), 30.0))
     assert answer(server, prefix(server) + "/")[0] == 200
-
-
-def test_a_port_in_use_is_refused(server, folder):
-    with pytest.raises(InputError, match="--port"):
-        WorkbenchServer(folder, port=server.port)
 
 
 def test_a_notebook_shows_the_diagram_of_a_case():
