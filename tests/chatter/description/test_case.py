@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 import chatter
 from chatter import Case, InputError, load
 from chatter.description.case import loads
+from chatter.description.file_access import VARIABLE
 from tests.places import DATA, EXAMPLES
 
 TEXT = """# my case, with care
@@ -184,7 +185,8 @@ def files_of(case):
 
 
 @pytest.mark.parametrize("form", FRF_FORMS)
-def test_file_names_hold_after_saving_elsewhere(tmp_path, form):
+def test_file_names_hold_after_saving_elsewhere(tmp_path, form, monkeypatch):
+    monkeypatch.setenv(VARIABLE, str(tmp_path))
     here = tmp_path / "here"
     here.mkdir()
     (here / "case.toml").write_text(f"[structure]\n{form}  # measured on Monday\n")
@@ -208,7 +210,8 @@ def test_file_names_as_tables(tmp_path):
     assert load(tmp_path / "a/case.toml").structure.frf[0].file.resolve() == tmp_path / "tap.csv"
 
 
-def test_absolute_file_names_stay(tmp_path):
+def test_absolute_file_names_stay(tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, "/data")
     (tmp_path / "case.toml").write_text('[structure]\nfrf = "/data/tap.uff"\n')
     load(tmp_path / "case.toml").save(tmp_path / "a" / "case.toml")
     assert (tmp_path / "a/case.toml").read_text() == '[structure]\nfrf = "/data/tap.uff"\n'
