@@ -16,6 +16,9 @@ import typer.main
 from pydantic import BaseModel
 
 DOCS = Path(__file__).resolve().parent
+if __name__ == "__main__":
+    # the tables are of the packages beside this folder, whatever is installed
+    sys.path.insert(0, str(DOCS.parent))
 _BLOCK = re.compile(r"(<!-- table: (.+) -->\n)(?:(?!<!--).*\n)*(<!-- end -->)")
 
 

@@ -52,6 +52,7 @@ COMMANDS = (
     "schema",
     "app",
     "doctor",
+    "compile",
 )
 
 

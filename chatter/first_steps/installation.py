@@ -26,7 +26,6 @@ _OPTIONAL = {
 
 def installation() -> dict[str, Any]:
     """What is installed, and where compiled code is kept."""
-    compiled = list(CACHE_FOLDER.rglob("*.nbc")) if CACHE_FOLDER.exists() else []
     return {
         "python": platform.python_version(),
         "system": f"{platform.system()} {platform.machine()}",
@@ -37,12 +36,18 @@ def installation() -> dict[str, Any]:
         },
         "cores": os.cpu_count(),
         "threads": numba.config.NUMBA_NUM_THREADS,
-        "cache": {
-            "folder": str(CACHE_FOLDER),
-            "writable": CACHE_FOLDER.exists() and os.access(CACHE_FOLDER, os.W_OK),
-            "compiled_functions": len(compiled),
-            "MB": round(sum(path.stat().st_size for path in compiled) / 1e6, 1),
-        },
+        "cache": compiled_code(),
+    }
+
+
+def compiled_code() -> dict[str, Any]:
+    """Folder of compiled code, how many functions it holds, and their size, MB."""
+    compiled = list(CACHE_FOLDER.rglob("*.nbc")) if CACHE_FOLDER.exists() else []
+    return {
+        "folder": str(CACHE_FOLDER),
+        "writable": CACHE_FOLDER.exists() and os.access(CACHE_FOLDER, os.W_OK),
+        "compiled_functions": len(compiled),
+        "MB": round(sum(path.stat().st_size for path in compiled) / 1e6, 1),
     }
 
 

@@ -15,7 +15,7 @@ from chatter.stability.check import check
 _FREQUENCY, _DAMPING, _MASS = 922.0, 0.011, 0.03993
 _KTC, _RATIO, _TEETH = 600e6, 1.0 / 3.0, 2
 #: Insperger and Stepan (2004): a tool that gives way along the feed alone, half immersion, down
-_CASE = {
+CASE = {
     "tool": {"kind": "end mill", "teeth": _TEETH, "diameter": "16 mm"},
     "material": {"law": "linear", "Ktc": _KTC, "Krc": _RATIO * _KTC},
     "cut": {
@@ -50,7 +50,7 @@ class CheckedAnswer(NamedTuple):
 
 def self_check() -> list[CheckedAnswer]:
     """Zeroth order against its closed form, two methods against each other, time against both."""
-    case = Case.from_dict(_CASE, "self-check")
+    case = Case.from_dict(CASE, "self-check")
     started = time.perf_counter()
     found = check(case, "zero-order").zero_order_depth
     wanted = closed_form_limit(case.cut.spindle_speed)

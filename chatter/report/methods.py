@@ -122,6 +122,9 @@ METHODS = {
     "doctor": Method(
         "Is the installation right?", "Versions, cache, and answers known in closed form."
     ),
+    "compile": Method(
+        "Is everything compiled?", "Every kind of computation once, as small as it can be."
+    ),
 }
 
 
