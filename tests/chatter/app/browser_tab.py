@@ -114,7 +114,7 @@ class Tab:
             if found:
                 return found
             time.sleep(0.05)
-        raise AssertionError(f"never true: {expression}")
+        raise AssertionError(f"never true: {expression}; page: {self.value('pageText()')[:3000]}")
 
     def mouse(self, kind: str, x: float, y: float) -> None:
         button = {"button": "left", "clickCount": 1} if kind != "mouseMoved" else {}
@@ -138,13 +138,20 @@ class Tab:
     def click_on(self, text: str, selector: str = "button") -> None:
         """Click the visible element of a text."""
         element = f"labelled({json.dumps(text)}, {json.dumps(selector)})"
-        self.wait(f"!!{element}")
-        x, y = self.value(
-            f"(() => {{ const one = {element}; one.scrollIntoView({{block: 'center'}});"
-            "const r = one.getBoundingClientRect();"
-            "return [r.left + r.width / 2, r.top + r.height / 2]; })()"
-        )
-        self.click(x, y)
+        # the page may still move: wait until the place stays, then press the mouse there
+        before = None
+        while True:
+            self.wait(f"!!{element} && !{element}.disabled")
+            place = self.value(
+                f"(() => {{ const one = {element}; one.scrollIntoView({{block: 'center'}});"
+                "const r = one.getBoundingClientRect();"
+                "return [r.left + r.width / 2, r.top + r.height / 2]; })()"
+            )
+            if place == before:
+                break
+            before = place
+            time.sleep(0.2)
+        self.click(*place)
 
     def click(self, x: float, y: float) -> None:
         """Click a place of the window."""

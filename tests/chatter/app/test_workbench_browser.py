@@ -14,7 +14,11 @@ from chatter.app.workbench.server import WorkbenchServer
 from tests.chatter.app.browser_tab import browser, tab_of
 from tests.chatter.studies.test_modal_test import write_set
 
-pytestmark = pytest.mark.browser
+pytestmark = [
+    pytest.mark.browser,
+    # Bokeh says so of a model that dynamic tabs send again; as an error it would drop the message
+    pytest.mark.filterwarnings("ignore:reference already known"),
+]
 
 #: s, from the empty page to the sheet
 FIVE_MINUTES = 300.0
