@@ -141,6 +141,7 @@ class MachineView:
             self.work.show_message(str(error))
             return
         self.tests.options, self.move.options = list(machine.frf), list(machine.move)
+        self.move.value = next(iter(machine.move), None)
         for name in ("mode_shapes", "move", "frf"):
             self._done(name)
 
