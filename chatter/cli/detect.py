@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -16,6 +17,7 @@ from chatter.description.errors import InputError
 from chatter.report.console import print_line, print_message, print_table
 
 if TYPE_CHECKING:
+    from chatter.description.case import Case
     from chatter.monitoring.result import DetectedChatter
 
 #: verdicts whose reason is printed
@@ -57,9 +59,18 @@ class DetectOptions:
         typer.Option(
             "--follow",
             help="Of a WAV or text file that is still being written: a line on stderr at every "
-            "change; the whole recording at its end. Needs --spindle-speed.",
+            "change; the whole recording at its end. Needs --spindle-speed or --case.",
         ),
     ] = False
+    sound_card: Annotated[
+        str | None,
+        typer.Option(
+            "--sound-card",
+            metavar="INPUT",
+            help="With --follow: record this input (name, number or default) into RECORDING, a new "
+            'WAV file, until Ctrl-C. Needs "chatter[sound]".',
+        ),
+    ] = None
     assignments: options.Assignments = None
     out: options.OutputFolder = None
     json: options.Json = False
@@ -73,8 +84,11 @@ def detect(options_: DetectOptions) -> None:
         case = options.patched_case(options_.case, options_.assignments)
     from chatter.monitoring.detect import detect as run_detect
 
+    if options_.sound_card is not None and not options_.follow:
+        raise InputError("--sound-card goes with --follow")
     if options_.follow:
-        _follow(options_)
+        with _recorded(options_):
+            _follow(options_, case)
 
     with progress_bar("spectra and verdicts"):
         found = run_detect(
@@ -90,7 +104,18 @@ def detect(options_: DetectOptions) -> None:
     present(found, folder, json=options_.json, words=_print_detection, notes=found.notes)
 
 
-def _follow(options_: DetectOptions) -> None:
+def _recorded(options_: DetectOptions) -> AbstractContextManager[None]:
+    """Recording of the sound card where one is named."""
+    if options_.sound_card is None:
+        return nullcontext()
+    from chatter.monitoring.detect import sampling_frequency
+    from chatter.monitoring.sound_card import recorded
+
+    rate = sampling_frequency(options_.sampling_rate)
+    return recorded(options_.recording, options_.sound_card, rate)
+
+
+def _follow(options_: DetectOptions, case: Case | None) -> None:
     """Print changes of the verdict until the file grows no more, or it is interrupted."""
     if options_.columns is not None:
         raise InputError("--columns is of a finished file; with --follow its heading names them")
@@ -104,6 +129,7 @@ def _follow(options_: DetectOptions) -> None:
             options_.teeth,
             tuple(options_.channel or ()),
             options_.sampling_rate,
+            case=case,
         ):
             if one.verdict != verdict:
                 verdict = one.verdict

@@ -19,6 +19,7 @@ _OPTIONAL = {
     "h5py": "MAT 7.3 files",
     "openpyxl": "XLSX files",
     "pyarrow": "Parquet files",
+    "sounddevice": "sound cards",
     "dask": "studies on a cluster",
     "skfem": "solid bodies",
 }

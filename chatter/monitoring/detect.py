@@ -68,7 +68,7 @@ def detect(
     if isinstance(case, (str, Path)):
         case = load(case)
     given = spindle_frequency(spindle_speed, case)
-    teeth = _teeth(teeth, case)
+    teeth = teeth_of(teeth, case)
     if not isinstance(recording, Recording):
         rate = sampling_frequency(sampling_rate)
         recording = read_recording(recording, channels, rate, columns)
@@ -130,7 +130,8 @@ def _quantity(given: str | float, dimension: str, what: str) -> float:
         raise InputError(f"{what}: {error}") from error
 
 
-def _teeth(given: int | None, case: Case | None) -> int | None:
+def teeth_of(given: int | None, case: Case | None) -> int | None:
+    """Number of teeth, as given or of the case; None where neither tells."""
     if given is None:
         return None if case is None or case.tool is None else case.tool.teeth
     if not 1 <= given <= _MOST_TEETH:

@@ -6,9 +6,10 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
+from chatter.description.case import Case, load
 from chatter.description.errors import InputError
 from chatter.detection.spectral.running_detection import Observation, RunningDetection
-from chatter.monitoring.detect import sampling_frequency, spindle_frequency
+from chatter.monitoring.detect import sampling_frequency, spindle_frequency, teeth_of
 from chatter.monitoring.growing_file import growing_file
 
 #: s after which the file is read again
@@ -19,12 +20,13 @@ DEFAULT_PATIENCE = 5.0
 
 def follow(
     path: str | Path,
-    spindle_speed: str | float | None,
+    spindle_speed: str | float | None = None,
     teeth: int | None = None,
     channels: Sequence[str] = (),
     sampling_rate: str | float | None = None,
     patience: float = DEFAULT_PATIENCE,
     clock: Callable[[], float] = time.monotonic,
+    case: str | Path | Case | None = None,
 ) -> Iterator[Observation]:
     """Observe chatter in a file that is being written, once a revolution.
 
@@ -36,22 +38,27 @@ def follow(
     path : path
         WAV, or a table in text that grows by lines.
     spindle_speed : str or float
-        As for `detect`; right within 1.5 %.
+        As for `detect`; right within 1.5 %; by default of the case.
     teeth, channels, sampling_rate
         As for `detect`.
     patience : float
         s without growth after which the file is finished.
     clock : callable
         s, that never goes back.
+    case : path or Case, optional
+        For the speed and the teeth where they are not given.
 
     Raises
     ------
     InputError
         If the file cannot be followed, or a value is wrong.
     """
-    frequency = spindle_frequency(spindle_speed, None)
+    if isinstance(case, (str, Path)):
+        case = load(case)
+    frequency = spindle_frequency(spindle_speed, case)
     if frequency is None:
-        raise InputError("--follow needs --spindle-speed, such as 1656 rpm")
+        raise InputError("--follow needs --spindle-speed, such as 1656 rpm, or --case")
+    teeth = teeth_of(teeth, case)
     file = growing_file(Path(path), channels, sampling_frequency(sampling_rate))
     running = RunningDetection(file.start, frequency, teeth)
     grown = clock()

@@ -15,9 +15,13 @@ from chatter.detection.spectral.recording import Recording
 from chatter.io.formats.wav import full_scale
 from chatter.monitoring.recording_file import read_recording
 
-_WAV = b"RIFF"
-#: format tag and bits of a sample -> type of a number; 3 is floating point
-_NUMBERS = {(1, 8): "u1", (1, 16): "<i2", (1, 32): "<i4", (3, 32): "<f4", (3, 64): "<f8"}
+_WAV = (b"RIFF", b"RF64")
+#: format tag and bits of a sample -> type of a number; 3 is floating point, 24 bits are the upper
+#: three bytes of four
+_NUMBERS = {
+    **{(1, 8): "u1", (1, 16): "<i2", (1, 24): "<i4", (1, 32): "<i4"},
+    **{(3, 32): "<f4", (3, 64): "<f8"},
+}
 #: tag of a format that names its own in an extension, and where
 _EXTENSIBLE, _OWN_TAG = 0xFFFE, 24
 
@@ -32,16 +36,18 @@ class GrowingSound:
         self._path = path
         with path.open("rb") as file:
             head = file.read(65536)
-        kind, data = head.find(b"fmt "), head.find(b"data")
-        if kind < 0 or data < 0:
+        chunks = _chunks(head)
+        if not {b"fmt ", b"data"} <= chunks.keys():
             raise InputError(f"{path}: the head of the WAV file is not written yet")
+        kind, data = chunks[b"fmt "], chunks[b"data"]
         tag, self._channels, rate = struct.unpack_from("<HHI", head, kind + 8)
         (bits,) = struct.unpack_from("<H", head, kind + 22)
         if tag == _EXTENSIBLE:
             (tag,) = struct.unpack_from("<H", head, kind + 8 + _OWN_TAG)
         if (tag, bits) not in _NUMBERS:
-            raise InputError(f"{path}: WAV of {bits} bits a sample cannot be followed; 8, 16 or 32")
+            raise InputError(f"{path}: WAV of {bits} bits a sample cannot be followed; 8 to 32")
         self._number = np.dtype(_NUMBERS[tag, bits])
+        self._bytes = bits // 8
         self._at = data + 8
         names = tuple(f"sound {k + 1}" for k in range(self._channels))
         self.start = Recording(
@@ -50,13 +56,26 @@ class GrowingSound:
 
     def new_samples(self) -> Array:
         """Samples (n, k) that were written since the last call."""
-        size = self._number.itemsize * self._channels
+        size = self._bytes * self._channels
         with self._path.open("rb") as file:
             file.seek(self._at)
             raw = file.read()
         whole = len(raw) // size * size
         self._at += whole
-        return full_scale(np.frombuffer(raw[:whole], self._number)).reshape(-1, self._channels)
+        numbers = np.frombuffer(raw[:whole], np.uint8).reshape(-1, self._bytes)
+        missing = self._number.itemsize - self._bytes
+        numbers = np.pad(numbers, ((0, 0), (missing, 0))).view(self._number)
+        return full_scale(numbers).reshape(-1, self._channels)
+
+
+def _chunks(head: bytes) -> dict[bytes, int]:
+    """Where the chunks of a WAV file begin, by their names, up to that of the samples."""
+    found, at = {}, 12
+    while at + 8 <= len(head) and b"data" not in found:
+        name, size = struct.unpack_from("<4sI", head, at)
+        found[name] = at
+        at += 8 + size + size % 2
+    return found
 
 
 class GrowingTable:
@@ -71,12 +90,15 @@ class GrowingTable:
         self._path = path
         self.start = read_recording(path, channels, sampling_rate)
         text = path.read_text(encoding="utf-8", errors="replace")
-        heading = next(line for line in text.splitlines() if self.start.channels[0] in line)
-        cells = [one.strip().strip('"').lstrip("#% ") for one in _split(heading)]
-        self._columns = [
-            next(k for k, cell in enumerate(cells) if re.split(r"[\[(]", cell)[0].strip() == name)
-            for name in self.start.channels
-        ]
+        wanted = set(self.start.channels)
+        headings = (_names(line) for line in text.splitlines())
+        heading = next((names for names in headings if wanted <= set(names)), None)
+        if heading is None:
+            raise InputError(
+                f"{path}: cannot be followed: it is no WAV file, and no line of text in it names "
+                f"the columns {', '.join(self.start.channels)}"
+            )
+        self._columns = [heading.index(name) for name in self.start.channels]
         self._at = 0
         self._rest = b""
 
@@ -100,6 +122,12 @@ class GrowingTable:
             return None
 
 
+def _names(line: str) -> list[str]:
+    """Names of columns on a line, without their units."""
+    cells = (one.strip().strip('"').lstrip("#% ") for one in _split(line))
+    return [re.split(r"[\[(]", cell)[0].strip() for cell in cells]
+
+
 def _split(line: str) -> list[str]:
     """Cells of a line."""
     for separator in (";", "\t", ","):
@@ -115,5 +143,5 @@ def growing_file(
     if not path.is_file():
         raise InputError(f"{path}: no such file")
     with path.open("rb") as file:
-        is_sound = file.read(4) == _WAV
+        is_sound = file.read(4) in _WAV
     return GrowingSound(path) if is_sound else GrowingTable(path, channels, sampling_rate)

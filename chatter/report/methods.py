@@ -89,8 +89,9 @@ METHODS = {
     ),
     "detect": Method(
         "Does the recorded cut chatter, when and at what frequency?",
-        "Signals over the spindle angle: what repeats every revolution is no chatter; once-per-"
-        "revolution samples and the growth of differences between periods judge the rest.",
+        "Short-time spectra: chatter is a line off the harmonics of the spindle, with sidebands "
+        "one tooth passing frequency apart and a large share of the power (Altintas, Manufacturing "
+        "Automation, 2012, section 4.4).",
     ),
     "frf": Method(
         "What does the tool point of the machine feel?",
@@ -105,6 +106,12 @@ METHODS = {
     "export": Method(
         "The machine as a state space.",
         "Modes of the structure with drives, first order, inputs and outputs at named points.",
+    ),
+    "assemble": Method(
+        "Which receptance has the tool point of this tool, holder and spindle, and which stick-out "
+        "is best?",
+        "Receptance coupling of modelled or measured parts (Schmitz and Donaldson, Predicting "
+        "high-speed machining dynamics by substructure analysis, 2000).",
     ),
     "sheet": Method(
         "Which cuts should the operator use?",

@@ -142,3 +142,44 @@ def test_following_needs_a_speed(tmp_path):
     assert done.exit_code == 2
     with pytest.raises(InputError, match=r"none\.wav: no such file"):
         list(follow(tmp_path / "none.wav", "3000 rpm"))
+
+
+def test_a_sound_of_24_bits_grows_with_a_chunk_before_its_samples(tmp_path):
+    whole_numbers = np.array([0, 1, -1, 8388607, -8388608, 4194304], dtype="<i4")
+    samples = b"".join(int(one).to_bytes(3, "little", signed=True) for one in whole_numbers)
+    note = b"data!!"  # no chunk of samples, though it is called so
+    head = b"RIFF\0\0\0\0WAVE" + struct.pack("<4sIHHIIHH", b"fmt ", 16, 1, 2, 48000, 288000, 6, 24)
+    head += struct.pack("<4sI", b"LIST", len(note)) + note + struct.pack("<4sI", b"data", 0)
+    path = tmp_path / "cut.wav"
+    path.write_bytes(head + samples[:8])
+    file = growing_file(path)
+    parts = [file.new_samples()]
+    path.write_bytes(head + samples)
+    parts.append(file.new_samples())
+    expected = (whole_numbers / 2.0**23).reshape(-1, 2)
+    np.testing.assert_array_equal(np.concatenate(parts), expected)
+    assert file.start.channels == ("sound 1", "sound 2")
+
+
+def test_what_does_not_grow_by_lines_is_refused(tmp_path):
+    path = tmp_path / "cut.npz"
+    np.savez(path, **{"time [s]": clock(1.0), "ax [m/s^2]": made(9.0, 1.0)})
+    with pytest.raises(InputError, match=r"cut\.npz: cannot be followed"):
+        growing_file(path)
+
+
+def test_speed_and_teeth_of_the_case_are_followed(tmp_path):
+    case = tmp_path / "case.toml"
+    case.write_text(
+        '[tool]\nkind = "end mill"\nteeth = 4\ndiameter = "20 mm"\n'
+        '[material]\nlaw = "linear"\nKtc = "800 MPa"\nKrc = "300 MPa"\n'
+        '[cut]\nmode = "down"\nspindle_speed = "3000 rpm"\nfeed_per_tooth = "0.1 mm"\n'
+        'axial_depth = "1 mm"\nradial_depth = "10 mm"\n',
+        encoding="utf-8",
+    )
+    path = tmp_path / "cut.wav"
+    scipy.io.wavfile.write(path, int(RATE), (made(1.0, 2.0) * 20000).astype("<i2"))
+    by_case = list(follow(path, patience=0.1, case=case))
+    stated = list(follow(path, "3000 rpm", TEETH, patience=0.1))
+    assert by_case[-1].verdict == "chatter"
+    assert [one[:2] for one in by_case] == [one[:2] for one in stated]
