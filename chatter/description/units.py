@@ -121,6 +121,7 @@ _MEASURED_WORDS = {
     "G": "standard_gravity",
     "mg": "millistandard_gravity",
     "lb": "lbf",
+    "Sec": "second",
 }
 _LONGEST_TEXT = 100
 

@@ -7,6 +7,7 @@ datasets of another kind that it cannot parse, end the reading of the whole file
 files with it.
 """
 
+import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -15,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from chatter.description.arrays import Array, ComplexArray
+from chatter.description.units import measured_unit
 from chatter.io.formats.format import Format
 from chatter.io.formats.units import Channel, channel_unit, frf_unit
 from chatter.io.formats.universal import Dataset, FileUnits, file_units, is_universal, read_datasets
@@ -162,12 +164,27 @@ def read_time_records(path: Path) -> Table:
             columns.append(Column("time [s]", first))
         if time.size != first.size or not np.allclose(time * factor, first, rtol=1e-6, atol=1e-9):
             raise MeasurementError(f"{where}: has other times than the first record")
-        content, unit = _content(heading.numerator, function.units, where)
-        name = function.title or f"record {function.dataset.order}"
-        columns.append(Column(name, values.real * unit, content, _point(heading.response)))
+        columns.append(_record_column(function, values.real))
     if not columns:
         raise MeasurementError(f"{path}: holds no time record; it holds {_counted(held)}")
     return Table(path, tuple(columns))
+
+
+def _record_column(function: _Function, values: Array) -> Column:
+    """Column of a time record: in SI where it is a motion or a force, else in the unit of its axis.
+
+    A microphone's Pa and an amplifier's V are such; who reads the record judges them.
+    """
+    axis, point = function.heading.numerator, _point(function.heading.response)
+    name = function.title or f"record {function.dataset.order}"
+    try:
+        content, factor = _content(axis, function.units, function.where)
+    except MeasurementError:
+        if axis.code in _CONTENT or measured_unit(axis.unit) is None:
+            raise
+        plain = re.sub(r"[\[\]]", " ", name).strip()
+        return Column(f"{plain} [{axis.unit}]", values, point=point)
+    return Column(name, values * factor, content, point)
 
 
 def _counted(held: Counter[str]) -> str:

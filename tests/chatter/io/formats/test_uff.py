@@ -6,7 +6,9 @@ import struct
 import numpy as np
 import pytest
 
+from chatter.description.errors import InputError
 from chatter.io.formats.format_list import read_frfs
+from chatter.monitoring.recording_file import read_recording
 from dynamics.frf.container import MeasurementError, Point
 from tests.places import DATA, EXAMPLES
 
@@ -331,3 +333,23 @@ def test_headings_that_are_no_ascii(tmp_path, encoding, numerator, denominator, 
     (frf,) = read_frfs(path)
     assert frf.quantity == "accelerance"
     np.testing.assert_allclose(frf.values, factor * VALUES, rtol=1e-10)
+
+
+@pytest.mark.parametrize(("unit", "quantity"), [("Pa", "sound"), ("V", "unknown"), ("m/s2", None)])
+def test_sounds_and_voltages_are_time_records(tmp_path, unit, quantity):
+    pressure = np.sin(np.arange(400.0))
+    fields = {"kind": 4, "function": 1, "abscissa": (17, "(Sec)"), "denominator": (0,)}
+    dataset = text_dataset(pressure, numerator=(15 if unit == "Pa" else 0, unit), **fields)
+    path = write(tmp_path, dataset)
+    recording = read_recording(path)
+    assert recording.time_step == pytest.approx(STEP)
+    assert recording.quantities == (quantity or "acceleration",)
+    np.testing.assert_allclose(recording.values[:, 0], pressure, atol=1e-10)
+
+
+def test_a_time_record_of_an_unknown_unit_or_another_than_its_type_is_refused(tmp_path):
+    fields = {"kind": 4, "function": 1, "abscissa": (17,), "denominator": (0,)}
+    for numerator, said in (((0, "furlong/x"), "not understood"), ((12, "Pa"), "'Pa' is none of")):
+        path = write(tmp_path, text_dataset(np.arange(400.0), numerator=numerator, **fields))
+        with pytest.raises(InputError, match=said):
+            read_recording(path)
