@@ -52,6 +52,7 @@ _DIRECTIONS = {0: "", 1: "x", 2: "y", 3: "z"}
 #: numbers a value takes by ordinate data type (record 7, field 1), and bytes a number
 _ORDINATE = {2: (1, 4), 4: (1, 8), 5: (2, 4), 6: (2, 8)}
 _HEADING_LINES = 11
+_NUMBER = re.compile(r"[+-]?\d+\.?\d*(?:[Ee][+-]?\d+)?")
 
 
 @dataclass(frozen=True)
@@ -155,7 +156,8 @@ def read_time_records(path: Path) -> Table:
     for function in _functions(path, held):
         heading, where = function.heading, function.where
         abscissa, factor = _content(heading.abscissa, function.units, where)
-        if heading.function_type not in _TIME_RECORD or abscissa not in (None, "time"):
+        is_record = heading.function_type in _TIME_RECORD and abscissa in (None, "time")
+        if not is_record or not _is_translation(heading):
             held[_described(heading)] += 1
             continue
         time, values = function.values()
@@ -279,7 +281,11 @@ def _values(
 
 
 def _text_table(payload: bytes, heading: Heading, columns: int, where: str) -> Array:
-    words = payload.decode("latin-1").replace("D", "E").split()
+    text = payload.decode("latin-1").replace("D", "E")
+    words = text.split()
+    if len(words) != heading.count * columns:
+        # fields of fixed width, whose signs leave no blanks between them
+        words = [number for word in words for number in _separated(word)]
     if len(words) != heading.count * columns:
         raise MeasurementError(
             f"{where}: {len(words)} numbers where its heading promises {heading.count * columns}"
@@ -288,6 +294,12 @@ def _text_table(payload: bytes, heading: Heading, columns: int, where: str) -> A
         return np.array(words, dtype=np.float64).reshape(heading.count, columns)
     except ValueError as error:
         raise MeasurementError(f"{where}: {error}") from None
+
+
+def _separated(word: str) -> list[str]:
+    """Numbers of a word; the word itself where there is more in it than numbers."""
+    numbers = _NUMBER.findall(word)
+    return numbers if "".join(numbers) == word else [word]
 
 
 def _binary_table(

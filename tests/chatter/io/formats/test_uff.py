@@ -353,3 +353,18 @@ def test_a_time_record_of_an_unknown_unit_or_another_than_its_type_is_refused(tm
         path = write(tmp_path, text_dataset(np.arange(400.0), numerator=numerator, **fields))
         with pytest.raises(InputError, match=said):
             read_recording(path)
+
+
+def test_numbers_without_blanks_between_them_and_records_of_rotations(tmp_path):
+    """Fields of 13 columns, as the standard has them: a sign may stand right behind a number."""
+    values = -np.linspace(1.0, 2.0, 300)
+    lines = heading(2, values.size, True, 1, abscissa=(17,), denominator=(0,))
+    rows = ["".join(f"{one:13.6E}" for one in values[k : k + 6]) for k in range(0, 300, 6)]
+    assert "E+00-" in rows[0]
+    text = "\n".join(["    -1", "    58", *lines, *rows, "    -1", ""])
+    path = write(tmp_path, text.encode())
+    np.testing.assert_allclose(read_recording(path).values[:, 0], values, atol=1e-6)
+    lines = heading(2, values.size, True, 1, (7, 6), abscissa=(17,), denominator=(0,))
+    text = "\n".join(["    -1", "    58", *lines, *rows, "    -1", ""])
+    with pytest.raises(InputError, match="time response of a rotation"):
+        read_recording(write(tmp_path, text.encode()))
