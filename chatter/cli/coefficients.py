@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -15,6 +15,9 @@ from chatter.report.console import print_line, print_notes, print_table, print_w
 
 if TYPE_CHECKING:
     from chatter.cutting_coefficients.result import Coefficients
+
+#: share of the varying force that no rigid tool with runout leaves
+_VIBRATES = 0.2
 
 
 def coefficients(
@@ -31,16 +34,22 @@ def coefficients(
     name: Annotated[
         str | None, typer.Option("--name", help="Name of the new row of that table.")
     ] = None,
+    waveforms: Annotated[
+        bool, typer.Option("--waveforms", help="Fit the whole waveforms too, with runout.")
+    ] = False,
     out: options.OutputFolder = None,
     json: options.Json = False,
 ) -> None:
-    """Find the cutting coefficients of a series of cuts by their mean forces."""
+    """Find the cutting coefficients of a series of cuts by their mean forces and waveforms."""
     from chatter.cutting_coefficients.identify import coefficients as identify
 
     if (table is None) != (name is None):
         raise InputError("--table and --name belong together: a row of a table, and its name")
     with progress_bar("mean forces and laws"):
         found = identify(records, case)
+    if waveforms:
+        with progress_bar("waveforms and runout"):
+            found = found.with_waveforms()
     folder = options.output_folder(out, records.resolve().name)
     present(found, folder, json=json, words=_print_coefficients)
     if table is not None:
@@ -64,5 +73,30 @@ def _print_coefficients(found: Coefficients) -> None:
         print_line(f"mean forces of a cut held out are predicted to {worst:.1%} or better")
     for name, sign in summary["signs"].items():
         print_line(f"{name} is taken {'as it is' if sign > 0.0 else 'with its sign turned'}")
+    if found.waveforms is not None:
+        _print_waveforms(summary["waveforms"])
     for note in summary["notes"]:
         print_notes([note])
+
+
+def _print_waveforms(summary: dict[str, Any]) -> None:
+    numbers = [
+        one for key in ("coefficients", "exponents", "runout", "helix") for one in summary[key]
+    ]
+    print_table(
+        f"{summary['law']} law, whole waveforms of {len(summary['cuts'])} cuts",
+        ["number", "value", "+-", "unit"],
+        [
+            [one["name"], f"{one['value']:.4g}", f"{one['standard_deviation']:.2g}", one["unit"]]
+            for one in numbers
+        ],
+    )
+    for name, one in summary["resonances"].items():
+        print_line(f"{name} has a resonance at {one['frequency_Hz']:.0f} Hz")
+    for cut in summary["cuts"]:
+        left = ", ".join(f"{name} {share:.0%}" for name, share in cut["left"].items())
+        print_line(f"{cut['run']}: the waveforms leave {left} of the varying force")
+    if max(max(cut["left"].values()) for cut in summary["cuts"]) > _VIBRATES:
+        print_line("no rigid tool moves so: it vibrates, and the mean forces are the safer ones")
+    if not summary["linear_law_holds"]:
+        print_line("the linear law does not hold: another law is better by strong evidence")

@@ -1,12 +1,18 @@
 """Cutting coefficients from the forces of a series of cuts.
 
-============ ==============================================================================
-module       responsibility
-============ ==============================================================================
-mean_forces  mean forces of records over whole revolutions, and how well they are known
-laws         the laws that are tried: coefficients, and mean forces by the rigid cut
-fit          least squares of a law to the mean forces of all cuts, signs of channels
-identify     `coefficients`: the laws compared, the one to keep
-result       what is written and drawn
-============ ==============================================================================
+================== ========================================================================
+module             responsibility
+================== ========================================================================
+mean_forces        mean forces of records over whole revolutions, and how well they are known
+laws               the laws that are tried: coefficients, and mean forces by the rigid cut
+fit                least squares of a law to the mean forces of all cuts, signs of channels
+identify           `coefficients`: the laws compared, the one to keep
+revolution_average whole waveforms averaged over the revolution, the speed that they show
+waveform_model     waveforms by a rigid tool with runout, as a dynamometer shows them
+waveform_fit       least squares of the waveforms of all cuts together
+waveform_choice    runout, law, offsets and resonances kept by evidence
+waveforms          fits of waveforms compared, cuts held out, what is written of them
+coefficient_units  units as they are written
+result             what is written and drawn
+================== ========================================================================
 """

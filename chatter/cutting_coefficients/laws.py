@@ -91,28 +91,33 @@ BY_DIRECTION = (
 
 def unit_forces(law: TriedLaw, case: Case, exponents: Sequence[float]) -> Array:
     """Mean force (3, n) on the rigid tool of each of n coefficients of 1 (SI), along x, y, z."""
-    columns = []
-    for key in law.keys:
-        number = law.exponents[_DIRECTIONS.index(key[1])]
-        power = float(exponents[number]) if key[2] == "c" and number >= 0 else None
-        columns.append(_unit_force(case, key, power))
-    return np.array(columns).T
+    return np.array([_unit_force(case, key, _power(law, key, exponents)) for key in law.keys]).T
+
+
+def unit_law(key: str, exponent: float | None) -> ForceLaw:
+    """Force law of one coefficient of 1 (SI); with an exponent a power of the chip."""
+    values = [float(direction == key[1]) for direction in _DIRECTIONS]
+    if key[2] == "e":
+        return LinearLaw([0.0, 0.0, 0.0], values)
+    if exponent is None:
+        return LinearLaw(values)
+    return ExponentialLaw(values, REFERENCE_CHIP, exponent)
+
+
+def unit_laws(law: TriedLaw, exponents: Sequence[float]) -> list[ForceLaw]:
+    """Force laws, each of one coefficient of 1 (SI), in the order of the keys of a law."""
+    return [unit_law(key, _power(law, key, exponents)) for key in law.keys]
+
+
+def _power(law: TriedLaw, key: str, exponents: Sequence[float]) -> float | None:
+    number = law.exponents[_DIRECTIONS.index(key[1])]
+    return float(exponents[number]) if key[2] == "c" and number >= 0 else None
 
 
 @lru_cache(_KEPT)
 def _unit_force(case: Case, key: str, exponent: float | None) -> Array:
     """Mean force (3,) of one coefficient of 1 (SI)."""
-    cutter, values = cutter_of(case), np.zeros(3)
-    values[_DIRECTIONS.index(key[1])] = 1.0
-    nothing, one = [0.0, 0.0, 0.0], values.tolist()
-    law: ForceLaw
-    if key[2] == "e":
-        law = LinearLaw(nothing, one)
-    elif exponent is None:
-        law = LinearLaw(one)
-    else:
-        law = ExponentialLaw(one, REFERENCE_CHIP, exponent)
-    cut = case.cut
+    cutter, law, cut = cutter_of(case), unit_law(key, exponent), case.cut
     rigid = RigidCut(
         cutter, [law] * cutter.teeth, case.uncut_band, cut.feed_per_tooth, cut.axial_depth,
         cutter.teeth,

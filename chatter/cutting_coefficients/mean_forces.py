@@ -55,7 +55,7 @@ def _of_run(measurement: Measurement, run: Run) -> list[MeanForce]:
     where = measurement.folder / run.name
     if "time" not in run.signals:
         raise InputError(f"{where}: column time is missing; there are {', '.join(run.signals)}")
-    channels = _force_channels(measurement, run)
+    channels = force_channels(measurement, run)
     if not channels:
         raise InputError(f"{where}: no force has a known direction; [channels.NAME] direction says")
     time = run.signals["time"]
@@ -97,10 +97,10 @@ def _mean(
     )
 
 
-def _force_channels(
+def force_channels(
     measurement: Measurement, run: Run
 ) -> Mapping[str, tuple[tuple[float, float, float], bool]]:
-    """Direction of the force on the tool by channel, and whether its sense is known."""
+    """Return the direction of the force on the tool by channel, and whether its sense is known."""
     described = {} if measurement.record is None else dict(measurement.record.channels)
     found: dict[str, tuple[tuple[float, float, float], bool]] = {}
     for axis, name in enumerate(_USUAL):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,9 +10,11 @@ import numpy as np
 import scipy
 import tomlkit
 
+from chatter.cutting_coefficients.coefficient_units import UNITS
 from chatter.cutting_coefficients.fit import FittedLaw
 from chatter.cutting_coefficients.mean_forces import MeanForce, channels_of
 from chatter.cutting_coefficients.own_table import add_row
+from chatter.cutting_coefficients.waveforms import Waveforms, waveforms
 from chatter.explain.measurement import Measurement
 from chatter.io.presentation import presentation
 from chatter.io.result_files import as_json, finite_or_none, short_repr, write_results
@@ -20,8 +22,6 @@ from chatter.io.result_files import as_json, finite_or_none, short_repr, write_r
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: unit of a coefficient in [material], and what makes it of SI
-UNITS = {"c": ("MPa", 1e-6), "e": ("N/mm", 1e-3)}
 _DIRECTIONS = ("tangential", "radial", "axial")
 #: probability that a law that holds leaves more
 _HOLDS = 0.01
@@ -46,6 +46,8 @@ class Coefficients:
         Law of which every direction has its own form; no law of a case file may be so.
     holdout_by_direction : dict of str to float, or None
         Error by that law of each cut, fitted to the others.
+    waveforms : Waveforms, optional
+        What the whole waveforms say; see `with_waveforms`.
     """
 
     measurement: Measurement
@@ -55,6 +57,17 @@ class Coefficients:
     holdout: dict[str, float] | None
     by_direction: FittedLaw | None
     holdout_by_direction: dict[str, float] | None
+    waveforms: Waveforms | None = None
+
+    def with_waveforms(self) -> Coefficients:
+        """Return the same with the whole waveforms fitted beside the mean forces.
+
+        Raises
+        ------
+        InputError
+            If the waveforms cannot be used.
+        """
+        return replace(self, waveforms=waveforms(self.measurement))
 
     def __repr__(self) -> str:
         """Short: what it holds would fill the screen."""
@@ -96,6 +109,7 @@ class Coefficients:
                 }
                 for one, predicted in zip(self.means, self.kept.predicted, strict=True)
             ],
+            "waveforms": None if self.waveforms is None else self.waveforms.summary(),
             "notes": self.notes,
         }
 
@@ -247,9 +261,15 @@ class Coefficients:
         return presentation("plots.coefficients").plot_coefficients(self)
 
     def save(self, folder: str | Path) -> list[Path]:
-        """Write coefficients.json, material.toml and coefficients.png."""
+        """Write coefficients.json, material.toml and coefficients.png; of waveforms theirs too."""
         texts = {
             "coefficients.json": as_json(self.summary()),
             "material.toml": self.material_toml(),
         }
-        return write_results(folder, texts, {"coefficients.png": self.plot()})
+        pictures = {"coefficients.png": self.plot()}
+        if self.waveforms is not None:
+            texts["material-waveforms.toml"] = self.waveforms.material_toml()
+            pictures["waveforms.png"] = presentation("plots.force_waveforms").plot_waveforms(
+                self.waveforms
+            )
+        return write_results(folder, texts, pictures)

@@ -1,0 +1,228 @@
+"""What the waveforms bear witness of: runout, law, resonances, offsets, each kept by evidence."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from chatter.cutting_coefficients.laws import BY_DIRECTION, LAWS, TriedLaw
+from chatter.cutting_coefficients.revolution_average import RevolutionAverage
+from chatter.cutting_coefficients.waveform_fit import Problem, WaveformFit, fitted
+from chatter.cutting_coefficients.waveform_model import WaveformModel
+from chatter.description.arrays import Array
+
+#: start angles tried within the pitch of a tooth
+_STARTS = 48
+#: runout that is tried first, in its unit, and its directions
+_FIRST_RUNOUT, _DIRECTIONS = 0.5, 6
+_FIRST_EXPONENT, _FIRST_HELIX = 0.7, math.radians(30.0)
+#: damping ratio of a resonance that is tried first
+_FIRST_DAMPING = 0.1
+#: its frequencies that are tried
+_FREQUENCIES = 24
+#: the linear law with edge forces, of which the search starts
+_LINEAR = next(law for law in LAWS if law.name == "linear")
+
+
+def waveform_fits(
+    averages: Sequence[RevolutionAverage], unsigned: Sequence[str], helix: bool
+) -> list[WaveformFit]:
+    """Fits of every law to the waveforms, with the runout, offsets and resonances that show.
+
+    Parameters
+    ----------
+    averages : sequence of RevolutionAverage
+    unsigned : sequence of str
+        Channels whose sense is not known.
+    helix : bool
+        Whether the helix is fitted too.
+
+    Returns
+    -------
+    list of WaveformFit
+        The best first, by the Bayesian criterion.
+    """
+    rigid = _first_fit(averages, unsigned)
+    found = [_with_runout(rigid), *([] if not helix else [_with_helix(_with_runout(rigid))])]
+    best = _best([rigid, *found])
+    best = _best([best, *_with_resonances(best)])
+    if not best.model.runout:
+        # a resonance may have hidden it
+        best = _best([best, _with_runout(best)])
+    best = _best([best, *_without_offsets(best)])
+    laws = [law for law in (*LAWS, *BY_DIRECTION[3:4], *BY_DIRECTION[7:]) if law is not _LINEAR]
+    fits = [best, *(_with_law(best, law) for law in laws)]
+    effective = _effective(fits)
+    return sorted(fits, key=lambda one: one.criterion(effective))
+
+
+def _effective(fits: Sequence[WaveformFit]) -> float:
+    """Independent readings that all are compared by: those of what the best one leaves."""
+    return min(fits, key=lambda one: one.power).effective
+
+
+def _best(fits: Sequence[WaveformFit]) -> WaveformFit:
+    effective = _effective(fits)
+    return min(fits, key=lambda one: one.criterion(effective))
+
+
+def refitted(fit: WaveformFit, averages: Sequence[RevolutionAverage]) -> WaveformFit:
+    """Fit the same model to other cuts, from the same first values and aligned anew."""
+    parts = fit.model.split(fit.parameters, len(fit.averages))
+    names = [one.run for one in fit.averages]
+    start = [parts["start"][names.index(one.run)] for one in averages]
+    return fitted(fit.model, averages, np.concatenate([start, fit.parameters[len(fit.averages) :]]))
+
+
+def aligned(fit: WaveformFit, average: RevolutionAverage) -> tuple[float, Array]:
+    """Start angle of another cut by a fit, and its Fourier coefficients (channels, k) there.
+
+    Offsets of a cut that was not fitted are not known: the forces are those of the tool alone.
+    """
+    parts = fit.model.split(fit.parameters, len(fit.averages))
+    forces = fit.model.forces(average, parts)
+
+    def of(start: float) -> Array:
+        return fit.model.seen(average, parts, forces, start) @ fit.coefficients
+
+    def left(start: float) -> float:
+        return float(np.sum(np.abs((of(start) - average.amplitude)[:, 1:]) ** 2))
+
+    starts = np.linspace(0.0, 2.0 * math.pi, _STARTS * fit.model.teeth, endpoint=False)
+    best = min(starts, key=left)
+    fine = min(best + np.linspace(-1.0, 1.0, 41) * starts[1], key=left)
+    return float(fine), of(float(fine))
+
+
+def _first_fit(averages: Sequence[RevolutionAverage], unsigned: Sequence[str]) -> WaveformFit:
+    """Linear law without runout, its start angles and the senses of the channels looked for."""
+    teeth = averages[0].case.tool.teeth
+    tried = [
+        _started(WaveformModel(_LINEAR, teeth, dict(zip(unsigned, choice, strict=True))), averages)
+        for choice in itertools.product((1.0, -1.0), repeat=len(unsigned))
+    ]
+    _, _, model, start = min(tried, key=lambda one: one[:2])
+    return fitted(model, averages, start)
+
+
+def _started(
+    model: WaveformModel, averages: Sequence[RevolutionAverage]
+) -> tuple[int, float, WaveformModel, Array]:
+    """How implausible the coefficients are, what is left, the model and its start angles."""
+    largest = max(averages, key=lambda one: one.case.cut.feed_per_tooth)
+    problem = Problem(model, [largest])
+    starts = np.linspace(0.0, 2.0 * math.pi / model.teeth, _STARTS, endpoint=False)
+    candidates = []
+    for start in starts:
+        values, left = problem.solved(np.array([start]))
+        coefficients = values[: len(model.law.keys)]
+        wrong = int(np.sum(coefficients[:3] < 0.0)) + int(coefficients[1] > coefficients[0])
+        candidates.append((wrong * int(bool(model.signs)), float(left @ left), start, coefficients))
+    wrong, power, start, coefficients = min(candidates, key=lambda one: one[:2])
+    found = [
+        start if one is largest else _nearest(model, one, coefficients, starts) for one in averages
+    ]
+    return wrong, power, model, np.array(found)
+
+
+def _nearest(
+    model: WaveformModel, one: RevolutionAverage, coefficients: Array, starts: Array
+) -> float:
+    parts = model.split(np.zeros(1), 1)
+    forces = model.forces(one, parts)
+
+    def left(start: float) -> float:
+        shown = model.seen(one, parts, forces, start) @ coefficients
+        return float(np.sum(np.abs((shown - one.amplitude)[:, 1:]) ** 2))
+
+    return float(min(starts, key=left))
+
+
+def _with_runout(fit: WaveformFit) -> WaveformFit:
+    """Runout found from the first cut, then the tooth that each other cut starts with."""
+    model = replace(fit.model, runout=True)
+    if model.teeth == 1:
+        return fit
+    averages = fit.averages
+    rest = fit.parameters[len(averages) :]
+    tries = [
+        fitted(model, averages[:1], np.concatenate([fit.parameters[:1], runout, rest]))
+        for runout in _runouts(model)
+    ]
+    first = min(tries, key=lambda one: one.power)
+    pitch = 2.0 * math.pi / model.teeth
+    starts = [first.parameters[0]]
+    for number, one in enumerate(averages[1:], start=1):
+        problem = Problem(model, [one])
+        turned = [fit.parameters[number] + pitch * tooth for tooth in range(model.teeth)]
+        starts.append(min(turned, key=lambda start: _power(problem, start, first.parameters[1:])))
+    return fitted(model, averages, np.concatenate([starts, first.parameters[1:]]))
+
+
+def _power(problem: Problem, start: float, rest: Array) -> float:
+    left = problem.solved(np.concatenate([[start], rest]))[1]
+    return float(left @ left)
+
+
+def _runouts(model: WaveformModel) -> Iterator[Array]:
+    if model.runout_count == 1:
+        yield np.array([_FIRST_RUNOUT])
+        yield np.array([-_FIRST_RUNOUT])
+        return
+    for angle in 2.0 * math.pi * np.arange(_DIRECTIONS) / _DIRECTIONS:
+        yield _FIRST_RUNOUT * np.array([math.cos(angle), math.sin(angle)])
+
+
+def _with_helix(fit: WaveformFit) -> WaveformFit:
+    return _again(fit, replace(fit.model, helix=True), {"helix": np.array([_FIRST_HELIX])})
+
+
+def _with_law(fit: WaveformFit, law: TriedLaw) -> WaveformFit:
+    exponents = np.full(law.exponent_count, _FIRST_EXPONENT)
+    return _again(fit, replace(fit.model, law=law), {"exponent": exponents})
+
+
+def _without_offsets(fit: WaveformFit) -> list[WaveformFit]:
+    return [_again(fit, replace(fit.model, offsets=False), {})]
+
+
+def _with_resonances(fit: WaveformFit) -> list[WaveformFit]:
+    """Resonances added one channel after another, each from where it leaves least."""
+    found, best = [], fit
+    for name in fit.averages[0].channels:
+        model = replace(best.model, resonant=(*best.model.resonant, name))
+        problem = Problem(model, best.averages)
+        tries = [_resonance(best, frequency) for frequency in _frequencies(best)]
+        scored = [
+            (float(np.sum(problem.solved(_joined(best, one))[1] ** 2)), number)
+            for number, one in enumerate(tries)
+        ]
+        best = _best([best, _again(best, model, tries[min(scored)[1]])])
+        found.append(best)
+    return found
+
+
+def _resonance(fit: WaveformFit, frequency: float) -> dict[str, Array]:
+    kept = fit.model.split(fit.parameters, len(fit.averages))["resonance"]
+    return {"resonance": np.append(kept, [math.log(frequency), math.log(_FIRST_DAMPING)])}
+
+
+def _frequencies(fit: WaveformFit) -> Array:
+    """Frequencies of a resonance that are tried, Hz, above those of the teeth."""
+    one = fit.averages[0]
+    turn = one.speed / (2.0 * math.pi)
+    return np.geomspace(2.0 * fit.model.teeth * turn, 2.0 * one.harmonic[-1] * turn, _FREQUENCIES)
+
+
+def _again(fit: WaveformFit, model: WaveformModel, new: dict[str, Array]) -> WaveformFit:
+    """Fit a changed model from where the fit is."""
+    return fitted(model, fit.averages, _joined(fit, new))
+
+
+def _joined(fit: WaveformFit, new: dict[str, Array]) -> Array:
+    parts = {**fit.model.split(fit.parameters, len(fit.averages)), **new}
+    return np.concatenate(list(parts.values()))

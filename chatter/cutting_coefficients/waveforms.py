@@ -1,0 +1,229 @@
+"""Coefficients from whole waveforms: the fits compared, cuts held out, what is written."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import tomlkit
+
+from chatter.cutting_coefficients.coefficient_units import UNITS
+from chatter.cutting_coefficients.laws import REFERENCE_CHIP
+from chatter.cutting_coefficients.mean_forces import force_channels
+from chatter.cutting_coefficients.revolution_average import RevolutionAverage, revolution_average
+from chatter.cutting_coefficients.waveform_choice import aligned, refitted, waveform_fits
+from chatter.cutting_coefficients.waveform_fit import WaveformFit
+from chatter.cutting_coefficients.waveform_model import RUNOUT_UNIT, Complex
+from chatter.description.arrays import Array
+from chatter.explain.measurement import Measurement
+
+#: points over a revolution of a waveform that is compared or drawn
+_POINTS = 360
+#: cuts of which each can be left out in turn
+_ENOUGH_CUTS = 3
+#: difference of the Bayesian criterion that is strong evidence (Kass and Raftery 1995)
+_STRONG = 10.0
+
+
+@dataclass(frozen=True, eq=False)
+class CutHoldout:
+    """A cut, and its waveforms by the law fitted to the others."""
+
+    average: RevolutionAverage
+    predicted: Complex  # (channels, k), N
+
+    def errors(self) -> dict[str, Any]:
+        """Means and peak-to-peak by channel: measured and predicted, N."""
+        return _compared(self.average, self.predicted)
+
+
+@dataclass(frozen=True, eq=False)
+class Waveforms:
+    """What the whole waveforms of a series of cuts say.
+
+    Parameters
+    ----------
+    fits : tuple of WaveformFit
+        Of all laws, the best first.
+    holdout : tuple of CutHoldout
+        Each cut by the fit of the best law to the others; empty of fewer than three.
+    """
+
+    fits: tuple[WaveformFit, ...]
+    holdout: tuple[CutHoldout, ...]
+
+    @property
+    def kept(self) -> WaveformFit:
+        """Fit of the best law."""
+        return self.fits[0]
+
+    @property
+    def linear_law_holds(self) -> bool:
+        """Whether no other law is better by strong evidence."""
+        effective = self.kept.effective
+        linear = min(one.criterion(effective) for one in self.fits if one.model.law.law == "linear")
+        return bool(linear - self.kept.criterion(effective) < _STRONG)
+
+    def summary(self) -> dict[str, Any]:
+        """Part of coefficients.json."""
+        kept = self.kept
+        names = kept.model.names(kept.averages)
+        return {
+            "law": kept.model.law.name,
+            "coefficients": _coefficients(kept),
+            "exponents": _of_kind(kept, names, "exponent", 1.0, ""),
+            "runout": _of_kind(kept, names, "runout", 1e6 * RUNOUT_UNIT, "um"),
+            "helix": _of_kind(kept, names, "helix", math.degrees(1.0), "deg"),
+            "start_angles": _of_kind(kept, names, "start", math.degrees(1.0), "deg"),
+            "resonances": _resonances(kept),
+            "offsets": _offsets(kept),
+            "signs": dict(kept.model.signs),
+            "linear_law_holds": self.linear_law_holds,
+            "independent_readings": kept.effective,
+            "laws": [
+                {
+                    "law": one.model.law.name,
+                    "criterion": float(one.criterion(kept.effective)),
+                    "rms_left_N": math.sqrt(one.power),
+                }
+                for one in self.fits
+            ],
+            "cuts": [
+                {
+                    "run": one.run,
+                    "spindle_speed_rpm": 30.0 * one.speed / math.pi,
+                    "repeated": dict(zip(one.channels, map(float, one.repeated), strict=True)),
+                    "left": dict(zip(one.channels, _left(one, left), strict=True)),
+                    "channels": _compared(one, one.amplitude + left),
+                }
+                for one, left in zip(kept.averages, kept.residual, strict=True)
+            ],
+            "holdout": {one.average.run: one.errors() for one in self.holdout},
+        }
+
+    def material_toml(self) -> str:
+        """[material] section of a case file by the best law that a case file may have."""
+        fit = next(one for one in self.fits if one.model.law.law)
+        section = tomlkit.table()
+        section.add("law", fit.model.law.law)
+        for one in _coefficients(fit):
+            section.add(
+                one["name"], f"{one['value']:.5g} +- {one['standard_deviation']:.2g} {one['unit']}"
+            )
+        exponent = fit.model.split(fit.parameters, len(fit.averages))["exponent"]
+        if exponent.size:
+            section.add("exponent", round(float(exponent[0]), 5))
+            section.add("h0", f"{1e3 * REFERENCE_CHIP:g} mm")
+        document = tomlkit.document()
+        document.add(
+            tomlkit.comment(f"{fit.model.law.name} law, waveforms of {len(fit.averages)} cuts")
+        )
+        document.add("material", section)
+        return tomlkit.dumps(document)
+
+
+def waveforms(measurement: Measurement) -> Waveforms:
+    """Fit the waveforms of all cuts together.
+
+    The forces are averaged over the revolution at the speed that each record shows. Start angles,
+    runout, offsets of channels and one resonance of the dynamometer for each channel are fitted
+    with the law, and the helix where the case does not give it; what does not lower the Bayesian
+    criterion is left out.
+
+    Raises
+    ------
+    InputError
+        If the records cannot be used.
+    """
+    averages = [revolution_average(measurement, run) for run in measurement.runs]
+    known = force_channels(measurement, measurement.runs[0])
+    unsigned = [name for name, (_, has_sign) in known.items() if not has_sign]
+    has_free_helix = "helix" not in measurement.case.tool.model_fields_set
+    fits = waveform_fits(averages, unsigned, has_free_helix)
+    return Waveforms(tuple(fits), tuple(_of_holdout(fits[0], averages)))
+
+
+def waveform(amplitude: Complex) -> Array:
+    """Forces (channels, points) over the revolution from Fourier coefficients, N."""
+    harmonic = np.arange(amplitude.shape[1])
+    turn = np.exp(2j * math.pi * np.outer(harmonic, np.arange(_POINTS) / _POINTS))
+    return ((amplitude * np.where(harmonic == 0, 1.0, 2.0)) @ turn).real
+
+
+def _of_holdout(fit: WaveformFit, averages: Sequence[RevolutionAverage]) -> list[CutHoldout]:
+    if len(averages) < _ENOUGH_CUTS:
+        return []
+    found = []
+    for one in averages:
+        again = refitted(fit, [other for other in averages if other is not one])
+        found.append(CutHoldout(one, aligned(again, one)[1]))
+    return found
+
+
+def _compared(average: RevolutionAverage, predicted: Complex) -> dict[str, Any]:
+    measured, expected = waveform(average.amplitude), waveform(predicted)
+    return {
+        name: {
+            "mean_N": float(measured[row].mean()),
+            "mean_predicted_N": float(expected[row].mean()),
+            "peak_to_peak_N": float(np.ptp(measured[row])),
+            "peak_to_peak_predicted_N": float(np.ptp(expected[row])),
+        }
+        for row, name in enumerate(average.channels)
+    }
+
+
+def _left(average: RevolutionAverage, residual: Complex) -> list[float]:
+    """Share of the varying force of each channel that the fit leaves, as amplitudes."""
+    left = np.linalg.norm(residual[:, 1:], axis=1)
+    return [float(one) for one in left / np.linalg.norm(average.amplitude[:, 1:], axis=1)]
+
+
+def _coefficients(fit: WaveformFit) -> list[dict[str, Any]]:
+    return [
+        {
+            "name": key,
+            "value": float(value) * UNITS[key[-1]][1],
+            "standard_deviation": float(deviation) * UNITS[key[-1]][1],
+            "unit": UNITS[key[-1]][0],
+        }
+        for key, value, deviation in zip(
+            fit.model.law.keys, fit.coefficients, fit.deviations, strict=True
+        )
+    ]
+
+
+def _of_kind(
+    fit: WaveformFit, names: Sequence[str], kind: str, factor: float, unit: str
+) -> list[dict[str, Any]]:
+    return [
+        {
+            "name": name,
+            "value": factor * float(value),
+            "standard_deviation": factor * float(deviation),
+            "unit": unit,
+        }
+        for name, value, deviation in zip(
+            names, fit.parameters, fit.parameter_deviations, strict=True
+        )
+        if name.startswith(kind)
+    ]
+
+
+def _resonances(fit: WaveformFit) -> dict[str, dict[str, float]]:
+    parts = fit.model.split(fit.parameters, len(fit.averages))
+    pairs = np.exp(parts["resonance"]).reshape(-1, 2)
+    return {
+        name: {"frequency_Hz": float(frequency), "damping_ratio": float(damping)}
+        for name, (frequency, damping) in zip(fit.model.resonant, pairs, strict=True)
+    }
+
+
+def _offsets(fit: WaveformFit) -> dict[str, dict[str, float]]:
+    if not fit.model.offsets:
+        return {}
+    values = iter(fit.values[len(fit.model.law.keys) :])
+    return {one.run: {name: float(next(values)) for name in one.channels} for one in fit.averages}
