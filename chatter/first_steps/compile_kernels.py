@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -89,7 +90,7 @@ def _case(**patches: Mapping[str, Any]) -> Case:
 
 def _of_stability() -> Iterator[Question]:
     for name in METHODS.names():
-        yield Question(f"limit by {name}", lambda name=name: lobes(_case(speeds=_SPEEDS), name))
+        yield Question(f"limit by {name}", partial(lobes, _case(speeds=_SPEEDS), name))
     for name, patch in {
         "helical edge": _HELIX,
         "exponential law": _HELIX | _EXPONENTIAL,
@@ -98,7 +99,7 @@ def _of_stability() -> Iterator[Question]:
         "varying spindle speed": _VARYING,
         "contact": _CONTACT,
     }.items():
-        yield Question(f"verdict, {name}", lambda patch=patch: check(_case(patch=patch)))
+        yield Question(f"verdict, {name}", partial(check, _case(patch=patch)))
     yield Question("grid of a diagram", lambda: lobes(_case(speeds=_SPEEDS), grid=True))
 
 
@@ -121,7 +122,7 @@ def _of_time() -> Iterator[Question]:
             "structure.mode[0].friction": "guide",
         }
     for name, patch in of_cuts.items():
-        yield Question(f"cut, {name}", lambda patch=patch: simulate(_case(patch=patch, short=_ONE)))
+        yield Question(f"cut, {name}", partial(simulate, _case(patch=patch, short=_ONE)))
 
 
 def _of_machines() -> Iterator[Question]:

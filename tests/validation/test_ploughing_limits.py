@@ -102,8 +102,9 @@ def test_linear_methods_agree():
 def test_check_says_which_share_of_the_dashpot_acts():
     found = check(worn_case("0.1 mm"))
     assert found.critical_depth == pytest.approx(limit_of(worn_case("0.1 mm")), rel=2e-3)
-    notes = [note for note in found.notes if note.startswith("ploughing: at 1500 rpm")]
-    assert "of the dashpot K l^2/2 on average; beside a still tool 0.5 of it" in notes[0]
+    (note,) = (note for note in found.notes if "dashpot K l^2/2" in note)
+    assert note.startswith("ploughing: at 1500 rpm and 0.5 mm")
+    assert "on average; beside a still tool 0.5 of it" in note
 
 
 def test_a_land_that_no_flank_has_is_refused():
