@@ -16,9 +16,6 @@ from chatter.report.console import print_line, print_notes, print_table, print_w
 if TYPE_CHECKING:
     from chatter.cutting_coefficients.result import Coefficients
 
-#: share of the varying force that no rigid tool with runout leaves
-_VIBRATES = 0.2
-
 
 def coefficients(
     records: Annotated[
@@ -96,7 +93,4 @@ def _print_waveforms(summary: dict[str, Any]) -> None:
     for cut in summary["cuts"]:
         left = ", ".join(f"{name} {share:.0%}" for name, share in cut["left"].items())
         print_line(f"{cut['run']}: the waveforms leave {left} of the varying force")
-    if max(max(cut["left"].values()) for cut in summary["cuts"]) > _VIBRATES:
-        print_line("no rigid tool moves so: it vibrates, and the mean forces are the safer ones")
-    if not summary["linear_law_holds"]:
-        print_line("the linear law does not hold: another law is better by strong evidence")
+    print_notes(summary["notes"])

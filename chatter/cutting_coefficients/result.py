@@ -268,7 +268,8 @@ class Coefficients:
         }
         pictures = {"coefficients.png": self.plot()}
         if self.waveforms is not None:
-            texts["material-waveforms.toml"] = self.waveforms.material_toml()
+            if self.waveforms.has_material:
+                texts["material-waveforms.toml"] = self.waveforms.material_toml()
             pictures["waveforms.png"] = presentation("plots.force_waveforms").plot_waveforms(
                 self.waveforms
             )

@@ -24,6 +24,8 @@ from chatter.explain.measurement import Measurement
 _POINTS = 360
 #: cuts of which each can be left out in turn
 _ENOUGH_CUTS = 3
+#: share of the varying force above which a rigid tool is no model of the cut
+_VIBRATES = 0.2
 #: difference of the Bayesian criterion that is strong evidence (Kass and Raftery 1995)
 _STRONG = 10.0
 
@@ -67,6 +69,42 @@ class Waveforms:
         linear = min(one.criterion(effective) for one in self.fits if one.model.law.law == "linear")
         return bool(linear - self.kept.criterion(effective) < _STRONG)
 
+    @property
+    def of_case(self) -> WaveformFit:
+        """Fit of the best law that a case file may have."""
+        return next(one for one in self.fits if one.model.law.law)
+
+    @property
+    def has_material(self) -> bool:
+        """Whether that law cuts: no cutting coefficient is below zero."""
+        return not any(
+            one["value"] < 0.0 for one in _coefficients(self.of_case) if one["name"][-1] == "c"
+        )
+
+    @property
+    def notes(self) -> list[str]:
+        """What the reader should know."""
+        kept = self.kept
+        left = max(
+            share
+            for average, residual in zip(kept.averages, kept.residual, strict=True)
+            for share in _left(average, residual)
+        )
+        notes = []
+        if left > _VIBRATES:
+            notes.append(
+                f"a rigid tool leaves up to {left:.0%} of the varying force: tool or dynamometer "
+                "vibrates, the deviations are too small, and the mean forces are the safer ones"
+            )
+        if not self.linear_law_holds:
+            notes.append("the linear law does not hold: another law is better by strong evidence")
+        if not self.has_material:
+            notes.append(
+                "no [material] section is written from the waveforms: a cutting coefficient of the "
+                f"{self.of_case.model.law.name} law is below zero"
+            )
+        return notes
+
     def summary(self) -> dict[str, Any]:
         """Part of coefficients.json."""
         kept = self.kept
@@ -82,6 +120,7 @@ class Waveforms:
             "offsets": _offsets(kept),
             "signs": dict(kept.model.signs),
             "linear_law_holds": self.linear_law_holds,
+            "notes": self.notes,
             "independent_readings": kept.effective,
             "laws": [
                 {
@@ -106,7 +145,7 @@ class Waveforms:
 
     def material_toml(self) -> str:
         """[material] section of a case file by the best law that a case file may have."""
-        fit = next(one for one in self.fits if one.model.law.law)
+        fit = self.of_case
         section = tomlkit.table()
         section.add("law", fit.model.law.law)
         for one in _coefficients(fit):
@@ -121,6 +160,8 @@ class Waveforms:
         document.add(
             tomlkit.comment(f"{fit.model.law.name} law, waveforms of {len(fit.averages)} cuts")
         )
+        for note in self.notes:
+            document.add(tomlkit.comment(note))
         document.add("material", section)
         return tomlkit.dumps(document)
 

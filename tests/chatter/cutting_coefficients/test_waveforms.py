@@ -188,3 +188,16 @@ def test_the_command_writes_law_and_picture(tmp_path):
     assert (out / "waveforms.png").stat().st_size > 0
     assert 'law = "linear"' in (out / "material-waveforms.toml").read_text()
     assert json.loads((out / "coefficients.json").read_text())["waveforms"]["law"] == "linear"
+
+
+def test_a_law_that_pulls_the_tooth_into_the_work_is_not_written(tmp_path, monkeypatch):
+    found = chatter.coefficients(records(tmp_path)).with_waveforms()
+    assert found.waveforms.has_material
+    assert not found.waveforms.notes
+    monkeypatch.setitem(TRUE, "Krc", -0.3 * TRUE["Ktc"])
+    (tmp_path / "pulled").mkdir()
+    pulled = chatter.coefficients(records(tmp_path / "pulled")).with_waveforms()
+    assert not pulled.waveforms.has_material
+    assert "below zero" in " ".join(pulled.waveforms.notes)
+    written = [path.name for path in pulled.save(tmp_path / "out")]
+    assert "material-waveforms.toml" not in written
