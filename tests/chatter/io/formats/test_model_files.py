@@ -294,12 +294,14 @@ def test_full_file_of_ansys_by_its_library(tmp_path, monkeypatch):
     np.testing.assert_array_equal(nodes.rows[:, :2], [[0, 1], [2, 3]])
 
 
+@pytest.mark.ansys
 def test_full_file_of_ansys_itself():
     """Natural frequencies that the library's manual prints for the beam that it ships.
 
     A steel-like beam clamped at one end; bending in both planes alike.
     """
-    examples = pytest.importorskip("ansys.mapdl.reader.examples")
+    from ansys.mapdl.reader import examples
+
     structure, nodes = imported_model(
         examples.fullfile, examples.fullfile, nodes=examples.hexarchivefile
     )
