@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from chatter.cli import options
-from chatter.cli.progress import running
+from chatter.cli.progress import progress_bar
 from chatter.report.console import print_json, print_line
 
 
@@ -12,7 +12,7 @@ def compile(json: options.Json = False) -> None:  # noqa: A001 - the command's n
     from chatter.first_steps.compile_kernels import compile_kernels
     from chatter.first_steps.installation import compiled_code
 
-    with running("compiling; Ctrl-C ends it, and what is compiled is kept") as progress:
+    with progress_bar("compiling; Ctrl-C ends it, and what is compiled is kept") as progress:
         asked = list(compile_kernels(progress.stage))
     state = compiled_code()
     if json:
