@@ -4,7 +4,7 @@
     python -m benchmarks.calibration OUT --report
 
 Sets are those of `benchmarks.blind_sets`, whose physics shares nothing with the packages under
-test. Every set hangs on the seed and its own number alone; each answer is a line of
+test. Every set depends on the seed and its own number alone; each answer is a line of
 OUT/answers.jsonl as soon as it is known, so that a run that was ended goes on where it stopped.
 `--report` writes OUT/reliability.png and prints the table.
 

@@ -112,7 +112,7 @@ def _first_fit(averages: Sequence[RevolutionAverage], unsigned: Sequence[str]) -
 def _started(
     model: WaveformModel, averages: Sequence[RevolutionAverage]
 ) -> tuple[int, float, WaveformModel, Array]:
-    """How implausible the coefficients are, what is left, the model and its start angles."""
+    """How implausible the coefficients are, the residual, the model and its start angles."""
     largest = max(averages, key=lambda one: one.case.cut.feed_per_tooth)
     problem = Problem(model, [largest])
     starts = np.linspace(0.0, 2.0 * math.pi / model.teeth, _STARTS, endpoint=False)

@@ -64,12 +64,17 @@ def row_named(name: str, rows: Mapping[str, MaterialRow] = MATERIALS) -> Materia
     row = rows.get(name)
     if row is not None:
         return row
-    near = difflib.get_close_matches(name[:60], rows, n=1, cutoff=0.4)
+    near = _rows_of_grade(name, rows) or difflib.get_close_matches(name[:60], rows, n=1, cutoff=0.4)
     hint = f'did you mean "{near[0]}"? ' if near else ""
     raise ValueError(
         f"{formatted(name)} is not in the table of materials; {hint}"
         f"`chatter materials` lists all {len(rows)}, `chatter materials WORD` searches"
     )
+
+
+def _rows_of_grade(grade: str, rows: Mapping[str, MaterialRow]) -> list[str]:
+    """Names of the rows that hold a grade, such as "Ti6Al4V"."""
+    return [name for name, row in rows.items() if grade.lower() in map(str.lower, row.examples)]
 
 
 class _Row:

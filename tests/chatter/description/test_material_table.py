@@ -4,7 +4,7 @@ import pytest
 
 from chatter.description.case import load, loads
 from chatter.description.errors import InputError
-from chatter.description.material_table import read_material_table
+from chatter.description.material_table import read_material_table, row_named
 from chatter.description.material_words import (
     coefficients_in_words,
     notes_on_material,
@@ -139,3 +139,8 @@ def test_wrong_tables_are_named(tmp_path):
     )
     (tmp_path / "own.toml").write_text('["yy"]\nKtc = 1e9\nsource = "s"\n', encoding="utf-8")
     assert 'did you mean "yy"?' in messages('[material]\nname = "y"\ntable = "own.toml"')
+
+
+def test_a_grade_in_place_of_a_name_is_answered_by_its_row():
+    with pytest.raises(ValueError, match='did you mean "titanium, alpha and beta alloy'):
+        row_named("ti6al4v")

@@ -100,7 +100,7 @@ def test_a_joint_step_promises_what_linear_models_give():
 
 
 def test_an_effect_that_nobody_could_notice_is_not_named_beside_another():
-    """A twentieth of the noise: beyond chance in so many samples, and nothing that matters."""
+    """A twentieth of the noise: significant in so many samples, and nothing that matters."""
 
     def shapes_of(random):
         return random.standard_normal((3, SAMPLES))

@@ -259,7 +259,7 @@ def test_loaded_carriage_sags_as_at_frozen_positions(screw_machine):
     fine = pressed_down(file, 33)[1]
     settled = (place > 0.1) & (place < 0.5)
     exact = [static_deflection(file, where) for where in (0.1, 0.2, 0.3, 0.4, 0.5)]
-    assert np.ptp(exact) > 0.3 * min(exact)  # the rail gives way in the middle
+    assert np.ptp(exact) > 0.3 * min(exact)  # the rail bends most in the middle
     expected = CubicSpline((0.1, 0.2, 0.3, 0.4, 0.5), exact)(place[settled])
     assert np.max(np.abs(fine[settled] - expected)) < 0.03 * max(exact)
     assert np.max(np.abs(usual - fine)) < 0.02 * max(exact)
