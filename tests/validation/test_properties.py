@@ -16,7 +16,13 @@ import chatter
 from tests.cases import tool_of_922_hertz
 
 COUNT = int(os.environ.get("CHATTER_PROPERTIES", "50"))
-drawn = settings(max_examples=COUNT, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+drawn = settings(
+    max_examples=COUNT,
+    deadline=None,
+    # a gate repeats itself; the nightly run draws new cases
+    derandomize="CHATTER_PROPERTIES" not in os.environ,
+    suppress_health_check=[HealthCheck.too_slow],
+)
 
 MODES = st.fixed_dictionaries(
     {
@@ -66,41 +72,47 @@ def case_of(cut, *, stiffness=1.0, pressure=1.0, length=1.0, pace=1.0, turned=1.
 
 
 def limit(case):
-    """Critical depth, m; infinite where there is none."""
+    """Critical depth, m, infinite where there is none; its frequency, Hz; the depth searched, m."""
     checked = chatter.check(case, method="zero-order").summary()
     depth, frequency = checked["critical_depth_mm"], checked["chatter_frequency_Hz"]
-    return (math.inf if depth is None else 1e-3 * depth), frequency
+    searched = 1e-3 * checked["limit"]["max_axial_depth_mm"]
+    return (math.inf if depth is None else 1e-3 * depth), frequency, searched
+
+
+def assert_same(first, second, scale=1.0):
+    """Limits agree, the second being that of the first times a scale, as far as both searched."""
+    searched = min(first[2] * scale, second[2]) * (1.0 - 1e-3)
+    depth, other = (math.inf if one > searched else one for one in (first[0] * scale, second[0]))
+    at_the_end = abs(min(depth, other) - searched) < 2e-3 * searched
+    assert at_the_end or other == pytest.approx(depth, rel=1e-3)
 
 
 @drawn
 @given(CUTS, st.floats(0.3, 3.0), st.floats(0.3, 3.0))
 def test_limit_is_a_stiffness_over_a_pressure(cut, stiffness, pressure):
     """Dimension analysis: b = k/K f(all that has no dimension)."""
-    depth, _ = limit(case_of(cut))
-    other, _ = limit(case_of(cut, stiffness=stiffness, pressure=pressure))
-    assert other == pytest.approx(depth * stiffness / pressure, rel=1e-3)
+    other = limit(case_of(cut, stiffness=stiffness, pressure=pressure))
+    assert_same(limit(case_of(cut)), other, scale=stiffness / pressure)
 
 
 @drawn
 @given(CUTS, st.floats(0.3, 3.0))
 def test_a_cut_twice_as_fast_on_a_structure_twice_as_fast_has_the_same_limit(cut, pace):
-    depth, frequency = limit(case_of(cut))
-    other, faster = limit(case_of(cut, pace=pace))
-    assert other == pytest.approx(depth, rel=1e-3)
-    if math.isfinite(depth) and frequency:
-        assert faster == pytest.approx(frequency * pace, rel=1e-3)
+    first, second = limit(case_of(cut)), limit(case_of(cut, pace=pace))
+    assert_same(first, second)
+    if math.isfinite(first[0]) and first[1] and second[1]:
+        assert second[1] == pytest.approx(first[1] * pace, rel=1e-3)
 
 
 @drawn
 @given(CUTS, st.floats(0.3, 3.0))
 def test_limit_of_a_linear_law_depends_on_no_length(cut, length):
     """Diameter, width and feed scale together: the engagement stays."""
-    assert limit(case_of(cut, length=length))[0] == pytest.approx(limit(case_of(cut))[0], rel=1e-3)
+    assert_same(limit(case_of(cut)), limit(case_of(cut, length=length)))
 
 
 @drawn
 @given(CUTS)
 def test_sense_of_a_direction_and_order_of_modes_do_not_matter(cut):
-    depth, _ = limit(case_of(cut))
     back = {**cut, "modes": cut["modes"][::-1]}
-    assert limit(case_of(back, turned=-1.0))[0] == pytest.approx(depth, rel=1e-3)
+    assert_same(limit(case_of(cut)), limit(case_of(back, turned=-1.0)))
