@@ -16,13 +16,7 @@ import chatter
 from tests.cases import tool_of_922_hertz
 
 COUNT = int(os.environ.get("CHATTER_PROPERTIES", "50"))
-drawn = settings(
-    max_examples=COUNT,
-    deadline=None,
-    # a gate repeats itself; the nightly run draws new cases
-    derandomize="CHATTER_PROPERTIES" not in os.environ,
-    suppress_health_check=[HealthCheck.too_slow],
-)
+drawn = settings(max_examples=COUNT, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 
 MODES = st.fixed_dictionaries(
     {
