@@ -79,7 +79,7 @@ def plot_signals(measurement: Measurement) -> Figure:
     figure.suptitle(f"{measurement.title}: {run.name}", fontsize=11.0, x=0.01, ha="left")
     panels = figure.subplots(len(channels), 1, squeeze=False)
     for axes, channel in zip(panels.ravel(), channels, strict=True):
-        x, label = _abscissa(run.signals, run.signals[channel].size)
+        x, label = abscissa(run.signals, run.signals[channel].size)
         unit = signal_unit(channel)
         axes.plot(x, run.signals[channel] * unit.factor, color=style.BLUE, lw=0.8)
         axes.set(ylabel=f"{channel} [{unit.name}]" if unit.name else channel, xlabel=label)
@@ -150,9 +150,9 @@ def _draw_residuals(axes: Axes, parts: dict[str, ChannelResidual]) -> None:
         axes.text(0.5, 0.5, "excluded", ha="center", transform=axes.transAxes)
         return
     first = next(iter(parts.values()))
-    x, label = _abscissa(first.run.signals, first.measured.size)
+    x, label = abscissa(first.run.signals, first.measured.size)
     channel = first.channel
-    unit, scale = _unit(channel)
+    unit, scale = channel_unit(channel)
     order = np.argsort(x)
     axes.plot(x[order], scale * first.measured[order], color="#B5B5B5", lw=0.7, label="measured")
     for (name, part), colour in zip(parts.items(), (style.RED, style.BLUE), strict=False):
@@ -160,7 +160,8 @@ def _draw_residuals(axes: Axes, parts: dict[str, ChannelResidual]) -> None:
     axes.set(ylabel=f"{channel} [{unit}]" if unit else channel, xlabel=label)
 
 
-def _unit(channel: str) -> tuple[str, float]:
+def channel_unit(channel: str) -> tuple[str, float]:
+    """Unit that a channel is drawn in, and the number of it in one of SI."""
     if channel in ("real", "imag"):
         return "µm/N", 1e6
     if channel == "stable":
@@ -168,7 +169,8 @@ def _unit(channel: str) -> tuple[str, float]:
     return reported_unit(channel)
 
 
-def _abscissa(signals: Signals, count: int) -> tuple[Array, str]:
+def abscissa(signals: Signals, count: int) -> tuple[Array, str]:
+    """Values that a signal of so many points is drawn over, and the label of their axis."""
     for name, (label, scale) in _ABSCISSAE.items():
         if name in signals and signals[name].size == count:
             return scale * signals[name], label

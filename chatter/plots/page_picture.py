@@ -6,6 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
 from chatter.plots import style
@@ -40,6 +42,8 @@ def _scale(scale: Any) -> str:
 
 
 def _limit(set_limits: Callable[..., Any], ends: Any) -> None:
+    if getattr(ends, "factors", None):
+        return  # categories, which matplotlib numbers by itself
     start, end = getattr(ends, "start", None), getattr(ends, "end", None)
     plain = all(isinstance(one, (int, float)) and one == one for one in (start, end))
     if plain and start != end:
@@ -102,6 +106,31 @@ def _lines(axes: Any, glyph: Any, source: Any, label: str | None) -> None:
         )  # fmt: skip
 
 
+def _bars(axes: Any, glyph: Any, source: Any, label: str | None) -> None:
+    categories = list(source.data[_name(glyph.x)])
+    shift = float(getattr(getattr(glyph.x, "transform", None), "value", 0.0) or 0.0)
+    places = np.arange(len(categories))
+    axes.bar(places + shift, _column(source, glyph.top), float(glyph.width),
+             color=glyph.fill_color, label=label)  # fmt: skip
+    axes.set_xticks(places, categories)
+
+
+def _cells(axes: Any, glyph: Any, source: Any, label: str | None) -> None:
+    """Cells of a map; those of one row are as high as each other."""
+    del label
+    left, right, low, high = (
+        _column(source, one) for one in (glyph.left, glyph.right, glyph.bottom, glyph.top)
+    )
+    mapper = glyph.fill_color.transform
+    corners = np.stack([left, low, right, low, right, high, left, high], axis=-1)
+    drawn = PolyCollection(corners.reshape(-1, 4, 2), cmap=ListedColormap(mapper.palette))
+    drawn.set_array(np.asarray(source.data[glyph.fill_color.field], dtype=float))
+    drawn.set_clim(mapper.low, mapper.high)
+    axes.add_collection(drawn)
+    axes.autoscale_view()
+    axes.figure.colorbar(drawn, ax=axes)
+
+
 def _name(given: Any) -> str:
     return given if isinstance(given, str) else given.field
 
@@ -112,4 +141,6 @@ _GLYPHS: dict[str, Callable[..., None]] = {
     "Scatter": _points,
     "Image": _image,
     "MultiLine": _lines,
+    "Quad": _cells,
+    "VBar": _bars,
 }

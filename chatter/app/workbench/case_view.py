@@ -19,10 +19,11 @@ from chatter.app.workbench.form_fields import (
     written,
 )
 from chatter.app.workbench.session import Session
+from chatter.app.workbench.wrapped_text import wrapped_text
 from chatter.description.errors import InputError
 from chatter.first_steps.first_case import QUESTIONS, first_case
 
-_ERROR = {"color": "#c62828", "white-space": "pre-wrap", "font-size": "12px"}
+_ERROR = {"color": "#c62828", "font-size": "12px"}
 _PATH = re.compile(r"^([A-Za-z_][\w.\[\]-]*): (.*)$", re.DOTALL)
 _FIRST = ("tool", "material", "cut", "structure")
 
@@ -49,7 +50,7 @@ class CaseView:
             styles={"font-family": "monospace"},
             stylesheets=["textarea {font-family: monospace; font-size: 12.5px; white-space: pre}"],
         )  # fmt: skip
-        self.message = pn.pane.Str("", width=560, styles=_ERROR)
+        self.message = wrapped_text(width=560, styles=_ERROR)
         self.done = pn.pane.Str("", width=560)
         self.save_button = pn.widgets.Button(label="Save", color="primary", width=110)
         self.save_name = pn.widgets.TextInput(label="Save as", placeholder="case-2.toml", width=200)
@@ -206,7 +207,7 @@ class CaseView:
         else:
             widget = pn.widgets.TextInput(placeholder=field.example, **options)
         widget.param.watch(lambda event: self._entered(field.path, event.new), "value")
-        error = pn.pane.Str("", width=260, styles=_ERROR)
+        error = wrapped_text(width=260, styles=_ERROR)
         self.widgets[field.path], self.errors[field.path] = widget, error
         return pn.Row(widget, error)
 
@@ -240,7 +241,7 @@ class NewCase:
         }
         self.name = pn.widgets.TextInput(label="File", value="case.toml", width=200)
         self.make = pn.widgets.Button(label="Make the case", color="primary")
-        self.message = pn.pane.Str("", width=860, styles=_ERROR)
+        self.message = wrapped_text(width=860, styles=_ERROR)
         self._card = pn.Card(
             pn.FlexBox(*self.answers.values(), min_width=860),
             pn.pane.Str("Dynamics left empty: the modes of the tap tests (modes-x.toml ...)."),

@@ -16,11 +16,12 @@ from bokeh.plotting import figure
 
 import chatter
 from chatter.app.workbench.computations import Computation, Computations
-from chatter.app.workbench.picture_files import picture
+from chatter.app.workbench.picture_files import legend_above, picture
 from chatter.app.workbench.result_panel import downloads, result_panel, same_call
 from chatter.app.workbench.session import Session
 from chatter.app.workbench.studies import save_result
 from chatter.app.workbench.table_files import PageTable, as_html
+from chatter.app.workbench.wrapped_text import wrapped_text
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress
 from chatter.plots.simulation import once_a_revolution, spectrum
@@ -58,10 +59,10 @@ class CutView:
         self.carve = pn.widgets.Checkbox(label="carve the workpiece (dexels)", value=False)
         self.cancel_button = pn.widgets.Button(label="Cancel")
         self.progress = pn.indicators.Progress(value=0, max=100, width=300, active=False)
-        self.message = pn.pane.Str("", width=900, styles={"white-space": "pre-wrap"})
+        self.message = wrapped_text()
         self.player = pn.widgets.Player(
             label="Time", start=0, end=_FRAMES, value=_FRAMES, interval=80, loop_policy="once",
-            width=400,
+            width=400, show_loop_controls=False,
         )  # fmt: skip
         self.clock = pn.pane.Str("")
         self.turn = pn.widgets.IntSlider(label="View of the surface [deg]", start=10, end=80,
@@ -256,7 +257,9 @@ class CutView:
     def _draw_workpiece(self, now: float) -> None:
         if self._removed is None:
             self.workpiece.data = {name: [] for name in ("image", "x", "y", "dw", "dh")}
+            self._figures["workpiece"].title.text = "workpiece: not carved"
             return
+        self._figures["workpiece"].title.text = ""
         (x0, y0), (x1, y1), times = self._removed
         self.workpiece.data = {
             "image": [(times > now).astype(np.uint8)],
@@ -301,9 +304,9 @@ class CutView:
         workpiece.image("image", "x", "y", "dw", "dh", source=self.workpiece,
                         palette=["#FFFFFF", "#9FB4C0"])  # fmt: skip
         workpiece.line("x", "y", source=self.tool, color="#D55E00", legend_label="tool")
-        for drawn in (force, motion, lines):
-            drawn.legend.update(orientation="horizontal", label_text_font_size="8pt",
-                                click_policy="hide")  # fmt: skip
+        workpiece.title.text = "workpiece: not carved"
+        for drawn in (force, motion, lines, section, workpiece):
+            legend_above(drawn)
         return {"force": force, "motion": motion, "spectrum": lines, "section": section,
                 "surface": surface, "workpiece": workpiece}  # fmt: skip
 

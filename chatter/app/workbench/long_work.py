@@ -10,6 +10,7 @@ import panel as pn
 
 from chatter.app.workbench.computations import Computation, Computations
 from chatter.app.workbench.separate_process import in_own_process
+from chatter.app.workbench.wrapped_text import wrapped_text
 from chatter.description.progress import Progress
 
 
@@ -28,7 +29,7 @@ class LongWork:
         self._root, self._show = root, show
         self.cancel_button = pn.widgets.Button(label="Cancel", width=100)
         self.progress = pn.indicators.Progress(value=0, max=100, width=360, active=False)
-        self.message = pn.pane.Str("", width=900, styles={"white-space": "pre-wrap"})
+        self.message = wrapped_text()
         self.computations = Computations(self.show_message)
         self.cancel_button.on_click(lambda _: self.computations.cancel())
 

@@ -14,7 +14,7 @@ from bokeh.plotting import figure
 
 import chatter
 from chatter.app.workbench.long_work import LongWork
-from chatter.app.workbench.picture_files import picture
+from chatter.app.workbench.picture_files import legend_above, picture
 from chatter.app.workbench.result_panel import result_panel, same_call
 from chatter.app.workbench.session import Session
 from chatter.app.workbench.studies import run_machine
@@ -46,7 +46,7 @@ class MachineView:
         self.mode = pn.widgets.IntSlider(label="Mode", start=1, end=2, value=1, width=260)
         self.player = pn.widgets.Player(
             label="Phase", start=0, end=_FRAMES - 1, value=0, interval=_INTERVAL,
-            loop_policy="loop", width=320,
+            loop_policy="loop", width=320, show_loop_controls=False,
         )  # fmt: skip
         self.frequency = pn.pane.Str("")
         self.rest = ColumnDataSource({"xs": [], "ys": []})
@@ -175,6 +175,7 @@ class MachineView:
         drawn.multi_line("xs", "ys", source=self.moved, color="#0072B2", line_width=2,
                          legend_label="in the mode")  # fmt: skip
         drawn.xaxis.axis_label = drawn.yaxis.axis_label = "[mm], oblique view"
+        legend_above(drawn)
         return drawn
 
 

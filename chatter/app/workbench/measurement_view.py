@@ -12,6 +12,8 @@ import panel as pn
 import tomlkit
 
 from chatter.app.workbench.long_work import LongWork
+from chatter.app.workbench.residual_file import RESIDUALS
+from chatter.app.workbench.residual_view import ResidualView
 from chatter.app.workbench.result_panel import result_panel, same_call
 from chatter.app.workbench.session import Session, checked_name, readable_extensions
 from chatter.app.workbench.studies import run_measurement
@@ -64,7 +66,7 @@ class MeasurementView:
         self.write_button = pn.widgets.Button(label="Write measurement.toml")
         self.assignment = ChannelAssignment(self._assigned)
         self.work = LongWork(session.root, show)
-        self.call, self._result = pn.Column(), pn.Column()
+        self.call, self._result, self.residuals = pn.Column(), pn.Column(), ResidualView()
         self.compare_button.on_click(lambda _: self.start("compare"))
         self.explain_button.on_click(lambda _: self.start("explain"))
         self.accept_button.on_click(lambda _: self.accept())
@@ -86,6 +88,7 @@ class MeasurementView:
             self.work.message,
             self.call,
             pn.Row(self.accept_button, self.accepted_name),
+            self.residuals,
             self._result,
         )  # fmt: skip
 
@@ -181,6 +184,8 @@ class MeasurementView:
         for name in ("explain", "compare"):
             parts += result_panel(self._results(name))
         self._result.objects = parts
+        done = [self._results(name) for name in ("explain", "compare")]
+        self.residuals.show(max(done, key=_last_written))
         self.accept_button.disabled = not (self._results("explain") / _UPDATED).is_file()
 
     def _assigned(self) -> None:
@@ -261,6 +266,12 @@ class ChannelAssignment:
             runs.append(tomlkit.item({"file": name, **parse_assignments(given)}))
         document["run"] = runs
         return tomlkit.dumps(document)
+
+
+def _last_written(folder: Path) -> float:
+    """Time at which the residuals of a folder were written, s; 0 where there are none."""
+    path = folder / RESIDUALS
+    return path.stat().st_mtime if path.is_file() else 0.0
 
 
 def _assignment() -> tuple[Any, Any, Any]:

@@ -12,6 +12,15 @@ from chatter.plots.page_picture import drawn_again
 from chatter.plots.style import write_png
 
 
+def legend_above(figure: Any) -> None:
+    """Put the legend of a figure above it, where it covers no curve; a click hides a curve."""
+    for legend in list(figure.legend):
+        legend.update(orientation="horizontal", label_text_font_size="8pt", click_policy="hide",
+                      border_line_alpha=0.0)  # fmt: skip
+        figure.center.remove(legend)
+        figure.add_layout(legend, "above")
+
+
 def picture_file(figure: Any, form: str) -> io.BytesIO:
     """File of a picture, "png" or "svg"."""
     content = io.BytesIO()

@@ -11,6 +11,7 @@ import panel as pn
 
 from chatter.app.workbench.session import CALL, read_call
 from chatter.app.workbench.table_files import as_html, as_xlsx, table_of
+from chatter.app.workbench.wrapped_text import wrapped_text
 
 _TABLES = 6
 
@@ -35,11 +36,11 @@ def result_panel(folder: Path) -> list[Any]:
 def same_call(call: dict[str, Any]) -> pn.pane.Str:
     """Command and Python call that give the same."""
     text = "\n".join(str(call[key]) for key in ("command", "python") if call.get(key))
-    return pn.pane.Str(text, width=900, styles=CODE)
+    return wrapped_text(text, styles=CODE)
 
 
 #: look of commands and calls
-CODE = {"white-space": "pre-wrap", "font-family": "monospace", "background": "#f4f4f4",
+CODE = {"font-family": "monospace", "background": "#f4f4f4",
         "padding": "6px"}  # fmt: skip
 
 

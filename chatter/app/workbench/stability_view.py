@@ -12,9 +12,10 @@ from bokeh.plotting import figure
 from chatter.app.live_case import LiveCase
 from chatter.app.sliders import Slider
 from chatter.app.workbench.computations import Computation, Computations
-from chatter.app.workbench.picture_files import picture
+from chatter.app.workbench.picture_files import legend_above, picture
 from chatter.app.workbench.result_panel import CODE
 from chatter.app.workbench.table_files import PageTable, as_csv, as_xlsx
+from chatter.app.workbench.wrapped_text import wrapped_text
 from chatter.description.case import Case
 from chatter.description.progress import Progress
 
@@ -62,7 +63,7 @@ class StabilityView:
         self.band = ColumnDataSource({"speed": [], "low": [], "high": []})
         self.motion = ColumnDataSource({"revolution": [], "low": [], "high": []})
         self.message, self.verdict = _text(), _text()
-        self.same_call = pn.pane.Str("", width=_WIDTH, styles=CODE)
+        self.same_call = wrapped_text(width=_WIDTH, styles=CODE)
         self.cancel = pn.widgets.Button(label="Cancel")
         self.table = pn.widgets.FileDownload(
             callback=lambda: as_csv(self.limits()), filename="lobes.csv", label="Table (CSV)"
@@ -75,6 +76,9 @@ class StabilityView:
         self.cancel.on_click(lambda _: self.computations.cancel())
         self.reset.on_click(lambda _: self.put_back())
         self._lobes, self._motion = self._lobes_figure(), self._motion_figure()
+        # nothing is simulated before the first click
+        self._motion_picture = picture(self._motion, "motion")
+        self._motion_picture.visible = False
         for widget in self.sliders.values():
             widget.param.watch(lambda _: self.draw(), "value")
         self.draw()
@@ -97,7 +101,7 @@ class StabilityView:
             picture(self._lobes, "lobes"),
             self.same_call,
             self.verdict,
-            picture(self._motion, "motion"),
+            self._motion_picture,
         )
         return pn.Row(pn.Column(*cards), pictures)
 
@@ -198,6 +202,7 @@ class StabilityView:
         self._show(lambda: self._draw_run(run))
 
     def _draw_run(self, run: dict[str, Any]) -> None:
+        self._motion_picture.visible = True
         self.motion.data = {
             "revolution": run["revolutions"],
             "low": run["lowest_um"],
@@ -267,10 +272,7 @@ class StabilityView:
             HoverTool(renderers=[line], tooltips=told, mode="vline"),
             HoverTool(renderers=[pockets], tooltips=of_pockets),
         )
-        legend = drawn.legend[0]
-        legend.update(label_text_font_size="8pt", orientation="horizontal", border_line_alpha=0.0)
-        drawn.add_layout(legend, "above")
-        drawn.legend.click_policy = "hide"
+        legend_above(drawn)
         drawn.on_event(Tap, lambda event: self.simulate(event.x, event.y))
         return drawn
 
@@ -282,7 +284,7 @@ class StabilityView:
 
 
 def _text() -> pn.pane.Str:
-    return pn.pane.Str("", width=_WIDTH, styles={"white-space": "pre-wrap"})
+    return wrapped_text(width=_WIDTH)
 
 
 def _widget(one: Slider) -> pn.widgets.Widget:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import chatter
+from chatter.app.workbench.residual_file import RESIDUALS, write_residuals
 from chatter.app.workbench.separate_process import Report
 from chatter.app.workbench.session import CaseText, read_call, write_call
 from chatter.description.errors import InputError
@@ -179,6 +180,7 @@ def run_measurement(
         result = chatter.explain(measurement, given, report)
         sentences = _of_explanation(result.summary())
     save_result(result, folder, {"title": name, **call})
+    write_residuals(result, folder)
     write_call(folder, {**read_call(folder), "sentences": sentences})
 
 
@@ -209,7 +211,12 @@ def _of_explanation(summary: Mapping[str, Any]) -> list[str]:
 
 def save_result(result: Any, folder: Path, call: Mapping[str, Any]) -> None:
     """Write the files of a result, its picture as SVG, and how it was made."""
-    for stale in (*folder.glob("*.png"), *folder.glob("*.svg"), *folder.glob("*.csv")):
+    for stale in (
+        *folder.glob("*.png"),
+        *folder.glob("*.svg"),
+        *folder.glob("*.csv"),
+        *folder.glob(RESIDUALS),
+    ):
         stale.unlink()
     result.save(folder)
     drawn = result.plot()

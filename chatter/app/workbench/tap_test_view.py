@@ -20,6 +20,7 @@ from chatter.app.workbench.result_panel import CODE, downloads
 from chatter.app.workbench.session import Session, readable_extensions
 from chatter.app.workbench.table_files import PageTable, as_html
 from chatter.app.workbench.upload import dropper
+from chatter.app.workbench.wrapped_text import wrapped_text
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress
 from chatter.io.hammer_records import is_hammer_record
@@ -68,7 +69,7 @@ class TapTestView:
                                            disabled=True)  # fmt: skip
         self.automatic = pn.widgets.Button(label="Poles found automatically")
         self.picked = pn.widgets.Button(label="Fit the picked poles")
-        self.message = pn.pane.Str("", width=900, styles={"white-space": "pre-wrap"})
+        self.message = wrapped_text()
         self.same_call = pn.pane.Str("", width=900, styles=CODE)
         self.modes = pn.pane.HTML("", width=700)
         self._files = pn.FlexBox(min_width=860)
@@ -330,9 +331,7 @@ class TapTestView:
             box.param.watch(lambda _: self.fit(self.poles), "value")
             why = reasons.get(name, "" if box.value else "left out by hand")
             self.records[name] = box
-            rows.append(
-                pn.Row(box, pn.pane.Str(why, width=440, styles={"white-space": "pre-wrap"}))
-            )
+            rows.append(pn.Row(box, wrapped_text(why, 440)))
         self._record_list.objects = rows
 
     def _same_call(self, arguments: Mapping[str, Any]) -> str:

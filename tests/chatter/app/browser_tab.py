@@ -125,6 +125,16 @@ class Tab:
         shot = self.command("Page.captureScreenshot", format="png")
         path.write_bytes(base64.b64decode(shot["data"]))
 
+    def settled_screenshot(self, path: Path) -> None:
+        """Write a picture of the page once it no longer changes."""
+        before, until = b"", time.monotonic() + PATIENCE
+        while time.monotonic() < until:
+            time.sleep(0.7)
+            self.screenshot(path)
+            if path.read_bytes() == before:
+                return
+            before = path.read_bytes()
+
     def open(self, url: str) -> None:
         """Go to a page and wait until Bokeh has drawn it."""
         self.command("Page.enable")
@@ -174,6 +184,23 @@ class Tab:
             f"(() => {{ const one = {field}; one.focus(); one.value = {json.dumps(text)};"
             "one.dispatchEvent(new Event('input', {bubbles: true}));"
             "one.dispatchEvent(new Event('change', {bubbles: true})); one.blur(); })()"
+        )
+
+    def choose(self, label: str, option: str) -> None:
+        """Choose an option of the visible list of a label."""
+        field = (
+            "(() => { const wanted = " + json.dumps(label) + ";"
+            "for (const one of deepAll('select')) {"
+            "  const group = one.closest('.bk-input-group');"
+            "  const told = group && group.querySelector('label');"
+            "  if (one.getClientRects().length && told && told.textContent.trim() === wanted)"
+            "    return one; } })()"
+        )
+        self.wait(f"!!{field}")
+        self.value(
+            f"(() => {{ const one = {field}; const wanted = {json.dumps(option)};"
+            "one.value = [...one.options].find(o => o.textContent.trim() === wanted).value;"
+            "one.dispatchEvent(new Event('change', {bubbles: true})); })()"
         )
 
     def upload(self, files: list[Path], which: int = 0) -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import gc
+import shutil
 import threading
 import time
 
@@ -12,12 +14,16 @@ import pytest
 import chatter
 from chatter.app.workbench.server import WorkbenchServer
 from tests.chatter.app.browser_tab import browser, tab_of
+from tests.chatter.simulation.virtual_tests.test_mode_shapes import BLOCK
 from tests.chatter.studies.test_modal_test import write_set
+from tests.places import EXAMPLES
 
 pytestmark = [
     pytest.mark.browser,
     # Bokeh says so of a model that dynamic tabs send again; as an error it would drop the message
     pytest.mark.filterwarnings("ignore:reference already known"),
+    # a tab that is closed leaves what was to be sent to it
+    pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
 ]
 
 #: s, from the empty page to the sheet
@@ -49,6 +55,7 @@ def served(tmp_path):
     yield folder, serving[0]
     serving[0].end()
     thread.join(60.0)
+    gc.collect()  # what was not sent is left here, and not after the last test
 
 
 @pytest.fixture
@@ -67,7 +74,7 @@ def shot(tab, folder, name):
     from PIL import Image
 
     path = folder / f"{name}.png"
-    tab.screenshot(path)
+    tab.settled_screenshot(path)
     colours = np.asarray(Image.open(path).convert("L"))
     assert len(np.unique(colours)) > 20
     assert "Traceback" not in tab.value("pageText()")
@@ -103,6 +110,35 @@ def test_hammer_files_to_the_sheet_within_five_minutes(tab, served, tmp_path):
     tab.open(served[1].url)
     tab.click_on("Operator's sheet", ".bk-tab")
     tab.wait_for_text("sheet.pdf")
+
+
+def test_a_cut_a_machine_and_a_measurement_in_the_browser(tab, served, tmp_path):
+    folder, server = served
+    shutil.copy(EXAMPLES / "two-degrees-of-freedom" / "case.toml", folder / "case.toml")
+    (folder / "machine.toml").write_text(BLOCK)
+    shutil.copytree(EXAMPLES / "explain-milling" / "measurement", folder / "measurements" / "cuts")
+    tab.open(server.url)
+    tab.click_on("Cut", ".bk-tab")
+    tab.click_on("Simulate")
+    tab.wait_for_text("the motion repeats")
+    shot(tab, tmp_path, "cut")
+    tab.click_on("Machine", ".bk-tab")
+    tab.click_on("Mode shapes")
+    tab.wait_for_text("starting")
+    tab.wait("!pageText().includes('starting')")
+    shot(tab, tmp_path, "machine")
+    tab.click_on("Measurement", ".bk-tab")
+    tab.click_on("Explain")
+    tab.click_on("Cancel")
+    tab.wait_for_text("cancelled")
+    tab.click_on("Compare")
+    tab.wait_for_text("times the noise in")
+    shot(tab, tmp_path, "measurement")
+    tab.choose("Diagnostic", "frequency, declared case")
+    tab.wait_for_text("Hz")
+    shot(tab, tmp_path, "diagnostic")
+    tab.click_on("Studies", ".bk-tab")
+    shot(tab, tmp_path, "studies")
 
 
 def test_nothing_is_asked_of_the_network(tab, served):
