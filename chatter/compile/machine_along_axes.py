@@ -85,31 +85,44 @@ def machine_along_axes(
             machines = machines_at(parts, conditions)
         return machines if friction else tuple(one.without_friction() for one in machines)
 
-    cells = {}
-    for axis, (low, high) in travelled.items():
-        if high - low < _LEAST_TRAVEL or file.axis[axis].drive.is_rotary:
-            continue
-        probed = at([{axis: low}, {axis: 0.5 * (low + high)}, {axis: high}])
-        if _changes(probed):
-            cells[axis] = _cells(probed, file.highest_frequency or _HIGHEST)
-    if not cells:
+    highest = file.highest_frequency or _HIGHEST
+    changing = [
+        axis
+        for axis, (low, high) in travelled.items()
+        if high - low >= _LEAST_TRAVEL and not file.axis[axis].drive.is_rotary
+    ]
+    # of one axis alone the positions tell as well whether it changes anything
+    probed = {axis: at(_probes(axis, *travelled[axis])) for axis in changing if len(changing) > 1}
+    changing = [axis for axis in changing if axis not in probed or _changes(probed[axis])]
+    if not changing:
         return None
     grid = tuple(
-        _positions(*travelled[axis], count or _count(travelled[axis], len(cells))) for axis in cells
+        _positions(*travelled[axis], count or _count(travelled[axis], len(changing)))
+        for axis in changing
     )
-    most = math.floor(_MOST_STEPS ** (1.0 / len(cells)))
-    parts = tuple(
-        math.ceil(min(number, most) / (len(one) - 1))
-        for number, one in zip(cells.values(), grid, strict=True)
-    )
-    changing = tuple(cells)
     offsets = [dict(zip(changing, one, strict=True)) for one in product(*grid)]
     first = next(number for number, offset in enumerate(offsets) if not any(offset.values()))
     order = [first, *(number for number in range(len(offsets)) if number != first)]
     assembled = dict(zip(order, at([offsets[number] for number in order]), strict=True))
     machines = tuple(assembled[number] for number in range(len(offsets)))
+    if not probed and not _changes(machines):
+        return None
+    if not probed and len(grid[0]) > 2:
+        middle = len(grid[0]) // 2
+        share = (grid[0][middle] - grid[0][0]) / (grid[0][-1] - grid[0][0])
+        cells = [_cells((machines[0], machines[middle], machines[-1]), highest, share)]
+    else:
+        cells = [
+            _cells(probed.get(axis) or at(_probes(axis, *travelled[axis])), highest)
+            for axis in changing
+        ]
+    most = math.floor(_MOST_STEPS ** (1.0 / len(changing)))
+    parts = tuple(
+        math.ceil(min(number, most) / (len(one) - 1))
+        for number, one in zip(cells, grid, strict=True)
+    )
     return MachinesAlong(
-        changing,
+        tuple(changing),
         grid,
         machines,
         tuple(
@@ -148,19 +161,26 @@ def _entries(machine: Machine) -> list[NDArray[np.float64]]:
     ]
 
 
-def _cells(machines: Sequence[Machine], highest: float) -> int:
+def _probes(axis: str, low: float, high: float) -> list[dict[str, float]]:
+    """Both ends of a travel and its middle."""
+    return [{axis: low}, {axis: 0.5 * (low + high)}, {axis: high}]
+
+
+def _cells(machines: Sequence[Machine], highest: float, share: float = 0.5) -> int:
     """Cells of a travel between whose ends natural frequencies may be blended.
 
-    From the machine at both ends and in the middle; the error of a blend goes with the square of
-    the distance.
+    From the machine at both ends and at a share of the way between; the error of a blend goes with
+    the square of the distance, and is largest in the middle.
     """
     first, middle, last = (one.structure for one in machines)
-    halfway = replace(first, stiffness=0.5 * (first.stiffness + last.stiffness))
+    blend = (1.0 - share) * first.stiffness + share * last.stiffness
+    halfway = replace(first, stiffness=blend)
     true, blended = (undamped_modes(one).frequency for one in (middle, halfway))
     count = int(np.searchsorted(true, highest))
     true, blended = true[:count], blended[:count]
     elastic = true > 0.0
     error = np.max(np.abs(blended[elastic] / true[elastic] - 1.0), initial=0.0)
+    error /= 4.0 * share * (1.0 - share)
     return max(1, math.ceil(math.sqrt(error / _TOLERANCE)))
 
 

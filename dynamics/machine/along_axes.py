@@ -3,13 +3,16 @@
 What carries the state of a machine from one position to the next must mean the same at both. Beams
 therefore have nodes wherever they are joined at any of the positions, and a reduction keeps the
 motions that are needed at any of them: modes up to the highest frequency and static shapes of all
-positions, made orthogonal over the mass, which no travel changes.
+positions. What they have in common is found by their energy (proper orthogonal decomposition): of
+the strain energy of a mode or a static shape, and so of the compliance that it gives, next to
+nothing is lost. The motions kept are orthonormal over the mass, which no travel changes.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+import scipy.linalg
 from numpy.typing import NDArray
 
 from dynamics.machine.description import (
@@ -25,8 +28,10 @@ from dynamics.machine.description import (
 from dynamics.reduction.modal_truncation import undamped_modes
 from dynamics.structure.linear_structure import LinearStructure, StructureError
 
-#: part of a motion's inertia below which the motions before hold it already
-_NOTHING_NEW = 1e-6
+#: part of the energy of one mode or static shape that may be left out
+_LEFT_OUT = 3e-4
+#: inertia over energy, at the lowest frequency, below which a motion has no mass
+_WITHOUT_MASS = 1e-13
 #: of masses at two positions, from one another
 _SAME_MASS = 1e-9
 
@@ -117,34 +122,41 @@ def _common_basis(full: Sequence[Machine], parts: MachineParts) -> NDArray[np.fl
     None where every freedom is kept.
     """
     mass = full[0].structure.mass
-    basis = np.zeros((len(mass), 0))
-    for machine in full:
-        if parts.highest_frequency is None:
-            shapes = (machine.modes or undamped_modes(machine.structure)).shapes
-            if shapes.shape[1] == len(mass):
-                return None
-        else:
-            shapes = reduced(machine, parts.highest_frequency, parts.kept_points).basis
-        basis = np.hstack([basis, _beyond(shapes, basis, mass)])
-    return basis
-
-
-def _beyond(
-    shapes: NDArray[np.float64], basis: NDArray[np.float64], mass: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """What shapes (n, k) have beyond a basis, orthonormal over the mass."""
-    new = shapes / np.sqrt(np.einsum("nk,nk->k", shapes, mass @ shapes))
+    modes = full[0].modes or undamped_modes(full[0].structure)
+    if parts.highest_frequency is None:
+        if modes.shapes.shape[1] == len(mass):
+            return None
+        shapes = [(one.modes or undamped_modes(one.structure)).shapes for one in full]
+    else:
+        shapes = [reduced(one, parts.highest_frequency, parts.kept_points).basis for one in full]
+    elastic = modes.frequency[modes.frequency > 0.0]
+    lowest = 2.0 * np.pi * (elastic[0] if elastic.size else 1.0)
+    # rigid motions count too: by their kinetic energy at the lowest frequency
+    energy = np.mean([one.structure.stiffness for one in full], axis=0) + lowest**2 * mass
+    common = _in_common(np.hstack(shapes), energy)
+    inertia, turned = _principal(common, mass)
+    common = common @ turned[:, lowest**2 * inertia > _WITHOUT_MASS]
     for _ in range(2):  # once more for the digits that cancelled
-        new = new - basis @ (basis.T @ (mass @ new))
-    inertia = new.T @ (mass @ new)
-    squared, turned = np.linalg.eigh(0.5 * (inertia + inertia.T))
-    kept = squared > _NOTHING_NEW
-    new = new @ (turned[:, kept] / np.sqrt(squared[kept]))
-    new = new - basis @ (basis.T @ (mass @ new))
-    # rounding of small remainders: orthonormal to the last digit
-    inertia = new.T @ (mass @ new)
-    squared, turned = np.linalg.eigh(0.5 * (inertia + inertia.T))
-    return new @ (turned / np.sqrt(squared))
+        inertia, turned = _principal(common, mass)
+        common = common @ (turned / np.sqrt(inertia))
+    return common
+
+
+def _in_common(shapes: NDArray[np.float64], energy: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Motions (n, m), orthonormal over an energy (n, n), that hold shapes (n, k) but for little."""
+    root = scipy.linalg.cholesky(energy, lower=True)
+    seen = root.T @ shapes
+    left, singular, _ = np.linalg.svd(seen / np.linalg.norm(seen, axis=0), full_matrices=False)
+    return scipy.linalg.solve_triangular(root.T, left[:, singular**2 > _LEFT_OUT])
+
+
+def _principal(
+    motions: NDArray[np.float64], matrix: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Principal values (m,) and directions (m, m) of a matrix over motions (n, m)."""
+    over = motions.T @ (matrix @ motions)
+    values, directions = np.linalg.eigh(0.5 * (over + over.T))
+    return values, directions
 
 
 def _projected(structure: LinearStructure, basis: NDArray[np.float64]) -> LinearStructure:

@@ -204,6 +204,22 @@ def test_frozen_positions(screw_machine):
     assert max(lowest) > 1.05 * min(lowest)  # it does change
 
 
+def test_one_reduction_keeps_the_responses_of_every_position(screw_machine):
+    """Motions in common, far fewer than of all positions, answer as the whole machine at each."""
+    grid = grid_of(screw_machine, 9)
+    whole = screw_machine.patch({"highest_frequency": None})
+    frequency = np.linspace(20.0, 600.0, 60)
+    for place, machine in zip(grid.positions[0], grid.machines, strict=True):
+        exact = assembled_machine(whole, positions={"X": float(place)})
+        found, wanted = (
+            one.structure.receptance(
+                frequency, np.array([one.structure.port("tcp", way) for way in np.eye(3)])
+            )
+            for one in (machine, exact)
+        )
+        assert np.max(np.abs(found - wanted)) < 5e-3 * np.max(np.abs(wanted))
+
+
 def test_start_within_the_travel(screw_machine):
     grid = grid_of(screw_machine, 4, -0.02, 0.3)
     assert 0.0 in grid.positions[0]
