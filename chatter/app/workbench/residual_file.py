@@ -79,13 +79,13 @@ def _records(residuals: dict[str, Residual]) -> list[dict[str, Any]]:
                 records[key] = {
                     "run": key[0], "channel": key[1], "unit": unit, "x_label": label,
                     "x": _numbers(x[shown]), "measured": _numbers(scale * part.measured[shown]),
-                    "residuals": {}, "over_noise": {}, "shown": shown,
+                    "residuals": {}, "over_noise": {}, "points": shown,
                 }  # fmt: skip
             entry = records[key]
-            entry["residuals"][model] = _numbers(scale * part.values[entry["shown"]])
+            entry["residuals"][model] = _numbers(scale * part.values[entry["points"]])
             entry["over_noise"][model] = _number(part.over_noise)
     return [
-        {name: value for name, value in one.items() if name != "shown"} for one in records.values()
+        {name: value for name, value in one.items() if name != "points"} for one in records.values()
     ]
 
 
