@@ -25,8 +25,8 @@ LEAST_EVIDENCE, CERTAIN_EVIDENCE = 6.0, 10.0
 LEAST_SHARE_IN_PART = 0.15
 #: sum of squares of holdout runs over that without an effect, from which on it is not one
 MOST_LOST = 1.02
-#: runs, of how many, in which such an effect may gain nothing
-FAILS_IN = 5
+#: level of the signed-rank test of the runs that gain by such an effect against those that lose
+SIGNED_RANK_LEVEL = 0.0625
 #: standard deviations of its declared value beyond which a refitted one is out of its tolerance
 OUT_OF_TOLERANCE = 3.0
 #: probability at which an interval of an effect that reaches nothing makes it none

@@ -15,6 +15,8 @@ from dynamics.friction.lugre import LuGre
 
 #: speed within which a direction is not one, m/s: sliding friction passes through zero there
 SMOOTH = 2e-5
+#: change of a velocity over a sample, over the smoothing, below which the direction is a constant
+_STEADY = 1e-3
 #: bristle damping where only the stiffness is known, as a damping ratio of the mass on it
 _BRISTLE_DAMPING = 0.3
 
@@ -63,7 +65,7 @@ class AxisForce:
         force = force + self.offset + self.quadratic_drag * velocity * np.abs(velocity)
         turn = 2.0 * math.pi / self.cogging_period
         force = force + self.cogging_amplitude * np.sin(turn * position + self.cogging_phase)
-        friction = self._dry(position, velocity, step)
+        friction = self.dry_friction(position, velocity, step)
         if motor_acceleration is not None:
             return force + friction + self.motor_mass * (motor_acceleration - acceleration)
         if self.backlash > 0.0:
@@ -71,11 +73,11 @@ class AxisForce:
             return np.where(driven, force + friction, 0.0)
         return force + friction
 
-    def _dry(
+    def dry_friction(
         self, position: NDArray[np.float64], velocity: NDArray[np.float64], step: float
     ) -> NDArray[np.float64]:
         """Coulomb friction with its onset, its presliding and its asymmetry, N."""
-        direction = np.tanh(velocity / SMOOTH)
+        direction = direction_of(velocity)
         static = self.coulomb if self.static is None else self.static
         if self.presliding_stiffness is None or self.coulomb <= 0.0:
             law = CoulombStribeck(self.coulomb, static, self.stribeck_velocity)
@@ -93,6 +95,23 @@ class AxisForce:
             stribeck_velocity=self.stribeck_velocity,
         )
         return friction_along(law, position, step) + self.asymmetry * direction * direction
+
+
+def direction_of(velocity: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Direction (n,), from -1 to 1, of a velocity (n,), m/s: mean over the time of each sample.
+
+    The velocity runs on a straight line from the middle between a sample and the one before it to
+    the middle after it. A reversal between two samples so shows when it was.
+    """
+    middle = 0.5 * (velocity[1:] + velocity[:-1])
+    ends = np.concatenate((velocity[:1], middle, velocity[-1:])) / SMOOTH
+    change = np.diff(ends)
+    magnitude = np.abs(ends)
+    # logarithm of the hyperbolic cosine, the integral of the tangent
+    integral = magnitude + np.log1p(np.exp(-2.0 * magnitude))
+    steady = np.abs(change) < _STEADY
+    mean = np.diff(integral) / np.where(steady, 1.0, change)
+    return np.where(steady, np.tanh(velocity / SMOOTH), mean)
 
 
 def drives_slide(position: NDArray[np.float64], backlash: float) -> NDArray[np.bool_]:

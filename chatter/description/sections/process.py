@@ -244,6 +244,9 @@ class Axis(Section):
         None, description="part of the moving mass on the motor's side of the backlash"
     )
     warm_up: WarmUp | None = None
+    force_delay: quantity("time") = Field(
+        0.0, description="time by which the force was recorded later than the motion"
+    )
 
 
 _COORDINATE = QuantityField("length", above=-100.0, below=100.0)

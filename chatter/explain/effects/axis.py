@@ -1,11 +1,13 @@
 """Effects of a feed axis: its friction, offset, cogging, backlash."""
 
+from collections.abc import Mapping
 from typing import ClassVar
 
 import numpy as np
 
 from chatter.description.case import Case
-from chatter.explain.effects.effect import Effect, Patch, Reported, Values, free, polar
+from chatter.explain.effects.effect import Effect, Patch, Reported, Signals, Values, free, polar
+from chatter.explain.effects.sines_of_position import LEAST_PERIOD, strongest_sines
 from chatter.explain.fitting import Parameter
 from chatter.explain.measurement import Measurement
 
@@ -219,7 +221,7 @@ class Cogging(Effect):
         return [
             free("sine", 0.0, force, "N"),
             free("cosine", 0.0, force, "N"),
-            free("period", 0.01, 2e-5, "m", lower=2e-4, upper=0.5),
+            free("period", 0.01, 2e-5, "m", lower=LEAST_PERIOD, upper=0.5),
         ]
 
     def patch(self, case: Case, values: Values) -> Patch:
@@ -227,9 +229,25 @@ class Cogging(Effect):
         return {"axis.cogging": {key: value for key, (value, _) in self.reported(values).items()}}
 
     def starts(self, measurement: Measurement) -> list[Values]:
-        """Periods spaced evenly in cycles over the travel, so that none is missed."""
-        travel = max(float(np.ptp(run.signals["position"])) for run in measurement.runs)
-        return [{"period": travel / cycles} for cycles in np.linspace(1.0, 20.0, 60)]
+        """None: the residual proposes the periods."""
+        return []
+
+    def proposed(self, measurement: Measurement, predicted: Mapping[str, Signals]) -> list[Values]:
+        """Sines of the position that take most of the residual force away."""
+        runs = [run for run in measurement.runs if "force" in predicted.get(run.name, {})]
+        if not runs:
+            return []
+        position = np.concatenate([run.signals["position"] for run in runs])
+        force = np.concatenate(
+            [run.signals["force"] - predicted[run.name]["force"] for run in runs]
+        )
+        weight = np.concatenate(
+            [run.weight("force") * np.ones(run.signals["force"].size) for run in runs]
+        )
+        return [
+            {"sine": sine, "cosine": cosine, "period": period}
+            for sine, cosine, period in strongest_sines(position, force, weight**2)
+        ]
 
     def reported(self, values: Values) -> Reported:
         """Amplitude, period and phase."""

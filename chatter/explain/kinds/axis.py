@@ -38,6 +38,8 @@ _COLUMNS = Columns(
 _RATE, _LASTING, _SLOW = 1000.0, 1.0, 0.02
 #: parts of a few moves: short ones, so that holdout parts lie among those fitted
 _PARTS = 12
+#: typical delay between the channels of a record, and the longest, over the time of a sample
+_DELAY, _LONGEST_DELAY = 0.5, 20.0
 #: values of an axis that are declared
 _DECLARED = (
     "moving_mass",
@@ -125,7 +127,8 @@ class Axis(Kind):
             if not term.is_of_a_cut:
                 position, velocity, _ = record.motion
                 force = force + term.value_at(position if term.over == "position" else velocity)
-        found = {"force": axis_record.kept(force)}
+        delay = case.axis.force_delay / record.step
+        found = {"force": axis_record.kept(force, delay)}
         if motor is not None:
             ahead = 0.5 * case.axis.backlash * axis_record.driving_flank(_slide_force(law, run))
             found["backlash"] = axis_record.centred(axis_record.kept(ahead), motor.weights)
@@ -136,9 +139,15 @@ class Axis(Kind):
         return run.record.noise
 
     def nuisance_parameters(self, measurement: Measurement) -> list[Parameter]:
-        """Mass and frictions that are declared."""
+        """Mass and frictions that are declared, and the delay between force and motion.
+
+        No recorder is told to sample both at one instant, and a part of a sample is enough to bias
+        the mass and what damps.
+        """
         axis = measurement.case.axis
-        return with_priors(measurement, [f"axis.{key}" for key in _DECLARED if getattr(axis, key)])
+        delay = _delay(axis.force_delay, _step(measurement))
+        declared = [f"axis.{key}" for key in _DECLARED if getattr(axis, key)]
+        return [*with_priors(measurement, declared), delay]
 
     def trials(self, measurement: Measurement, noise: Noise) -> list[Trial]:
         """An axis at rest, and slow and fast moves both ways."""
@@ -149,6 +158,23 @@ class Axis(Kind):
             Trial(f"the force of the axis {how}, at {speed * 1e3:.3g} mm/s", _move(speed), level)
             for how, speed in speeds.items()
         ]
+
+
+def _step(measurement: Measurement) -> float:
+    """Median time between the samples of a record, s."""
+    runs = [run.whole or run for run in measurement.runs]
+    steps = [
+        run.record.step if run.record is not None else np.median(np.diff(run.signals["time"]))
+        for run in runs
+    ]
+    return float(np.median(steps))
+
+
+def _delay(declared: float, step: float) -> Parameter:
+    """Delay of the force, of which nothing is known; recorders may be started by hand."""
+    bounds = {"lower": -_LONGEST_DELAY * step, "upper": _LONGEST_DELAY * step}
+    size = _DELAY * step
+    return Parameter("axis.force_delay", declared, size, prior=False, unit="s", **bounds)
 
 
 def axis_force(case: Case) -> AxisForce:

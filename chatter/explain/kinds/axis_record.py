@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from chatter.explain.measurement import Run
 from chatter.explain.residuals.channel_residual import white_level
-from dynamics.friction.axis_force import AxisForce
+from dynamics.friction.axis_force import SMOOTH, AxisForce
 
 Array = NDArray[np.float64]
 
@@ -29,6 +29,8 @@ _BESIDE, _DEGREE = 40, 3
 _AHEAD = 12.0
 #: samples kept on either side for which an uncertainty holds, and at the ends; the least weight
 _NEARBY, _ENDS, _LEAST_WEIGHT = 1, 8, 0.02
+#: standard deviation of the moment of a jump between two samples, over the time between them
+_WITHIN_A_SAMPLE = 12.0**-0.5
 #: share of a dry friction that is uncertain while an axis creeps
 _CREEP_UNCERTAINTY = 0.1
 #: share of the force to which it can be followed along a motion that was measured
@@ -37,6 +39,8 @@ _FOLLOWED = 0.01
 _DRIVES = 0.3
 #: samples kept on either side of a crossing of the backlash, and their weight
 _CROSSING, _CROSSING_WEIGHT = 8, 0.02
+#: travel of a motor within which it has crossed a gap, m: four times a wide one
+_WIDEST_GAP = 1e-4
 
 
 class Motion(NamedTuple):
@@ -105,13 +109,14 @@ def with_motor(made: Run, recorded: Run, slide_force: Array) -> Run:
     crossing = np.abs(np.diff(driving_flank(slide_force), prepend=0.0)) > 0.0
     about_kept = scipy.ndimage.maximum_filter1d(crossing, 2 * _KEPT + 1)[::_KEPT]
     near = scipy.ndimage.maximum_filter1d(about_kept, 2 * _CROSSING + 1)
+    near |= _within_travel(kept(travel), about_kept)
     weights = np.where(near, _CROSSING_WEIGHT, 1.0)
     # what noise of the velocity adds up to
     drift = white_level(_slip(recorded)) * step * math.sqrt(travel.size)
     record = replace(
         made.record,
         noise={**made.record.noise, "backlash": drift},
-        motor=Motor(np.gradient(_smooth(velocity, _MOTION_CUT_OFF), step), weights),
+        motor=Motor(_derivative(_smooth(velocity, _MOTION_CUT_OFF), step, 1), weights),
     )
     ahead = centred(kept(travel - recorded.signals["position"]), weights)
     return replace(
@@ -122,12 +127,28 @@ def with_motor(made: Run, recorded: Run, slide_force: Array) -> Run:
     )
 
 
+def _within_travel(travel: Array, crossing: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Samples (m,) that the motor has no more than a gap to travel to, or from, a crossing.
+
+    A motor that creeps takes long to cross a gap, and the slide rests meanwhile.
+    """
+    if not np.any(crossing):
+        return np.zeros(travel.size, dtype=bool)
+    path = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(travel)))])
+    ends = path[crossing]
+    after = np.minimum(np.searchsorted(ends, path), ends.size - 1)
+    before = np.maximum(after - 1, 0)
+    nearest = np.minimum(np.abs(ends[after] - path), np.abs(ends[before] - path))
+    return nearest < _WIDEST_GAP
+
+
 def force_weights(record: AxisRecord, rubbing: AxisForce) -> Array:
     """Weights (m,): 1, or less where the force depends on how the motion is smoothed.
 
     At a reversal a dry friction jumps within less than the motion is resolved to. How far off its
-    force may be is seen from a motion smoothed less. Of an axis that creeps, the speed says little
-    about a friction without presliding.
+    force may be is seen from a motion smoothed less; when between two samples it jumped, no sample
+    tells. Of an axis that creeps, the speed says little
+    about a friction without presliding, and nothing of one at rest: any force up to it holds.
     """
     coarse, fine = (
         kept(rubbing.along(*_motion(record.measured, record.step, cut), record.step, record.begun))
@@ -135,8 +156,12 @@ def force_weights(record: AxisRecord, rubbing: AxisForce) -> Array:
     )
     uncertainty = scipy.ndimage.maximum_filter1d(np.abs(fine - coarse), 2 * _NEARBY + 1)
     if rubbing.presliding_stiffness is None:
-        creeps = (np.abs(record.motion.velocity) < _NEAR_REST).astype(np.float64)
-        uncertainty += _CREEP_UNCERTAINTY * rubbing.coulomb * np.clip(kept(creeps), 0.0, 1.0)
+        position, velocity, _ = record.motion
+        dry = _smooth(rubbing.dry_friction(position, velocity, record.step), _CUT_OFF)
+        uncertainty = np.hypot(uncertainty, _WITHIN_A_SAMPLE * np.gradient(dry)[::_KEPT])
+        speed = np.abs(record.motion.velocity)
+        unknown = np.where(speed < SMOOTH, 1.0, _CREEP_UNCERTAINTY * (speed < _NEAR_REST))
+        uncertainty += rubbing.coulomb * np.clip(kept(unknown), 0.0, 1.0)
     weights = 1.0 / np.hypot(1.0, uncertainty / max(record.noise["force"], 1e-12))
     weights[:_ENDS] = weights[-_ENDS:] = _LEAST_WEIGHT
     return np.maximum(weights, _LEAST_WEIGHT) * record.usable
@@ -162,20 +187,31 @@ def centred(values: Array, weight: Array) -> Array:
     return values - np.average(values, weights=weight)
 
 
-def kept(values: Array) -> Array:
-    """Samples (m,) kept of a signal (n,) behind the low pass."""
-    return _smooth(values, _CUT_OFF)[::_KEPT]
+def kept(values: Array, delay: float = 0.0) -> Array:
+    """Samples (m,) kept of a signal (n,) behind the low pass, later by a delay in samples."""
+    smooth = _smooth(values, _CUT_OFF)
+    if delay:
+        smooth = scipy.ndimage.shift(smooth, delay, order=3, mode="nearest")
+    return smooth[::_KEPT]
 
 
 def _motion(position: Array, step: float, cut_off: float) -> Motion:
     smooth = _smooth(position, cut_off)
-    velocity = np.gradient(smooth, step)
-    acceleration = np.gradient(velocity, step)
+    velocity, acceleration = _derivative(smooth, step, 1), _derivative(smooth, step, 2)
     # the direction of friction near rest depends on velocities far below the noise of a difference
     # of positions: where the axis creeps, they are taken over more samples
     nearby = scipy.ndimage.maximum_filter1d(np.abs(velocity), 2 * _BESIDE + 1)
     creeping = scipy.signal.savgol_filter(smooth, 2 * _BESIDE + 1, _DEGREE, 1, step)
     return Motion(smooth, np.where(nearby < _NEAR_REST, creeping, velocity), acceleration)
+
+
+def _derivative(smooth: Array, step: float, order: int) -> Array:
+    """Derivative of samples (n,) by the quintic spline through them.
+
+    Differences of neighbours lose 8 % of an acceleration at the low pass of the force.
+    """
+    time = step * np.arange(smooth.size)
+    return scipy.interpolate.make_interp_spline(time, smooth, k=5)(time, order)
 
 
 def _noise_of(signal: Array) -> float:

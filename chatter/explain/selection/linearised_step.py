@@ -54,7 +54,10 @@ def linearised(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) 
     with ThreadPoolExecutor(WORKERS) as pool:
         begins = [values_at(start) for start in effect.starts(problem.measured_by(effect))]
         if len(begins) > SCREENED_STARTS:
-            secants = _Secants(trial, now, runs)
+            amounts = [
+                one for one in added if one.name.partition(".")[2] in effect.nothing(measured)
+            ]
+            secants = _Secants(trial, now, runs, amounts)
             costs = list(pool.map(secants.cost, begins))
             ranked = sorted(range(len(begins)), key=lambda index: costs[index])
             begins = [begins[index] for index in ranked[:SCREENED_STARTS]]
@@ -67,10 +70,15 @@ def linearised(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) 
 
 
 class _Secants:
-    """Lines from no effect through its starts, the nuisance parameters moving along."""
+    """Lines from no effect through its starts, the nuisance parameters moving along.
 
-    def __init__(self, trial: Problem, now: Fit, runs: Sequence[Run]) -> None:
-        self.trial, self.now, self.runs = trial, now, runs
+    Where a start does nothing yet, the effect moves along its amounts.
+    """
+
+    def __init__(
+        self, trial: Problem, now: Fit, runs: Sequence[Run], amounts: Sequence[Parameter]
+    ) -> None:
+        self.trial, self.now, self.runs, self.amounts = trial, now, runs, amounts
         # what all starts have in common
         self.normal = now.jacobian.T @ now.jacobian + np.eye(len(now.parameters))
         self.gradient = now.jacobian.T @ now.residuals
@@ -78,19 +86,26 @@ class _Secants:
     def cost(self, values: Mapping[str, float]) -> float:
         """Least sum of squares on the line through a start.
 
-        One prediction a run says how well what the effect does there resembles the residual. A
-        start at which the effect does nothing says nothing: it comes first.
+        One prediction a run says how well what the effect does there resembles the residual.
         """
-        now = self.now
-        secant = self.trial.residuals(values, self.runs) - now.residuals
-        if not np.any(secant):
-            return -np.inf
-        across = now.jacobian.T @ secant
-        normal = np.block(
-            [[self.normal, across[:, None]], [across[None], secant @ secant + WEAK_PRIOR]]
-        )
-        gradient = np.append(self.gradient, secant @ now.residuals)
+        now, across = self.now, self._directions(values)
+        coupled = now.jacobian.T @ across
+        own = across.T @ across + WEAK_PRIOR * np.eye(across.shape[1])
+        normal = np.block([[self.normal, coupled], [coupled.T, own]])
+        gradient = np.concatenate([self.gradient, across.T @ now.residuals])
         return now.cost - float(gradient @ np.linalg.solve(normal, gradient))
+
+    def _directions(self, values: Mapping[str, float]) -> NDArray[np.float64]:
+        """Changes of the residuals (n, k) by an effect: by all of it, or by each of its amounts."""
+        secant = self.trial.residuals(values, self.runs) - self.now.residuals
+        if np.any(secant) or not self.amounts:
+            return secant[:, None]
+        changes = []
+        for one in self.amounts:
+            moved = {**values, one.name: values[one.name] + _DIFFERENCE * one.size}
+            change = self.trial.residuals(moved, self.runs) - self.now.residuals
+            changes.append(change / _DIFFERENCE)
+        return np.column_stack(changes)
 
 
 def _promised(

@@ -5,10 +5,12 @@ import pytest
 
 from chatter.description.case import loads
 from chatter.explain.effects.axis import Asymmetry, Offset, QuadraticDrag
+from chatter.explain.effects.effect import free
 from chatter.explain.kinds.kind import Kind
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.prediction import Predictions
 from chatter.explain.selection import candidates
+from chatter.explain.selection.established import gain_in_most
 from chatter.explain.selection.joint_steps import joint_steps
 from chatter.explain.selection.linearised_step import linearised
 from chatter.explain.selection.problem import Problem
@@ -129,3 +131,57 @@ def test_what_is_found_is_kept_beside_something_else():
     assert not found.is_at_noise
     assert found.is_certain
     assert found.final.by_name["offset.offset"] == pytest.approx(3.0, rel=0.02)
+
+
+class Chosen(Offset):
+    """An offset in one shape of many: none does anything before it has an amount."""
+
+    name = "chosen"
+
+    def applies(self, measurement):
+        return True
+
+    def parameters(self, measurement):
+        which = free("which", 0.0, 1e-3, "", lower=0.0, upper=9.0)
+        return [free("amount", 0.0, 0.1, "N"), which]
+
+    def nothing(self, measurement):
+        return {"amount": 0.0}
+
+    def patch(self, case, values):
+        right = round(values["which"]) == 7
+        return {"axis.offset" if right else "axis.asymmetry": values["amount"]}
+
+    def starts(self, measurement):
+        return [{"which": float(number)} for number in range(10)]
+
+
+def test_starts_that_do_nothing_yet_are_ranked_by_what_their_amounts_would_do():
+    """The eighth of ten, of which four are followed."""
+
+    def shapes_of(random):
+        return random.standard_normal((3, SAMPLES))
+
+    measurement = measured(shapes_of, (0.0, 3.0, 0.0))
+    kind, split = Sums(), split_runs(measurement.runs)
+    noise = {run.name: kind.known_noise(run) for run in measurement.runs}
+    problem = Problem(measurement, Predictions(kind), noise)
+    now = problem.fit(split.fitted, {})
+    step = linearised(problem, Chosen(), now, split.fitted)
+    assert step.values["chosen.which"] == pytest.approx(7.0, abs=0.1)
+    assert step.values["chosen.amount"] == pytest.approx(3.0, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("gains", "most"),
+    [
+        # ranks of what is lost, of eight, add up to 5 or 6 (probability 0.039, 0.055), or 8 (0.098)
+        ((-1.0, 2.0, 3.0, -4.0, 5.0, 6.0, 7.0, 8.0), True),
+        ((1.0, 2.0, 3.0, 4.0, 5.0, -6.0, 7.0, 8.0), True),
+        ((1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, -8.0), False),
+        ((1.0, 2.0, 3.0, -0.1), False),
+        ((1.0, 2.0, 3.0), True),
+    ],
+)
+def test_most_runs_gain_where_chance_would_not_make_them(gains, most):
+    assert gain_in_most(gains) is most
