@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import itertools
+from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 import typer
 
 from chatter.cli import options
-from chatter.cli.progress import progress_bar
+from chatter.cli.progress import announce_resumed, progress_bar
 from chatter.cli.results import present
 from chatter.description.assignments import parse_assignments
 from chatter.description.bare_speeds import refuse_bare_speed_assignments
@@ -36,6 +37,7 @@ def bifurcation(
         int, typer.Option("--count", help="Number of cuts where the range gives none.")
     ] = 60,
     assignments: options.Assignments = None,
+    cluster: options.Cluster = None,
     out: options.OutputFolder = None,
     json: options.Json = False,
 ) -> None:
@@ -45,10 +47,19 @@ def bifurcation(
     from chatter.engine.loop import run
     from chatter.studies.bifurcation import bifurcation as run_bifurcation
 
+    folder = options.output_folder(out, case.stem)
     with progress_bar("cuts of the bifurcation diagram, step by step", run) as progress:
-        diagram = run_bifurcation(description, path, values, progress)
+        diagram = run_bifurcation(
+            description,
+            path,
+            values,
+            folder=folder,
+            progress=progress,
+            resumed=partial(announce_resumed, "cuts"),
+            cluster=cluster,
+        )
     options.print_coefficients(description)
-    present(diagram, options.output_folder(out, case.stem), json=json, words=_print_onsets)
+    present(diagram, folder, json=json, words=_print_onsets)
 
 
 def _range(vary: str, count: int) -> tuple[str, list[float]]:

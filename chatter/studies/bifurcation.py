@@ -1,9 +1,12 @@
 """Bifurcation diagram: Poincaré sections of simulated cuts over a value of the case."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from dataclasses import asdict, dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -11,15 +14,19 @@ from chatter.description.arrays import Array
 from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.errors import InputError
-from chatter.description.progress import Progress, no_progress
-from chatter.engine.parallel import each
 from chatter.io.result_files import SavedResult, finite_or_none
 from chatter.simulation.perturbation.multiplier import periods_per_revolution
 from chatter.simulation.setup import set_up
 from chatter.simulation.simulate import run_setup
 from chatter.simulation.structure_in_time import modes_of
 from chatter.simulation.verdict import with_verdict
+from chatter.studies.executor import ThreadExecutor
+from chatter.studies.model import fingerprint
+from chatter.studies.result_cache import Execution, ResultCache
 from dynamics.modal.modes import Mode
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 #: revolutions of every cut, and those at its end that are kept
 _REVOLUTIONS = 200.0
@@ -86,7 +93,7 @@ class BifurcationDiagram(SavedResult):
 
 @takes_case_or_path
 def bifurcation(
-    case: Case, path: str, values: Sequence[Any], progress: Progress = no_progress
+    case: Case, path: str, values: Sequence[Any], **execution: Unpack[Execution]
 ) -> BifurcationDiagram:
     """Simulate a case over the values of one of its keys.
 
@@ -98,8 +105,8 @@ def bifurcation(
         Dotted path, such as "cut.axial_depth" or "cut.spindle_speed".
     values : sequence
         Quantities as text, or numbers in SI.
-    progress : callable, optional
-        Called with (done, total) cuts.
+    **execution
+        Folder, progress, resumed and cluster, as `chatter.studies.result_cache.Execution`.
 
     Returns
     -------
@@ -109,6 +116,8 @@ def bifurcation(
     ------
     InputError
         If there are no values, or a patched case is wrong.
+    RunError
+        If the study is interrupted; finished cuts are in the folder.
     """
     if len(values) == 0:
         raise InputError(f"{case.name}: {path}: no values are given for the bifurcation diagram")
@@ -119,8 +128,26 @@ def bifurcation(
     modes = None if on_machine or path.startswith("structure") else modes_of(case)[0]
     if modes == ():
         raise InputError(f"{case.name}: [structure] is missing; a rigid tool does not vibrate")
-    points = each(lambda i: _point(cases[i], path, modes), len(cases), progress)
+    if execution.get("cluster") is None:
+        execution["cluster"] = ThreadExecutor()
+    with ResultCache(execution.get("folder"), "bifurcation", path) as cache:
+        keys = [cache.key(fingerprint(one)) for one in cases]
+        records = cache.evaluate(partial(_record, path, modes), cases, keys, "cuts", **execution)
+    points = [
+        BifurcationPoint(**{**one, "poincare_section": _section(one["poincare_section"])})
+        for one in records
+    ]
     return BifurcationDiagram(case, path, tuple(points))
+
+
+def _record(path: str, modes: tuple[Mode, ...] | None, case: Case) -> dict[str, Any]:
+    """Cut of a case as the result cache keeps it."""
+    point = asdict(_point(case, path, modes))
+    return {**point, "poincare_section": point["poincare_section"].tolist()}
+
+
+def _section(rows: list[list[float]]) -> Array:
+    return np.array(rows, dtype=np.float64).reshape(-1, 3)
 
 
 def _point(case: Case, path: str, modes: tuple[Mode, ...] | None) -> BifurcationPoint:

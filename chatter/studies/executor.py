@@ -10,7 +10,8 @@ import math
 import re
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import CancelledError
+from concurrent.futures import CancelledError, ThreadPoolExecutor
+from concurrent.futures import as_completed as futures_as_completed
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -34,6 +35,28 @@ _TASKS_PER_WORKER = 2
 _IGNORE_CTRL_C = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 _ADDRESS = re.compile(r"(tcp|tls|ws|wss)://[^\s/:]+(:\d+)")
 _ADDRESS_IPV6 = re.compile(r"(tcp|tls|ws|wss)://\[[0-9a-fA-F:.]+\](:\d+)")
+
+
+class ThreadExecutor:
+    """Items side by side in threads of this process: for compiled code that is one thread each."""
+
+    def results(
+        self, function: Callable[[Item], Result], items: Sequence[Item]
+    ) -> Iterator[tuple[int, Result]]:
+        """Yield results as they are finished."""
+        with ThreadPoolExecutor(max_workers=worker_count()) as pool:
+            futures = {pool.submit(_alone, function, item): n for n, item in enumerate(items)}
+            try:
+                for future in futures_as_completed(futures):
+                    yield futures[future], future.result()
+            finally:
+                for future in futures:
+                    future.cancel()
+
+
+def _alone(function: Callable[[Item], Result], item: Item) -> Result:
+    with one_thread():
+        return function(item)
 
 
 class DaskExecutor:

@@ -140,6 +140,7 @@ def test_files_of_the_command(case_file, tmp_path):
     assert {path.name for path in out.iterdir()} == {
         "bifurcation.csv",
         "bifurcation.png",
+        "result-cache",
         "summary.json",
     }
     assert (out / "bifurcation.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
@@ -201,3 +202,35 @@ def test_wrong_count(case_file, count):
     result = run(case_file, "cut.axial_depth=1 mm..2 mm", "--count", count)
     assert result.exit_code == 2
     assert "--count" in result.stderr
+
+
+def test_one_that_was_interrupted_goes_on_where_it_was(tmp_path):
+    case, depths = cut_of(20000, "1 mm"), [1e-3, 2e-3, 3e-3, 4e-3]
+
+    def give_up(done, total):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(chatter.RunError, match="interrupted: 2 of 4 cuts are finished"):
+        chatter.bifurcation(case, "cut.axial_depth", depths, folder=tmp_path, progress=give_up)
+    told = []
+    found = chatter.bifurcation(
+        case, "cut.axial_depth", depths, folder=tmp_path, resumed=lambda *at: told.append(at)
+    )
+    assert told[0][0] >= 2
+    assert told[0][1] == 4
+    undisturbed = chatter.bifurcation(case, "cut.axial_depth", depths)
+    assert found.tables() == undisturbed.tables()
+    assert found.summary() == undisturbed.summary()
+
+
+def test_the_command_ends_with_the_same_bytes_when_given_again(tmp_path):
+    tool_of_922_hertz(simulation={"revolutions": 60}).save(tmp_path / "case.toml")
+    out = tmp_path / "out"
+    words = ("bifurcation", tmp_path / "case.toml", "--vary", "cut.axial_depth=1 mm..2 mm:3")
+    assert chatter_command(*words, "--out", out).exit_code == 0
+    names = ("summary.json", "bifurcation.csv", "bifurcation.png")
+    before = [(out / name).read_bytes() for name in names]
+    again = chatter_command(*words, "--out", out)
+    assert "3 of 3 cuts were finished before" in again.stderr
+    assert [(out / name).read_bytes() for name in names] == before
