@@ -27,6 +27,7 @@ from chatter.report.published_against_obtained import (
 from chatter.simulation.virtual_tests.frf import FrfCurve, FrfResult, peaks
 from chatter.simulation.virtual_tests.move import MoveResult
 from chatter.simulation.virtual_tests.run import RunInputs, run_machine
+from dynamics.frf.container import Frf
 from dynamics.trajectory.set_points import SetPoints, set_points
 
 HERE = Path(__file__).parent
@@ -39,49 +40,87 @@ PUBLISHED = {
     "tip_z": (650.0,),
 }
 
-#: heights at the tip of the spindle, table 3.1, g/N: test, frequency, model, measured
+#: frequencies, Hz, that calibrate.py fits to; the tip in y has the bearings of x
+FITTED = {"frame_x": (110.0, 260.0), "tip_x": (800.0, 1300.0), "tip_y": (800.0,), "tip_z": (650.0,)}
+#: table 3.1, measured at a mode of the model: Hz in words, and g/N
+MEASURED = {
+    ("tip_x", 800.0): ("850", 0.18),
+    ("tip_y", 800.0): ("850", 0.27),
+    ("tip_x", 1300.0): ("1400", 0.48),
+    ("tip_y", 1300.0): ("1420", 0.37),
+    ("tip_z", 650.0): ("650 to 800", 0.027),
+}
+#: heights at the tip of the spindle, table 3.1, g/N: test, frequency, model
 HEIGHTS = (
-    ("tip_x", 800.0, 0.05, 0.18),
-    ("tip_y", 800.0, 0.05, 0.27),
-    ("tip_x", 1300.0, 0.17, 0.48),
-    ("tip_y", 1300.0, 0.17, 0.37),
-    ("tip_z", 650.0, 0.11, 0.027),
+    ("tip_x", 800.0, 0.05),
+    ("tip_y", 800.0, 0.05),
+    ("tip_x", 1300.0, 0.17),
+    ("tip_y", 1300.0, 0.17),
+    ("tip_z", 650.0, 0.11),
 )
 #: configurations of figure 3.8, whose positions the text does not give, m; the first is the file's
 CONFIGURATIONS = ({}, {"X": 0.3}, {"Y": 0.3}, {"Y": -0.3}, {"Z": 0.2}, {"Z": -0.2})
 
 
-def peak_near(curve: FrfCurve, frequency: float, tested: bool = False) -> dict:
+class HammerTest(NamedTuple):
+    """A blow, answered two ways."""
+
+    harmonic: Frf  # matrices at the position, loops as springs, damping by mode
+    blow: FrfCurve  # in time, loops running; beside it the response with the loops linearised
+
+    def both(self) -> dict[str, Frf]:
+        """Responses by the name of their way."""
+        return {"harmonic": self.harmonic, "simulated blow": self.blow.tested}
+
+
+def held(machine: MachineFile, name: str) -> FrfCurve:
+    """Harmonic response with the loops as springs: motors held by their brakes."""
+    springs = {
+        f"frf.{name}.by": "linearised",
+        f"frf.{name}.condition": dict.fromkeys("XYZ", "brake"),
+    }
+    return chatter.frf(machine.patch(springs), [name])[name]
+
+
+def hammer_test(machine: MachineFile, name: str) -> HammerTest:
+    """Answer a hammer test of the file two ways."""
+    return HammerTest(held(machine, name).harmonic, chatter.frf(machine, [name])[name])
+
+
+def peak_near(frf: Frf, frequency: float) -> dict:
     """Highest peak within 15 % of a frequency."""
-    found = peaks(curve.tested if tested else curve.harmonic)
-    near = [one for one in found if abs(one["frequency_Hz"] / frequency - 1.0) < 0.15]
+    near = [one for one in peaks(frf) if abs(one["frequency_Hz"] / frequency - 1.0) < 0.15]
     nothing = {"frequency_Hz": float("nan"), "magnitude": float("nan")}
     return max(near, key=lambda one: one["magnitude"], default=nothing)
 
 
 def difference(curve: FrfCurve) -> NDArray[np.float64]:
-    """Of the simulated test from the harmonic response, line by line, over the latter."""
+    """Of the simulated blow from the linearised loops, line by line, over the latter.
+
+    Over a tenth of the highest line where there is less.
+    """
     lines, linear = curve.tested.frequency, curve.harmonic
     at_lines = np.interp(lines, linear.frequency, linear.values)
-    return np.abs(curve.tested.values / at_lines - 1.0)
+    size = np.abs(at_lines)
+    return np.abs(curve.tested.values - at_lines) / np.maximum(size, 0.1 * size.max())
 
 
-def in_configurations(machine: MachineFile) -> list[FrfCurve]:
+def in_configurations(machine: MachineFile) -> list[HammerTest]:
     """Blows on the spindle frame in x in all configurations, two ways."""
     return [
-        chatter.frf(machine.patch({"frf.frame_x.position": position}), ["frame_x"])["frame_x"]
+        hammer_test(machine.patch({"frf.frame_x.position": position}), "frame_x")
         for position in CONFIGURATIONS
     ]
 
 
-def of_configurations(curves: list[FrfCurve]) -> list[Finding]:
+def of_configurations(tests: list[HammerTest]) -> list[Finding]:
     """Peaks of the frame in the configurations, of which the first is told to represent all."""
     rows = []
-    for position, curve in list(zip(CONFIGURATIONS, curves, strict=True))[1:]:
+    for position, test in list(zip(CONFIGURATIONS, tests, strict=True))[1:]:
         at = ", ".join(f"{axis} at {1e3 * value:g} mm" for axis, value in position.items())
         for frequency in PUBLISHED["frame_x"]:
-            for way, tested in (("harmonic", False), ("simulated blow", True)):
-                found = peak_near(curve, frequency, tested)["frequency_Hz"]
+            for way, frf in test.both().items():
+                found = peak_near(frf, frequency)["frequency_Hz"]
                 rows.append(
                     Finding(f"frame_x, {at}, {way}", frequency, found, "Hz", "section 3.3.1")
                 )
@@ -138,24 +177,21 @@ def of_springs(machine: MachineFile) -> float:
     return float(np.sqrt(len(drive.motors) / soft / mass) / (2.0 * np.pi))
 
 
-def hammer_picture(result: FrfResult) -> Figure:
+def hammer_picture(tests: dict[str, HammerTest]) -> Figure:
     """Accelerances in g/N, harmonic and simulated, as figure 3.10 and table 3.1."""
     figure = style.new_figure(9.0, 9.0)
     axes = figure.subplots(len(PUBLISHED), 1)
     for each, (name, published) in zip(axes, PUBLISHED.items(), strict=True):
-        curve = result[name]
-        for frf, line, label in (
-            (curve.harmonic, "-", "harmonic response"),
-            (curve.tested, ":", "simulated blow"),
-        ):
-            each.semilogy(frf.frequency, np.abs(frf.values) / GRAVITY, line,
-                          color=style.BLUE if line == "-" else style.RED, label=label)  # fmt: skip
+        test = tests[name]
+        for (way, frf), colour in zip(test.both().items(), (style.BLUE, style.RED), strict=True):
+            size = np.abs(frf.values) / GRAVITY
+            each.semilogy(frf.frequency, size, color=colour, linewidth=1.2, label=way)
         for frequency in published:
             each.axvline(frequency, color=style.GREY, linestyle="--", linewidth=1.0)
         wanted = " and ".join(f"{one:g} Hz" for one in published)
         each.set_title(f"{name}; published model: {wanted}", loc="left")
         each.set_ylabel("[g/N]")
-        each.set_xlim(curve.harmonic.frequency[[0, -1]])
+        each.set_xlim(test.harmonic.frequency[[0, -1]])
         each.set_ylim(1e-5, None)
         style.finish(each)
     axes[0].legend(fontsize=8.0, frameon=False)
@@ -212,19 +248,20 @@ def main(out: Path) -> list[Path]:
     gepro = chatter.load_machine(HERE / "gepro.toml")
     hammered = chatter.frf(comau)
     written = hammered.save(out / "hammer")
+    tests = {name: HammerTest(held(comau, name).harmonic, hammered[name]) for name in PUBLISHED}
     move = chatter.move(comau, "fast")
     written += move.save(out / "fastest-move")
     drive = chatter.frf(gepro)
     written += drive.save(out / "gepro-drive")
     runs = {f"{name}: {_limit(gepro, name)}": teeth_in(gepro, name) for name in gepro.move}
     for name, figure in (
-        ("hammer.png", hammer_picture(hammered)),
+        ("hammer.png", hammer_picture(tests)),
         ("fastest-move.png", move_picture(move)),
         ("preload.png", teeth_picture(runs)),
     ):
         figure.savefig(out / name)
         written.append(out / name)
-    rows = [*of_hammer(hammered), *of_configurations(in_configurations(comau))]
+    rows = [*of_hammer(tests), *of_configurations(in_configurations(comau))]
     rows += findings(hammered, move, gepro, list(runs.values()))
     written.append(write_findings(rows, out))
     return written
@@ -234,26 +271,27 @@ def _limit(machine: MachineFile, name: str) -> str:
     return f"{machine.move[name].acceleration:g} m/s²"
 
 
-def of_hammer(hammered: FrfResult) -> list[Finding]:
-    """Frequencies and heights of the hammer tests beside what the model obtains."""
+def of_hammer(tests: dict[str, HammerTest]) -> list[Finding]:
+    """Frequencies and heights of the hammer tests beside those of the chapter's model.
+
+    What the chapter measured stands in brackets: its model is up to five times off, so that no
+    model has both.
+    """
     rows = []
     for name, published in PUBLISHED.items():
         source = "figure 3.10" if name == "frame_x" else "table 3.1, model"
         for frequency in published:
-            found = peak_near(hammered[name], frequency)["frequency_Hz"]
-            # the bearings were fitted to the tip in x
-            kind = PREDICTED if name == "tip_y" else CALIBRATED
-            rows.append(Finding(f"{name}, harmonic", frequency, found, "Hz", source, kind))
-            found = peak_near(hammered[name], frequency, tested=True)["frequency_Hz"]
-            rows.append(Finding(f"{name}, simulated blow", frequency, found, "Hz", source, kind))
-    for name, frequency, model, measured in HEIGHTS:
-        found = peak_near(hammered[name], frequency)["magnitude"] / GRAVITY
-        what, along = f"{name}, height at {frequency:g} Hz", name == "tip_z"
-        kinds = (CALIBRATED, PREDICTED) if along else (PREDICTED, CALIBRATED)
-        rows += [
-            Finding(what, model, found, "g/N", "table 3.1, model", kinds[0]),
-            Finding(what, measured, found, "g/N", "table 3.1, measured", kinds[1]),
-        ]
+            measured = MEASURED.get((name, frequency))
+            beside = f" (measured {measured[0]} Hz)" if measured else ""
+            kind = CALIBRATED if frequency in FITTED[name] else PREDICTED
+            for way, frf in tests[name].both().items():
+                found = peak_near(frf, frequency)["frequency_Hz"]
+                rows.append(Finding(f"{name}, {way}{beside}", frequency, found, "Hz", source, kind))
+    for name, frequency, model in HEIGHTS:
+        found = peak_near(tests[name].harmonic, frequency)["magnitude"] / GRAVITY
+        what = f"{name}, height at {frequency:g} Hz (measured {MEASURED[name, frequency][1]:g} g/N)"
+        kind = PREDICTED if name == "tip_y" else CALIBRATED
+        rows.append(Finding(what, model, found, "g/N", "table 3.1, model", kind))
     return rows
 
 
@@ -267,7 +305,10 @@ def findings(
         text = f"{100 * np.median(apart):.2f} %, {100 * np.percentile(apart, 95):.2f} %"
         rows.append(
             Finding(
-                f"{name}: blow from harmonic, half and 95 % of lines", "-", text, kind=RECOVERED
+                f"{name}: blow from linearised loops, half and 95 % of lines",
+                "-",
+                text,
+                kind=RECOVERED,
             )
         )
     error = float(np.max(np.abs(move.tracking_error))) * 1e6

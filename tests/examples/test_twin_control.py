@@ -32,16 +32,31 @@ def hammered(comau):
     return chatter.frf(comau)
 
 
-def test_peaks_lie_where_published(hammered, run):
+@pytest.fixture(scope="module")
+def tests(comau, hammered, run):
+    return {
+        name: run.HammerTest(run.held(comau, name).harmonic, hammered[name])
+        for name in run.PUBLISHED
+    }
+
+
+def test_peaks_lie_where_published(tests, run):
     for name, published in run.PUBLISHED.items():
         for frequency in published:
-            for tested in (False, True):
-                found = run.peak_near(hammered[name], frequency, tested)["frequency_Hz"]
+            for frf in tests[name].both().values():
+                found = run.peak_near(frf, frequency)["frequency_Hz"]
                 # the chapter's own model is within 10 % of its measurement
-                assert found == pytest.approx(frequency, rel=0.03), name
+                assert found == pytest.approx(frequency, rel=0.05), name
 
 
-def test_blow_in_time_agrees_with_harmonic_response(hammered, run):
+def test_running_loops_damp_the_frame_where_springs_do_not(tests, run):
+    springs, running = (
+        run.peak_near(one, 110.0)["magnitude"] for one in tests["frame_x"].both().values()
+    )
+    assert running < 0.5 * springs
+
+
+def test_blow_in_time_agrees_with_the_linearised_loops(hammered, run):
     for curve in hammered.curves:
         assert np.median(run.difference(curve)) < 2e-3
         assert np.percentile(run.difference(curve), 95.0) < 1.2e-2
@@ -58,7 +73,7 @@ def test_fastest_move_has_the_published_error_and_its_own_force(comau):
     # it comes while accelerating, and is gone at the end
     assert abs(move.tracking_error[-1, 0]) < 0.5e-6
     masses = sum(comau.get(f"body.{one}.mass") for one in ("y_frame", "z_frame"))
-    assert np.max(move.effort) == pytest.approx((masses + 12.0) * 15.0, rel=0.06)
+    assert np.max(move.effort) == pytest.approx((masses + 32.0) * 15.0, rel=0.06)
 
 
 def test_loops_are_stable(comau, gepro):
@@ -89,19 +104,19 @@ def test_preload_closes_over_the_teeth_and_torque_is_shared(gepro, run):
     assert np.ptp(fast.torque - fast.torque[:, :1], axis=0) == pytest.approx(0.0, abs=1e-9)
 
 
-def test_heights_at_the_tip_are_near_those_of_the_chapter(hammered, run):
-    """Across within a factor of two of its measurement, along of its model."""
-    for name, frequency, model, measured in run.HEIGHTS:
-        height = run.peak_near(hammered[name], frequency, tested=True)["magnitude"] / 9.81
-        published = model if name == "tip_z" else measured
-        assert 0.5 < height / published < 2.0, (name, frequency)
+def test_heights_at_the_tip_are_near_those_of_the_chapter(tests, run):
+    """Within a factor of 1.3 of its model by springs; running loops damp them further."""
+    for name, frequency, model in run.HEIGHTS:
+        for frf, factor in zip(tests[name].both().values(), (1.3, 2.0), strict=True):
+            height = run.peak_near(frf, frequency)["magnitude"] / 9.81
+            assert 1.0 / factor < height / model < factor, (name, frequency)
 
 
 def test_the_frame_in_six_configurations(comau, run):
     assert len(run.CONFIGURATIONS) == 6
-    for curve in run.in_configurations(comau):
+    for test in run.in_configurations(comau):
         for frequency in run.PUBLISHED["frame_x"]:
-            found = [run.peak_near(curve, frequency, tested) for tested in (False, True)]
+            found = [run.peak_near(one, frequency)["frequency_Hz"] for one in test.both().values()]
             # the chapter's own margin, and a little for positions that it does not give
-            assert found[0]["frequency_Hz"] == pytest.approx(frequency, rel=0.13)
-            assert found[1]["frequency_Hz"] == pytest.approx(found[0]["frequency_Hz"], rel=1e-3)
+            assert found[0] == pytest.approx(frequency, rel=0.12)
+            assert found[1] == pytest.approx(found[0], rel=0.05)
