@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -101,8 +101,10 @@ class LiveCase:
         lowest = int(np.argmin(curve.critical_depth))
         feed_per_turn = cut.feed_per_tooth * case.tool.teeth
         removal_area = case.width_of_cut * feed_per_turn / (2.0 * math.pi)
-        limits = curve.critical_depth
-        pockets = find_pockets(curve.spindle_speed, limits, max_depth, removal_area)
+        pockets: Sequence[Pocket] = ()
+        if stage == "fine":
+            limits = curve.critical_depth
+            pockets = find_pockets(curve.spindle_speed, limits, max_depth, removal_area)
         return {
             "stage": stage,
             "spindle_speed_rpm": _numbers(rpm(curve.spindle_speed)),
@@ -113,7 +115,7 @@ class LiveCase:
                 mode.frequency for mode in inside_band(model.structure.modes)
             ],
             "max_axial_depth_mm": max_depth * 1e3,
-            "pockets": [_pocket(one) for one in pockets] if stage == "fine" else [],
+            "pockets": [_pocket(one) for one in pockets],
             "lowest": {
                 "depth_mm": _number(float(curve.critical_depth[lowest]) * 1e3),
                 "spindle_speed_rpm": rpm(float(curve.spindle_speed[lowest])),
