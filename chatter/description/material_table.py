@@ -64,17 +64,36 @@ def row_named(name: str, rows: Mapping[str, MaterialRow] = MATERIALS) -> Materia
     row = rows.get(name)
     if row is not None:
         return row
-    near = _rows_of_grade(name, rows) or difflib.get_close_matches(name[:60], rows, n=1, cutoff=0.4)
-    hint = f'did you mean "{near[0]}"? ' if near else ""
     raise ValueError(
-        f"{formatted(name)} is not in the table of materials; {hint}"
+        f"{formatted(name)} is not in the table of materials; {_hint(name, rows)}"
         f"`chatter materials` lists all {len(rows)}, `chatter materials WORD` searches"
     )
 
 
+def _hint(name: str, rows: Mapping[str, MaterialRow]) -> str:
+    """Rows that may be meant; a grade is in one row for each condition of it."""
+    of_grade = [f'"{one}"' for one in _rows_of_grade(name, rows)]
+    if len(of_grade) > 1:
+        listed = ", ".join(of_grade[:-1])
+        return f"it is a grade of {listed} and {of_grade[-1]}; "
+    near = difflib.get_close_matches(name[:60], rows, n=1, cutoff=0.4)
+    meant = of_grade or [f'"{one}"' for one in near]
+    return f"did you mean {meant[0]}? " if meant else ""
+
+
 def _rows_of_grade(grade: str, rows: Mapping[str, MaterialRow]) -> list[str]:
-    """Names of the rows that hold a grade, such as "Ti6Al4V"."""
-    return [name for name, row in rows.items() if grade.lower() in map(str.lower, row.examples)]
+    """Names of the rows that hold a grade, such as "Ti6Al4V", "C45", "1045" or "316L"."""
+    wanted = _bare(grade)
+    return [
+        name
+        for name, row in rows.items()
+        if any(wanted in (_bare(one), *map(_bare, one.split())) for one in row.examples)
+    ]
+
+
+def _bare(grade: str) -> str:
+    """Letters and digits of a grade: catalogues write them with spaces, dots and dashes."""
+    return "".join(letter for letter in grade.lower() if letter.isalnum()).removeprefix("aisi")
 
 
 class _Row:

@@ -141,6 +141,22 @@ def test_wrong_tables_are_named(tmp_path):
     assert 'did you mean "yy"?' in messages('[material]\nname = "y"\ntable = "own.toml"')
 
 
-def test_a_grade_in_place_of_a_name_is_answered_by_its_row():
-    with pytest.raises(ValueError, match='did you mean "titanium, alpha and beta alloy'):
-        row_named("ti6al4v")
+@pytest.mark.parametrize(
+    ("grade", "rows"),
+    [
+        ("ti6al4v", ["alpha and beta alloy, hardened (VDI 37)", "(VDI 37, 2017)"]),
+        ("C45", ["(VDI 2)", "hardened (VDI 3)"]),
+        ("1.0503", ["(VDI 2)", "(VDI 3)"]),
+        ("42 CrMo 4", ["(VDI 7)", "(VDI 8)", "(VDI 9)"]),
+    ],
+)
+def test_a_grade_is_answered_by_the_rows_of_its_conditions(grade, rows):
+    with pytest.raises(ValueError, match=r"it is a grade of") as found:
+        row_named(grade)
+    assert all(row in str(found.value) for row in rows)
+
+
+@pytest.mark.parametrize("grade", ["316L", "AISI 316 L", "inconel 718"])
+def test_a_grade_of_one_row_is_answered_by_it(grade):
+    with pytest.raises(ValueError, match=r"did you mean \"(stainless|nickel)"):
+        row_named(grade)
