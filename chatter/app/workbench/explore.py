@@ -37,7 +37,8 @@ def explore(case: Case, method: str | None = None) -> Any:
 
     from chatter.app.workbench.stability_view import StabilityView
 
-    pn.extension()
+    # a workshop may have no network: scripts and styles come with the cell
+    pn.extension(inline=True)
     shown: list[Any] = []
 
     def show(change: Callable[[], None]) -> None:

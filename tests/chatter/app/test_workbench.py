@@ -225,3 +225,10 @@ def test_a_notebook_shows_the_diagram_of_a_case():
     sliders = {one.label for one in shown.select(pn.widgets.FloatSlider)}
     assert "axial depth [mm]" in sliders
     assert shown.select(pn.pane.Bokeh)
+
+
+def test_a_notebook_asks_nothing_of_the_network(monkeypatch):
+    asked = []
+    monkeypatch.setattr(pn, "extension", lambda *names, **given: asked.append(given))
+    chatter.explore(EXAMPLES / "two-degrees-of-freedom" / "case.toml", "zero-order")
+    assert asked == [{"inline": True}]
