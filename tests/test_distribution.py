@@ -1,8 +1,9 @@
-"""The wheel holds what runs, no more, and runs in a folder of its own."""
+"""The wheel, built from the sdist, holds what runs, no more, and runs in a folder of its own."""
 
 import os
 import subprocess
 import sys
+import tarfile
 import zipfile
 from email import message_from_bytes
 
@@ -16,13 +17,30 @@ PROJECT = tomlkit.parse((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["
 
 
 @pytest.fixture(scope="module")
-def wheel(tmp_path_factory):
-    out = tmp_path_factory.mktemp("wheel")
-    words = [sys.executable, "-m", "build", "--wheel", "--no-isolation", "--outdir", out, ROOT]
+def distributions(tmp_path_factory):
+    out = tmp_path_factory.mktemp("distributions")
+    words = [sys.executable, "-m", "build", "--no-isolation", "--outdir", out, ROOT]
     built = subprocess.run(list(map(str, words)), capture_output=True, text=True, check=False)
     assert built.returncode == 0, built.stdout + built.stderr
-    (path,) = out.glob("*.whl")
+    return out
+
+
+@pytest.fixture(scope="module")
+def wheel(distributions):
+    (path,) = distributions.glob("*.whl")
     return path
+
+
+def test_the_sdist_can_be_tested(distributions):
+    (path,) = distributions.glob("*.tar.gz")
+    with tarfile.open(path) as archive:
+        names = {name.partition("/")[2] for name in archive.getnames()}
+    for file in ("Makefile", "README.md", "LICENSE", "CHANGELOG.md", "pyproject.toml"):
+        assert file in names
+    for folder in ("chatter", "tests", "examples", "docs", "benchmarks"):
+        sources = {one.relative_to(ROOT).as_posix() for one in (ROOT / folder).rglob("*.py")}
+        assert sources <= names
+    assert not [name for name in names if name.endswith((".pyc", ".nbi", ".nbc"))]
 
 
 def test_it_holds_the_packages_the_examples_and_the_licence(wheel):
