@@ -311,6 +311,22 @@ def test_slot_along_the_beam_keeps_its_energy():
     )
 
 
+def test_torque_at_the_motor_of_an_axis_that_moves():
+    """The response with the loop open is that of sliding friction, as the axis moves by its loop."""
+    file = chatter.load_machine(FOLDER / "machine.toml").patch({"frf.motor_right.averages": 1})
+    curve = chatter.frf(file, ["motor_right"])["motor_right"]
+    lines = curve.tested.frequency
+    linear = np.interp(lines, curve.harmonic.frequency, np.abs(curve.harmonic.values))
+    apart = np.abs(np.abs(curve.tested.values) / linear - 1.0)
+    assert np.median(apart) < 0.01
+    resting = chatter.frf(
+        file.patch({"frf.motor_right.moving": {}, "frf.motor_right.by": "linearised"}),
+        ["motor_right"],
+    )["motor_right"].harmonic
+    stuck = np.interp(lines, resting.frequency, np.abs(resting.values))
+    assert np.median(np.abs(stuck / linear - 1.0)) > 0.05
+
+
 def test_frequencies_along_the_beam_between_its_points():
     """The head stands between points of the rails; the solid beam is softer than the tube."""
     travel = example_module("solid-crossbeam", "travel")

@@ -8,7 +8,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.compile.linearised_friction import linearised_frf
+from chatter.compile.linearised_friction import linearised_frictions
 from chatter.compile.machine_along_axes import machine_along_axes, machine_at_start
 from chatter.compile.machine_parts import assembled_machine
 from chatter.description.errors import InputError
@@ -28,6 +28,7 @@ from chatter.simulation.virtual_tests.move import MovePlan, MoveResult, move_axe
 from chatter.simulation.virtual_tests.virtual_tests import FrfTest, frf_by_test
 from dynamics.frf.container import Frf
 from dynamics.machine.description import Machine
+from dynamics.machine.harmonic import receptance
 from dynamics.machine.moving_structure import MachinesAlong
 from dynamics.structure.linear_structure import StructureError
 from dynamics.trajectory.motion import TrajectoryError
@@ -144,9 +145,10 @@ def _one_frf(
     if section.by == "torque multisine":
         # what is identified is what the motor feels with its own loop open
         linear = replace(machine, drives=tuple(d for d in machine.drives if d.axis != motor))
-    values = linearised_frf(
-        linear, file.step, frequency, excited, read, velocity, section.amplitude
-    )
+    # the axis moves as its loop lets it, though the response is taken with the loop open
+    frictions = linearised_frictions(machine, velocity, section.amplitude)
+    rows = np.array([read, excited])
+    values = receptance(linear, frequency, rows, file.step, frictions)[:, 0, 1]
     harmonic = Frf(frequency, values, "receptance", source=f"{where}, linearised")
     tested = None
     if section.by != "linearised":

@@ -28,6 +28,27 @@ def test_a_cut_settles_where_its_depth_is_the_limit(example, case, depth):
     assert example.limit_at(case, amplitude) == pytest.approx(depth, rel=0.02)
 
 
+LUGRE = {
+    "law": "lugre",
+    "on": {"axis": "Y"},
+    "bristle_stiffness": 4e6,
+    "bristle_damping": 500.0,
+    "viscous": 100.0,
+    "coulomb": 10.0,
+    "static": 12.0,
+    "stribeck_velocity": 1e-3,
+}
+
+
+@pytest.mark.parametrize("depth", [10.5, 11.0])
+def test_the_same_with_bristles(example, case, depth):
+    """LuGre with more friction at rest than in motion, and with damping of its bristles."""
+    rubbing = case.with_machine(case.machine_file().patch({"friction.guide": LUGRE}))
+    amplitude = example.amplitude_reached(rubbing, depth)
+    assert amplitude > 0.2
+    assert example.limit_at(rubbing, amplitude) == pytest.approx(depth, rel=0.02)
+
+
 def test_below_the_limit_at_rest_vibration_dies_out(example, case):
     assert example.amplitude_reached(case, 8.4) < 0.05
 
