@@ -55,6 +55,7 @@ def main(out: Path) -> list[Path]:
     findings = [
         *of_blows(blows),
         *of_contact(boring, identified_contact(machine)),
+        *of_both(blows, boring),
         *of_trial(trial),
         *of_friction(machine, loop, speed),
     ]
@@ -111,6 +112,22 @@ def of_contact(boring: FrfResult, identified: tuple[float, float]) -> list[Findi
         Finding("contact stiffness identified", 2.50, stiffness * 1e-6, "N/um", "section 5",
                 CALIBRATED),
         Finding("contact damping identified", 3.35, damping * 1e-3, "kN s/m", "section 5"),
+    ]  # fmt: skip
+
+
+def of_both(blows: FrfResult, boring: FrfResult) -> list[Finding]:
+    """What friction and what the contact take off the peak, section 6.
+
+    Torque is calibrated to force as published: at rest both excite the same peak.
+    """
+    moving, rest = (peak_near_50(blows[name].tested)[1] for name in ("moving", "rest"))
+    free, held = (peak_near_50(boring[name].tested)[1] for name in BORING)
+    in_cut = rest * held / free
+    return [
+        Finding("peak with contact, torque calibrated by the blow", 1.0e-4, in_cut, "(m/s)/N",
+                "Figure 7a, section 6"),
+        Finding("lowered by friction over lowered by the contact", 4.3,
+                (moving - rest) / (rest - in_cut), "", "section 6"),
     ]  # fmt: skip
 
 
