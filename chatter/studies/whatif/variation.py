@@ -166,7 +166,9 @@ def _read(path: str, kind: QuantityField, given: Any) -> float:
     try:
         return kind.read(given)
     except ValueError as error:
-        raise InputError(f"--vary {path}: {error}") from None
+        of_change = isinstance(given, str) and given.strip().endswith("%")
+        hint = '; a change in percent is written "+-10%"' if of_change else ""
+        raise InputError(f"--vary {path}: {error}{hint}") from None
 
 
 def _unit(path: str, given: list[Any], kind: QuantityField | None) -> str:

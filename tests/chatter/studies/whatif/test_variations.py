@@ -60,6 +60,7 @@ def test_paths_lead_into_the_machine_of_a_case(case_on_machine):
         (["cut.axial_depth=1 mm,2 Hz"], ["2 Hz", "a length is required"]),
         (["cut.axial_depth=1 mm..2 Hz"], ["2 Hz", "a length is required"]),
         (["cut.axial_depth=1 mm..-2 mm"], ["out of range"]),
+        (["material.Ktc=-10%..10%:3"], ["a change in percent is written", "+-10%"]),
         (["process_damping.coefficient=+-10%"], ["no quantity", "values instead"]),
         (["machine.body.head.mass=1 kg"], ["on no machine", "structure"]),
         (["cut.axial_depth=1 mm,2 mm", "cut.axial_depth=3 mm"], ["given twice"]),
