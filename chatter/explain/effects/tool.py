@@ -47,12 +47,12 @@ class Runout(Effect):
 
     def patch(self, case: Case, values: Values) -> Patch:
         """Runout of the tool."""
-        offset, angle = polar(values["across"], values["along"])
+        offset, angle = polar(values["along"], values["across"])
         return {"tool.runout": {"offset": offset, "angle": angle}}
 
     def reported(self, values: Values) -> Reported:
         """Offset and angle."""
-        offset, angle = polar(values["across"], values["along"])
+        offset, angle = polar(values["along"], values["across"])
         return {"offset": (offset, "m"), "angle": (angle, "rad")}
 
 

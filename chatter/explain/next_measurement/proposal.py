@@ -44,6 +44,8 @@ def _best(found: Search, models: list[Alternative]) -> tuple[Trial, str, float] 
     measurement, kind = found.measurement, found.problem.kind
     best: tuple[Trial, str, float] | None = None
     cases = [(one.probability / len(one.cases), case) for one in models for case in one.cases]
+    if not cases:
+        return None
     weights = np.array([weight for weight, _ in cases])
     weights /= weights.sum()
     for trial in kind.trials(measurement, found.problem.noise):

@@ -47,6 +47,19 @@ def established_alone(path: Path, split: Split) -> tuple[Path, list[Stage]]:
     return path, helping
 
 
+def stages_of_kept_effects(path: Path, split: Split) -> Path:
+    """Path whose stages are all beside the effects that are left.
+
+    A stage from before another effect was dropped would compare models that are no more.
+    """
+    stages = []
+    for stage in path.stages:
+        others = path.problem.without_effect(stage.best.effect).parameters()
+        is_left = set(stage.before.by_name) == {one.name for one in others}
+        stages.append(stage if is_left else _beside_the_others(path, stage, split))
+    return Path(stages, path.problem, path.now)
+
+
 def _beside_the_others(path: Path, stage: Stage, split: Split) -> Stage:
     """Stage of an effect, tried beside all the others with the noise as it is now."""
     effect = stage.best.effect

@@ -14,6 +14,8 @@ from chatter.explain.selection.linearised_step import WEAK_PRIOR, LinearisedStep
 
 #: pairs that are proposed at the most
 _PROPOSED = 2
+#: rows of all columns that are multiplied at once
+_ROWS = 16384
 
 
 class JointStep(NamedTuple):
@@ -60,13 +62,17 @@ class _Model:
         columns, self.own = [now.jacobian], []
         begin = nuisance
         for step in steps:
-            own = step.jacobian[:, nuisance:]
             # columns of the parameters, then the change where the step begins
-            columns += [own, step.offset[:, None]]
-            self.own.append((slice(begin, begin + own.shape[1]), begin + own.shape[1]))
-            begin += own.shape[1] + 1
-        matrix = np.column_stack([*columns, now.residuals])
-        self.products = matrix.T @ matrix
+            columns += [step.own, step.offset[:, None]]
+            count = step.own.shape[1]
+            self.own.append((slice(begin, begin + count), begin + count))
+            begin += count + 1
+        columns.append(now.residuals[:, None])
+        # a part of the rows at a time: all columns of all effects would take a gigabyte
+        self.products = np.zeros((begin + 1, begin + 1))
+        for first in range(0, now.residuals.size, _ROWS):
+            part = np.column_stack([one[first : first + _ROWS] for one in columns])
+            self.products += part.T @ part
 
     def solved(self, chosen: tuple[int, ...]) -> tuple[float, dict[str, float]]:
         """Fall of the sum of squares with some steps together, and the values there."""

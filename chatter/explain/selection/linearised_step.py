@@ -27,10 +27,16 @@ class LinearisedStep(NamedTuple):
     cost: float
     promised: float  # fall of the sum of squares by linearised models, over no effect
     values: dict[str, float]
-    jacobian: NDArray[np.float64]
+    nuisance: NDArray[np.float64]  # columns of the Jacobian that every step has in common
+    own: NDArray[np.float64]  # columns of what the effect adds
     begin: dict[str, float]  # where the step begins, and where the Jacobian is from
     offset: NDArray[np.float64]  # residuals there, less those without the effect
     added: Sequence[Parameter]  # of the effect
+
+    @property
+    def jacobian(self) -> NDArray[np.float64]:
+        """Columns of all parameters."""
+        return np.column_stack([self.nuisance, self.own])
 
 
 def linearised(problem: Problem, effect: Effect, now: Fit, runs: Sequence[Run]) -> LinearisedStep:
@@ -131,7 +137,8 @@ def _one_step(
             step = -step
         moved = trial.residuals({**values, one.name: values[one.name] + step}, runs)
         columns.append((moved - residual) / (step / one.size))
-    jacobian = np.column_stack([now.jacobian, *columns])
+    own = np.column_stack(columns) if columns else np.empty((residual.size, 0))
+    jacobian = np.column_stack([now.jacobian, own])
     weight = np.array(
         [1.0] * len(now.parameters) + [1.0 if one.prior else WEAK_PRIOR for one in added]
     )
@@ -150,6 +157,6 @@ def _one_step(
         }
         cost = trial.cost(moved, runs)
         if cost < residual @ residual:
-            return LinearisedStep(cost, promised, moved, jacobian, values, offset, added)
+            return LinearisedStep(cost, promised, moved, now.jacobian, own, values, offset, added)
     cost = float(residual @ residual)
-    return LinearisedStep(cost, promised, values, jacobian, values, offset, added)
+    return LinearisedStep(cost, promised, values, now.jacobian, own, values, offset, added)

@@ -11,7 +11,12 @@ from chatter.explain.fitting import Fit, over_groups
 from chatter.explain.measurement import Measurement
 from chatter.explain.prediction import Predictions
 from chatter.explain.selection.candidates import Progress, Stage, stage_of
-from chatter.explain.selection.established import established_alone, is_established, reaches_nothing
+from chatter.explain.selection.established import (
+    established_alone,
+    is_established,
+    reaches_nothing,
+    stages_of_kept_effects,
+)
 from chatter.explain.selection.path import Path, best_path, richer, tried_again
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.split import Split, split_runs
@@ -113,6 +118,7 @@ def search(measurement: Measurement, predictions: Predictions, progress: Progres
         final = _of_what_is_left(path)
     elif path.stages and reaches_nothing(path, final) is not None:
         path, final = _without_nothing(path, final, split)
+    path = stages_of_kept_effects(path, split)
     base = replace(path.problem, effects=()).fit(measurement.runs, base_values)
     return Search(
         split, first, tuple(path.stages), tuple(helping), path.problem, path.now, final, base

@@ -114,3 +114,20 @@ def test_a_motor_that_creeps_takes_long_to_cross_a_gap():
 def test_the_delay_is_asked_for_of_every_record():
     names = [one.name for one in Axis().nuisance_parameters(moves())]
     assert names[-1] == "axis.force_delay"
+
+
+def test_quadratic_drag_is_named_alone():
+    """Without a Stribeck friction beside it, whose interval would reach nothing."""
+    random = np.random.default_rng(9)
+    made = moves()
+    runs = []
+    for run in made.runs:
+        velocity = np.gradient(run.signals["position"], STEP)
+        drag = 6000.0 * velocity * np.abs(velocity)
+        force = run.signals["force"] + drag + 0.5 * random.standard_normal(velocity.size)
+        runs.append(Run(run.name, {}, {**run.signals, "force": force}))
+    summary = explain(made.with_runs(runs)).summary()
+    assert summary["verdict"] == "explained"
+    assert [one["name"] for one in summary["effects"]] == ["quadratic_drag"]
+    (number,) = summary["effects"][0]["parameters"].values()
+    assert number["value"] == pytest.approx(6000.0, rel=0.03)

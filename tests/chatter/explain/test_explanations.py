@@ -29,7 +29,7 @@ def explained(name: str) -> Explanation:
     ("name", "numbers", "closeness"),
     [
         ("set-111", {"coulomb": "coulomb"}, 0.02),
-        ("set-112", {"sigma0": "sigma0", "sigma1": "sigma1"}, 0.2),
+        ("set-112", {"sigma0": "sigma0", "sigma1": "sigma1"}, 0.05),
         ("set-131", {"stiffness": "stiffness_N_per_m", "damping": "damping_Ns_per_m"}, 0.01),
     ],
 )
@@ -45,6 +45,7 @@ def test_the_missing_effect_is_named_with_its_numbers(name, numbers, closeness):
             told["true"][effect["name"]][true_key], rel=closeness
         )
         assert found["ci95"][0] < found["value"] < found["ci95"][1]
+        assert found["ci95"][0] < told["true"][effect["name"]][true_key] < found["ci95"][1]
     error = summary["error"]
     assert error["after"] < 0.5 * error["before"]
     assert error["holdout_after"] < 0.5 * error["holdout_before"]

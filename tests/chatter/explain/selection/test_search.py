@@ -10,9 +10,11 @@ from chatter.explain.kinds.kind import Kind
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.prediction import Predictions
 from chatter.explain.selection import candidates
-from chatter.explain.selection.established import gain_in_most
+from chatter.explain.selection.candidates import fitted, stage_with
+from chatter.explain.selection.established import gain_in_most, stages_of_kept_effects
 from chatter.explain.selection.joint_steps import joint_steps
 from chatter.explain.selection.linearised_step import linearised
+from chatter.explain.selection.path import Path
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.search import search
 from chatter.explain.selection.split import split_runs
@@ -170,6 +172,31 @@ def test_starts_that_do_nothing_yet_are_ranked_by_what_their_amounts_would_do():
     step = linearised(problem, Chosen(), now, split.fitted)
     assert step.values["chosen.which"] == pytest.approx(7.0, abs=0.1)
     assert step.values["chosen.amount"] == pytest.approx(3.0, abs=0.05)
+
+
+def test_a_stage_from_beside_an_effect_that_was_dropped_is_made_anew():
+    """What was tried beside a model that is no more compares with nothing."""
+
+    def shapes_of(random):
+        return random.standard_normal((3, SAMPLES))
+
+    measurement = measured(shapes_of, (0.0, 3.0, 0.0))
+    kind, split = Sums(), split_runs(measurement.runs)
+    noise = {run.name: kind.known_noise(run) for run in measurement.runs}
+    without = Problem(measurement, Predictions(kind), noise)
+    dropped, kept = Asymmetry(), Offset()
+    beside = without.with_effect(dropped)
+    before = beside.fit(split.fitted, {})
+    stage = stage_with(beside, before, split, [fitted(beside, kept, split, {})])
+    problem = without.with_effect(kept)
+    path = Path([stage], problem, problem.fit(split.fitted, {}))
+    (made,) = stages_of_kept_effects(path, split).stages
+    assert set(made.before.by_name) == set()
+    assert set(made.best.fit.by_name) == {"offset.offset"}
+    assert made.best.evidence - made.evidence > 1000.0
+    # nothing is made anew where nothing was dropped
+    again = stages_of_kept_effects(Path([made], problem, path.now), split)
+    assert again.stages == [made]
 
 
 @pytest.mark.parametrize(
