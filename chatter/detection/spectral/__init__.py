@@ -9,6 +9,8 @@ revolution_frequency frequency of the spindle by the spacing of lines, or by a t
 chatter_lines        the strongest line off the harmonics: its share, its sidebands
 activity             frames in which nothing is cut
 frame_evidence       all of this over the frames of a recording
+envelope             whether a line is a limit cycle or a mode that noise shakes
+line_of_cut          whether a line is that of a cut that chatters, or of the machine
 segments             segments of one verdict, their frequency, bifurcation and confidence
 running_detection    a verdict every revolution while a recording goes on
 ==================== =========================================================================

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from chatter.detection.spectral.recording import Recording
 from chatter.detection.spectral.spectra import Frames
 
 Array = NDArray[np.float64]
@@ -19,41 +20,68 @@ _QUIET = 0.1
 _APART_DB, _APART = 3.0, 3.0
 #: fewest frames that can be told apart
 _FEWEST = 6
+#: s without any change of the signal that is no record: muted, or before the first sample
+_UNCHANGED = 0.05
 
 
-def activity_levels(frames: Frames) -> Array:
-    """Level of each frame above the quiet ones, dB, (m,).
+def silent_frames(recording: Recording, frames: Frames) -> NDArray[np.bool_]:
+    """Frames in which no channel changes for a while: nothing was recorded, (m,).
+
+    A machine at rest makes noise; digital silence does not say what it sounds like.
+    """
+    changes = np.any(np.diff(recording.values, axis=0) != 0.0, axis=1)
+    at = np.concatenate([[0], np.flatnonzero(changes) + 1, [len(recording.values) - 1]])
+    long = np.flatnonzero(np.diff(at) * recording.time_step > _UNCHANGED)
+    silent = np.zeros(frames.time.size, dtype=bool)
+    half = 0.5 * frames.length
+    for begin, end in zip(at[long], at[long + 1], strict=True):
+        begin_time = recording.start + begin * recording.time_step
+        end_time = recording.start + end * recording.time_step
+        shared = np.minimum(frames.time + half, end_time) - np.maximum(
+            frames.time - half, begin_time
+        )
+        silent |= shared > _UNCHANGED
+    # values that are held from one reading to the next are a slow channel, and all there is
+    return silent if not silent.all() else np.zeros_like(silent)
+
+
+def activity_levels(frames: Frames, silent: NDArray[np.bool_]) -> Array:
+    """Level of each frame above the quiet ones, dB, (m,); -inf of silent ones.
 
     Mean of two: of the power as a whole, which chatter or a strong harmonic raises, and of the
     median over bands, which the noise of cutting raises where hum hides the power.
     """
+    power = frames.power[~silent]
     width = max(round(_BAND * frames.half_width / frames.step), 4)
     count = frames.frequency.size // width
-    bands = frames.power[:, : count * width].reshape(len(frames.power), count, width)
-    least = _SILENCE * float(frames.power.max()) + 1e-300
+    bands = power[:, : count * width].reshape(len(power), count, width)
+    least = _SILENCE * float(power.max()) + 1e-300
     level = 10.0 * np.log10(bands.mean(axis=2) + least)
     by_band = np.median(level - np.quantile(level, _QUIET, axis=0), axis=1)
-    whole = 10.0 * np.log10(frames.power.sum(axis=1) + least * frames.frequency.size)
-    return 0.5 * (by_band + whole - np.quantile(whole, _QUIET))
+    whole = 10.0 * np.log10(power.sum(axis=1) + least * frames.frequency.size)
+    levels = np.full(frames.time.size, -np.inf)
+    levels[~silent] = 0.5 * (by_band + whole - np.quantile(whole, _QUIET))
+    return levels
 
 
 def idle_frames(levels: Array) -> NDArray[np.bool_] | None:
     """Frames of the lower of two classes; None where the levels make no two classes.
 
+    Silent frames, of level -inf, are of neither, and are told from the others in any case.
     The threshold is that of Otsu (1979, IEEE Trans. SMC 9, 62): largest variance between classes.
     """
-    if levels.size < _FEWEST:
+    heard = levels[np.isfinite(levels)]
+    if heard.size < _FEWEST:
         return None
-    ordered = np.sort(levels)
+    ordered = np.sort(heard)
     count = np.arange(1, ordered.size)
     low = np.cumsum(ordered)[:-1] / count
     high = np.cumsum(ordered[::-1])[:-1][::-1] / count[::-1]
     between = count * count[::-1] * (high - low) ** 2
     best = int(np.argmax(between))
     threshold = 0.5 * (ordered[best] + ordered[best + 1])
-    idle = levels < threshold
-    within = float(np.sqrt(0.5 * (levels[idle].var() + levels[~idle].var())))
+    within = float(np.sqrt(0.5 * (ordered[: best + 1].var() + ordered[best + 1 :].var())))
     apart = float(high[best] - low[best])
     if apart < _APART_DB or apart < _APART * within:
         return None
-    return idle
+    return levels < threshold

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.detection.spectral.activity import activity_levels, idle_frames
+from chatter.detection.spectral.activity import activity_levels, idle_frames, silent_frames
 from chatter.detection.spectral.chatter_lines import ChatterLine, Comb, strongest_line
 from chatter.detection.spectral.recording import Recording
 from chatter.detection.spectral.revolution_frequency import (
@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 _REVOLUTIONS, _FEWEST_REVOLUTIONS, _FRAMES = 24.0, 12.0, 2.0
 #: revolutions of the longer frames that the mean speed is read off
 _LONG = 96.0
+#: length of longer frames over that of the others from which they are of use
+_LONGER = 1.5
 #: length below which a frame holds no more than a burst of a lightly damped mode, s
 _SHORTEST = 0.25
 #: length of frames while the speed is not known, s
@@ -49,7 +51,12 @@ class Evidence:
     levels : (m,) array of float
         Activity, dB above the quiet frames.
     idle : (m,) array of bool or None
-        None where the levels of the frames make no two classes.
+        Frames without a cut. None where the levels of the frames make no two classes.
+    silent : (m,) array of bool
+        Frames in which nothing was recorded.
+    recording : Recording
+    rest : (b,) array of float or None
+        Power spectrum where nothing is cut; None where no frame shows it.
     """
 
     frames: Frames
@@ -58,6 +65,9 @@ class Evidence:
     lines: tuple[ChatterLine, ...]
     levels: Array
     idle: NDArray[np.bool_] | None
+    silent: NDArray[np.bool_]
+    recording: Recording
+    rest: Array | None
 
     def comb(self, row: int) -> Comb:
         """Harmonics of the spindle in a frame."""
@@ -65,12 +75,11 @@ class Evidence:
 
     def above_rest(self, frequency: float, row: int) -> bool | None:
         """Whether a line is far above what is there at rest; None where no frame is at rest."""
-        if self.idle is None or not self.idle.any():
+        if self.rest is None:
             return None
         near = np.abs(self.frames.frequency - frequency) < self.frames.half_width
         own = float(self.frames.power[row, near].sum())
-        rest = float(np.median(self.frames.power[self.idle][:, near].sum(axis=1)))
-        return own > RATIO_AT_REST * rest
+        return own > RATIO_AT_REST * float(self.rest[near].sum())
 
 
 def comb_of(revolution: Revolution, teeth: int | None, frequency: float, of: Evidence) -> Comb:
@@ -91,15 +100,45 @@ def evidence_of(
     teeth : int or None
     """
     frames, revolution = _with_speed(recording, spindle_frequency, teeth)
-    levels = activity_levels(frames)
-    bare = Evidence(frames, revolution, teeth, (), levels, idle_frames(levels))
+    return _with_lines(recording, frames, revolution, teeth)
+
+
+def finer_evidence(coarse: Evidence) -> Evidence | None:
+    """The same with longer frames, in which lines are told from harmonics nearer to them.
+
+    None where the recording is too short: the speed is not known well enough then.
+    """
+    revolution, recording = coarse.revolution, coarse.recording
+    if revolution is None or recording.duration * revolution.mean < _LONG:
+        return None
+    length = _LONG / revolution.mean
+    if length < _LONGER * coarse.frames.length:
+        return None
+    frames = frames_of(recording, length, max(_HOP * length, recording.duration / _MOST_FRAMES))
+    followed = np.interp(frames.time, coarse.frames.time, revolution.frequency)
+    return _with_lines(recording, frames, revolution._replace(frequency=followed), coarse.teeth)
+
+
+def _with_lines(
+    recording: Recording, frames: Frames, revolution: Revolution | None, teeth: int | None
+) -> Evidence:
+    silent = silent_frames(recording, frames)
+    levels = activity_levels(frames, silent)
+    idle = idle_frames(levels)
+    at_rest = None if idle is None else frames.power[idle & ~silent]
+    if idle is None and silent.any():
+        idle = silent
+    bare = Evidence(
+        frames, revolution, teeth, (), levels, idle, silent, recording,
+        None if at_rest is None or not len(at_rest) else np.median(at_rest, axis=0),
+    )  # fmt: skip
     if revolution is None:
         return bare
     lines = tuple(
         strongest_line(power, logarithm, frames.frequency, bare.comb(row))
         for row, (power, logarithm) in enumerate(zip(frames.power, frames.above, strict=True))
     )
-    return Evidence(frames, revolution, teeth, lines, levels, bare.idle)
+    return replace(bare, lines=lines)
 
 
 def _with_speed(

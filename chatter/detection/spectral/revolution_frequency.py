@@ -9,7 +9,12 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from chatter.detection.spectral.chatter_lines import MOST_TEETH, Comb, harmonics_significance
+from chatter.detection.spectral.chatter_lines import (
+    MOST_TEETH,
+    Comb,
+    harmonics_significance,
+    strongest_line,
+)
 from chatter.detection.spectral.spectra import Frames, mean_of
 
 Array = NDArray[np.float64]
@@ -97,6 +102,9 @@ ABOUT_GIVEN, _NEAR_GIVEN, _BETTER = 0.12, 0.015, 1.4
 _GIVEN, _READ, _BY_TACHO = 5e-3, 1e-3, 5e-4
 #: relative variation of the speed from frame to frame that is followed, and frames taken together
 _VARIATION, _TOGETHER = 0.015, 1
+#: share of the power of a line that a fraction of the spacing has to hold; what its frequency is
+#: known to, of a line width and relative by that of the spacing
+_LARGE, _LINE, _SPACING = 0.1, 0.2, 1.5e-4
 #: lowest and highest frequency of a spindle, Hz
 _SLOWEST, _FASTEST = 3.0, 700.0
 
@@ -152,8 +160,24 @@ def from_spectrum(frames: Frames, teeth: int | None) -> float | None:
         for parts in range(2, most + 1)
         if found.frequency / parts > slowest
         and _has_own_lines(everywhere, frames.step, found.frequency, parts)
+        and _holds_the_line(frames, found.frequency, parts)
     ]
     return found.frequency / max(fractions, default=1)
+
+
+def _holds_the_line(frames: Frames, spacing: float, parts: int) -> bool:
+    """Whether the strongest line off a spacing is, as exactly as it is read, on a fraction of it.
+
+    A chatter line and its sidebands lie a spacing apart too, off the harmonics by any share of it.
+    """
+    power, above = mean_of(frames, slice(None))
+    comb = Comb(spacing, spacing, _READ, frames.half_width)
+    line = strongest_line(power, above, frames.frequency, comb)
+    if not line.alone > _LARGE:
+        return True
+    fraction = spacing / parts
+    apart = abs(line.frequency - round(line.frequency / fraction) * fraction)
+    return apart < _LINE / frames.length + _SPACING * line.frequency
 
 
 def _has_own_lines(autocorrelation: Array, step: float, spacing: float, parts: int) -> bool:

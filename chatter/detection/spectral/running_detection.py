@@ -2,19 +2,35 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections import deque
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from chatter.detection.spectral.activity import idle_frames
-from chatter.detection.spectral.chatter_lines import Comb, strongest_line
+from chatter.detection.spectral.chatter_lines import ChatterLine, Comb, strongest_line
+from chatter.detection.spectral.frame_evidence import Evidence
+from chatter.detection.spectral.line_of_cut import is_line_of_cut
 from chatter.detection.spectral.recording import Recording
-from chatter.detection.spectral.revolution_frequency import best_spacing, line_autocorrelations
-from chatter.detection.spectral.segments import BEGINS, CHATTER, GOES_ON, IDLE, SIDEBANDS, STABLE
-from chatter.detection.spectral.spectra import Frames, frames_of
+from chatter.detection.spectral.revolution_frequency import (
+    Revolution,
+    best_spacing,
+    line_autocorrelations,
+)
+from chatter.detection.spectral.segments import (
+    BEGINS,
+    CHATTER,
+    GOES_ON,
+    IDLE,
+    NOT_JUDGED,
+    SAME_LINE,
+    STABLE,
+)
+from chatter.detection.spectral.spectra import Frames, above_floor, added_up, spectrum_of
 
 Array = NDArray[np.float64]
 
@@ -25,6 +41,8 @@ _WINDOWS, _QUARTER = 24, 4
 #: relative range about the given speed in which the lines correct it, the significance that it
 #: takes, and the uncertainty of what is read so
 _RANGE, _SIGNIFICANT, _UNCERTAINTY = 0.015, 8.0, 1e-3
+#: such windows that a verdict rests on
+_HISTORY = 48
 #: verdicts in a row of which the first is believed
 _IN_A_ROW = 2
 #: levels that tell idle from cutting
@@ -35,10 +53,20 @@ class Observation(NamedTuple):
     """Verdict over the window that ends at a time."""
 
     time: float  # s
-    verdict: str  # "chatter", "stable" or "idle"
+    verdict: str  # "chatter", "stable", "idle" or "not judged"
     chatter_frequency: float  # Hz; nan without chatter
     share: float  # of the power, of the strongest line off the harmonics and its family
     spindle_frequency: float  # Hz
+
+
+class _Window(NamedTuple):
+    """The latest revolutions at one time."""
+
+    recording: Recording
+    frames: Frames  # of one frame
+    spectra: Array  # (k, b) power of the channels
+    line: ChatterLine
+    level: float  # dB
 
 
 class RunningDetection:
@@ -63,7 +91,9 @@ class RunningDetection:
         self._window = round(length / start.time_step)
         self._samples = np.empty((0, len(start.channels)))
         self._taken = 0
+        self._quarter = max(round(self._window / (self._hop * _QUARTER)), 1)
         self._autocorrelations: deque[Array] = deque(maxlen=_WINDOWS)
+        self._history: deque[_Window] = deque(maxlen=_HISTORY)
         self._levels: deque[float] = deque(maxlen=_LEVELS)
         self._count = 0
         self._large = 0
@@ -80,45 +110,121 @@ class RunningDetection:
         return found
 
     def _observation(self, values: Array) -> Observation:
-        frames = self._frame(values)
-        self._follow_speed(frames)
-        self._levels.append(_level(values))
-        teeth = self._teeth or 1
-        comb = Comb(self._speed, teeth * self._speed, _UNCERTAINTY, frames.half_width)
-        line = strongest_line(frames.power[0], frames.above[0], frames.frequency, comb)
-        enough = GOES_ON if self._verdict == CHATTER else BEGINS
-        sidebands = self._verdict == CHATTER or line.sidebands >= SIDEBANDS
-        self._large = self._large + 1 if line.share >= enough and sidebands else 0
-        chatters = self._large >= (1 if self._verdict == CHATTER else _IN_A_ROW)
-        self._verdict = CHATTER if chatters else IDLE if self._is_idle() else STABLE
+        window = self._window_of(values)
+        self._remember(window)
+        self._levels.append(window.level)
+        self._verdict = self._verdict_of(window)
         time = self._start.start + (self._taken + self._window) * self._start.time_step
-        frequency = line.frequency if chatters else math.nan
+        line = window.line
+        frequency = line.frequency if self._verdict == CHATTER else math.nan
         return Observation(time, self._verdict, frequency, line.share, self._speed)
 
-    def _frame(self, values: Array) -> Frames:
+    def _verdict_of(self, window: _Window) -> str:
+        chattered = self._verdict == CHATTER
+        is_large = window.line.share >= (GOES_ON if chattered else BEGINS)
+        self._large = self._large + 1 if is_large else 0
+        if chattered and is_large and self._count % self._quarter != 1 % self._quarter:
+            return CHATTER
+        if self._is_idle():
+            return IDLE
+        if self._large < _IN_A_ROW:
+            return STABLE
+        # looked at again as it goes on, for the more windows there are the surer it is
+        return CHATTER if is_line_of_cut(*self._evidence(window)) else NOT_JUDGED
+
+    def _window_of(self, values: Array) -> _Window:
         start = self._start
-        one = Recording(start.name, start.time_step, start.channels, start.quantities, values)
-        return frames_of(one, one.duration, one.duration)
+        begin = start.start + self._taken * start.time_step
+        recording = Recording(
+            start.name, start.time_step, start.channels, start.quantities, values, begin
+        )
+        frequency, spectra = spectrum_of(recording)
+        power = added_up(spectra[:, None])
+        above = above_floor(power, frequency, recording.duration)
+        middle = np.array([begin + 0.5 * recording.duration])
+        frames = Frames(middle, frequency, power, above, recording.duration)
+        if self._count % self._quarter == 0:
+            self._follow_speed(frames)
+        line = strongest_line(power[0], above[0], frequency, self._comb(frames))
+        return _Window(recording, frames, spectra, line, _level(values))
+
+    def _comb(self, frames: Frames) -> Comb:
+        tooth = (self._teeth or 1) * self._speed
+        return Comb(self._speed, tooth, _UNCERTAINTY, frames.half_width)
+
+    def _remember(self, window: _Window) -> None:
+        """Keep windows a quarter of their length apart."""
+        if self._count % self._quarter == 0:
+            self._history.append(window)
+        self._count += 1
+
+    def _evidence(self, window: _Window) -> tuple[Evidence, slice]:
+        """What the windows of late say, and in which of them the line of the last one is."""
+        level = self._idle_level()
+        known = [one for one in self._history if one is not window]
+        rest = [one for one in known if one.level < level]
+        cut = [one for one in known if one.level >= level] + [window]
+        power = added_up(np.stack([one.spectra for one in [*rest, *cut]], axis=1))
+        first = len(cut) - 1
+        while first > 0 and self._is_same_line(cut[first - 1], window):
+            first -= 1
+        frames = Frames(
+            np.concatenate([one.frames.time for one in cut]),
+            window.frames.frequency,
+            power[len(rest) :],
+            np.concatenate([one.frames.above for one in cut]),
+            window.frames.length,
+        )
+        revolution = Revolution(
+            np.full(len(cut), self._speed),
+            _UNCERTAINTY,
+            "given, refined by the spectrum",
+            self._speed,
+        )
+        at_rest = np.median(power[: len(rest)], axis=0) if rest else None
+        evidence = Evidence(
+            frames, revolution, self._teeth, tuple(one.line for one in cut),
+            np.array([one.level for one in cut]), None, np.zeros(len(cut), dtype=bool),
+            _joined([one.recording for one in cut[first:]]), at_rest,
+        )  # fmt: skip
+        return evidence, slice(first, len(cut))
+
+    @staticmethod
+    def _is_same_line(one: _Window, other: _Window) -> bool:
+        apart = abs(one.line.frequency - other.line.frequency)
+        return one.line.share >= GOES_ON and apart <= SAME_LINE * other.line.frequency
 
     def _follow_speed(self, frames: Frames) -> None:
         """Correct the speed by the lines of the windows of late."""
-        quarter = max(round(self._window / (self._hop * _QUARTER)), 1)
-        if self._count % quarter == 0:
-            self._autocorrelations.append(line_autocorrelations(frames)[0])
-            found = best_spacing(
-                np.sum(self._autocorrelations, axis=0),
-                frames.step,
-                self._given * (1.0 - _RANGE),
-                self._given * (1.0 + _RANGE),
-                self._teeth or 1,
-            )
-            if found.significance > _SIGNIFICANT:
-                self._speed = found.frequency
-        self._count += 1
+        self._autocorrelations.append(line_autocorrelations(frames)[0])
+        found = best_spacing(
+            np.sum(self._autocorrelations, axis=0),
+            frames.step,
+            self._given * (1.0 - _RANGE),
+            self._given * (1.0 + _RANGE),
+            self._teeth or 1,
+        )
+        if found.significance > _SIGNIFICANT:
+            self._speed = found.frequency
+
+    def _idle_level(self) -> float:
+        """Level below which nothing is cut, dB; -inf where the levels make no two classes."""
+        levels = np.array(self._levels)
+        idle = idle_frames(levels)
+        return -math.inf if idle is None else float(levels[~idle].min())
 
     def _is_idle(self) -> bool:
-        idle = idle_frames(np.array(self._levels))
-        return idle is not None and bool(idle[-1])
+        return self._levels[-1] < self._idle_level()
+
+
+def _joined(recordings: list[Recording]) -> Recording:
+    """One recording of some that overlap."""
+    values = [
+        one.values[: round((following.start - one.start) / one.time_step)]
+        for one, following in itertools.pairwise(recordings)
+    ]
+    values = np.concatenate([*values, recordings[-1].values])
+    return replace(recordings[-1], values=values, start=recordings[0].start)
 
 
 def _level(values: Array) -> float:

@@ -9,45 +9,29 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from chatter.detection.spectral.chatter_lines import (
-    MOST_TEETH,
-    harmonics_significance,
-    is_half_tooth,
-    strongest_line,
-    tooth_powers,
+from chatter.detection.spectral.chatter_lines import is_half_tooth, tooth_powers
+from chatter.detection.spectral.frame_evidence import RATIO_AT_REST, Evidence, finer_evidence
+from chatter.detection.spectral.line_of_cut import (
+    CUTS,
+    KNOWN,
+    cut_significance,
+    is_line_of_cut,
+    line_of,
+    sidebands_of,
 )
-from chatter.detection.spectral.frame_evidence import RATIO_AT_REST, Evidence
-from chatter.detection.spectral.revolution_frequency import ABOUT_GIVEN
-from chatter.detection.spectral.spectra import mean_of
 
 CHATTER, STABLE, IDLE, NOT_JUDGED = "chatter", "stable", "idle", "not judged"
 
 #: share of the power off the harmonics from which chatter begins, and down to which it goes on
 BEGINS, GOES_ON = 0.3, 0.15
 #: relative change of the line from frame to frame that is one line
-_SAME_LINE = 0.02
+SAME_LINE = 0.02
 #: frames that chatter lasts at the least, where there are as many
 _LASTS = 5
-#: standard deviations of the sidebands over a segment, and where all else is of a cut; the share of
-#: the line itself that does without them where it is far above what is there at rest
-SIDEBANDS, _FEWER_SIDEBANDS, _WITHOUT_SIDEBANDS = 5.0, 4.0, 0.5
-#: standard deviations of the harmonics of the teeth from which a record without idle frames cuts
-_CUTS = 4.0
-#: the same, for sure
-_CUTS_FOR_SURE = 8.0
-#: relative variation of amplitude and frequency up to which a line is as steady as electrical ones,
-#: which is no chatter where no idle frame shows what the machine does alone
-_STEADY, _STEADY_FREQUENCY = 0.03, 1e-4
-#: multiple of a spacing of lines up to which simple fractions of it may be the teeth
-_LOW_FRACTION = 8.0
-#: highest harmonic of the teeth that a line is taken for where the speed may be wrong
-_LOW_ORDER = 4
 #: half-tooth share of a flip that grew, and before
 _FLIP, _BEFORE_FLIP = 0.3, 0.03
 #: power of the harmonics of the teeth before, over that during the flip, of the same cut
 _SAME_CUT = 0.25
-#: share of a line width within which a chatter frequency is known
-_KNOWN = 0.25
 #: fewest revolutions of which a verdict is given
 _FEWEST_REVOLUTIONS = 8.0
 
@@ -90,6 +74,15 @@ def segments_of(evidence: Evidence) -> list[Segment]:
     """Segments of a recording, in order, without gaps."""
     if evidence.revolution is None:
         return _without_speed(evidence)
+    found = _with_speed(evidence)
+    if any(one.verdict == CHATTER for one in found):
+        return found
+    finer = finer_evidence(evidence)
+    finer_found = [] if finer is None else _with_speed(finer)
+    return finer_found if any(one.verdict == CHATTER for one in finer_found) else found
+
+
+def _with_speed(evidence: Evidence) -> list[Segment]:
     verdicts = _verdicts(evidence)
     return [
         _segment(evidence, verdicts[first], slice(first, last)) for first, last in _runs(verdicts)
@@ -104,25 +97,17 @@ def _verdicts(evidence: Evidence) -> list[str]:
         return [NOT_JUDGED] * count
     idle = np.zeros(count, dtype=bool) if evidence.idle is None else evidence.idle
     verdicts = [IDLE if one else STABLE for one in idle]
-    if evidence.idle is None and _harmonics(evidence) < _CUTS:
+    if evidence.rest is None and cut_significance(evidence) < CUTS:
         verdicts = [IDLE] * count
     for first, last, large in _runs_of_one_line(evidence, idle):
         rows = slice(first, last)
         lasts = large >= min(_LASTS, count)
-        found = CHATTER if lasts and _is_chatter(evidence, rows) else NOT_JUDGED
+        found = CHATTER if lasts and is_line_of_cut(evidence, rows) else NOT_JUDGED
         verdicts[rows] = [found] * (last - first)
     for row in np.flatnonzero(_grown_flip(evidence)):
         if verdicts[row] in (STABLE, IDLE):
             verdicts[row] = CHATTER
     return verdicts
-
-
-def _harmonics(evidence: Evidence) -> float:
-    """Significance of the harmonics of a cut over a recording."""
-    frames = evidence.frames
-    _, above = mean_of(frames, slice(None))
-    row = evidence.frames.time.size // 2
-    return harmonics_significance(above, frames.frequency, evidence.comb(row))
 
 
 def _runs_of_one_line(evidence: Evidence, idle: NDArray[np.bool_]) -> list[tuple[int, int, int]]:
@@ -155,101 +140,8 @@ def _is_large(evidence: Evidence, idle: NDArray[np.bool_], row: int, share: floa
 
 def _goes_on(evidence: Evidence, idle: NDArray[np.bool_], row: int, other: int) -> bool:
     one, two = evidence.lines[row].frequency, evidence.lines[other].frequency
-    same = abs(one - two) <= _SAME_LINE * two
+    same = abs(one - two) <= SAME_LINE * two
     return same and _is_large(evidence, idle, row, GOES_ON)
-
-
-def _is_chatter(evidence: Evidence, rows: slice) -> bool:
-    """Whether the line of some frames is that of a cut: by its sidebands, or by its rise."""
-    if _may_be_harmonic(evidence, rows):
-        return False
-    sidebands = _sidebands(evidence, rows)
-    if evidence.idle is None:
-        harmonics = _harmonics(evidence)
-        cuts = harmonics > _CUTS_FOR_SURE
-        # teeth that are chosen to fit find sidebands of an inverter too
-        wanders = _wanders(evidence, rows) and (evidence.teeth is not None or harmonics > _CUTS)
-        return (cuts or wanders or _rose(evidence, rows)) and sidebands >= (
-            _FEWER_SIDEBANDS if cuts and wanders else SIDEBANDS
-        )
-    if sidebands >= SIDEBANDS:
-        return True
-    alone = float(np.median([line.alone for line in evidence.lines[rows]]))
-    middle = (rows.start + rows.stop) // 2
-    rose = evidence.above_rest(evidence.lines[middle].frequency, middle)
-    return bool(rose) and alone >= _WITHOUT_SIDEBANDS
-
-
-def _may_be_harmonic(evidence: Evidence, rows: slice) -> bool:
-    """Whether another speed that is not ruled out makes the line a harmonic."""
-    if evidence.revolution.may_be_multiple:
-        return _is_low_fraction(evidence, rows)
-    if evidence.revolution.source != "given":
-        return False
-    comb = evidence.comb((rows.start + rows.stop - 1) // 2)
-    line = _line_of(evidence, rows).frequency
-    order = max(round(line / comb.tooth), 1)
-    tooth = line / order
-    if order > _LOW_ORDER or abs(tooth / comb.tooth - 1.0) > ABOUT_GIVEN:
-        return False
-    other = comb._replace(revolution=comb.revolution * tooth / comb.tooth, tooth=tooth)
-    _, above = mean_of(evidence.frames, rows)
-    frequency = evidence.frames.frequency
-    own = harmonics_significance(above, frequency, comb)
-    # of the line and its multiples the other speed would be confirmed by what it is to explain
-    others = harmonics_significance(above, frequency, other, order if order > 1 else 0)
-    return others >= own
-
-
-def _is_low_fraction(evidence: Evidence, rows: slice) -> bool:
-    """Whether a line is a simple fraction of a spacing that may be that of several teeth."""
-    comb = evidence.comb((rows.start + rows.stop - 1) // 2)
-    line = _line_of(evidence, rows).frequency
-    if line > _LOW_FRACTION * comb.revolution:
-        return False
-    tolerance = _KNOWN / evidence.frames.length + comb.uncertainty * line
-    parts = comb.revolution / np.arange(1, MOST_TEETH + 1)
-    return bool(np.any(np.abs(line - np.round(line / parts) * parts) < tolerance))
-
-
-def _rose(evidence: Evidence, rows: slice) -> bool:
-    """Whether the line is far above what the other frames have there."""
-    frames = evidence.frames
-    others = np.ones(frames.time.size, dtype=bool)
-    others[rows] = False
-    if others.sum() < _LASTS:
-        return False
-    near = np.abs(frames.frequency - _line_of(evidence, rows).frequency) < frames.half_width
-    power = frames.power[:, near].sum(axis=1)
-    return bool(np.median(power[rows]) > RATIO_AT_REST * np.median(power[others]))
-
-
-def _wanders(evidence: Evidence, rows: slice) -> bool:
-    """Whether amplitude and frequency of the line vary over the frames: no electrical one does."""
-    frames = evidence.frames
-    line = _line_of(evidence, rows).frequency
-    near = np.abs(frames.frequency - line) < frames.half_width
-    amplitude = np.sqrt(frames.power[rows][:, near].sum(axis=1))
-    frequency = np.array([one.frequency for one in evidence.lines[rows]])
-    same = np.abs(frequency - line) < frames.half_width
-    return bool(
-        amplitude.std() > _STEADY * amplitude.mean()
-        and same.any()
-        and frequency[same].std() > _STEADY_FREQUENCY * line
-    )
-
-
-def _sidebands(evidence: Evidence, rows: slice) -> float:
-    """Median over the frames, and at least that of their mean spectrum."""
-    each = float(np.median([line.sidebands for line in evidence.lines[rows]]))
-    return max(each, _line_of(evidence, rows).sidebands)
-
-
-def _line_of(evidence: Evidence, rows: slice):
-    """Strongest line off the harmonics in the mean spectrum of frames."""
-    middle = (rows.start + rows.stop - 1) // 2
-    power, above = mean_of(evidence.frames, rows)
-    return strongest_line(power, above, evidence.frames.frequency, evidence.comb(middle))
 
 
 def _grown_flip(evidence: Evidence) -> NDArray[np.bool_]:
@@ -317,15 +209,15 @@ def _chatter_segment(
         reason = "lines at half the tooth passing frequency grew during the cut"
         share = float(np.median(shares))
         return Segment(begin, end, CHATTER, strongest, "flip", 0.6, share, speed, reason)
-    frequency = _line_of(evidence, rows).frequency
-    sidebands = _sidebands(evidence, rows)
+    frequency = line_of(evidence, rows).frequency
+    sidebands = sidebands_of(evidence, rows)
     strength = np.clip((share - BEGINS) / 0.4, 0.0, 1.0)
     confidence = 0.5 + 0.2 * float(strength) + 0.28 * float(np.clip(sidebands / 8.0, 0.0, 1.0))
     # what the speed is not known by: a flip needs the tooth passing frequency
     is_flip = (
         evidence.teeth is not None
         and not evidence.revolution.may_be_multiple
-        and is_half_tooth(frequency, comb, _KNOWN / evidence.frames.length)
+        and is_half_tooth(frequency, comb, KNOWN / evidence.frames.length)
     )
     reason = (
         f"{share:.0%} of the power is a line at {frequency:.1f} Hz, off the harmonics of the "
@@ -364,9 +256,12 @@ def _of_stable(evidence: Evidence, rows: slice) -> tuple[float, str]:
 
 
 def _of_idle(evidence: Evidence, rows: slice) -> tuple[float, str]:
-    if evidence.idle is None:
+    if evidence.rest is None and not evidence.silent[rows].all():
         return 0.6, "neither harmonics of the teeth nor a line with their sidebands stand out"
-    apart = float(np.median(evidence.levels[~evidence.idle]) - np.median(evidence.levels[rows]))
+    if evidence.silent[rows].all():
+        return 0.98, "nothing was recorded"
+    level = float(np.median(evidence.levels[rows][~evidence.silent[rows]]))
+    apart = float(np.median(evidence.levels[~evidence.idle])) - level
     return 0.5 + 0.48 * float(np.clip(apart / 12.0, 0.0, 1.0)), f"{apart:.0f} dB below the cut"
 
 
@@ -377,7 +272,7 @@ def _of_not_judged(evidence: Evidence, rows: slice) -> tuple[float, str]:
             0.0,
             f"{revolutions:.1f} revolutions are too few; {_FEWEST_REVOLUTIONS:.0f} are needed",
         )
-    line = _line_of(evidence, rows)
+    line = line_of(evidence, rows)
     if rows.stop - rows.start < _LASTS:
         return 0.0, f"a line at {line.frequency:.1f} Hz comes and goes"
     return 0.0, (

@@ -54,6 +54,23 @@ def frames_of(recording: Recording, length: float, hop: float) -> Frames:
     last = len(recording.values) - samples
     count = max(math.ceil(last * recording.time_step / hop), 1) if last else 0
     starts = np.unique(np.linspace(0, last, count + 1).round().astype(np.intp))
+    frequency, spectra = _channel_spectra(recording, starts, samples)
+    power = added_up(spectra)
+    middle = recording.start + (starts + 0.5 * samples) * recording.time_step
+    return Frames(middle, frequency, power, above_floor(power, frequency, length), length)
+
+
+def spectrum_of(recording: Recording) -> tuple[Array, Array]:
+    """Frequency (b,), Hz, and power of each channel (k, b) over a whole recording."""
+    first = np.zeros(1, dtype=np.intp)
+    frequency, spectra = _channel_spectra(recording, first, len(recording.values))
+    return frequency, spectra[:, 0]
+
+
+def _channel_spectra(
+    recording: Recording, starts: NDArray[np.intp], samples: int
+) -> tuple[Array, Array]:
+    """Frequency (b,), Hz, and power of each channel and frame (k, m, b), weighted."""
     size = scipy.fft.next_fast_len(_PADDING * samples, real=True)
     frequency = scipy.fft.rfftfreq(size, recording.time_step)
     highest = min(_HIGHEST, _BELOW_NYQUIST / recording.time_step)
@@ -64,20 +81,15 @@ def frames_of(recording: Recording, length: float, hop: float) -> Frames:
         values = recording.values[start : start + samples]
         values = (values - values.mean(axis=0)) * window[:, None]
         spectra[:, row] = np.abs(scipy.fft.rfft(values.T, size)[:, : frequency.size]) ** 2
-    weighted = [
-        _of_unit_power(one, frequency, slope)
-        for one, slope in zip(spectra, recording.slopes, strict=True)
-    ]
-    power = np.sum(weighted, axis=0)
-    middle = recording.start + (starts + 0.5 * samples) * recording.time_step
-    return Frames(middle, frequency, power, above_floor(power, frequency, length), length)
+    for channel, slope in zip(spectra, recording.slopes, strict=True):
+        channel *= np.where(frequency < _LOWEST, 0.0, frequency ** (2.0 * slope))
+    return frequency, spectra
 
 
-def _of_unit_power(power: Array, frequency: Array, slope: float) -> Array:
-    """Spectra of one channel, weighted, divided by their mean power over the recording."""
-    power = power * np.where(frequency < _LOWEST, 0.0, frequency ** (2.0 * slope))
-    total = power.sum(axis=1).mean()
-    return power / total if total > 0.0 else power
+def added_up(spectra: Array) -> Array:
+    """Power of frames (m, b): channels (k, m, b), each over its mean power, added up."""
+    total = spectra.sum(axis=2).mean(axis=1)
+    return np.sum(spectra / np.where(total > 0.0, total, 1.0)[:, None, None], axis=0)
 
 
 def above_floor(power: Array, frequency: Array, length: float) -> Array:
@@ -91,7 +103,7 @@ def above_floor(power: Array, frequency: Array, length: float) -> Array:
     return logarithm - floor.reshape(logarithm.shape)
 
 
-def mean_of(frames: Frames, rows: slice) -> tuple[Array, Array]:
+def mean_of(frames: Frames, rows: slice | NDArray[np.bool_]) -> tuple[Array, Array]:
     """Mean spectrum (b,) of some frames, and its logarithm above the floor."""
     power = frames.power[rows].mean(axis=0)
     return power, above_floor(power, frames.frequency, frames.length)
