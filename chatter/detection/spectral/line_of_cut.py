@@ -88,7 +88,8 @@ def _is_of_cut_without_rest(
     is_of_motor = any(one in _OF_MOTOR for one in evidence.recording.quantities)
     # two signs of a cut together, as Stouffer (1949) adds them
     together = (sidebands + harmonics) / math.sqrt(2.0)
-    by_both = sidebands >= SIDEBANDS and together >= _TOGETHER
+    is_large = _alone(evidence, rows) >= _WITHOUT_SIDEBANDS
+    by_both = is_large and sidebands >= SIDEBANDS and together >= _TOGETHER
     if (sidebands >= _SIDEBANDS_FOR_SURE or by_both) and not is_of_motor:
         return True
     cuts = harmonics > _CUTS_FOR_SURE
