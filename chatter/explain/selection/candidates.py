@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from chatter.explain.criteria import (
     EQUAL,
     FINISHED,
@@ -38,6 +40,11 @@ class Candidate:
     fit: Fit  # to the runs for fitting
     holdout: float  # sum of squares on the holdout runs
     evidence: float  # logarithm
+
+    def without_jacobian(self) -> Candidate:
+        """Return the candidate with what compares it, without the Jacobian, by far the largest."""
+        none = np.empty((0, len(self.fit.parameters)))
+        return replace(self, fit=replace(self.fit, jacobian=none))
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +136,8 @@ def stage_with(problem: Problem, now: Fit, split: Split, tried: Sequence[Candida
         significant = is_significant(stage, one, problem, split)
         return not significant, -min(one.evidence, best - EQUAL), rank(one.effect)
 
-    return replace(stage, tried=tuple(sorted(tried, key=order)))
+    ordered = sorted(tried, key=order)
+    return replace(stage, tried=(*ordered[:1], *(one.without_jacobian() for one in ordered[1:])))
 
 
 def _may_be_significant(problem: Problem, step: LinearisedStep, now: Fit) -> bool:

@@ -75,7 +75,7 @@ def _beside_the_others(path: Path, stage: Stage, split: Split) -> Stage:
         if one.effect.name not in names
     ]
     found = stage_with(without, before, split, [own, *others])
-    tried = (own, *(one for one in found.tried if one is not own))
+    tried = (own, *(one for one in found.tried if one.effect is not effect))
     return Stage(before, found.holdout, found.evidence, tried)
 
 
