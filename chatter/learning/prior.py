@@ -1,7 +1,10 @@
 """Values that are uncertain before any cut: Student's t about what is declared, within bounds.
 
 A declared value scatters by its standard deviation as a rule and by much more now and then (Lange,
-Little and Taylor 1989, J. Am. Stat. Assoc. 84:881).
+Little and Taylor 1989, J. Am. Stat. Assoc. 84:881). How far the modes of a turning tool are from
+those at rest differs from machine to machine and is much the same for all modes of one: their
+deviations have a scale in common, which is learnt with them (Gelman et al. 2013, Bayesian Data
+Analysis, chapter 5).
 """
 
 from __future__ import annotations
@@ -28,6 +31,8 @@ SCATTER_OF_LIMITS = "scatter of limits"
 _SCATTER_SIZE = SCATTER
 #: tolerances, as shares, of modes that were found at rest
 _OF_A_TURNING_TOOL = {"frequency": 0.02, "damping": 0.4}
+#: scales that the deviations of such modes may have in common, each as likely as the others
+_SCALES = np.geomspace(0.25, 2.0, 4)
 #: growth by wear that would be a gain of sharpness, as a share
 _LEAST_GROWTH = -0.1
 #: probability next to the open ends of a distribution
@@ -36,9 +41,10 @@ _SMALLEST = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Prior:
-    """Independent distributions of p parameters, counted in their sizes from where they start.
+    """Distributions of p parameters, counted in their sizes from where they start.
 
-    Those of an effect that may be absent are at `nothing`, all of them, in half of the particles.
+    They are independent, but for those that have an unknown scale in common. Those of an effect
+    that may be absent are at `nothing`, all of them, in half of the particles.
     """
 
     parameters: tuple[Parameter, ...]
@@ -46,6 +52,7 @@ class Prior:
     upper: Array  # (p,), counted
     optional: NDArray[np.bool_]  # (p,), of an effect that may be absent
     nothing: Array  # (p,), counted: where it is absent
+    together: NDArray[np.bool_]  # (p,), of deviations that have a scale in common
 
     @property
     def names(self) -> list[str]:
@@ -55,9 +62,15 @@ class Prior:
     def draws(self, count: int, generator: np.random.Generator) -> Array:
         """Particles (n, p), counted: a Latin hypercube (McKay, Beckman and Conover 1979)."""
         cube = scipy.stats.qmc.LatinHypercube(len(self.parameters), seed=generator).random(count)
-        low, high = (scipy.stats.t.cdf(end, FREEDOM) for end in (self.lower, self.upper))
+        scale = (
+            generator.permutation(np.resize(_SCALES, count))[:, None]
+            if self.together.any()
+            else 1.0
+        )
+        scale = np.where(self.together, scale, 1.0)
+        low, high = (scipy.stats.t.cdf(end / scale, FREEDOM) for end in (self.lower, self.upper))
         probability = np.clip(low + cube * (high - low), _SMALLEST, 1.0 - _SMALLEST)
-        found = scipy.stats.t.ppf(probability, FREEDOM)
+        found = scale * scipy.stats.t.ppf(probability, FREEDOM)
         if self.optional.any():
             absent = np.arange(count) % 2 == 1
             found[np.ix_(absent, self.optional)] = self.nothing[self.optional]
@@ -74,9 +87,20 @@ class Prior:
         """Logarithm (n,) of the density of particles (n, p), but for a constant."""
         fixed = self.fixed(counted)
         inside = np.all(fixed | ((counted >= self.lower) & (counted <= self.upper)), axis=1)
-        each = np.where(fixed, 0.0, np.log1p(counted**2 / FREEDOM))
-        log = -0.5 * (FREEDOM + 1.0) * each.sum(axis=1)
+        each = np.where(fixed | self.together, 0.0, np.log1p(counted**2 / FREEDOM))
+        log = -0.5 * (FREEDOM + 1.0) * each.sum(axis=1) + self._log_density_together(counted)
         return np.where(inside, log, -np.inf)
+
+    def _log_density_together(self, counted: Array) -> Array:
+        """Logarithm (n,) of the density of what has a scale in common, the mean over all scales."""
+        if not self.together.any():
+            return np.zeros(len(counted))
+        lower, upper = self.lower[self.together], self.upper[self.together]
+        scale = _SCALES[:, None]
+        within = np.diff(scipy.stats.t.cdf([lower / scale, upper / scale], FREEDOM), axis=0)[0]
+        each = scipy.stats.t.logpdf(counted[:, self.together] / scale[:, None], FREEDOM)
+        of_scale = (each - np.log(scale * within)[:, None]).sum(axis=2)
+        return scipy.special.logsumexp(of_scale, axis=0) - np.log(len(_SCALES))
 
     def values(self, counted: Array) -> dict[str, float]:
         """Values of one particle (p,) by name, SI."""
@@ -98,6 +122,16 @@ def of_a_turning_tool(measurement: Measurement) -> Measurement:
         if key in _OF_A_TURNING_TOOL and path not in declared and key not in tolerances:
             tolerances.setdefault(path, _OF_A_TURNING_TOOL[key])
     return replace(measurement, tolerances=tolerances)
+
+
+def _assumed_of_modes(measurement: Measurement) -> list[str]:
+    """Paths of modes that have the tolerance of those found at rest."""
+    return [
+        path
+        for path in structural_paths(measurement.case)
+        if measurement.tolerances.get(path)
+        == _OF_A_TURNING_TOOL.get(path.rpartition(".")[2], np.nan)
+    ]
 
 
 def with_wear(problem: Problem) -> Problem:
@@ -124,7 +158,9 @@ def prior_of(problem: Problem) -> Prior:
     nothing = np.array(
         [one.counted(0.0) if own else 0.0 for one, own in zip(parameters, optional, strict=True)]
     )
-    return Prior(tuple(parameters), lower, upper, optional, nothing)
+    assumed = _assumed_of_modes(problem.measurement)
+    together = np.array([one.name in assumed for one in parameters])
+    return Prior(tuple(parameters), lower, upper, optional, nothing, together)
 
 
 def _with_prior(one: Parameter) -> Parameter:

@@ -16,6 +16,8 @@ from chatter.explain.selection.problem import Problem
 
 #: scatter of limits that tests may have, as shares of the depth
 _SCATTERS = (0.06, 0.08, 0.1, 0.13, 0.17, 0.22)
+#: factor by which the usual scatter of limits is known
+_FACTOR_OF_SCATTER = 2.0
 #: fall of twice the logarithm of the likelihood that a wider scatter of limits must bring
 _LEAST_FOR_SCATTER = 3.0
 #: least and largest scatter of frequencies and powers, as shares
@@ -35,6 +37,15 @@ def penalised_cost(problem: Problem, fit: Fit) -> float:
     )
     added = sum(1 for one in fit.parameters if one.name not in names and not one.prior)
     return fit.cost + prior_cost(problem, fit) + added * math.log(tests)
+
+
+def cost_of_scatter(problem: Problem) -> float:
+    """Twice the lost logarithm of the prior of the scatter of limits, which is known by a factor.
+
+    A wide scatter excuses every model: it counts where models with their own scatters compare.
+    """
+    scatter = max(own["stable"] for own in problem.noise.values() if "stable" in own)
+    return (math.log(scatter / _SCATTERS[0]) / math.log(_FACTOR_OF_SCATTER)) ** 2
 
 
 def with_scatter(problem: Problem, values: Mapping[str, float]) -> Problem:

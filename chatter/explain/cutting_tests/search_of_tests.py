@@ -9,8 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from chatter.explain.cutting_tests.evidence import penalised_cost, with_scatter
+from chatter.explain.cutting_tests.evidence import cost_of_scatter, penalised_cost, with_scatter
 from chatter.explain.cutting_tests.fit_to_tests import fit_tests, fit_tests_widely
+from chatter.explain.cutting_tests.mode_of_tests import MissingModeOfTests
 from chatter.explain.cutting_tests.priors import prior_cost
 from chatter.explain.cutting_tests.refitted import are_off_together, refitted_values
 from chatter.explain.cutting_tests.reliability import (
@@ -27,10 +28,10 @@ from chatter.explain.cutting_tests.starts import (
     wide_cost,
 )
 from chatter.explain.cutting_tests.wear import forms_of_wear
-from chatter.explain.effects.effect import Effect, Values
+from chatter.explain.effects.effect import Effect
 from chatter.explain.effects.effect_list import candidates
-from chatter.explain.effects.missing_mode import MissingMode
 from chatter.explain.fitting import Fit
+from chatter.explain.kinds.kind import Noise
 from chatter.explain.kinds.stability import likely_stable
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.prediction import Predictions
@@ -103,7 +104,22 @@ class _Found(NamedTuple):
 
     def beside(self, other: Problem) -> float:
         """Penalised cost with the scatter of another problem, so that models compare."""
-        problem = replace(self.problem, noise=other.noise)
+        return self._cost_with(other.noise)
+
+    def with_its_scatter(self, other: Problem) -> float:
+        """Penalised cost with its own scatter of limits, at the price of it; readings as `beside`.
+
+        Of two ways to fit the tests one may need limits to scatter widely.
+        """
+        own = self.problem.noise
+        noise = {
+            name: own[name] if "stable" in levels else levels
+            for name, levels in other.noise.items()
+        }
+        return self._cost_with(noise) + cost_of_scatter(self.problem)
+
+    def _cost_with(self, noise: Noise) -> float:
+        problem = replace(self.problem, noise=noise)
         residuals = problem.residuals(self.fit.by_name, problem.measurement.runs)
         return penalised_cost(problem, replace(self.fit, residuals=residuals))
 
@@ -124,10 +140,12 @@ def search_of_tests(
     problem = Problem(measurement, predictions, {run.name: kind.first_noise(run) for run in runs})
     progress("refitting the declared values", 0.0)
     path = _path_from(_refitted(problem, [{}]), progress)
-    if not _misfit_of(path.found).is_scatter:
+    # limits that scatter widely excuse a misfit
+    if not _misfit_of(path.found).is_scatter or cost_of_scatter(path.found.problem) > 0.0:
         progress("refitting the declared values from other starts", 0.6)
         other = _path_from(_refitted(problem, starts_of_tests(problem)), progress)
-        if other.found.beside(path.found.problem) < path.found.cost:
+        beside = path.found.problem
+        if other.found.with_its_scatter(beside) < path.found.with_its_scatter(beside):
             path = other
     base, stages, found = path
     progress("predicting holdout tests", 0.85)
@@ -167,7 +185,7 @@ def _path_from(base: _Found, progress: Progress) -> _Path:
 def _refitted(problem: Problem, starts: Sequence[Mapping[str, float]]) -> _Found:
     """Declared values fitted to all tests, from the best of several starts."""
     tried = [_fitted_from(problem, start) for start in starts]
-    return min(tried, key=lambda one: one.beside(problem))
+    return min(tried, key=lambda one: one.with_its_scatter(problem))
 
 
 def _fitted_from(problem: Problem, start: Mapping[str, float]) -> _Found:
@@ -176,14 +194,6 @@ def _fitted_from(problem: Problem, start: Mapping[str, float]) -> _Found:
     first = fit_tests_widely(problem, runs, start, ANNEALED)
     problem = with_scatter(problem, first.by_name)
     return _Found(problem, fit_tests(problem, runs, first.by_name))
-
-
-class MissingModeOfTests(MissingMode):
-    """A mode more, looked for at fewer frequencies: limits say less of it than forces do."""
-
-    def starts(self, measurement: Measurement) -> list[Values]:
-        """Every other start."""
-        return super().starts(measurement)[::2]
 
 
 class _Misfit(NamedTuple):
@@ -283,7 +293,7 @@ def _candidates(problem: Problem, now: Fit) -> list[Effect]:
             fit = fit_tests(trial, powers, start.values)
             tried.append(penalised_cost(trial, fit))
         wear = [wear[int(np.argmin(tried))]]
-    return [*wear, *others, MissingModeOfTests()]
+    return [*wear, *others, MissingModeOfTests(share_of_work(problem))]
 
 
 def _start_of_wear(problem: Problem, effect: Effect, now: Fit) -> tuple[float, Mapping[str, float]]:

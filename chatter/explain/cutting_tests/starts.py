@@ -16,7 +16,9 @@ from chatter.explain.selection.problem import Problem
 #: scatters of limits that fits begin with
 ANNEALED = (0.25, 0.12)
 #: starts drawn and followed, most and least; square of vibrations up to which it is the most
-_DRAWN, _FOLLOWED, _VIBRATIONS = (150, 12), (10, 1), 8_000.0
+_DRAWN, _FOLLOWED, _VIBRATIONS = (300, 12), (10, 1), 8_000.0
+#: spreads of the values drawn, in their tolerances, by turns: some values are off by more
+_SPREADS = (1.0, 2.0)
 #: least of a drawn value, as a share of that declared
 _LEAST_DRAWN = 0.2
 
@@ -27,12 +29,14 @@ def starts_of_tests(problem: Problem) -> list[dict[str, float]]:
     share = share_of_work(problem)
     drawn, followed = (max(least, round(share * most)) for most, least in (_DRAWN, _FOLLOWED))
     random, parameters = np.random.default_rng(1), declared(problem)
+    pulls = random.standard_t(FREEDOM, (drawn, len(parameters)))
+    pulls *= np.resize(_SPREADS, drawn)[:, None]
     starts = [
         {
             one.name: one.value(max(pull, one.counted(_LEAST_DRAWN * one.start)))
-            for one, pull in zip(parameters, pulls.tolist(), strict=True)
+            for one, pull in zip(parameters, row, strict=True)
         }
-        for pulls in random.standard_t(FREEDOM, (drawn, len(parameters)))
+        for row in pulls.tolist()
     ]
     return sorted(starts, key=lambda one: wide_cost(problem, verdicts, one))[:followed]
 
