@@ -221,7 +221,9 @@ class BeamLine:
     def with_nodes_at(self, positions: Iterable[ArrayLike]) -> BeamLine:
         """Same line with nodes at the stations of positions (3,) in m."""
         found = [self._station(position) for position in positions]
-        return replace(self, stations=(*self.stations, *found))
+        meshed = replace(self, stations=(*self.stations, *found))
+        # its matrices are known where nothing is new
+        return self if np.array_equal(meshed.nodes, self.nodes) else meshed
 
     def with_stations(self, stations: Iterable[float]) -> BeamLine:
         """Same line with nodes at stations, m, those asked for before left out."""
@@ -248,7 +250,7 @@ class BeamLine:
             If the position lies beyond an end.
         """
         station = self._station(position)
-        section = self._turned(6).T @ self._own_motion(station)
+        section = self._turned[:6, :6].T @ self._own_motion(station)
         return (
             rigid_motion(np.asarray(position, dtype=np.float64) - self.position(station)) @ section
         )
@@ -273,9 +275,10 @@ class BeamLine:
             )
         return min(max(float(station), 0.0), self.length)
 
-    def _turned(self, size: int) -> NDArray[np.float64]:
-        """(size, size): turns vectors in the machine's directions into the line's own."""
-        return np.kron(np.eye(size // 3), self.axes)
+    @cached_property
+    def _turned(self) -> NDArray[np.float64]:
+        """(12, 12): turns the motion of two nodes into the line's own directions."""
+        return np.kron(np.eye(4), self.axes)
 
     def _element(self, station: float) -> int:
         last = len(self.nodes) - 2
@@ -294,12 +297,12 @@ class BeamLine:
             self._section_of(element), right - left, (station - left) / (right - left)
         )
         motion = np.zeros((6, 6 * len(self.nodes)))
-        motion[:, 6 * element : 6 * element + 12] = functions @ self._turned(12)
+        motion[:, 6 * element : 6 * element + 12] = functions @ self._turned
         return motion
 
     def _over_elements(self, matrix: Callable[[Segment, float], NDArray]) -> NDArray[np.float64]:
         whole = np.zeros((6 * len(self.nodes),) * 2)
-        turned = self._turned(12)
+        turned = self._turned
         for element, length in enumerate(np.diff(self.nodes)):
             part = slice(6 * element, 6 * element + 12)
             own = matrix(self._section_of(element), float(length))

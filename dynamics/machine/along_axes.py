@@ -26,6 +26,7 @@ from dynamics.machine.description import (
     reduced,
 )
 from dynamics.reduction.modal_truncation import undamped_modes
+from dynamics.structure.bodies import MeshedPart
 from dynamics.structure.linear_structure import LinearStructure, StructureError
 
 #: part of the energy of one mode or static shape that may be left out
@@ -81,10 +82,15 @@ def _in_one_mesh(
         for beam in meshed_beams(parts, conditions):
             stations.setdefault(beam.name, []).extend(beam.stations)
     everywhere = {name: sorted(set(np.round(found, 12))) for name, found in stations.items()}
-    return [
-        replace(parts, beams=[one.with_stations(everywhere[one.name]) for one in parts.beams])
-        for parts in positions
-    ]
+    meshed = {one.name: one.with_stations(everywhere[one.name]) for one in positions[0].beams}
+
+    def meshed_anew(one: MeshedPart) -> MeshedPart:
+        first = meshed[one.name]
+        # the matrices of one that stays are made once
+        stays = np.array_equal(first.origin, one.origin)
+        return first if stays else one.with_stations(everywhere[one.name])
+
+    return [replace(parts, beams=[meshed_anew(one) for one in parts.beams]) for parts in positions]
 
 
 def _require_same_mass(first: Machine, other: Machine) -> None:

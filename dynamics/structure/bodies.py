@@ -57,6 +57,10 @@ class MeshedPart(Part, Protocol):
         """The part's own bearings."""
 
     @property
+    def origin(self) -> ArrayLike:
+        """The part's own beginning (3,), m."""
+
+    @property
     def stations(self) -> Sequence[float]:
         """Where nodes are asked for, from the part's own beginning, m."""
 
