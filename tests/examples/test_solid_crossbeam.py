@@ -312,7 +312,7 @@ def test_slot_along_the_beam_keeps_its_energy():
 
 
 def test_torque_at_the_motor_of_an_axis_that_moves():
-    """The response with the loop open is that of sliding friction, as the axis moves by its loop."""
+    """The response with the loop open is that of sliding friction, as its loop moves the axis."""
     file = chatter.load_machine(FOLDER / "machine.toml").patch({"frf.motor_right.averages": 1})
     curve = chatter.frf(file, ["motor_right"])["motor_right"]
     lines = curve.tested.frequency
