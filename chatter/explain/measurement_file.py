@@ -44,12 +44,15 @@ SECTIONS = ("cut", "tool", "material", "axis")
 
 
 def read_measurement(folder: str | Path, case: str | Path | Case | None = None) -> Measurement:
-    """Read a measurement folder, which holds measurement.toml, or that file.
+    """Read a measurement folder, which holds measurement.toml, or that file, or one run of it.
 
-    The case given stands for the one that it names. InputError if a file is missing or cannot be
-    read, a key is unknown, or runs lack a channel.
+    The file of a run is that run alone, with what measurement.toml beside it says. The case given
+    stands for the one that it names. InputError if a file is missing or cannot be read, a key is
+    unknown, or runs lack a channel.
     """
     path = Path(folder)
+    if path.is_file() and path.suffix.lower() != ".toml":
+        return _only_run(path, case)
     path = path if path.is_file() else path / "measurement.toml"
     content = _content(path)
     name = content.get("kind")
@@ -68,6 +71,23 @@ def read_measurement(folder: str | Path, case: str | Path | Case | None = None) 
     if name == SetUp.name:
         return _set_up(path, whole, content)
     return _of_one_kind(path, "", whole, content)
+
+
+def _only_run(path: Path, case: str | Path | Case | None) -> Measurement:
+    """One run of the measurement whose measurement.toml is beside its file."""
+    beside = path.parent / "measurement.toml"
+    if not beside.is_file():
+        raise InputError(
+            f"{path}: is a record, and there is no measurement.toml beside it, which says what it "
+            f"is of: kind (one of {', '.join(KINDS)}), case, and a [[run]] with "
+            f'file = "{path.name}"'
+        )
+    whole = read_measurement(beside, case)
+    runs = tuple(run for run in whole.runs if Path(run.name).name == path.name)
+    if whole.kind == SetUp.name or not runs:
+        names = ", ".join(run.name for run in whole.runs)
+        raise InputError(f"{beside}: {path.name} is the file of no run; there are {names}")
+    return replace(whole, runs=runs)
 
 
 def _refuse_unknown(
