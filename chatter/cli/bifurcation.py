@@ -101,3 +101,10 @@ def _print_onsets(diagram: BifurcationDiagram) -> None:
             frequency = point["chatter_frequency_Hz"]
             at = f" at {frequency:.1f} Hz ({point['bifurcation']})" if frequency else ""
             print_line(f"from {value_of(point)}: {point['verdict']}{at}")
+    left = [point for point in points if point["spread_um"] is None]
+    if left:
+        share, first = f"{len(left)} of {len(points)}", value_of(left[0])
+        print_line(
+            f"in {share} cuts, the first at {first}, the tool left the range of the model: they "
+            "have no Poincaré section"
+        )

@@ -11,6 +11,7 @@ from chatter.description.usual_units import usual_unit
 from chatter.plots.style import BLUE, GREY, RED, finish, new_figure
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from chatter.studies.bifurcation import BifurcationDiagram
@@ -41,15 +42,39 @@ def plot_bifurcation(diagram: BifurcationDiagram) -> Figure:
                 markersize=2.5,
                 color=_COLOURS.get(point.verdict, GREY),
             )
+        _mark_incomplete(panel, diagram, factor)
         panel.set_ylabel(f"{'xyz'[axis]} at the Poincaré section [µm]")
         finish(panel)
-    for verdict, colour in _COLOURS.items():
-        panels[0].plot([], [], linestyle="none", marker=".", color=colour, label=verdict)
-    panels[0].legend(frameon=False, fontsize=9, loc="upper left")
+    drawn = {point.verdict for point in diagram.points if point.is_complete}
+    for verdict in (one for one in _COLOURS if one in drawn):
+        panels[0].plot([], [], linestyle="none", marker=".", color=_COLOURS[verdict], label=verdict)
+    figure.legend(
+        *panels[0].get_legend_handles_labels(),
+        loc="outside upper right",
+        ncols=3,
+        frameon=False,
+        fontsize=9,
+    )
     name = diagram.path.split(".")[-1].replace("_", " ")
     values = [point.value * factor for point in diagram.points]
     panels[-1].set_xlim(min(values), max(values))
     panels[-1].set_xlabel(f"{name} [{unit}]" if unit else name)
     if diagram.case.title:
-        panels[0].set_title(diagram.case.title)
+        panels[0].set_title(diagram.case.title, loc="left")
     return figure
+
+
+def _mark_incomplete(panel: Axes, diagram: BifurcationDiagram, factor: float) -> None:
+    """Mark at the lower end the cuts that have no Poincaré section."""
+    values = [point.value * factor for point in diagram.points if not point.is_complete]
+    panel.plot(
+        values,
+        np.full(len(values), 0.03),
+        transform=panel.get_xaxis_transform(),
+        linestyle="none",
+        marker="x",
+        markersize=5.0,
+        color=RED,
+        clip_on=False,
+        label="chatter, the tool left the range of the model" if values else None,
+    )

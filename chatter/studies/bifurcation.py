@@ -45,6 +45,11 @@ class BifurcationPoint:
     bifurcation: str
     chatter_frequency: float  # Hz; nan where there is none
 
+    @property
+    def is_complete(self) -> bool:
+        """Whether the tool stayed within the range of the model."""
+        return len(self.poincare_section) > 0
+
 
 @dataclass(frozen=True, repr=False)
 class BifurcationDiagram(SavedResult):
@@ -76,7 +81,7 @@ class BifurcationDiagram(SavedResult):
                     "verdict": point.verdict,
                     "bifurcation": point.bifurcation,
                     "chatter_frequency_Hz": finite_or_none(point.chatter_frequency),
-                    "spread_um": _spread(point) * 1e6,
+                    "spread_um": finite_or_none(_spread(point) * 1e6),
                 }
                 for point in self.points
             ],
@@ -170,7 +175,7 @@ def _point(case: Case, path: str, modes: tuple[Mode, ...] | None) -> Bifurcation
 
 
 def _spread(point: BifurcationPoint) -> float:
-    """Largest extent of the Poincaré section, m."""
-    if len(point.poincare_section) == 0:
-        return 0.0
+    """Largest extent of the Poincaré section, m; nan where the tool left the range of the model."""
+    if not point.is_complete:
+        return math.nan
     return float(np.ptp(point.poincare_section, axis=0).max())

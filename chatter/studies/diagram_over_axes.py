@@ -14,7 +14,7 @@ from chatter.description.case import Case
 from chatter.description.case_or_path import takes_case_or_path
 from chatter.description.errors import InputError
 from chatter.description.progress import Progress, no_progress
-from chatter.engine.parallel import Executor, each, one_thread
+from chatter.engine.parallel import Executor
 from chatter.io.result_files import finite_or_none
 from chatter.stability.diagram import DiagramAxis, StabilityDiagram, StabilityMap
 from chatter.stability.limit_curve import LimitCurve, first_crossings
@@ -29,6 +29,7 @@ from chatter.stability.search_range import (
     maximum_depth,
     spindle_speeds,
 )
+from chatter.studies.executor import ThreadExecutor
 from chatter.studies.model import fingerprint, patched
 from chatter.studies.parameter_axis import (
     DEPTH_PATH,
@@ -80,7 +81,7 @@ def lobes(
         Where the grid is computed, as for `chatter.studies.executor.open_executor`; here by
         default.
     folder : path, optional
-        On a cluster, keeps finished blocks of the grid in points.jsonl there.
+        On a cluster, keeps finished blocks of the grid in the result cache there.
 
     Returns
     -------
@@ -132,7 +133,7 @@ def lobes_over(
     cluster : str or Executor, optional
         Where they are computed, as for `chatter.studies.executor.open_executor`; here by default.
     folder : path, optional
-        On a cluster, keeps finished points or columns in the result cache there.
+        Keeps finished points or columns in the result cache there.
 
     Returns
     -------
@@ -146,7 +147,7 @@ def lobes_over(
         If it is interrupted.
     """
     name = chosen_method(case, method).name
-    each = _each if cluster is None else partial(_kept, cluster, folder)
+    each = partial(_kept, cluster or ThreadExecutor(), folder)
     if y is None:
         if x is None:
             raise InputError("a path is required for x or y; chatter.lobes draws over speed")
@@ -296,21 +297,6 @@ def _patched(case: Case, chosen: Sequence[tuple[Variation, Value]], label: str) 
         raise InputError([f"at {label}: {text}" for text in error.messages]) from None
 
 
-def _each(
-    progress: Progress,
-    function: Callable[[_Point], dict[str, Any]],
-    points: Sequence[_Point],
-    noun: str,  # noqa: ARG001  (that of what is kept)
-) -> list[dict[str, Any]]:
-    """Records of all points, in threads; each is computed in one."""
-
-    def at(index: int) -> dict[str, Any]:
-        with one_thread():
-            return function(points[index])
-
-    return each(at, len(points), progress)
-
-
 def _kept(
     cluster: str | Executor,
     folder: str | Path | None,
@@ -319,7 +305,7 @@ def _kept(
     points: Sequence[_Point],
     noun: str,
 ) -> list[dict[str, Any]]:
-    """Records of all points on a cluster, kept as they come."""
+    """Records of all points, kept as they come."""
     of_case = {case: fingerprint(case) for case in {one.case for one in points}}
     with ResultCache(folder, function.__name__) as cache:
         keys = [

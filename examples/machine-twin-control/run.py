@@ -42,12 +42,12 @@ PUBLISHED = {
 
 #: frequencies, Hz, that calibrate.py fits to; the tip in y has the bearings of x
 FITTED = {"frame_x": (110.0, 260.0), "tip_x": (800.0, 1300.0), "tip_y": (800.0,), "tip_z": (650.0,)}
-#: table 3.1, measured at a mode of the model: Hz in words, and g/N
+#: table 3.1, measured near a mode of the model: Hz, along the spindle in words, and g/N
 MEASURED = {
-    ("tip_x", 800.0): ("850", 0.18),
-    ("tip_y", 800.0): ("850", 0.27),
-    ("tip_x", 1300.0): ("1400", 0.48),
-    ("tip_y", 1300.0): ("1420", 0.37),
+    ("tip_x", 800.0): (850.0, 0.18),
+    ("tip_y", 800.0): (850.0, 0.27),
+    ("tip_x", 1300.0): (1400.0, 0.48),
+    ("tip_y", 1300.0): (1420.0, 0.37),
     ("tip_z", 650.0): ("650 to 800", 0.027),
 }
 #: heights at the tip of the spindle, table 3.1, g/N: test, frequency, model
@@ -272,26 +272,40 @@ def _limit(machine: MachineFile, name: str) -> str:
 
 
 def of_hammer(tests: dict[str, HammerTest]) -> list[Finding]:
-    """Frequencies and heights of the hammer tests beside those of the chapter's model.
-
-    What the chapter measured stands in brackets: its model is up to five times off, so that no
-    model has both.
-    """
+    """Frequencies and heights of the hammer tests beside those of the chapter's model."""
     rows = []
     for name, published in PUBLISHED.items():
         source = "figure 3.10" if name == "frame_x" else "table 3.1, model"
         for frequency in published:
-            measured = MEASURED.get((name, frequency))
-            beside = f" (measured {measured[0]} Hz)" if measured else ""
             kind = CALIBRATED if frequency in FITTED[name] else PREDICTED
             for way, frf in tests[name].both().items():
                 found = peak_near(frf, frequency)["frequency_Hz"]
-                rows.append(Finding(f"{name}, {way}{beside}", frequency, found, "Hz", source, kind))
+                rows.append(Finding(f"{name}, {way}", frequency, found, "Hz", source, kind))
     for name, frequency, model in HEIGHTS:
         found = peak_near(tests[name].harmonic, frequency)["magnitude"] / GRAVITY
-        what = f"{name}, height at {frequency:g} Hz (measured {MEASURED[name, frequency][1]:g} g/N)"
+        what = f"{name}, height at {frequency:g} Hz"
         kind = PREDICTED if name == "tip_y" else CALIBRATED
         rows.append(Finding(what, model, found, "g/N", "table 3.1, model", kind))
+    return [*rows, *of_measured(tests)]
+
+
+def of_measured(tests: dict[str, HammerTest]) -> list[Finding]:
+    """Frequencies and heights that the chapter measured beside what the model obtains.
+
+    The chapter's own model misses them by up to five times, and so does one that has its heights.
+    """
+    rows = []
+    for (name, frequency), (hertz, height) in MEASURED.items():
+        found = peak_near(tests[name].harmonic, frequency)
+        obtained = found["frequency_Hz"]
+        if isinstance(hertz, str):
+            hertz, obtained = f"{hertz} Hz", f"{obtained:.0f} Hz"
+        unit = "" if isinstance(hertz, str) else "Hz"
+        what, source = f"{name}, near {frequency:g} Hz", "table 3.1, measured"
+        rows += [
+            Finding(what, hertz, obtained, unit, source),
+            Finding(f"{what}, height", height, found["magnitude"] / GRAVITY, "g/N", source),
+        ]
     return rows
 
 

@@ -46,7 +46,7 @@ def test_peaks_lie_where_published(tests, run):
             for frf in tests[name].both().values():
                 found = run.peak_near(frf, frequency)["frequency_Hz"]
                 # the chapter's own model is within 10 % of its measurement
-                assert found == pytest.approx(frequency, rel=0.05), name
+                assert found == pytest.approx(frequency, rel=0.03), name
 
 
 def test_running_loops_damp_the_frame_where_springs_do_not(tests, run):

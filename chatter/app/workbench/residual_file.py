@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from chatter.app.workbench.session import read_object
 from chatter.description.arrays import Array, IntegerArray
 from chatter.io.result_files import write_results
 from chatter.plots.explanation import abscissa, channel_unit
@@ -46,11 +47,7 @@ def write_residuals(result: Any, folder: Path) -> None:
 
 def read_residuals(folder: Path) -> dict[str, Any]:
     """Return what `write_residuals` has left in a folder; empty where it has left nothing."""
-    try:
-        found = json.loads((folder / RESIDUALS).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return {}
-    return found if isinstance(found, dict) else {}
+    return read_object(folder / RESIDUALS)
 
 
 def _signatures(result: Any) -> dict[str, Signature]:

@@ -233,8 +233,13 @@ def write_call(folder: Path, call: Mapping[str, Any]) -> None:
 
 def read_call(folder: Path) -> dict[str, Any]:
     """What `write_call` wrote; empty where there is nothing that can be read."""
+    return read_object(folder / CALL)
+
+
+def read_object(path: Path) -> dict[str, Any]:
+    """Object of a JSON file; empty where there is nothing that can be read."""
     try:
-        found = json.loads((folder / CALL).read_text(encoding="utf-8"))
+        found = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return {}
     return found if isinstance(found, dict) else {}

@@ -52,7 +52,7 @@ def is_line_of_cut(evidence: Evidence, rows: slice) -> bool:
     """Whether the line off the harmonics of some frames is chatter.
 
     Sidebands one revolution or one tooth apart say so, for a cut makes them: where frames at rest
-    show what the machine does alone, or the record cuts, or they are beyond chance. A line without
+    show what the machine does alone, or the record cuts, or they are significant. A line without
     them has to be most of the power, a limit cycle, and far above what is there without it.
     """
     line = line_of(evidence, rows)

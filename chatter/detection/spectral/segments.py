@@ -14,6 +14,7 @@ from chatter.detection.spectral.frame_evidence import RATIO_AT_REST, Evidence, f
 from chatter.detection.spectral.line_of_cut import (
     CUTS,
     KNOWN,
+    SIDEBANDS,
     cut_significance,
     is_line_of_cut,
     line_of,
@@ -219,9 +220,10 @@ def _chatter_segment(
         and not evidence.revolution.may_be_multiple
         and is_half_tooth(frequency, comb, KNOWN / evidence.frames.length)
     )
+    beside = ", and its sidebands" if sidebands >= SIDEBANDS else ""
     reason = (
         f"{share:.0%} of the power is a line at {frequency:.1f} Hz, off the harmonics of the "
-        f"spindle, and its sidebands"
+        f"spindle{beside}"
     )
     kind = "flip" if is_flip else "hopf"
     return Segment(begin, end, CHATTER, frequency, kind, confidence, share, speed, reason)

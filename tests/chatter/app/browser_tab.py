@@ -169,17 +169,22 @@ class Tab:
         self.mouse("mousePressed", x, y)
         self.mouse("mouseReleased", x, y)
 
-    def type_into(self, label: str, text: str) -> None:
-        """Type a text into the visible field of a label and leave it."""
+    def _field(self, label: str, selector: str) -> str:
+        """Expression of the visible field of a label, once it is there."""
         field = (
             "(() => { const wanted = " + json.dumps(label) + ";"
-            "for (const one of deepAll('input, textarea')) {"
+            f"for (const one of deepAll({json.dumps(selector)})) {{"
             "  if (!one.getClientRects().length) continue;"
             "  const group = one.closest('.bk-input-group');"
             "  const told = group && group.querySelector('label');"
             "  if (told && told.textContent.trim() === wanted) return one; } })()"
         )
         self.wait(f"!!{field}")
+        return field
+
+    def type_into(self, label: str, text: str) -> None:
+        """Type a text into the visible field of a label and leave it."""
+        field = self._field(label, "input, textarea")
         self.value(
             f"(() => {{ const one = {field}; one.focus(); one.value = {json.dumps(text)};"
             "one.dispatchEvent(new Event('input', {bubbles: true}));"
@@ -188,15 +193,7 @@ class Tab:
 
     def choose(self, label: str, option: str) -> None:
         """Choose an option of the visible list of a label."""
-        field = (
-            "(() => { const wanted = " + json.dumps(label) + ";"
-            "for (const one of deepAll('select')) {"
-            "  const group = one.closest('.bk-input-group');"
-            "  const told = group && group.querySelector('label');"
-            "  if (one.getClientRects().length && told && told.textContent.trim() === wanted)"
-            "    return one; } })()"
-        )
-        self.wait(f"!!{field}")
+        field = self._field(label, "select")
         self.value(
             f"(() => {{ const one = {field}; const wanted = {json.dumps(option)};"
             "one.value = [...one.options].find(o => o.textContent.trim() === wanted).value;"

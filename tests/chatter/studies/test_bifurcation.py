@@ -234,3 +234,22 @@ def test_the_command_ends_with_the_same_bytes_when_given_again(tmp_path):
     again = chatter_command(*words, "--out", out)
     assert "3 of 3 cuts were finished before" in again.stderr
     assert [(out / name).read_bytes() for name in names] == before
+
+
+def test_cuts_that_leave_the_range_of_the_model_are_told_and_marked(tmp_path):
+    cut_of(10000, "1 mm").save(tmp_path / "case.toml")
+    words = ("bifurcation", tmp_path / "case.toml", "--vary", "cut.axial_depth=1 mm..60 mm:3")
+    told = chatter_command(*words, "--out", tmp_path / "out")
+    assert "in 2 of 3 cuts, the first at 30.5 mm, the tool left the range" in told.stdout
+    points = json.loads((tmp_path / "out" / "summary.json").read_text())["points"]
+    assert points[0]["spread_um"] is not None
+    assert points[-1]["spread_um"] is None
+    diagram = chatter.bifurcation(
+        tmp_path / "case.toml", "cut.axial_depth", ["1 mm", "60 mm"], folder=tmp_path
+    )
+    panel = diagram.plot().axes[0]
+    labels = panel.get_legend_handles_labels()[1]
+    assert "chatter, the tool left the range of the model" in labels
+    assert "chatter" not in labels  # no cut that chatters has a section
+    (marked,) = [one for one in panel.lines if "left the range" in str(one.get_label())]
+    assert list(marked.get_xdata()) == [60.0]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import chatter
-from chatter import InputError
+from chatter import InputError, RunError
 from tests.cases import tool_of_922_hertz
 from tests.command_line import chatter_command
 
@@ -256,3 +256,19 @@ def test_refusals_in_python():
         chatter.lobes_over(case, ("cut.radial_depth", ["1 mm", "1 mm"]))
     with pytest.raises(InputError, match="no values"):
         chatter.lobes_over(case, ("cut.radial_depth", []))
+
+
+def test_one_that_was_interrupted_goes_on_where_it_was(tmp_path):
+    def give_up(done, total):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    given = ("cut.radial_depth", ["2 mm", "4 mm", "6 mm", "8 mm"])
+    case = tool_of_922_hertz()
+    with pytest.raises(RunError, match="interrupted: 2 of 4 values are finished"):
+        chatter.lobes_over(case, given, folder=tmp_path, progress=give_up)
+    done = []
+    found = chatter.lobes_over(case, given, folder=tmp_path, progress=lambda at, _: done.append(at))
+    assert done[0] >= 2
+    undisturbed = chatter.lobes_over(case, given)
+    assert found.tables() == undisturbed.tables()

@@ -67,6 +67,18 @@ def three_effects(monkeypatch):
     monkeypatch.setattr(candidates, "candidates", lambda measurement: effects)
 
 
+def unlike_shapes(random):
+    """Three shapes that have nothing in common."""
+    return random.standard_normal((3, SAMPLES))
+
+
+def problem_of(measurement):
+    """Problem of a measurement, and its split into fitted and holdout runs."""
+    kind = Sums()
+    noise = {run.name: kind.known_noise(run) for run in measurement.runs}
+    return Problem(measurement, Predictions(kind), noise), split_runs(measurement.runs)
+
+
 def found_in(measurement):
     return search(measurement, Predictions(Sums()), lambda *_: None)
 
@@ -160,14 +172,7 @@ class Chosen(Offset):
 
 def test_starts_that_do_nothing_yet_are_ranked_by_what_their_amounts_would_do():
     """The eighth of ten, of which four are followed."""
-
-    def shapes_of(random):
-        return random.standard_normal((3, SAMPLES))
-
-    measurement = measured(shapes_of, (0.0, 3.0, 0.0))
-    kind, split = Sums(), split_runs(measurement.runs)
-    noise = {run.name: kind.known_noise(run) for run in measurement.runs}
-    problem = Problem(measurement, Predictions(kind), noise)
+    problem, split = problem_of(measured(unlike_shapes, (0.0, 3.0, 0.0)))
     now = problem.fit(split.fitted, {})
     step = linearised(problem, Chosen(), now, split.fitted)
     assert step.values["chosen.which"] == pytest.approx(7.0, abs=0.1)
@@ -176,14 +181,7 @@ def test_starts_that_do_nothing_yet_are_ranked_by_what_their_amounts_would_do():
 
 def test_a_stage_from_beside_an_effect_that_was_dropped_is_made_anew():
     """What was tried beside a model that is no more compares with nothing."""
-
-    def shapes_of(random):
-        return random.standard_normal((3, SAMPLES))
-
-    measurement = measured(shapes_of, (0.0, 3.0, 0.0))
-    kind, split = Sums(), split_runs(measurement.runs)
-    noise = {run.name: kind.known_noise(run) for run in measurement.runs}
-    without = Problem(measurement, Predictions(kind), noise)
+    without, split = problem_of(measured(unlike_shapes, (0.0, 3.0, 0.0)))
     dropped, kept = Asymmetry(), Offset()
     beside = without.with_effect(dropped)
     before = beside.fit(split.fitted, {})
