@@ -67,6 +67,8 @@ def plot_bifurcation(diagram: BifurcationDiagram) -> Figure:
 def _mark_incomplete(panel: Axes, diagram: BifurcationDiagram, factor: float) -> None:
     """Mark at the lower end the cuts that have no Poincaré section."""
     values = [point.value * factor for point in diagram.points if not point.is_complete]
+    if not values:
+        return
     panel.plot(
         values,
         np.full(len(values), 0.03),
@@ -76,5 +78,5 @@ def _mark_incomplete(panel: Axes, diagram: BifurcationDiagram, factor: float) ->
         markersize=5.0,
         color=RED,
         clip_on=False,
-        label="chatter, the tool left the range of the model" if values else None,
+        label="chatter, the tool left the range of the model",
     )
