@@ -18,8 +18,8 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 from dynamics.trajectory.jerk_limited import reachable_speed, speed_change, speed_change_length
 from dynamics.trajectory.motion import Motion, TrajectoryError, require_positive
@@ -288,7 +288,9 @@ def _pieces(
     if needed(peak) > length:
         peak = low
         if needed(low) < length:
-            peak = brentq(lambda v: needed(v) - length, low, limit.velocity, xtol=1e-15, rtol=1e-14)
+            peak = scipy.optimize.brentq(
+                lambda v: needed(v) - length, low, limit.velocity, xtol=1e-15, rtol=1e-14
+            )
     cruise = max(length - needed(peak), 0.0) / peak
     speed, s = first, begin
     for target, before in ((peak, 0.0), (last, cruise)):

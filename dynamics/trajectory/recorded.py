@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline
 
 from dynamics.trajectory.motion import Motion, TrajectoryError
 
@@ -23,7 +23,7 @@ class RecordedMotion:
     time: NDArray[np.float64]  # (n,), s
     position: NDArray[np.float64]  # (n, axes), m (rad)
     duration: float = field(init=False)  # s
-    _spline: CubicSpline = field(init=False, repr=False)
+    _spline: scipy.interpolate.CubicSpline = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         time = np.asarray(self.time, dtype=np.float64)
@@ -45,7 +45,9 @@ class RecordedMotion:
             )
         time = time - time[0]
         object.__setattr__(self, "duration", float(time[-1]))
-        object.__setattr__(self, "_spline", CubicSpline(time, position, bc_type="clamped"))
+        object.__setattr__(
+            self, "_spline", scipy.interpolate.CubicSpline(time, position, bc_type="clamped")
+        )
 
     def at(self, time: ArrayLike) -> Motion:
         """Return position, velocity and acceleration of all axes at times, s."""

@@ -17,10 +17,8 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline
-from scipy.optimize import linprog
-from scipy.sparse import csr_matrix, diags, vstack
 
 from dynamics.trajectory.block_motion import Block, BlockMotion, PathLimits, passed
 from dynamics.trajectory.motion import Motion, TrajectoryError
@@ -62,7 +60,9 @@ class TimeOptimalMotion:
     duration: float = field(init=False)  # s
     begins: tuple[float, ...] = field(init=False, repr=False)  # time of every block, s
     #: time and length at which each part begins, and its length over time
-    _parts: tuple[tuple[float, float, CubicSpline], ...] = field(init=False, repr=False)
+    _parts: tuple[tuple[float, float, scipy.interpolate.CubicSpline], ...] = field(
+        init=False, repr=False
+    )
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "blocks", tuple(self.blocks))
@@ -73,7 +73,7 @@ class TimeOptimalMotion:
         begin, covered = 0.0, 0.0
         for blocks in _between_stops(self.blocks):
             part = _planned(blocks, self.limits)
-            spline = CubicSpline(part.time, part.length, bc_type="clamped")
+            spline = scipy.interpolate.CubicSpline(part.time, part.length, bc_type="clamped")
             parts.append((begin, covered, spline))
             breaks = np.cumsum([0.0, *(one.element.length for one in blocks[:-1])])
             begins += (begin + np.interp(breaks, part.length, part.time)).tolist()
@@ -128,8 +128,8 @@ class _Grid(NamedTuple):
 
     length: Array  # m, (n,)
     fastest: Array  # largest v^2, (n,)
-    acceleration: csr_matrix  # of three axes between the points, (3 (n - 1), n)
-    jerk: csr_matrix  # of three axes at the inner points, over v, (3 (n - 2), n)
+    acceleration: scipy.sparse.csr_matrix  # of three axes between the points, (3 (n - 1), n)
+    jerk: scipy.sparse.csr_matrix  # of three axes at the inner points, over v, (3 (n - 2), n)
 
 
 def _planned(blocks: Sequence[Block], limits: PathLimits) -> _Part:
@@ -179,16 +179,22 @@ def _grid(blocks: Sequence[Block], path: SpatialPath, limits: PathLimits) -> _Gr
     fastest[[0, -1]] = 0.0
     step, middle = np.diff(s), 0.5 * (s[1:] + s[:-1])
     count, place = len(s), path.at(middle)
-    slope = diags([-0.5 / step, 0.5 / step], [0, 1], shape=(count - 1, count))
-    mean = diags([np.full(count - 1, 0.5)] * 2, [0, 1], shape=(count - 1, count))
-    change = diags(
+    slope = scipy.sparse.diags([-0.5 / step, 0.5 / step], [0, 1], shape=(count - 1, count))
+    mean = scipy.sparse.diags([np.full(count - 1, 0.5)] * 2, [0, 1], shape=(count - 1, count))
+    change = scipy.sparse.diags(
         [-1.0 / np.diff(middle), 1.0 / np.diff(middle)], [0, 1], shape=(count - 2, count - 1)
     )
     axes = [
-        diags(place.tangent[:, axis]) @ slope + diags(place.bend[:, axis]) @ mean
+        scipy.sparse.diags(place.tangent[:, axis]) @ slope
+        + scipy.sparse.diags(place.bend[:, axis]) @ mean
         for axis in range(3)
     ]
-    return _Grid(s, fastest, vstack(axes).tocsr(), vstack([change @ one for one in axes]).tocsr())
+    return _Grid(
+        s,
+        fastest,
+        scipy.sparse.vstack(axes).tocsr(),
+        scipy.sparse.vstack([change @ one for one in axes]).tocsr(),
+    )
 
 
 def _spread(count: int, from_rest: bool, to_rest: bool) -> Array:
@@ -209,10 +215,12 @@ def _faster(grid: _Grid, squares: Array, limits: PathLimits) -> Array:
     about = np.maximum(squares[1:-1], _SMALLEST * squares.max())
     ratio = np.concatenate([[1.0], about, [1.0]])
     # jerk / v <= j / sqrt(b), by the tangent of it
-    speeds = diags(np.tile(np.sqrt(about), 3))
-    jerk = speeds @ grid.jerk @ diags(ratio)
-    inner = diags([np.full(count - 2, 0.5 * limits.jerk)], [1], shape=(count - 2, count))
-    tangent = vstack([inner] * 3)
+    speeds = scipy.sparse.diags(np.tile(np.sqrt(about), 3))
+    jerk = speeds @ grid.jerk @ scipy.sparse.diags(ratio)
+    inner = scipy.sparse.diags(
+        [np.full(count - 2, 0.5 * limits.jerk)], [1], shape=(count - 2, count)
+    )
+    tangent = scipy.sparse.vstack([inner] * 3)
     most = np.full(3 * (count - 2), 1.5 * limits.jerk)
     # from rest at constant jerk: v^2 at the end of the first step over twice its length
     accelerations = np.full(count - 1, limits.acceleration)
@@ -220,12 +228,14 @@ def _faster(grid: _Grid, squares: Array, limits: PathLimits) -> Array:
         from_rest = _FROM_REST * (step[end] * limits.jerk**2) ** (1.0 / 3.0)
         accelerations[end] = min(accelerations[end], from_rest)
     accelerations = np.tile(accelerations, 3)
-    acceleration = grid.acceleration @ diags(ratio)
+    acceleration = grid.acceleration @ scipy.sparse.diags(ratio)
     weights = np.zeros(count)
     weights[1:-1] = -0.5 * (step[1:] + step[:-1]) / np.sqrt(about)
-    solved = linprog(
+    solved = scipy.optimize.linprog(
         weights,
-        A_ub=vstack([acceleration, -acceleration, tangent + jerk, tangent - jerk]).tocsr(),
+        A_ub=scipy.sparse.vstack(
+            [acceleration, -acceleration, tangent + jerk, tangent - jerk]
+        ).tocsr(),
         b_ub=np.concatenate([accelerations, accelerations, most, most]),
         bounds=np.column_stack([np.zeros(count), grid.fastest / ratio]),
         method="highs",
