@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from chatter.description.directions import Direction
 from chatter.description.machine.control import ControlSection
 from chatter.description.machine.drive import DriveSection
-from chatter.description.machine.fields import Direction, Position
+from chatter.description.machine.fields import Position
 from chatter.description.quantities import either_quantity, quantity
 from chatter.description.section import Section, raise_if_any
 from dynamics.control.cascade import DriveController

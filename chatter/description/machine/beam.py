@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from chatter.description.machine.fields import Direction, Position, arguments, pair
+from chatter.description.directions import Direction
+from chatter.description.machine.fields import Position, arguments, pair
 from chatter.description.quantities import quantity, whole_number
 from chatter.description.section import Section, raise_if_any
 from dynamics.beam.element import Material, Segment

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from chatter.description.directions import Direction
 from chatter.description.formatting import formatted
-from chatter.description.machine.fields import Direction, Position, Positions, Size
+from chatter.description.machine.fields import Position, Positions, Size
 from chatter.description.quantities import QuantityField, list_type, quantity
 from chatter.description.section import Section, raise_if_any
 from dynamics.structure.bodies import Body, Connector, Point

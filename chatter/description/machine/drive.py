@@ -6,15 +6,9 @@ from typing import Any, Literal
 
 from pydantic import Field, model_validator
 
+from chatter.description.directions import Direction
 from chatter.description.machine.beam import MaterialSection
-from chatter.description.machine.fields import (
-    Direction,
-    Position,
-    Positions,
-    arguments,
-    fields_of,
-    pair,
-)
+from chatter.description.machine.fields import Position, Positions, arguments, fields_of, pair
 from chatter.description.quantities import quantity
 from chatter.description.section import Section, raise_if_any
 from chatter.description.wording import key_problems

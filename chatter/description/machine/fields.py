@@ -1,7 +1,6 @@
-"""Field types of machine files: places, directions, pairs, names; kinds and their keys."""
+"""Field types of machine files: places, pairs, names; kinds and their keys."""
 
 import dataclasses
-import math
 import re
 from collections.abc import Callable, Mapping
 from typing import Annotated, Any
@@ -48,29 +47,6 @@ Positions = Annotated[
         }
     ),
     Coordinate,
-]
-
-
-def _direction(given: Any) -> tuple[float, float, float]:
-    numbers = isinstance(given, (list, tuple)) and all(
-        isinstance(part, (int, float)) and not isinstance(part, bool) and -1e9 < part < 1e9
-        for part in given
-    )
-    if not numbers or len(given) != 3:
-        raise ValueError(
-            f"{formatted(given)} is not a direction; three numbers are required, such as [1, 0, 0]"
-        )
-    length = math.hypot(*given)
-    if length < 1e-9:
-        raise ValueError(f"{formatted(given)} is not a direction; it has no length")
-    return tuple(part / length for part in given)
-
-
-#: of any length in the file, of unit length when read
-Direction = Annotated[
-    tuple[float, float, float],
-    BeforeValidator(_direction),
-    WithJsonSchema({"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}),
 ]
 
 

@@ -8,15 +8,9 @@ from bisect import bisect
 from itertools import pairwise
 from typing import Annotated, Any, Literal
 
-from pydantic import (
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    WithJsonSchema,
-    field_validator,
-    model_validator,
-)
+from pydantic import BeforeValidator, ConfigDict, Field, field_validator, model_validator
 
+from chatter.description.directions import UnitVector
 from chatter.description.file_name import FileName
 from chatter.description.formatting import formatted
 from chatter.description.quantities import quantity, quantity_list, whole_number
@@ -24,32 +18,8 @@ from chatter.description.section import Section, raise_if_any
 
 #: vibration, m, at which resting frictions are linearised: what a cut that is hardly stable has
 DEFAULT_FRICTION_AMPLITUDE = 5e-6
-#: a direction may miss unit length by this much before it is refused rather than normalised
-_UNIT_TOLERANCE = 0.01
 _INERTIA = ("mass", "stiffness")
 _DIRECTION = re.compile("[xyz]{1,2}")
-
-
-def _unit_vector(given: Any) -> tuple[float, float, float]:
-    numbers = isinstance(given, (list, tuple)) and all(
-        isinstance(part, (int, float)) and not isinstance(part, bool) and -1e9 < part < 1e9
-        for part in given
-    )
-    if not numbers or len(given) != 3:
-        raise ValueError(
-            f"{formatted(given)} is not a direction; three numbers are required, such as [1, 0, 0]"
-        )
-    length = math.hypot(*given)
-    if abs(length - 1.0) > _UNIT_TOLERANCE:
-        raise ValueError(f"{formatted(given)} has length {length:.4g}; a unit vector is required")
-    return tuple(float(part) / length for part in given)
-
-
-UnitVector = Annotated[
-    tuple[float, float, float],
-    BeforeValidator(_unit_vector),
-    WithJsonSchema({"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}),
-]
 
 
 #: entries of a table over the spindle speed

@@ -113,9 +113,9 @@ def test_the_good_case_is_good():
         ("teeth = 4", 'teeth = 4\ncorner_radius = "11 mm"', "tool.corner_radius: 11 mm is more than the radius of the tool, 10 mm"),
         ("[1, 0, 0]", "[0, 0, 0]", "structure.mode[0].direction: [0, 0, 0] has length 0; a unit vector is required"),
         ("[1, 0, 0]", "[1, 1, 0]", "structure.mode[0].direction: [1, 1, 0] has length 1.414; a unit vector is required"),
-        ("[1, 0, 0]", "[1, 0]", "structure.mode[0].direction: [1, 0] is not a direction; three numbers are required, such as [1, 0, 0]"),
-        ("[1, 0, 0]", '["x", 0, 0]', 'structure.mode[0].direction: ["x", 0, 0] is not a direction; three numbers are required, such as [1, 0, 0]'),
-        ("[1, 0, 0]", "[nan, 0, 0]", "structure.mode[0].direction: [nan, 0, 0] is not a direction; three numbers are required, such as [1, 0, 0]"),
+        ("[1, 0, 0]", "[1, 0]", 'structure.mode[0].direction: [1, 0] is not a direction; "x", "y", "z" or three numbers are required, such as [1, 0, 0]'),
+        ("[1, 0, 0]", '["x", 0, 0]', 'structure.mode[0].direction: ["x", 0, 0] is not a direction; "x", "y", "z" or three numbers are required, such as [1, 0, 0]'),
+        ("[1, 0, 0]", "[nan, 0, 0]", 'structure.mode[0].direction: [nan, 0, 0] is not a direction; "x", "y", "z" or three numbers are required, such as [1, 0, 0]'),
         # what is missing, what is too much
         ('axial_depth = "2 mm"\n', "", 'cut.axial_depth: is missing; a length is required, such as "2 mm"'),
         ('mode = "up"\n', "", 'cut.mode: is missing; allowed are "up", "down", "slot", "face"'),
