@@ -82,18 +82,8 @@ def _hint(name: str, rows: Mapping[str, MaterialRow]) -> str:
 
 
 def _rows_of_grade(grade: str, rows: Mapping[str, MaterialRow]) -> list[str]:
-    """Names of the rows that hold a grade, such as "Ti6Al4V", "C45", "1045" or "316L"."""
-    wanted = _bare(grade)
-    return [
-        name
-        for name, row in rows.items()
-        if any(wanted in (_bare(one), *map(_bare, one.split())) for one in row.examples)
-    ]
-
-
-def _bare(grade: str) -> str:
-    """Letters and digits of a grade: catalogues write them with spaces, dots and dashes."""
-    return "".join(letter for letter in grade.lower() if letter.isalnum()).removeprefix("aisi")
+    """Names of the rows that hold a grade."""
+    return [name for name, row in rows.items() if row.has_grade(grade)]
 
 
 class _Row:

@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from cutting.material.grades import bare, designations
+
 CUTTING = ("Ktc", "Krc", "Kac")
 EDGE = ("Kte", "Kre", "Kae")
 
@@ -36,6 +38,15 @@ class MaterialRow:
     def keys(self) -> dict[str, float | str]:
         """Return the law and its coefficients under their names in a case file, SI."""
         return {"law": self.law, **self.values}
+
+    def has_grade(self, grade: str) -> bool:
+        """Whether a grade, such as "C45", "1.0503" or "316L", is one of the row by any standard."""
+        wanted = designations(grade)
+        return any(
+            name in wanted
+            for example in self.examples
+            for name in (bare(example), *map(bare, example.split()))
+        )
 
     def words(self, name: str) -> str:
         """Return all that a search goes through, in lower case."""

@@ -12,8 +12,13 @@ MATERIALS: dict[str, MaterialRow] = {**coefficients_of_tests.ROWS, **specific_cu
 def found_rows(
     words: Iterable[str], rows: Mapping[str, MaterialRow] = MATERIALS
 ) -> dict[str, MaterialRow]:
-    """Rows that have all of the words, in any case, in name, grades, condition or source."""
+    """Rows that have all of the words, in any case, in name, grades, condition or source.
+
+    A grade is found under what other standards call it, too.
+    """
     wanted = [word.lower() for word in words]
     return {
-        name: row for name, row in rows.items() if all(word in row.words(name) for word in wanted)
+        name: row
+        for name, row in rows.items()
+        if all(word in row.words(name) or row.has_grade(word) for word in wanted)
     }

@@ -7,6 +7,7 @@ import pytest
 
 from chatter.description.case import loads
 from cutting.force.exponential import ExponentialLaw
+from cutting.material.grades import EQUIVALENT_GRADES, bare
 from cutting.material.specific_cutting_force import RADIAL_RATIO
 from cutting.material.table import MATERIALS, found_rows
 
@@ -85,3 +86,27 @@ def test_two_editions_of_a_catalogue_differ_as_the_documents_have_it():
     assert [round(one, 1) for one in (*alloy, *pure)] == [1.6, 1.7, 1.4, 1.5]
     (old,) = [row for name, row in MATERIALS.items() if name.endswith("(VDI 37, 2017)")]
     assert (old.values["Ktc"], old.values["exponent"]) == (2110e6, 0.78)
+
+
+# EN 10088-1, EN 10083-2, EN 10083-3, EN 10025-2, EN 1563, EN 573-3, DIN 17007
+@pytest.mark.parametrize(
+    ("designation", "group"),
+    [
+        ("1.4404", 14), ("X5CrNi18-10", 14), ("316L", 14), ("1.4021", 13), ("1.4016", 12),
+        ("1.7225", 8), ("1.6582", 9), ("C45E", 2), ("1.0503", 3), ("S355J2", 1), ("1.3343", 10),
+        ("GGG-40", 17), ("EN-GJS-700-2", 18), ("EN AW-7075", 22), ("3.2315", 22), ("AlSi10Mg", 24),
+        ("2.4668", 34), ("3.7165", 37),
+    ],
+)  # fmt: skip
+def test_a_grade_is_found_by_any_standard(designation, group):
+    assert any(f"group {group}" in row.examples for row in found_rows([designation]).values())
+    assert f"(VDI {group})" in " ".join(found_rows([designation.lower()]))
+
+
+def test_every_line_of_grades_leads_to_rows_and_no_designation_is_in_two():
+    seen = [name for line in EQUIVALENT_GRADES for name in set(map(bare, line))]
+    assert len(seen) == len(set(seen))
+    for line in EQUIVALENT_GRADES:
+        of = {tuple(name for name, row in MATERIALS.items() if row.has_grade(one)) for one in line}
+        assert len(of) == 1, line
+        assert of != {()}, line
