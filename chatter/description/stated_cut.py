@@ -1,4 +1,4 @@
-"""Speed and feed of a cut as a shop states them: m/min at the edge, mm/min of the table.
+"""A cut as a shop states it: m/min at the edge, mm/min of the table, a width in % of the tool.
 
 cutting_speed = pi D n, feed_rate = f_z z n (ISO 3002-1; n in revolutions per time).
 """
@@ -12,15 +12,18 @@ from typing import Any
 from chatter.description.path import field_at
 from chatter.description.sections.cut import Cut
 from chatter.description.sections.tool import Tool
+from chatter.description.units import QuantityError, parse
 
 #: key as a shop states it -> key that it stands for
 STATED = {"cutting_speed": "spindle_speed", "feed_rate": "feed_per_tooth"}
 #: keys of [cut] of which one takes the other away
 ALTERNATIVES = {**STATED, **{own: stated for stated, own in STATED.items()}}
+#: keys of [cut] that may be a share of the diameter of the tool, such as "8 %"
+_SHARES_OF_DIAMETER = ("radial_depth", "stepover")
 
 
 def with_stated_cut(data: Any) -> Any:
-    """Content of a case with spindle speed and feed per tooth where [cut] states the others.
+    """Content of a case with spindle speed, feed per tooth and widths where [cut] states others.
 
     What cannot be read is left for the sections to tell. ValueError with a sentence where both of
     a pair are given.
@@ -36,7 +39,23 @@ def with_stated_cut(data: Any) -> Any:
         value = _SOLVED[stated](cut, tool)
         if value is not None:
             cut[own] = value
+    diameter = _read(Tool, tool, "diameter")
+    for key in _SHARES_OF_DIAMETER:
+        share = _share(cut.get(key))
+        if share is not None and diameter is not None:
+            cut[key] = share * diameter
     return {**data, "cut": cut}
+
+
+def _share(given: Any) -> float | None:
+    """Read a text such as "8 %"; None for anything else, which the section itself tells."""
+    if not isinstance(given, str) or not given.rstrip().endswith("%"):
+        return None
+    try:
+        share = parse(given, "number")
+    except QuantityError:
+        return None
+    return share.value if share.value > 0.0 and not share.deviation else None
 
 
 def _spindle_speed(cut: Mapping[str, Any], tool: Any) -> float | None:

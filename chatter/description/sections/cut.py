@@ -65,10 +65,14 @@ class Cut(Section):
     )
     axial_depth: PositiveLength
     radial_depth: PositiveLength | None = Field(
-        None, description="from the wall at the full radius; a slot is as wide as the tool"
+        None,
+        description="from the wall at the full radius, or in % of the diameter; a slot is as wide "
+        "as the tool",
     )
     stepover: PositiveLength | None = Field(
-        None, description="from the pass before, which left what is cut, in place of radial_depth"
+        None,
+        description="from the pass before, which left what is cut, in place of radial_depth; also "
+        "in % of the diameter",
     )
     workpiece_width: PositiveLength | None = Field(
         None, description="across the feed, of a workpiece that the tool may overhang"

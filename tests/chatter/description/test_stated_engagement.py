@@ -38,6 +38,18 @@ direction = [0, 1, 0]
 revolutions = 6
 """
 
+SHARE = """
+[tool]
+teeth = 4
+diameter = "12 mm"
+[cut]
+mode = "down"
+spindle_speed = "3000 rpm"
+feed_per_tooth = "0.05 mm"
+axial_depth = "2 mm"
+{key} = "{width}"
+"""
+
 
 def case_of(engagement, **replaced):
     text = TEXT.format(engagement=engagement)
@@ -176,3 +188,27 @@ def test_a_radial_depth_that_a_ball_does_not_reach_names_the_stepover():
     for command in (chatter.check, chatter.simulate):
         with pytest.raises(InputError, match="stepover"):
             command(case)
+
+
+@pytest.mark.parametrize("key", ["radial_depth", "stepover"])
+def test_a_width_in_percent_of_the_diameter(key):
+    case = loads(SHARE.format(key=key, width="8 %"))
+    assert case.get(f"cut.{key}") == pytest.approx(0.96e-3)
+    # of the tool that the case has, whichever way it changes
+    assert case.patch({"tool.diameter": "20 mm"}).get(f"cut.{key}") == pytest.approx(1.6e-3)
+    assert case.patch({f"cut.{key}": "25 %"}).get(f"cut.{key}") == pytest.approx(3e-3)
+
+
+@pytest.mark.parametrize(
+    ("width", "words"),
+    [
+        ("120 %", r"14\.4 mm is more than the diameter of the tool, 12 mm"),
+        ("-8 %", "a length is required"),
+        ("0 %", "a length is required"),
+        ("x %", "is not a quantity"),
+        ("8 +- 1 %", "a length is required"),
+    ],
+)
+def test_a_wrong_percentage(width, words):
+    with pytest.raises(InputError, match=words):
+        loads(SHARE.format(key="radial_depth", width=width))
