@@ -143,7 +143,7 @@ class Case(Description):
         if self.structure.machine is not None:
             content["structure"]["machine"] = str(self.structure.machine.resolve())
         if self._machine is not None:
-            content["structure"]["machine"] = self._machine._content()
+            content["structure"]["machine"] = self._machine.content
 
     @classmethod
     def _move_references(cls, document: Any, old: Path, new: Path) -> None:

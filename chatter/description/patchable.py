@@ -65,7 +65,7 @@ class Description(Section):
 
     def __eq__(self, other: object) -> bool:
         """Compare by content, whatever the files looked like and wherever they lie."""
-        return type(other) is type(self) and self._content() == other._content()
+        return type(other) is type(self) and self.content == other.content
 
     def __repr__(self) -> str:
         """Name and title: what it holds would fill the screen."""
@@ -76,9 +76,11 @@ class Description(Section):
 
     def __hash__(self) -> int:
         """Hash of the content."""
-        return hash(self._content())
+        return hash(self.content)
 
-    def _content(self) -> str:
+    @property
+    def content(self) -> str:
+        """All that it holds, as text by which descriptions compare."""
         content = self.model_dump(mode="json")
         self._resolve_files(content)
         return json.dumps(content, sort_keys=True)

@@ -1,4 +1,4 @@
-"""Least squares with priors: scipy's trust region, with a Jacobian that costs few simulations.
+"""Least squares with priors: a trust region, with a Jacobian that costs few simulations.
 
 Parameters are counted in standard deviations of their priors (or in a typical size where they
 have none) from where they start, so that one step fits all. A prior is one more row of residuals.
@@ -23,15 +23,27 @@ Residuals = Callable[[Vector], Vector]
 WORKERS = 2
 #: of a finite difference, in units of a parameter's size
 _STEP = 1e-3
-#: change of the sum of squares, and step over the sizes, below which a fit has converged
-_SMALLEST_GAIN, _SMALLEST_STEP = 1e-7, 1e-7
-#: scipy's first trust region is as large as the start is far from zero, which starts are moved to
+#: fall of the sum of squares that a step must promise, over the mean square, so that a fit goes on:
+#: a sixth of a standard deviation of a parameter; share of what is above the noise on top, as the
+#: last digits of a model that misfits tell nothing; share of all of it where rough will do
+_SMALLEST_GAIN, _SMALLEST_OF_MISFIT, _SMALLEST_OF_ROUGH = 0.03, 1e-4, 3e-3
+#: step, in sizes, below which a fit has converged
+_SMALLEST_STEP = 1e-5
+#: widest step, in sizes, at first; shares of what was promised below and above which it narrows and
+#: widens, and by how much (Nocedal and Wright 2006, algorithm 4.1)
 _FIRST_REGION = 100.0
+_NARROWS, _WIDENS, _NARROWER, _WIDER = 0.25, 0.75, 0.25, 2.0
+#: share of the widest step from which on a step is at the edge of the region, and room, in sizes,
+#: that a step has at a bound
+_AT_EDGE, _LEAST_ROOM = 0.99, 1e-12
+#: of the largest eigenvalue of the normal matrix, below which a direction is not determined
+_UNDETERMINED = 1e-14
 #: share of what the Jacobian promised below which a step asks for new differences, where it is
 #: a fall of the sum of squares that matters
-_LEAST_OF_PROMISE, _LEAST_HOPED = 0.8, 1.0
-#: steps tried at the most, without those of finite differences
-_MOST_STEPS = 30
+_LEAST_OF_PROMISE, _LEAST_HOPED = 0.5, 1.0
+#: steps tried at the most, without those of finite differences; where rough will do; those that
+#: fail one after the other, by new differences
+_MOST_STEPS, _MOST_ROUGH_STEPS, _MOST_FAILED = 30, 8, 2
 #: standard deviation, in sizes, of a parameter that has no declared value and begins at nothing:
 #: of values that the data do not tell apart, the smallest
 FREE_SIZES = 30.0
@@ -171,73 +183,104 @@ class _Scaled:
     """
 
     def __init__(
-        self, parameters: Sequence[Parameter], residuals: Residuals, jacobian: Matrix | None
+        self,
+        parameters: Sequence[Parameter],
+        residuals: Residuals,
+        coarse: Residuals | None,
+        jacobian: Matrix | None,
     ) -> None:
-        self.residuals_of = residuals
+        self.residuals_of, self.coarse_of = residuals, coarse or residuals
         self.size = np.array([one.size for one in parameters])
         self.origin = np.array([one.start for one in parameters])
         self.lower = self.scaled(np.array([one.lower for one in parameters]))
         self.upper = self.scaled(np.array([one.upper for one in parameters]))
-        weight = np.array([one.weight for one in parameters])
-        self.priors = np.diag(weight)[weight > 0.0]
-        self.latest: tuple[Vector, Vector] | None = None
-        #: Jacobian of the residuals, where it is from, the rows there, updates since differences
-        self.known, self.at, self.then = jacobian, None, np.empty(0)
-        self.updates = 0 if jacobian is None else 1
+        self.held = np.array([one.weight for one in parameters]) ** 2
+        self.at, self.now, self.cost = np.empty(0), np.empty(0), math.inf
+        #: Jacobian of the residuals, and updates of it since differences
+        self.known, self.updates = jacobian, 0 if jacobian is None else 1
 
     def scaled(self, values: Vector) -> Vector:
         """Parameters as counted in the search."""
-        return (values - self.origin) / self.size + _FIRST_REGION
+        return (values - self.origin) / self.size
 
     def values(self, scaled: Vector) -> Vector:
         """Parameters in SI."""
-        return self.origin + (scaled - _FIRST_REGION) * self.size
+        return self.origin + scaled * self.size
 
-    def residuals(self, scaled: Vector) -> Vector:
-        """Residuals (n,), those of the point before kept."""
-        if self.latest is None or not np.array_equal(scaled, self.latest[0]):
-            self.latest = scaled.copy(), self.residuals_of(self.values(scaled))
-        return self.latest[1]
-
-    def rows(self, scaled: Vector) -> Vector:
-        """Residuals, then what the priors add."""
-        return np.concatenate([self.residuals(scaled), self.priors @ (scaled - _FIRST_REGION)])
-
-    def jacobian(self, scaled: Vector) -> Matrix:
-        """Rows by parameters, at the last point that was accepted."""
-        now = self.rows(scaled)
-        if self.at is not None and not np.array_equal(scaled, self.at):
-            moved = scaled - self.at
-            promised = self.then + np.vstack([self.known, self.priors]) @ moved
-            before = self.then @ self.then
-            hoped = before - promised @ promised
-            if hoped > _LEAST_HOPED and before - now @ now < _LEAST_OF_PROMISE * hoped:
-                self.known = None
-            else:
-                change = (now - promised)[: len(self.known)]
-                self.known = self.known + np.outer(change, moved) / float(moved @ moved)
-                self.updates += 1
+    def begin(self, scaled: Vector) -> None:
+        """Go to where a search begins."""
+        self.at = np.clip(scaled, self.lower, self.upper)
+        self.now = self.residuals_of(self.values(self.at))
+        self.cost = self._cost(self.at, self.now)
         if self.known is None:
-            self.known, self.updates = self.differences(scaled), 0
-        self.at, self.then = scaled.copy(), now
-        return np.vstack([self.known, self.priors])
+            self.take_differences()
 
-    def differences(self, scaled: Vector) -> Matrix:
-        """Forward differences (n, p), in threads."""
-        now = self.residuals(scaled)
+    def _cost(self, scaled: Vector, residuals: Vector) -> float:
+        """Sum of squares of the residuals, and of what the priors add."""
+        return float(residuals @ residuals + self.held @ scaled**2)
+
+    def negligible(self) -> float:
+        """Fall of the sum of squares for which a further step does not pay."""
+        count = max(self.now.size, 1)
+        above = max(self.cost - count, 0.0)
+        return _SMALLEST_GAIN * self.cost / count + _SMALLEST_OF_MISFIT * above
+
+    @property
+    def normal(self) -> Matrix:
+        """Normal matrix (p, p), priors counted."""
+        return self.known.T @ self.known + np.diag(self.held)
+
+    def step(self, region: float) -> tuple[Vector, float]:
+        """Best step within bounds and so many sizes by the Jacobian, and the fall it promises."""
+        normal = self.normal
+        gradient = self.known.T @ self.now + self.held * self.at
+        size, vectors = np.linalg.eigh(normal)
+        root = np.sqrt(np.maximum(size, _UNDETERMINED * size[-1] + 1e-300))
+        low = np.maximum(self.lower - self.at, -region)
+        high = np.minimum(self.upper - self.at, region)
+        found = scipy.optimize.lsq_linear(
+            root[:, None] * vectors.T,
+            -(vectors.T @ gradient) / root,
+            # rounding may leave a point on its bound a bit beyond it
+            (np.minimum(low, -_LEAST_ROOM), np.maximum(high, _LEAST_ROOM)),
+            method="bvls",
+        )
+        step = np.clip(found.x, np.minimum(low, 0.0), np.maximum(high, 0.0))
+        return step, -float(2.0 * gradient @ step + step @ normal @ step)
+
+    def tried(self, step: Vector, promised: float) -> float:
+        """Fall of the sum of squares by a step, which is taken if there is any."""
+        there = np.clip(self.at + step, self.lower, self.upper)
+        residuals = self.residuals_of(self.values(there))
+        cost = self._cost(there, residuals)
+        gained = self.cost - cost
+        if gained > 0.0:
+            moved, before = there - self.at, self.now
+            self.at, self.now, self.cost = there, residuals, cost
+            if promised > _LEAST_HOPED and gained < _LEAST_OF_PROMISE * promised:
+                self.take_differences()
+            else:
+                change = residuals - before - self.known @ moved
+                self.known = self.known + np.outer(change, moved / float(moved @ moved))
+                self.updates += 1
+        return gained
+
+    def take_differences(self) -> None:
+        """Make the Jacobian (n, p) anew by forward differences, in threads."""
+        coarse = self.coarse_of is not self.residuals_of
+        now = self.coarse_of(self.values(self.at)) if coarse else self.now
 
         def column(index: int) -> Vector:
-            moved = scaled.copy()
+            moved = self.at.copy()
             step = _STEP if moved[index] + _STEP <= self.upper[index] else -_STEP
             moved[index] += step
-            return (self.residuals_of(self.values(moved)) - now) / step
+            return (self.coarse_of(self.values(moved)) - now) / step
 
+        known = np.empty((now.size, self.at.size), order="F")
         with ThreadPoolExecutor(WORKERS) as pool:
-            return np.array(list(pool.map(column, range(scaled.size)))).T.reshape(now.size, -1)
-
-    def forget_jacobian(self) -> None:
-        """Have differences taken next, where the point does not change."""
-        self.known, self.at = None, None
+            for index, found in enumerate(pool.map(column, range(self.at.size))):
+                known[:, index] = found
+        self.known, self.updates = known, 0
 
 
 def fit(
@@ -245,19 +288,22 @@ def fit(
     residuals: Residuals,
     start: Vector,
     jacobian: Matrix | None = None,
+    coarse: Residuals | None = None,
 ) -> Fit:
     """Fit parameters to residuals that are scaled to a standard deviation of one.
 
     Residuals make (n,) of the values (p,) in SI, as the start is. The Jacobian (n, p), near the
-    start, per size of a parameter, is given where it is known.
+    start, per size of a parameter, is given where it is known. Coarse residuals differ from value
+    to value nearly as the residuals do, for less; finite differences are theirs.
     """
-    problem = _Scaled(parameters, residuals, jacobian)
-    scaled, most = _followed(problem, problem.scaled(start), _MOST_STEPS)
+    problem = _Scaled(parameters, residuals, coarse, jacobian)
+    problem.begin(problem.scaled(start))
+    most = _followed(problem, _MOST_STEPS, problem.negligible)
     while problem.updates > 1 and most > 0:
         # what no longer gains by a Jacobian brought up to date may by differences
-        problem.forget_jacobian()
-        scaled, most = _followed(problem, scaled, most)
-    return _fit_at(problem, parameters, scaled)
+        problem.take_differences()
+        most = _followed(problem, most, problem.negligible)
+    return _fit_at(problem, parameters)
 
 
 def rough_fit(
@@ -265,46 +311,53 @@ def rough_fit(
     residuals: Residuals,
     start: Vector,
     jacobian: Matrix | None = None,
+    coarse: Residuals | None = None,
 ) -> Fit:
     """Fit as `fit` does, as far as the Jacobian near the start leads when brought up to date.
 
     Near enough to rank candidates by, at a fraction of the simulations.
     """
-    problem = _Scaled(parameters, residuals, jacobian)
-    scaled, _ = _followed(problem, problem.scaled(start), _MOST_STEPS)
-    return _fit_at(problem, parameters, scaled)
+    problem = _Scaled(parameters, residuals, coarse, jacobian)
+    problem.begin(problem.scaled(start))
+    _followed(problem, _MOST_ROUGH_STEPS, lambda: _SMALLEST_OF_ROUGH * problem.cost)
+    return _fit_at(problem, parameters)
 
 
-def _followed(problem: _Scaled, scaled: Vector, most: int) -> tuple[Vector, int]:
-    """Where the trust region leads within so many steps, and how many are left."""
-    scaled = np.clip(scaled, problem.lower, problem.upper)
-    if not scaled.size:
-        return scaled, most
-    found = scipy.optimize.least_squares(
-        problem.rows,
-        scaled,
-        problem.jacobian,
-        bounds=(problem.lower, problem.upper),
-        # bounds as active sets: many effects start at a bound, zero
-        method="dogbox",
-        ftol=_SMALLEST_GAIN,
-        xtol=_SMALLEST_STEP,
-        gtol=None,
-        max_nfev=most + 1,
-    )
-    return found.x, most - (found.nfev - 1)
+def _followed(problem: _Scaled, most: int, negligible: Callable[[], float]) -> int:
+    """Follow the trust region for so many steps at the most, and return how many are left.
+
+    It ends where a step promises no more than what is negligible, or new differences do not help.
+    """
+    region, failed = _FIRST_REGION, 0
+    while most > 0 and problem.at.size:
+        step, promised = problem.step(region)
+        if promised <= negligible():
+            break
+        fresh = not problem.updates
+        gained = problem.tried(step, promised)
+        most -= 1
+        size = float(np.max(np.abs(step)))
+        failed = failed + 1 if gained <= 0.0 and fresh else 0
+        if size < _SMALLEST_STEP or failed == _MOST_FAILED:
+            break
+        if gained < _NARROWS * promised:
+            region = _NARROWER * size
+        elif gained > _WIDENS * promised and size > _AT_EDGE * region:
+            region *= _WIDER
+        if gained <= 0.0 and problem.updates:
+            problem.take_differences()
+    return most
 
 
-def _fit_at(problem: _Scaled, parameters: Sequence[Parameter], scaled: Vector) -> Fit:
+def _fit_at(problem: _Scaled, parameters: Sequence[Parameter]) -> Fit:
     """Fit with the covariance by the Jacobian that is known."""
-    rows = problem.jacobian(scaled)
-    inverse = np.linalg.pinv(rows.T @ rows, hermitian=True)
+    inverse = np.linalg.pinv(problem.normal, hermitian=True)
     return Fit(
         tuple(parameters),
-        problem.values(scaled),
+        problem.values(problem.at),
         inverse * np.outer(problem.size, problem.size),
         problem.known,
-        problem.residuals(scaled),
+        problem.now,
     )
 
 

@@ -1,14 +1,16 @@
 """Predictions of a case for every run, each made once."""
 
 from collections import OrderedDict
+from collections.abc import Mapping
 from threading import Lock
+from typing import Any
 
 from chatter.description.case import Case
 from chatter.explain.kinds.kind import Kind, Signals
 from chatter.explain.measurement import Run
 
-#: memory of the predictions kept, bytes: a few dozen of a measurement of some megabytes
-_MOST_BYTES = 256_000_000
+#: memory of the predictions kept, bytes: two dozen of a measurement of some megabytes
+_MOST_BYTES = 96_000_000
 
 
 class Predictions:
@@ -21,9 +23,10 @@ class Predictions:
     def __init__(self, kind: Kind) -> None:
         self.kind = kind
         self.made = 0
-        self._kept: OrderedDict[tuple[Case, int], tuple[Run, Signals]] = OrderedDict()
+        self._kept: OrderedDict[tuple[str, int], tuple[Run, Signals]] = OrderedDict()
         self._bytes = 0
         self._lock = Lock()
+        self._coarse: dict[int, tuple[Run, Mapping[str, Any]]] = {}
 
     def of(self, case: Case, run: Run) -> Signals:
         """Predicted signals at the samples of a run, by a case without its overrides.
@@ -33,7 +36,7 @@ class Predictions:
         whole = run.whole or run
         own = whole.of(case)
         # a run with other weights is predicted alike
-        key = (own, id(whole.signals))
+        key = (own.content, id(whole.signals))
         with self._lock:
             kept = self._kept.get(key)
             if kept is not None:
@@ -45,7 +48,21 @@ class Predictions:
             return found
         return {channel: values[run.part] for channel, values in found.items()}
 
-    def _keep(self, key: tuple[Case, int], whole: Run, found: Signals) -> None:
+    def coarse(self, case: Case, run: Run) -> Run:
+        """Run as it is predicted at less cost, near enough for differences; itself where it is.
+
+        By a declared case, without the overrides of the run.
+        """
+        whole = run.whole or run
+        with self._lock:
+            known = self._coarse.get(id(whole.signals))
+        if known is None:
+            known = whole, self.kind.coarse(case, whole)
+            with self._lock:
+                self._coarse[id(whole.signals)] = known
+        return run.with_overrides(known[1]) if known[1] else run
+
+    def _keep(self, key: tuple[str, int], whole: Run, found: Signals) -> None:
         with self._lock:
             self.made += 1
             if key in self._kept:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -27,6 +27,8 @@ from dynamics.matrix_exponential import exact_step
 
 #: a run may be this long, in steps
 _MOST_STEPS = 2_000_000_000
+#: filters of resonances kept: a search asks for the same ones of every run
+_FILTERS_KEPT = 1024
 
 
 @takes_case_or_path
@@ -158,6 +160,18 @@ def through_resonance(
     Natural frequency, Hz, damping D and step, s; the sensor is at rest before. Exact for a force
     that varies linearly from row to row.
     """
+    # slow to import, and few cases have a dynamometer
+    from scipy.signal import lfilter
+
+    numerator, denominator = _resonance_filter(frequency, damping, step)
+    return lfilter(numerator, denominator, force, axis=0)
+
+
+@lru_cache(_FILTERS_KEPT)
+def _resonance_filter(
+    frequency: float, damping: float, step: float
+) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Numerator and denominator of the z transfer of a resonance."""
     omega = 2.0 * math.pi * frequency
     matrix = omega * np.array([[0.0, 1.0], [-1.0, -2.0 * damping]])
     transition, held, ramp = exact_step(matrix, np.array([[0.0], [omega]]), step)
@@ -167,11 +181,8 @@ def through_resonance(
     ahead, behind = ramp, held - ramp
     first = [0.0, ahead[0], transition[0, 1] * ahead[1] - transition[1, 1] * ahead[0]]
     last = [0.0, behind[0], transition[0, 1] * behind[1] - transition[1, 1] * behind[0]]
-    numerator = np.array([first[1], first[2] + last[1], last[2]])
-    # slow to import, and few cases have a dynamometer
-    from scipy.signal import lfilter
-
-    return lfilter(numerator, [1.0, -trace, determinant], force, axis=0)
+    numerator = (first[1], first[2] + last[1], last[2])
+    return numerator, (1.0, -trace, determinant)
 
 
 #: port of the rotation of the tool

@@ -86,7 +86,7 @@ def fingerprint(model: Model) -> str:
     parts = [model] if machine_of(model) in (None, model) else [model, machine_of(model)]
     for part in parts:
         # the folder of compiled code is named by a hash of all sources
-        digest.update(f"{CACHE_FOLDER.name} {type(part).__name__} {part._content()}".encode())
+        digest.update(f"{CACHE_FOLDER.name} {type(part).__name__} {part.content}".encode())
         for path in sorted(_files(part.model_dump(mode="python"))):
             digest.update(path.read_bytes() if path.is_file() else b"")
     return digest.hexdigest()

@@ -10,6 +10,7 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,8 @@ _POINTS = 600
 _LEAST_ARC = 1e-6
 #: slices that only rounding asks for
 _ROUNDING = 1e-9
+#: heights kept: one geometry a run of a few dozen, before and after a change
+_KEPT = 128
 #: an edge that is engaged over less than this share of the depth is not
 _LEAST_SHARE = 1e-9
 
@@ -85,6 +88,19 @@ def slice_bounds(
     (L + 1,) array of float
         Rising from 0 to the depth, m; what lies lower than the engaged part is one slice.
     """
+    return _slice_bounds(cutter, depth, band, limits, count, tuple(borders)).copy()
+
+
+@lru_cache(_KEPT)
+def _slice_bounds(
+    cutter: Cutter,
+    depth: float,
+    band: UncutBand | None,
+    limits: SliceLimits,
+    count: int | None,
+    borders: tuple[float, ...],
+) -> NDArray[np.float64]:
+    """Heights of `slice_bounds`, which a fit of forces asks for again and again."""
     knots = _knots(cutter, depth, band, borders)
     parts = [_Part(cutter, low, high, band, limits) for low, high in itertools.pairwise(knots)]
     needed = np.array([part.slices for part in parts])

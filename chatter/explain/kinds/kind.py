@@ -145,9 +145,13 @@ class Kind(ABC):
         del measurement
         return False
 
-    def screening(self, measurement: Measurement) -> Measurement:
-        """Return the measurement as predicted to rank candidates by; unchanged by default."""
-        return measurement
+    def coarse(self, case: Case, run: Run) -> Mapping[str, Any]:
+        """Overrides of a run by which it costs less to predict, near enough for differences.
+
+        None by default. The case is the declared one.
+        """
+        del case, run
+        return {}
 
     def reweighted(self, measurement: Measurement, case: Case) -> Measurement:
         """Return the measurement with weights by a case that was found; unchanged by default."""

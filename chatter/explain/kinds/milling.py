@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -37,6 +38,8 @@ from chatter.simulation.setup import set_up
 
 _FORCES = ("Fx", "Fy", "Fz")
 _DISPLACEMENTS = ("x", "y", "z")
+#: steps over those of predictions that are near enough for differences: two percent of a difference
+_COARSER = 4
 #: steps of the clock that no record of a cut has, s
 _LONGEST_STEP = 0.02
 #: conditions of a cut that a discriminating test may change: unit, reported over SI
@@ -114,17 +117,14 @@ class Milling(Kind):
         """Return the measurement whose runs, where they are few, are judged in parts."""
         return measurement.in_parts()
 
-    def screening(self, measurement: Measurement) -> Measurement:
-        """Return the measurement with half the steps: 0.2 to 0.6 % of the signals less accurate."""
-        case, runs = measurement.case, []
+    def coarse(self, case: Case, run: Run) -> Mapping[str, Any]:
+        """A quarter of the steps."""
         given = case.simulation is not None and case.simulation.steps
         machine = case.structure is not None and case.structure.machine is not None
         if given or machine:
-            return measurement
-        for run in measurement.runs:
-            steps = set_up(run.of(case)).resolution.steps_per_revolution
-            runs.append(run.with_overrides({"simulation.steps": steps // 2}))
-        return measurement.with_runs(runs)
+            return {}
+        steps = set_up(run.of(case)).resolution.steps_per_revolution
+        return {"simulation.steps": steps // _COARSER}
 
     def predict(self, case: Case, run: Run) -> Signals:
         """Simulated signals at the samples of a run."""

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import chain
+from typing import Any
 
 import numpy as np
 
@@ -89,9 +90,9 @@ class SetUp(Kind):
             for name in measurement.kinds
         )
 
-    def screening(self, measurement: Measurement) -> Measurement:
-        """Return the measurement as its kinds predict it to rank candidates by."""
-        return self._by_kind(measurement, lambda kind, part: kind.screening(part))
+    def coarse(self, case: Case, run: Run) -> Mapping[str, Any]:
+        """Overrides by which a run costs its kind less to predict."""
+        return self._of(run).coarse(case, run)
 
     def reweighted(self, measurement: Measurement, case: Case) -> Measurement:
         """Return the measurement with the weights of its kinds by a case that was found."""

@@ -16,7 +16,7 @@ from chatter.explain.records.description import (
     SPINDLE_POWER,
     VELOCITY,
 )
-from chatter.explain.records.simulated import simulated
+from chatter.explain.records.simulated import over_revolutions, simulated
 from chatter.explain.records.slow_channels import over_revolution
 from chatter.simulation.result import SimulationResult
 from chatter.simulation.simulate import MachineResult
@@ -31,7 +31,7 @@ def from_rest(case: Case, run: Run) -> dict[str, Array]:
     """Signals of a case with the overrides of the run, at the samples of the run."""
     at = run.signals["time"] - run.signals["time"][0]
     revolutions = float(at[-1]) * case.cut.spindle_speed / (2.0 * math.pi) + _BEYOND
-    result = simulated(case.patch({"simulation.revolutions": revolutions}))
+    result = simulated(over_revolutions(case, revolutions))
     components = {**_ALWAYS, **{k: v for k, v in USUAL.items() if k in run.signals}}
     components |= run.components
     speed = case.cut.spindle_speed

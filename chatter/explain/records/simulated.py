@@ -4,12 +4,23 @@ from dataclasses import replace
 from functools import lru_cache
 
 from chatter.description.case import Case
+from chatter.description.sections.process import Simulation
 from chatter.simulation.result import SimulationResult
 from chatter.simulation.setup import set_up
 from chatter.simulation.simulate import as_measured, run_setup
 
 #: cuts kept: a few runs before and after a change of their sensor, some megabytes each
 _KEPT = 16
+
+
+def over_revolutions(case: Case, revolutions: float) -> Case:
+    """Return a case that is simulated over so many revolutions.
+
+    Its other values stay, so that none of them needs to be checked again.
+    """
+    settings = case.simulation or Simulation()
+    settings = settings.model_copy(update={"revolutions": revolutions, "duration": None})
+    return case.model_copy(update={"simulation": settings})
 
 
 def simulated(case: Case) -> SimulationResult:

@@ -10,7 +10,7 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.explain.records.case_axes import Component
 from chatter.explain.records.description import ACCELERATION, FORCE, VELOCITY
-from chatter.explain.records.simulated import simulated
+from chatter.explain.records.simulated import over_revolutions, simulated
 from chatter.simulation.setup import delayed
 
 Array = NDArray[np.float64]
@@ -85,7 +85,7 @@ def _revolutions(case: Case, count: int) -> Array:
             "the middle of a cut, is judged by the revolution that repeats; with a varying speed "
             'none does: give the angle as a column and begins = "rest"'
         )
-    case = case.patch({"simulation.revolutions": float(count)})
+    case = over_revolutions(case, float(count))
     result = simulated(case if case.stock is None else delayed(case))
     if not result.complete:
         raise RunError(f"{case.name}: the tool is displaced too far for a cut")

@@ -24,7 +24,7 @@ from chatter.explain.selection.joint_steps import JointStep, joint_steps
 from chatter.explain.selection.linearised_step import LinearisedStep, linearised
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.significance import is_significant
-from chatter.explain.selection.split import Split, split_runs
+from chatter.explain.selection.split import Split
 
 Progress = Callable[[str, float], None]
 
@@ -67,36 +67,27 @@ def stage_of(problem: Problem, now: Fit, split: Split, progress: Progress, numbe
     """Try every effect beside those of a problem; `number` is that of the stage, for progress."""
     added = {effect.name for effect in problem.effects}
     effects = [one for one in candidates(problem.measurement) if one.name not in added]
-    screened, base, runs = _screening(problem, now, split)
+    screened, runs = problem.screened(now, split.fitted)
     steps: list[tuple[Effect, LinearisedStep]] = []
     for index, effect in enumerate(effects):
         share = _LINEARISED_SHARE * index / len(effects)
         progress(f"looking at {effect.name}", (number + share) / (MOST_EFFECTS + 1))
-        steps.append((effect, linearised(screened, effect, base, runs)))
+        steps.append((effect, linearised(screened, effect, now, runs)))
     chosen = _chosen(problem, steps)
-    hopeful = [entry for entry in chosen if _may_be_significant(problem, entry[1], base)]
+    hopeful = [entry for entry in chosen if _may_be_significant(problem, entry[1], now)]
     # one at the least, so that the report can say how far nothing helps
     chosen = hopeful or chosen[:1]
     tried = []
     for index, (effect, step) in enumerate(chosen):
         share = _LINEARISED_SHARE + (1.0 - _LINEARISED_SHARE) * index / len(chosen)
         progress(f"fitting {effect.name}", (number + share) / (MOST_EFFECTS + 1))
-        tried.append(_roughly_fitted(problem, effect, split, step))
+        tried.append(_roughly_fitted(screened, runs, problem, effect, split, step))
     found = stage_with(problem, now, split, _finished(problem, now, split, tried))
     if problem.effects:
         return found
     fixed, share = problem.kind.least_gain
-    least = PROMISING * (fixed + share * base.residuals.size)
-    return replace(found, together=tuple(joint_steps(base, steps, least)))
-
-
-def _screening(problem: Problem, now: Fit, split: Split) -> tuple[Problem, Fit, tuple[Run, ...]]:
-    """Problem, fit and runs for fitting as predicted to rank candidates by."""
-    measurement = problem.kind.screening(problem.measurement)
-    if measurement is problem.measurement:
-        return problem, now, split.fitted
-    screened, runs = replace(problem, measurement=measurement), split_runs(measurement.runs).fitted
-    return screened, replace(now, residuals=screened.residuals(now.by_name, runs)), runs
+    least = PROMISING * (fixed + share * now.residuals.size)
+    return replace(found, together=tuple(joint_steps(now, steps, least)))
 
 
 def _finished(
@@ -115,11 +106,17 @@ def _finished(
 
 
 def _roughly_fitted(
-    problem: Problem, effect: Effect, split: Split, step: LinearisedStep
+    screened: Problem,
+    runs: Sequence[Run],
+    problem: Problem,
+    effect: Effect,
+    split: Split,
+    step: LinearisedStep,
 ) -> Candidate:
-    """Fit a problem with an effect added, near enough to rank it."""
+    """Fit a problem with an effect added, near enough to rank it, as it was screened."""
+    found = screened.with_effect(effect).rough_fit(runs, step.values, step.jacobian)
     trial = problem.with_effect(effect)
-    return _candidate(trial, trial.rough_fit(split.fitted, step.values, step.jacobian), split)
+    return _candidate(trial, trial.judged(found, split.fitted), split)
 
 
 def stage_with(problem: Problem, now: Fit, split: Split, tried: Sequence[Candidate]) -> Stage:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from chatter.description.case import Case
 from chatter.description.errors import InputError, RunError
 from chatter.explain.criteria import IMPOSSIBLE
 from chatter.explain.effects.effect import Effect
-from chatter.explain.fitting import Fit, Parameter, fit, rough_fit
+from chatter.explain.fitting import Fit, Parameter, Residuals, fit, rough_fit
 from chatter.explain.kinds.kind import Kind, Noise, Signals
 from chatter.explain.measurement import Measurement, Run
 from chatter.explain.prediction import Predictions
@@ -27,6 +27,8 @@ class Problem:
     predictions: Predictions
     noise: Noise  # run -> channel -> standard deviation, SI
     effects: tuple[Effect, ...] = ()
+    #: run -> scaled residuals that coarse predictions of it lack
+    correction: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
 
     @property
     def kind(self) -> Kind:
@@ -101,10 +103,29 @@ class Problem:
         for run in runs:
             try:
                 predicted = self.predictions.of(case, run)
-                parts.append(self.kind.residuals(run, predicted, self.noise[run.name]))
+                residuals = self.kind.residuals(run, predicted, self.noise[run.name])
+                parts.append(residuals + self.correction.get(run.name, 0.0))
             except (RunError, InputError):
                 parts.append(np.full(self.count([run]), IMPOSSIBLE))
         return np.concatenate(parts)
+
+    def coarse(self, runs: Sequence[Run]) -> list[Run]:
+        """Runs as they are predicted where differences between predictions are asked for."""
+        return [self.predictions.coarse(self.measurement.case, run) for run in runs]
+
+    def screened(self, now: Fit, runs: Sequence[Run]) -> tuple[Problem, tuple[Run, ...]]:
+        """Problem and runs that are predicted coarsely, exact at a fit to these runs.
+
+        What coarse predictions lack there they nearly lack near it too.
+        """
+        coarse = tuple(self.coarse(runs))
+        if all(one is run for one, run in zip(coarse, runs, strict=True)):
+            return self, coarse
+        lacking = now.residuals - self.residuals(now.by_name, coarse)
+        ends = np.cumsum([self.count([run]) for run in coarse])
+        parts = np.split(lacking, ends[:-1])
+        names = [run.name for run in coarse]
+        return replace(self, correction=dict(zip(names, parts, strict=True))), coarse
 
     def cost(self, values: Mapping[str, float], runs: Sequence[Run]) -> float:
         """Sum of squares of the residuals of runs."""
@@ -134,6 +155,10 @@ class Problem:
         """Fit everything to runs near enough to rank candidates by."""
         return self._fit_by(rough_fit, runs, start, jacobian)
 
+    def judged(self, found: Fit, runs: Sequence[Run]) -> Fit:
+        """Return a fit to coarse predictions with the residuals of the predictions themselves."""
+        return replace(found, residuals=self.residuals(found.by_name, runs))
+
     def _fit_by(
         self,
         method: Callable[..., Fit],
@@ -145,7 +170,12 @@ class Problem:
         names = [one.name for one in parameters]
         begin = np.array([start.get(one.name, one.start) for one in parameters])
 
-        def residuals(values: NDArray[np.float64]) -> NDArray[np.float64]:
-            return self.residuals(dict(zip(names, values, strict=True)), runs)
+        def residuals_of(chosen: Sequence[Run]) -> Residuals:
+            def residuals(values: NDArray[np.float64]) -> NDArray[np.float64]:
+                return self.residuals(dict(zip(names, values, strict=True)), chosen)
 
-        return method(parameters, residuals, begin, jacobian)
+            return residuals
+
+        return method(
+            parameters, residuals_of(runs), begin, jacobian, residuals_of(self.coarse(runs))
+        )
