@@ -374,7 +374,8 @@ def explain(stored: StoredCase) -> Readings:
                 float(one["value"]), one["unit"], 1e-3, 1e-2 * width
             )
     for name in ("declared", "before", "after", "holdout_before", "holdout_after", "noise_floor"):
-        found[f"error {name.replace('_', ' ')}"] = Reading(_or_nan(error.get(name)), "", 1e-3)
+        value = _or_nan(error.get(name))
+        found[f"error {name.replace('_', ' ')}"] = Reading(value, "", stored.rtol or 1e-3)
     return found
 
 

@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 #: of a finite difference, in units of a parameter's size
 _DIFFERENCE = 2e-3
 #: fall of the cost, as the linear predictions promise it, that ends a fit
-_SMALLEST_GAIN = 0.1
+_SMALLEST_GAIN = 1e-3
 #: predictions at the most, without those of finite differences
 MOST_STEPS = 24
 #: trust region in sizes: at first, least, its factors, and shares of the promised fall for them
