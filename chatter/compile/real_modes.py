@@ -1,8 +1,8 @@
 """Real modes of a linearised machine, fitted to its receptance at the tool point.
 
 The receptance is computed, not measured: there is no noise to be told from modes, and one mode
-after the other is added where the misfit is largest until none is left that matters. Loops and
-dampers make the motions of a machine complex; real modes that are close to one another make up
+after the other is added where it takes most off the misfit until none is left that matters. Loops
+and dampers make the motions of a machine complex; real modes that are close to one another make up
 for that as far as they can.
 """
 
@@ -10,26 +10,36 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
+from chatter.compile.least_squares_modes import ModeBounds, WantedReceptance, best_further, refined
 from dynamics.modal.modes import Mode, receptance_matrix
 
 #: misfit, over the receptance at the same line, that is left; what lies below the floor, a share
 #: of the largest receptance, counts less
 _LEFT, _FLOOR = 2e-3, 0.3
-_MOST_FURTHER = 6
+#: weight of the power that a loop feeds in: no damped mode has it, and none is to be bent for it
+_FED_IN = 3.0
+_MOST_FURTHER = 8
 _EVEN_LINES = 150
 _FIRST_DAMPING = 0.05
-#: damping ratios, least and largest; the methods take modes that vibrate
-_DAMPINGS = 1e-4, 0.95
+#: damping ratios, least and largest, of modes at first, of further ones and of those above the
+#: band; the methods take modes that vibrate. Lines lie dense around the first ones alone: what is
+#: narrower than their distance elsewhere, or above them all, would be a resonance that nobody sees
+_DAMPINGS, _OF_FURTHER, _OF_ABOVE = (1e-4, 0.95), (0.025, 0.95), (0.3, 0.95)
+#: least natural frequency, over the first line
+_LOWEST = 0.5
+#: damping ratios tried of further modes, every so many lines, and frequencies below the band, over
+#: its first line
+_DAMPINGS_TRIED, _LINES_TRIED = (0.03, 0.1, 0.3, 0.9), 4
+_BELOW_TRIED = (0.55, 0.7, 0.85)
 #: modes that stand for all above the band lie at this multiple of its end
 _ABOVE = 2.5
-#: improvement of the sum of squares by a further mode below which it was the last
-_NO_BETTER = 0.9
-#: elements of a symmetric matrix, and their weights in its norm
-_FIRST, _SECOND = np.triu_indices(3)
-_WEIGHT = np.where(_FIRST == _SECOND, 1.0, math.sqrt(2.0))
+#: share of the sum of squares that a further mode has to take off; so many in succession that do
+#: not end the search
+_GAIN, _PATIENCE = 0.03, 2
+#: iterations and least gain while modes are added, and at the end
+_COARSE, _FINE = (60, 1e-3), (200, 1e-5)
 
 
 def real_modes(
@@ -41,25 +51,57 @@ def real_modes(
     part is fitted, from a first guess. The last modes may lie above the band and stand for what is
     there.
     """
+    values = 0.5 * (receptance + receptance.transpose(0, 2, 1))
     omega = 2.0 * np.pi * np.asarray(frequency, dtype=np.float64)
-    wanted = 0.5 * (receptance + receptance.transpose(0, 2, 1))
-    size = np.linalg.norm(wanted, axis=(1, 2))
-    weight = 1.0 / (size + _FLOOR * size.max())
-    table = np.vstack([*(_row(mode) for mode in start), *_beyond(omega[-1], wanted[-1])])
-    table, misfit = _refined(table, omega, wanted, weight)
-    for _ in range(_MOST_FURTHER):
-        residual = wanted - _response(table, omega)
-        error = np.linalg.norm(residual, axis=(1, 2)) * weight
-        worst = int(np.argmax(error))
-        if error[worst] < _LEFT:
-            break
-        further, better = _refined(
-            np.vstack([table, _guess(omega[worst], residual[worst])]), omega, wanted, weight
-        )
-        if better > _NO_BETTER * misfit:
-            break
-        table, misfit = further, better
+    wanted = WantedReceptance(omega, values, _weight(values))
+    band, above = (_LOWEST * omega[0], omega[-1]), (omega[-1], 2.0 * _ABOVE * omega[-1])
+    table = np.vstack([*_beyond(omega[-1], values[-1]), *(_row(mode) for mode in start)])
+    bounds = ModeBounds.of(3, above, _OF_ABOVE).with_further(
+        ModeBounds.of(len(start), band, _DAMPINGS)
+    )
+    further = ModeBounds.of(1, band, _OF_FURTHER)
+    table, bounds = _with_further(table, bounds, further, wanted)
+    table, _ = refined(table, bounds, wanted, *_FINE)
+    # those that stand for what is above the band come last
+    table = np.roll(table, -3, axis=0)
     return tuple(_mode(row) for row in table if np.linalg.norm(row[2:]) > 0.0)
+
+
+def _weight(values: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """Weight (m,) of each line."""
+    size = np.linalg.norm(values, axis=(1, 2))
+    fed_in = np.maximum(-np.linalg.eigvalsh(-values.imag)[:, 0], 0.0)
+    return 1.0 / (size + _FLOOR * size.max() + _FED_IN * fed_in)
+
+
+def _with_further(
+    table: NDArray[np.float64], bounds: ModeBounds, of_further: ModeBounds, wanted: WantedReceptance
+) -> tuple[NDArray[np.float64], ModeBounds]:
+    """Table with the further modes that matter, and its bounds."""
+    table, misfit = refined(table, bounds, wanted, *_COARSE)
+    best, least, in_vain = (table, bounds), misfit, 0
+    candidates = _candidates(wanted.omega)
+    for _ in range(_MOST_FURTHER):
+        residual = wanted.residual(table)
+        if np.max(np.linalg.norm(residual, axis=(1, 2)) * wanted.weight) < _LEFT:
+            return table, bounds
+        further = best_further(wanted, residual, candidates)
+        bounds = bounds.with_further(of_further)
+        table, misfit = refined(np.vstack([table, further]), bounds, wanted, *_COARSE)
+        if misfit < (1.0 - _GAIN) ** (in_vain + 1) * least:
+            best, least, in_vain = (table, bounds), misfit, 0
+            continue
+        in_vain += 1
+        if in_vain == _PATIENCE:
+            break
+    return best
+
+
+def _candidates(omega: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Natural frequencies and damping ratios (k, 2) of a further mode."""
+    natural = np.concatenate([np.array(_BELOW_TRIED) * omega[0], omega[::_LINES_TRIED]])
+    grid = np.meshgrid(natural, _DAMPINGS_TRIED, indexing="ij")
+    return np.stack(grid, axis=-1).reshape(-1, 2)
 
 
 def lines_around(modes: Sequence[Mode], lowest: float, highest: float) -> NDArray[np.float64]:
@@ -102,84 +144,3 @@ def _beyond(highest: float, last: NDArray[np.complex128]) -> NDArray[np.float64]
     rows[:, 0], rows[:, 1] = math.log(natural), math.log(_FIRST_DAMPING)
     rows[:, 2:] = np.diag(size)
     return rows
-
-
-def _guess(omega: float, residual: NDArray[np.complex128]) -> NDArray[np.float64]:
-    """Mode at a line, along what is missing most there."""
-    values, vectors = np.linalg.eigh(-residual.imag)
-    size = omega * math.sqrt(2.0 * _FIRST_DAMPING * max(values[-1], 1e-3 * abs(values).max()))
-    return np.array([math.log(omega), math.log(_FIRST_DAMPING), *(size * vectors[:, -1])])
-
-
-def _oscillators(table: NDArray[np.float64], omega: NDArray[np.float64]) -> NDArray[np.complex128]:
-    """Response (m, n) of each oscillator of unit mass."""
-    natural, damping = np.exp(table[:, 0]), np.exp(table[:, 1])
-    line = omega[:, None]
-    return 1.0 / (natural**2 - line**2 + 2j * damping * natural * line)
-
-
-def _response(table: NDArray[np.float64], omega: NDArray[np.float64]) -> NDArray[np.complex128]:
-    shape = table[:, 2:]
-    return np.einsum("mn,ni,nj->mij", _oscillators(table, omega), shape, shape)
-
-
-def _refined(
-    table: NDArray[np.float64],
-    omega: NDArray[np.float64],
-    wanted: NDArray[np.complex128],
-    weight: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], float]:
-    """Table of modes of the least weighted squares near a first one, and that sum."""
-    # directions in the units of a mode that makes up all of the largest receptance
-    unit = np.exp(table[:, 0]) * math.sqrt(np.abs(wanted).max())
-    scale = np.column_stack([np.ones_like(unit), np.ones_like(unit), *[unit * 0.1] * 3])
-    aim = _flat(wanted, weight)
-
-    def misfit(x: NDArray[np.float64]) -> NDArray[np.float64]:
-        return _flat(_response(x.reshape(-1, 5) * scale, omega), weight) - aim
-
-    def slope(x: NDArray[np.float64]) -> NDArray[np.float64]:
-        return _slopes(x.reshape(-1, 5) * scale, omega, weight) * scale.ravel()
-
-    least, most = np.full(table.shape, -np.inf), np.full(table.shape, np.inf)
-    least[:, 0], most[:, 0] = math.log(0.5 * omega[0]), math.log(2.0 * _ABOVE * omega[-1])
-    least[:, 1], most[:, 1] = map(math.log, _DAMPINGS)
-    bounds = ((least / scale).ravel(), (most / scale).ravel())
-    inside = np.clip((table / scale).ravel(), bounds[0] + 1e-9, bounds[1] - 1e-9)
-    found = scipy.optimize.least_squares(
-        misfit, inside, slope, bounds, max_nfev=60, xtol=1e-6, ftol=1e-5
-    )
-    return found.x.reshape(-1, 5) * scale, 2.0 * float(found.cost)
-
-
-def _flat(values: NDArray[np.complex128], weight: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Independent elements as reals, weighted."""
-    elements = values[:, _FIRST, _SECOND] * (weight[:, None] * _WEIGHT)
-    return np.concatenate([elements.real.ravel(), elements.imag.ravel()])
-
-
-def _slopes(
-    table: NDArray[np.float64], omega: NDArray[np.float64], weight: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Slopes of the flat response by all entries of a table."""
-    oscillators = _oscillators(table, omega)
-    natural, damping = np.exp(table[:, 0]), np.exp(table[:, 1])
-    # by the logarithms of natural frequency and damping ratio
-    loss = 2j * damping * natural * omega[:, None]
-    by_frequency = -(oscillators**2) * (2.0 * natural**2 + loss)
-    by_damping = -(oscillators**2) * loss
-    columns = []
-    for k, row in enumerate(table):
-        shape = row[2:]
-        pair = shape[_FIRST] * shape[_SECOND]
-        ways = [by_frequency[:, k, None] * pair, by_damping[:, k, None] * pair]
-        for axis in range(3):
-            unit = np.eye(3)[axis]
-            ways.append(
-                oscillators[:, k, None]
-                * (unit[_FIRST] * shape[_SECOND] + shape[_FIRST] * unit[_SECOND])
-            )
-        for way in ways:
-            scaled = way * (weight[:, None] * _WEIGHT)
-            columns.append(np.concatenate([scaled.real.ravel(), scaled.imag.ravel()]))
-    return np.array(columns).T

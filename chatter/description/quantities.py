@@ -131,7 +131,12 @@ class EitherQuantityField(QuantityField):
 
     def matching(self, text: str) -> QuantityField:
         """Field for another value of the same dimension as a text."""
-        for dimension in (self.dimension, *self.others):
+        dimensions = (self.dimension, *self.others)
+        # the units library, slow to load, is asked last
+        for dimension in dimensions:
+            if units.known_by_heart(text, dimension):
+                return self.of(dimension)
+        for dimension in dimensions:
             try:
                 units.parse(text, dimension)
             except units.QuantityError:

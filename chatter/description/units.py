@@ -177,10 +177,23 @@ def unit_factor(unit: str, dimension: str) -> float:
     As in ``"N*s/m"``, empty for a bare number, for a key of `DIMENSIONS`. QuantityError if the unit
     is unknown or of another dimension; the message does not name the value.
     """
-    if not unit or unit == DIMENSIONS[dimension].unit:
+    if not unit:
         return 1.0
-    known = SI_VALUE.get(dimension, {}).get(unit)
+    known = _by_heart(unit, dimension)
     return asked_of_library(unit, dimension) if known is None else known
+
+
+def _by_heart(unit: str, dimension: str) -> float | None:
+    """SI value of one unit where the units library need not be asked."""
+    if unit == DIMENSIONS[dimension].unit:
+        return 1.0
+    return SI_VALUE.get(dimension, {}).get(unit)
+
+
+def known_by_heart(text: str, dimension: str) -> bool:
+    """Whether a text has a unit that is known to be of a dimension without the units library."""
+    match = _QUANTITY.match(text) if len(text) <= _LONGEST_TEXT else None
+    return bool(match and match["unit"]) and _by_heart(match["unit"], dimension) is not None
 
 
 def asked_of_library(unit: str, dimension: str) -> float:
