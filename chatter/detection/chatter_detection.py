@@ -163,7 +163,10 @@ def detect_chatter(record: CutRecord) -> Detection:
             motion = _motion(cut_into_periods(record, record.teeth), deviations.noise, 0.0)
         elif doubling.is_there:
             confidence = min(confidence, 0.6)
-            reason += "; every second tooth is alike, by runout or by a flip that grew at once"
+            reason += (
+                "; every second tooth is alike, by the tool (runout, unlike flutes) or by a flip "
+                "that grew at once"
+            )
     elif verdict == "chatter":
         motion = _motion(periods, deviations.noise, max(trend.slope, 0.0))
         could_be_flip = motion.bifurcation == "hopf" and per_revolution == 1
