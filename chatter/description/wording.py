@@ -119,9 +119,24 @@ def _missing(model: type[BaseModel], steps: tuple[Step, ...]) -> str:
     return _IS_MISSING
 
 
+#: other words of the shop for kinds of tools and of milling -> that of a case file
+_SHOP_WORDS = {
+    "endmill": "end mill", "square": "end mill", "flat": "end mill",
+    "ball end": "ball", "ball nose": "ball", "ball mill": "ball", "ball end mill": "ball",
+    "bullnose": "bull nose", "torus": "bull nose", "toroidal": "bull nose", "corner": "bull nose",
+    "tapered": "taper", "cone": "taper", "conical": "taper",
+    "face mill": "inserted", "facemill": "inserted", "indexable": "inserted",
+    "shoulder mill": "inserted",
+    "climb": "down", "conventional": "up", "slotting": "slot", "face milling": "face",
+    "facing": "face",
+}  # fmt: skip
+
+
 def _not_allowed(item: Any) -> str:
-    allowed = item["ctx"]["expected"].replace("'", '"')
-    return f"{formatted(item['input'])} is not allowed; allowed are {allowed}"
+    allowed, given = item["ctx"]["expected"].replace("'", '"'), item["input"]
+    word = _SHOP_WORDS.get(given.lower()) if isinstance(given, str) else None
+    here = f'it is "{word}" here; ' if word and f'"{word}"' in allowed else ""
+    return f"{formatted(given)} is not allowed; {here}allowed are {allowed}"
 
 
 def key_problems(

@@ -129,8 +129,9 @@ def test_the_good_case_is_good():
         ("[lobes]", "[simulation]\nduration = 1\nrevolutions = 3\n[lobes]", "simulation: give duration or revolutions, not both"),
         ("[lobes]", '[friction.guide]\nlaw = "coulomb-stribeck"\ncoulomb = 1\nbristle_stiffness = 3\n[lobes]', 'friction.guide.bristle_stiffness: does not belong to law = "coulomb-stribeck"; known are coulomb, static, stribeck_velocity, viscous, stribeck_shape'),
         # choices
-        ('"end mill"', '"endmill"', 'tool.kind: "endmill" is not allowed; allowed are "end mill", "ball", "bull nose", "taper" or "inserted"'),
-        ('mode = "up"', 'mode = "climb"', 'cut.mode: "climb" is not allowed; allowed are "up", "down", "slot" or "face"'),
+        ('"end mill"', '"endmill"', 'tool.kind: "endmill" is not allowed; it is "end mill" here; allowed are "end mill", "ball", "bull nose", "taper" or "inserted"'),
+        ('"end mill"', '"Face mill"', 'tool.kind: "Face mill" is not allowed; it is "inserted" here; allowed are "end mill", "ball", "bull nose", "taper" or "inserted"'),
+        ('mode = "up"', 'mode = "climb"', 'cut.mode: "climb" is not allowed; it is "down" here; allowed are "up", "down", "slot" or "face"'),
         # types
         ('title = "good"', "title = 3", "title: 3 is given, text in quotes is required"),
         ('{ to = "5 mm", count = 20 }', '"5 mm"', 'lobes.depths: "5 mm" is given, a table is required'),
