@@ -29,6 +29,8 @@ _SHOWN_TURNS = 3.0
 #: feed shown of a profile, in revolutions
 _PROFILE_TURNS = 12.0
 _TITLE_WIDTH = 140
+#: range of a surface that is drawn at least, um
+_LEAST_SHOWN = 1e-3
 #: parts of a programmed path that are coloured
 _PARTS_OF_PATH = 1500
 #: a component smaller than this share of the largest is left out
@@ -305,8 +307,8 @@ def draw_wall(axes: Axes, result: SimulationResult) -> None:
     wall = walls[0].profiles
     x, deviation = wall.x * 1e3, wall.deviation * 1e6
     low, high = np.percentile(deviation, [0.5, 99.5])
-    if high - low < 1e-6:
-        low, high = low - 0.5e-3, high + 0.5e-3
+    if high - low < 1e-3 * _LEAST_SHOWN:
+        low, high = low - 0.5 * _LEAST_SHOWN, high + 0.5 * _LEAST_SHOWN
     edges = (_edges(x), np.maximum(_edges(wall.height * 1e3), 0.0))
     image = axes.pcolormesh(*edges, deviation, cmap="cividis", vmin=low, vmax=high, rasterized=True)
     bar = axes.figure.colorbar(image, ax=axes, pad=0.02)
@@ -344,6 +346,8 @@ def draw_profiles(axes: Axes, result: SimulationResult) -> None:
     style.finish(axes)
     axes.margins(x=0.0)
     low, high = axes.get_ylim()
+    if high - low < _LEAST_SHOWN:
+        low, high = -0.5 * _LEAST_SHOWN, 0.5 * _LEAST_SHOWN
     axes.set_ylim(low, high + 0.22 * (high - low) * (len(axes.lines) + 0.5) / 2.0)
     axes.legend(loc="upper left", fontsize=8.0, framealpha=0.85)
 

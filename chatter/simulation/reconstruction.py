@@ -79,11 +79,14 @@ def surface_profiles(
     record = _record(result)
     if record is None:
         return [], None, ["surface: the run is too short for it to be evaluated"]
-    found = [
-        _wall(result, record, side) for side in case.uncut_band.walls(result.setup.cutter.radius)
-    ]
+    sides = case.uncut_band.walls(result.setup.cutter.radius)
+    found = [_wall(result, record, side) for side in sides]
     walls = [wall for wall in found if wall is not None]
-    notes = [] if walls else ["wall: the run is too short for it to be evaluated"]
+    notes = []
+    if not sides:
+        notes = ["wall: none is left, the tool overhangs the work on both sides"]
+    elif not walls:
+        notes = ["wall: the run is too short for it to be evaluated"]
     floor, reason = _floor(result, record)
     return walls, floor, notes + ([reason] if floor is None else [])
 

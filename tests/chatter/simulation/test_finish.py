@@ -143,6 +143,19 @@ def test_short_runs_say_so():
             assert any("too short" in note for note in finish.notes)
 
 
+def test_a_tool_that_overhangs_on_both_sides_leaves_no_wall():
+    wide = {"mode": "face", "workpiece_width": "16 mm", "radial_depth": None}
+    result = cut(MODES, cut=wide)
+    assert "wall: none is left, the tool overhangs the work on both sides" in result.finish.notes
+    assert not result.finish.walls
+    # a floor without marks is flat in the picture, not the rounding of its numbers
+    profiles = result.plot().axes[-1]
+    low, high = profiles.get_ylim()
+    assert high - low >= 1e-3
+    beside = cut(MODES, cut={**wide, "tool_offset": "6 mm"})
+    assert len(beside.finish.walls) == 1
+
+
 def test_carved_profiles_are_evaluated_alike():
     x = np.arange(4000) * 4e-6
     profile = 5e-6 + 1e-6 * np.sin(2.0 * math.pi * x / 0.1e-3)
