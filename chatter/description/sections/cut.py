@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from pydantic import Field, model_validator
 
-from chatter.description.quantities import Length, PositiveLength, quantity
+from chatter.description.quantities import PositiveLength, quantity
 from chatter.description.section import Section, raise_if_any
 from chatter.description.units import rpm
 
@@ -77,7 +77,7 @@ class Cut(Section):
     workpiece_width: PositiveLength | None = Field(
         None, description="across the feed, of a workpiece that the tool may overhang"
     )
-    tool_offset: Length | None = Field(
+    tool_offset: quantity("length") | None = Field(
         None, description="of the tool axis from the middle of the workpiece, towards +y"
     )
     entry_angle: quantity("angle", at_least=0.0, below=math.pi) | None = Field(

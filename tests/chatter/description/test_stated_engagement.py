@@ -8,6 +8,7 @@ import pytest
 import chatter
 from chatter.description.case import loads
 from chatter.description.errors import InputError
+from cutting.engagement.immersion import engagement
 from cutting.engagement.uncut_band import SLOT
 
 TEXT = """
@@ -212,3 +213,13 @@ def test_a_width_in_percent_of_the_diameter(key):
 def test_a_wrong_percentage(width, words):
     with pytest.raises(InputError, match=words):
         loads(SHARE.format(key="radial_depth", width=width))
+
+
+def test_an_offset_to_either_side_mirrors_the_engagement():
+    stated = 'workpiece_width = "60 mm"\ntool_offset = "{} mm"'
+    towards = loads(TEXT.format(engagement=stated.format(12))).uncut_band
+    away = loads(TEXT.format(engagement=stated.format(-12))).uncut_band
+    entry, leave = engagement(towards, 40e-3)
+    # the tool 12 mm towards +y: the work from -42 mm, beyond the tool, to 18 mm
+    assert (entry, leave) == pytest.approx((math.acos(18 / 40), math.pi))
+    assert engagement(away, 40e-3) == pytest.approx((0.0, math.pi - math.acos(18 / 40)))
