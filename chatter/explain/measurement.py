@@ -51,6 +51,11 @@ class Run:
         """Rms of a channel over the whole run, of which a part may be at rest."""
         return float(np.sqrt(np.mean((self.whole or self).signals[channel] ** 2)))
 
+    @property
+    def step(self) -> float:
+        """Time from sample to sample, s, of as many digits as a clock has."""
+        return float(f"{np.median(np.diff(self.signals['time'])):.9g}")
+
     def in_part(self, number: int, parts: int) -> Run:
         """Return one of some equal parts in time, 0 <= number < parts."""
         size = self.signals["time"].size

@@ -195,11 +195,10 @@ class _Seen:
         self.products, self.with_measured, self.measured = np.zeros((count, count)), 0.0, 0.0
         name = f"F{axis}"
         for run, predicted in runs:
-            step = float(np.median(np.diff(run.signals["time"])))
             level = float(np.std(run.signals[name])) + 1e-300
             force = predicted[name][:, None]
             through = np.array(
-                [through_resonance(force, f, _ASKED_DAMPING, step)[:, 0] for f in frequencies]
+                [through_resonance(force, f, _ASKED_DAMPING, run.step)[:, 0] for f in frequencies]
             )
             # what differs from the force itself: the static share is all of it
             through, measured = (

@@ -140,7 +140,7 @@ class _Part:
 
     def __init__(self, run: Run, predicted: Signals) -> None:
         size = min(run.signals["time"].size, _MOST_SAMPLES)
-        self.step = float(np.median(np.diff(run.signals["time"])))
+        self.step = run.step
         self.force = np.column_stack([predicted[name][:size] for name in ("Fx", "Fy")])
         self.level = [float(np.std(run.signals[name])) + 1e-30 for name in ("x", "y")]
         self.residual = [

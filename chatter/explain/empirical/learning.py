@@ -90,10 +90,11 @@ def _next_term(
         problem.measurement, problem.predictions, problem.case(now.by_name), problem.noise
     )
     steps = []
+    screened, runs = problem.screened(now, split.fitted)
     for term in terms_of(residual):
         if term.over not in known:
             progress(f"learning over the {term.over}", 0.92)
-            steps.append((term, linearised(problem, term, now, split.fitted)))
+            steps.append((term, linearised(screened, term, now, runs)))
     count = math.log(max(now.residuals.size, 2))
     steps.sort(key=lambda entry: entry[1].cost + entry[0].shapes * count)
     tried = [fitted(problem, term, split, step.values) for term, step in steps[:LEARNT_IN_FULL]]

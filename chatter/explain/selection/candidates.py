@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from chatter.explain.criteria import (
 )
 from chatter.explain.effects.effect import Effect
 from chatter.explain.effects.effect_list import candidates, rank
-from chatter.explain.fitting import Fit
+from chatter.explain.fitting import Fit, Matrix
 from chatter.explain.measurement import Run
 from chatter.explain.selection.evidence import log_evidence
 from chatter.explain.selection.joint_steps import JointStep, joint_steps
@@ -78,11 +79,13 @@ def stage_of(problem: Problem, now: Fit, split: Split, progress: Progress, numbe
     # one at the least, so that the report can say how far nothing helps
     chosen = hopeful or chosen[:1]
     tried = []
+    rough = _RoughFits(problem, screened, runs, split)
     for index, (effect, step) in enumerate(chosen):
         share = _LINEARISED_SHARE + (1.0 - _LINEARISED_SHARE) * index / len(chosen)
         progress(f"fitting {effect.name}", (number + share) / (MOST_EFFECTS + 1))
-        tried.append(_roughly_fitted(screened, runs, problem, effect, split, step))
-    found = stage_with(problem, now, split, _finished(problem, now, split, tried))
+        tried.append(rough.of(effect, step.values, step.jacobian))
+    most = max((now.cost - one.fit.cost for one in tried), default=0.0)
+    found = stage_with(problem, now, split, _finished(problem, now, split, tried, most))
     if problem.effects:
         return found
     fixed, share = problem.kind.least_gain
@@ -91,10 +94,9 @@ def stage_of(problem: Problem, now: Fit, split: Split, progress: Progress, numbe
 
 
 def _finished(
-    problem: Problem, now: Fit, split: Split, tried: Sequence[Candidate]
+    problem: Problem, now: Fit, split: Split, tried: Sequence[Candidate], most: float
 ) -> list[Candidate]:
-    """Candidates that were fitted roughly, the best ones in full."""
-    most = max((now.cost - one.fit.cost for one in tried), default=0.0)
+    """Candidates that were fitted roughly, in full those whose gain comes near the most."""
     fixed, share = problem.kind.least_gain
     least = max(FINISHED * most, PROMISING * (fixed + share * now.residuals.size))
     return [
@@ -105,18 +107,36 @@ def _finished(
     ]
 
 
-def _roughly_fitted(
-    screened: Problem,
-    runs: Sequence[Run],
+class _RoughFits(NamedTuple):
+    """Fits near enough to rank candidates by, to a problem as it was screened."""
+
+    problem: Problem
+    screened: Problem
+    runs: Sequence[Run]  # for fitting, as they were screened
+    split: Split
+
+    def of(
+        self, effect: Effect, start: Mapping[str, float], jacobian: Matrix | None = None
+    ) -> Candidate:
+        """Fit the problem with an effect added."""
+        found = self.screened.with_effect(effect).rough_fit(self.runs, start, jacobian)
+        trial = self.problem.with_effect(effect)
+        return _candidate(trial, trial.judged(found, self.split.fitted), self.split)
+
+
+def fitted_beside(
     problem: Problem,
-    effect: Effect,
+    now: Fit,
     split: Split,
-    step: LinearisedStep,
-) -> Candidate:
-    """Fit a problem with an effect added, near enough to rank it, as it was screened."""
-    found = screened.with_effect(effect).rough_fit(runs, step.values, step.jacobian)
-    trial = problem.with_effect(effect)
-    return _candidate(trial, trial.judged(found, split.fitted), split)
+    own: Candidate,
+    others: Sequence[tuple[Effect, Mapping[str, float]]],
+) -> list[Candidate]:
+    """Return a candidate, and others with their starts: in full where they come near the best."""
+    screened, runs = problem.screened(now, split.fitted)
+    rough = _RoughFits(problem, screened, runs, split)
+    tried = [rough.of(effect, start) for effect, start in others]
+    most = now.cost - min([own.fit.cost, *(one.fit.cost for one in tried)])
+    return [own, *_finished(problem, now, split, tried, most)]
 
 
 def stage_with(problem: Problem, now: Fit, split: Split, tried: Sequence[Candidate]) -> Stage:

@@ -16,7 +16,7 @@ from chatter.explain.criteria import (
 from chatter.explain.effects.effect import Effect
 from chatter.explain.fitting import Fit
 from chatter.explain.measurement import Measurement
-from chatter.explain.selection.candidates import Stage, fitted, stage_with
+from chatter.explain.selection.candidates import Stage, fitted, fitted_beside, stage_with
 from chatter.explain.selection.path import Path
 from chatter.explain.selection.problem import Problem
 from chatter.explain.selection.significance import share_removed
@@ -70,11 +70,11 @@ def _beside_the_others(path: Path, stage: Stage, split: Split) -> Stage:
     if len(path.stages) > 1:
         return stage_with(without, before, split, [own])
     others = [
-        fitted(without, one.effect, split, {**one.fit.by_name, **before.by_name})
+        (one.effect, {**one.fit.by_name, **before.by_name})
         for one in stage.tried
         if one.effect.name not in names
     ]
-    found = stage_with(without, before, split, [own, *others])
+    found = stage_with(without, before, split, fitted_beside(without, before, split, own, others))
     tried = (own, *(one for one in found.tried if one.effect is not effect))
     return Stage(before, found.holdout, found.evidence, tried)
 

@@ -24,6 +24,7 @@ from chatter.explain.selection.candidates import (
     Progress,
     Stage,
     fitted,
+    fitted_beside,
     stage_of,
     stage_with,
 )
@@ -146,13 +147,13 @@ def tried_again(path: Path, split: Split) -> Path:
         without = problem.without_effect(stage.best.effect)
         before = without.fit(split.fitted, now.by_name)
         names = {effect.name for effect in without.effects}
-        tried = []
-        for one in stage.tried[:FITTED_AGAIN]:
-            if one.effect.name in names:
-                continue
-            start = {**one.fit.by_name, **before.by_name}
-            start = now.by_name if one.effect is stage.best.effect else start
-            tried.append(fitted(without, one.effect, split, start))
+        others = [
+            (one.effect, {**one.fit.by_name, **before.by_name})
+            for one in stage.tried[1:FITTED_AGAIN]
+            if one.effect.name not in names
+        ]
+        own = fitted(without, stage.best.effect, split, now.by_name)
+        tried = fitted_beside(without, before, split, own, others)
         found = stage_with(without, before, split, tried)
         index = kept.index(stage)
         if not is_significant(found, found.best, without, split):
