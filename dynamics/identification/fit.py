@@ -65,6 +65,11 @@ class _SetFit:
     records: Records  # without the delay
     delay: float  # of the response channels, found before the residues, s
 
+    @property
+    def real_delay(self) -> float:
+        """Delay taken off the records of the real modes, s."""
+        return self.delay + (self.tool.delay if self.tool is not None else 0.0)
+
 
 def identify_modes(
     frfs: Sequence[Frf],
@@ -254,7 +259,7 @@ def _assemble(measurement: Measurement, band: Band, fits: Sequence[_SetFit]) -> 
         if fit.tool is not None and fit.tool.model is not None:
             for k, i in enumerate(fit.frf_set.members):
                 models[i] = real_frf_model(
-                    fit.tool.tool, fit.tool.model, k, senses[k] * fit.tool.senses[k], fit.delay
+                    fit.tool.tool, fit.tool.model, k, senses[k] * fit.tool.senses[k], fit.real_delay
                 )
             found = identified_real_modes(fit.tool.tool, fit.tool.model)
             beyond.append(modes_beyond(fit.tool.tool, fit.tool.model))
@@ -315,7 +320,7 @@ def _spread(
 
 def _delay_note(fit: _SetFit) -> list[str]:
     """Say what lag was taken off, where its phase at the highest mode matters."""
-    delay, highest = fit.delay, float(np.max(fit.complex_model.natural_frequency, initial=0.0))
+    delay, highest = fit.real_delay, float(np.max(fit.complex_model.natural_frequency, initial=0.0))
     if fit.tool is not None and fit.tool.model is not None:
         delay += fit.tool.model.delay or 0.0
         highest = float(np.max(fit.tool.model.natural_frequency))

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.identification.delay import without_delay
 from dynamics.identification.discrepancy import effective_samples, with_discrepancy
 from dynamics.identification.mode_quality import LEAST_PEAK_SHARE, TINY, largest_share, peak_share
 from dynamics.identification.real_modes import (
@@ -16,6 +17,7 @@ from dynamics.identification.real_modes import (
 )
 from dynamics.identification.refinement import ModalModel
 from dynamics.identification.residues import ALL_TERMS, Records
+from dynamics.identification.resonances import by_their_crests, peak_receptances, shoulder
 from dynamics.least_squares import PRECISE, ROUGH
 
 #: a mode of the wrong sign with more than this share of the peak tells that the FRF is none of a
@@ -23,8 +25,12 @@ from dynamics.least_squares import PRECISE, ROUGH
 MOST_WRONG_SHARE = 0.2
 
 #: peak receptance of a mode, over that of the largest, below which it is a small resonance where
-#: the model misses more than the noise; and how much more, in power
-MATERIAL_SHARE, MORE_THAN_NOISE = 0.1, 2.0
+#: the model misses more than the noise: alone it would limit a cut at five times the depth; and
+#: how much more, in power
+MATERIAL_SHARE, MORE_THAN_NOISE = 0.2, 2.0
+
+#: what a model misses, over the peak of the FRF, below which it is rounding and not mechanics
+LEAST_MISSED = 2e-4
 
 #: lines in the half-power band of the narrowest mode, and lines in all, by which modes are judged
 LINES_IN_A_MODE, LEAST_JUDGED = 6, 400
@@ -48,6 +54,7 @@ class ToolPointFit:
     senses: NDArray[np.float64]  # (k,), -1 for the FRFs whose sign was turned
     reason: str  # why `model` is None; empty otherwise
     notes: tuple[str, ...]
+    delay: float = 0.0  # of the response channels, taken off the records of `tool`, s
 
 
 def fit_tool_point(tool: ToolPointRecords, model: ModalModel, fewest: int = 0) -> ToolPointFit:
@@ -86,6 +93,12 @@ def fit_tool_point(tool: ToolPointRecords, model: ModalModel, fewest: int = 0) -
         reason = f"not a drive point: the modes at {listed} have the opposite sign of the others"
         return ToolPointFit(None, tool, senses, reason, tuple(notes))
     real = _with_second_vectors(tool, real, model, right)
+    delay = 0.0
+    if _misses_more_than_noise(tool, real):
+        # with the small resonances gone the delay would stand for what they do to the phase
+        delay = _supported_delay(tool, real)
+        tool = replace(tool, records=without_delay(tool.records, delay))
+        real = _again(tool, real, real.terms, None)
     tool, real = _drop_weak(tool, real, fewest)
     real = _choose_terms(tool, real)
     if real.count == 0:
@@ -96,7 +109,7 @@ def fit_tool_point(tool: ToolPointRecords, model: ModalModel, fewest: int = 0) -
                 f"a mode at {hertz:.1f} Hz ({100 * share:.1f} % of the peak) would have a "
                 "negative mass and was left out"
             )
-    return ToolPointFit(real, tool, senses, "", tuple(notes))
+    return ToolPointFit(real, tool, senses, "", tuple(notes), delay)
 
 
 def _deviation_near(tool: ToolPointRecords, real: RealModel, hertz: float) -> float:
@@ -208,42 +221,60 @@ def _drop_weak(
     while kept.count > fewest:
         lesser = _without(judged, kept, _weakest(judged, kept))
         if _worth_a_mode(judged, kept, lesser):
-            immaterial = _immaterial(judged, fewer, kept)
-            if immaterial is None:
-                break
-            lesser = _without(judged, kept, immaterial)
+            break
         kept = lesser
         judged = replace(fewer, records=with_discrepancy(fewer.records, kept.synthesis(fewer)))
+    while kept.count > max(fewest, 1):
+        immaterial = _immaterial(judged, fewer, kept)
+        if immaterial is None:
+            break
+        kept = _without(judged, kept, immaterial)
     if kept.count == 0:
         return tool, kept
     if kept.count == real.count:
         kept = real
     judged = replace(tool, records=with_discrepancy(tool.records, kept.synthesis(tool)))
+    if _much_above(judged, tool):
+        judged = replace(judged, records=by_their_crests(judged, kept))
     return judged, _again(judged, kept, kept.terms, kept.delay)
+
+
+def _misses_more_than_noise(tool: ToolPointRecords, real: RealModel) -> bool:
+    judged = replace(tool, records=with_discrepancy(tool.records, real.synthesis(tool)))
+    return _much_above(judged, tool)
+
+
+def _much_above(judged: ToolPointRecords, tool: ToolPointRecords) -> bool:
+    """True where the noise of the first, with what its model misses, is well above the second's."""
+    noise = judged.records.noise
+    power, least = np.median(noise**2), np.median(tool.records.noise**2)
+    share = float(np.median(noise / np.max(np.abs(tool.records.values), axis=0)))
+    return bool(power > MORE_THAN_NOISE * least and share > LEAST_MISSED)
+
+
+def _supported_delay(tool: ToolPointRecords, real: RealModel) -> float:
+    """Delay of a model of all modes, s; 0 where the data do not ask for one (Schwarz 1978)."""
+    judged = replace(tool, records=with_discrepancy(tool.records, real.synthesis(tool)))
+    without = _again(judged, real, real.terms, None, ROUGH)
+    return float(real.delay or 0.0) if _worth(judged, real, without, 1) else 0.0
 
 
 def _immaterial(judged: ToolPointRecords, tool: ToolPointRecords, real: RealModel) -> int | None:
     """The least of the modes that are too small to be written down, None where none is.
 
     On lines that a few real modes describe to the noise, every mode is one. Where more than the
-    noise is missed, what moves the tool little beside its largest mode is a small resonance of
-    everything else: no model of real modes is right at that level.
+    noise is missed, what moves the tool little beside its largest mode, or makes no resonance of
+    its own, is a small resonance of everything else: no model of real modes is right at that level.
     """
     shares = np.array([share_of_real_mode(judged, real, r) for r in range(real.count)])
     if np.min(shares) <= LEAST_PEAK_SHARE:
         return int(np.argmin(shares))
-    more = np.median(judged.records.noise**2) > MORE_THAN_NOISE * np.median(tool.records.noise**2)
-    if not more:
+    if not _much_above(judged, tool):
         return None
-    peaks = _peak_receptances(real)
+    peaks = peak_receptances(real)
     least = int(np.argmin(peaks))
-    return least if peaks[least] < MATERIAL_SHARE * float(np.max(peaks)) else None
-
-
-def _peak_receptances(real: RealModel) -> NDArray[np.float64]:
-    """Receptance of each mode along itself at its resonance, m/N: 1 / (2 zeta k)."""
-    inverse_mass = np.sum(real.vectors**2, axis=1)
-    return inverse_mass / (2.0 * real.damping * real.natural_frequency**2)
+    small = peaks[least] < MATERIAL_SHARE * float(np.max(peaks))
+    return least if small else shoulder(judged, real)
 
 
 def _judged_lines(records: Records, real: RealModel) -> Records:
@@ -288,12 +319,16 @@ def _without(tool: ToolPointRecords, real: RealModel, mode: int) -> RealModel:
 
 
 def _worth_a_mode(tool: ToolPointRecords, larger: RealModel, lesser: RealModel) -> bool:
-    """True where a mode more is worth its unknowns (Schwarz 1978), errors taken as correlated."""
+    unknowns = 2 + len(tool.axes) + sum(pair is None for pair in tool.pairs)
+    return _worth(tool, larger, lesser, unknowns)
+
+
+def _worth(tool: ToolPointRecords, larger: RealModel, lesser: RealModel, unknowns: int) -> bool:
+    """True where unknowns pay for themselves (Schwarz 1978), errors taken as correlated."""
     error = (tool.records.values - larger.synthesis(tool)) / tool.records.noise
     samples = effective_samples(error)
     share = samples / (2.0 * error.size)
     gain = share * (lesser.chi_square - larger.chi_square) / _misfit(tool, larger)
-    unknowns = 2 + len(tool.axes) + sum(pair is None for pair in tool.pairs)
     return bool(gain > unknowns * np.log(max(samples, np.e)))
 
 
