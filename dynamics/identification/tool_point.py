@@ -29,8 +29,8 @@ MOST_WRONG_SHARE = 0.2
 #: how much more, in power
 MATERIAL_SHARE, MORE_THAN_NOISE = 0.2, 2.0
 
-#: what a model misses, over the peak of the FRF, below which it is rounding and not mechanics
-LEAST_MISSED = 2e-4
+#: misfit of a model over the peak of the FRF below which it is rounding and not mechanics
+LEAST_MISFIT_SHARE = 2e-4
 
 #: lines in the half-power band of the narrowest mode, and lines in all, by which modes are judged
 LINES_IN_A_MODE, LEAST_JUDGED = 6, 400
@@ -249,7 +249,7 @@ def _much_above(judged: ToolPointRecords, tool: ToolPointRecords) -> bool:
     noise = judged.records.noise
     power, least = np.median(noise**2), np.median(tool.records.noise**2)
     share = float(np.median(noise / np.max(np.abs(tool.records.values), axis=0)))
-    return bool(power > MORE_THAN_NOISE * least and share > LEAST_MISSED)
+    return bool(power > MORE_THAN_NOISE * least and share > LEAST_MISFIT_SHARE)
 
 
 def _supported_delay(tool: ToolPointRecords, real: RealModel) -> float:
