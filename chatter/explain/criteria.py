@@ -29,6 +29,9 @@ MOST_LOST = 1.02
 SIGNED_RANK_LEVEL = 0.0625
 #: standard deviations of its declared value beyond which a refitted one is out of its tolerance
 OUT_OF_TOLERANCE = 3.0
+#: standard deviations within which a declared value of a cut is refitted: far enough out of its
+#: tolerance to be seen there, and not so far that a mode takes the place of one that is missing
+REFITTED_WITHIN = 6.0
 #: probability at which an interval of an effect that reaches nothing makes it none
 REACHES_NOTHING = 0.95
 #: standard deviation, in sizes, from which on a combination of parameters is not determined: half

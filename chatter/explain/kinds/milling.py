@@ -9,6 +9,7 @@ import numpy as np
 
 from chatter.description.case import Case
 from chatter.description.units import rpm
+from chatter.explain.criteria import REFITTED_WITHIN
 from chatter.explain.data_checks.channel_assignment import wrong_assignment
 from chatter.explain.data_checks.clock import clock_check
 from chatter.explain.data_checks.displacement import wrong_displacements
@@ -148,7 +149,7 @@ class Milling(Kind):
         runout = measurement.case.tool.runout
         if runout is not None and runout.offset:
             paths.append("tool.runout.offset")
-        return with_priors(measurement, paths)
+        return [_within_reach(one) for one in with_priors(measurement, paths)]
 
     def cuts(self, measurement: Measurement) -> Cuts:
         """Cuts of the runs."""
@@ -190,6 +191,12 @@ class Milling(Kind):
                 words = f"a cut like {run.name} with a {name} of {digits} {unit}"
                 trials.append(Trial(words, trial, levels))
         return trials
+
+
+def _within_reach(one: Parameter) -> Parameter:
+    """Declared value with bounds within which it is refitted."""
+    farthest = REFITTED_WITHIN * one.size
+    return replace(one, lower=max(one.lower, one.start - farthest), upper=one.start + farthest)
 
 
 def cutting_paths(case: Case, coefficients: tuple[str, ...]) -> list[str]:
