@@ -35,8 +35,7 @@ def shoulder(tool: ToolPointRecords, real: RealModel) -> int | None:
     maxima, _ = scipy.signal.find_peaks(20.0 * np.log10(level), prominence=HALF_POWER)
     hertz = real.natural_frequency / (2.0 * np.pi)
     receptance = peak_receptances(real)
-    inside = (hertz >= records.frequency[0]) & (hertz <= records.frequency[-1])
-    read = ~inside
+    read = ~within_lines(tool, real)
     for maximum in records.frequency[maxima]:
         near = np.flatnonzero(np.abs(hertz - maximum) <= 2.0 * real.damping * hertz)
         if near.size:
@@ -59,6 +58,12 @@ def by_their_crests(tool: ToolPointRecords, real: RealModel) -> Records:
         if crest.size:
             share[crest] = float(np.max(level[crest])) / largest
     return replace(records, noise=records.noise * share[:, None])
+
+
+def within_lines(tool: ToolPointRecords, real: RealModel) -> NDArray[np.bool_]:
+    """Whether each mode lies between the first and the last line."""
+    hertz, lines = real.natural_frequency / (2.0 * np.pi), tool.records.frequency
+    return (hertz >= lines[0]) & (hertz <= lines[-1])
 
 
 def peak_receptances(real: RealModel) -> NDArray[np.float64]:

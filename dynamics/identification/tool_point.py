@@ -17,7 +17,12 @@ from dynamics.identification.real_modes import (
 )
 from dynamics.identification.refinement import ModalModel
 from dynamics.identification.residues import ALL_TERMS, Records
-from dynamics.identification.resonances import by_their_crests, peak_receptances, shoulder
+from dynamics.identification.resonances import (
+    by_their_crests,
+    peak_receptances,
+    shoulder,
+    within_lines,
+)
 from dynamics.least_squares import PRECISE, ROUGH
 
 #: a mode of the wrong sign with more than this share of the peak tells that the FRF is none of a
@@ -271,10 +276,12 @@ def _immaterial(judged: ToolPointRecords, tool: ToolPointRecords, real: RealMode
         return int(np.argmin(shares))
     if not _much_above(judged, tool):
         return None
-    peaks = peak_receptances(real)
-    least = int(np.argmin(peaks))
-    small = peaks[least] < MATERIAL_SHARE * float(np.max(peaks))
-    return least if small else shoulder(judged, real)
+    # what lies outside the lines stands for more than one mode, and its peak is not seen
+    inside = np.flatnonzero(within_lines(judged, real))
+    peaks = peak_receptances(real)[inside]
+    if peaks.size and np.min(peaks) < MATERIAL_SHARE * np.max(peaks):
+        return int(inside[np.argmin(peaks)])
+    return shoulder(judged, real)
 
 
 def _judged_lines(records: Records, real: RealModel) -> Records:
