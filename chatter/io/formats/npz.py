@@ -33,14 +33,15 @@ def read_columns(path: Path) -> Table:
     differ.
     """
     try:
-        with np.load(path, allow_pickle=False) as content:
+        # NumPy leaves a file that it opened itself open where the archive is damaged
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as content:
             require_size(path, float(sum(one.file_size for one in content.zip.infolist())))
             arrays = {name: content[name] for name in content.files}
     except MeasurementError:
         raise
     except _FAULTS as error:
         raise MeasurementError(f"{path}: cannot be read: {error}") from error
-    except AttributeError as error:  # a single array, not a file of several
+    except (AttributeError, TypeError) as error:  # a single array, not a file of several
         raise MeasurementError(
             f"{path}: holds one array; save them by name with numpy.savez"
         ) from error

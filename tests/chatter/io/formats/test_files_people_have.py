@@ -297,3 +297,23 @@ def test_an_archive_damaged_within_its_data_is_refused(tmp_path):
         path.write_bytes(whole[:at] + bytes([whole[at] ^ 0xFF]) + whole[at + 1 :])
         with contextlib.suppress(MeasurementError):
             read(path)
+
+
+@pytest.mark.parametrize(
+    "damaged", [lambda whole: whole[:60], lambda whole: whole[:-30], lambda _: b"PK\x03\x04" * 9]
+)
+def test_a_damaged_archive_is_refused_and_closed(tmp_path, damaged):
+    path = tmp_path / "a.npz"
+    np.savez(path, **{"time [s]": np.arange(9.0), "force [N]": np.arange(9.0)})
+    path.write_bytes(damaged(path.read_bytes()))
+    # an unclosed file would be a warning, and so an error
+    with pytest.raises(MeasurementError, match="cannot be read"):
+        npz.read_columns(path)
+
+
+def test_a_single_array_is_told_how_it_is_saved(tmp_path):
+    path = tmp_path / "a.npz"
+    with path.open("wb") as file:
+        np.save(file, np.arange(9.0))
+    with pytest.raises(MeasurementError, match="holds one array; save them by name"):
+        npz.read_columns(path)
