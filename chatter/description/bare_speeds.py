@@ -1,4 +1,4 @@
-"""Spindle speeds without a unit: 14000 may be in rpm or in rad/s, so that neither is taken."""
+"""Speeds of a cut without a unit: 14000 may be in rpm or in rad/s, so that neither is taken."""
 
 from __future__ import annotations
 
@@ -11,35 +11,39 @@ from chatter.description.errors import InputError
 from chatter.description.formatting import formatted
 from chatter.description.path import Step, field_at, join_path, parse_path
 
-_SPEED = "angular_speed"
+#: units that a bare number could have, the last that of SI: of a spindle speed, wherever it is, and
+#: of other speeds of a cut
+_OF_SPINDLE = ("rpm", "rad/s")
+_OF_CUT: dict[tuple[Step, ...], tuple[str, str]] = {
+    ("cut", "cutting_speed"): ("m/min", "m/s"),
+    ("cut", "feed_rate"): ("mm/min", "m/s"),
+}
 
 
 def refuse_bare_speeds(kind: type[BaseModel], data: Any, name: str) -> None:
-    """Raise InputError where nested tables of a file give a spindle speed as a bare number."""
+    """Raise InputError where nested tables of a file give a speed of a cut as a bare number."""
     problems = [
         f"{name}: {join_path(steps)}: {formatted(value)} has no unit; "
-        f'write "{formatted(value)} rpm", or "{formatted(value)} rad/s"'
-        for steps, value in _numbers(data, ())
-        if value != 0 and _is_speed(kind, steps)
+        f'write "{formatted(value)} {usual}", or "{formatted(value)} {si}"'
+        for steps, value, (usual, si) in _bare_speeds(kind, data)
     ]
     if problems:
         raise InputError(problems)
 
 
 def give_speeds_their_unit(kind: type[BaseModel], document: Any) -> None:
-    """Write bare spindle speeds of a document, which came from Python, with their unit."""
-    for steps, value in list(_numbers(document, ())):
-        if value != 0 and _is_speed(kind, steps):
-            table = document
-            for step in steps[:-1]:
-                table = table[step]
-            table[steps[-1]] = f"{float(value)!r} rad/s"
+    """Write bare speeds of a cut in a document, which came from Python, with their unit."""
+    for steps, value, (_, si) in list(_bare_speeds(kind, document)):
+        table = document
+        for step in steps[:-1]:
+            table = table[step]
+        table[steps[-1]] = f"{float(value)!r} {si}"
 
 
 def refuse_bare_speed_assignments(
     kind: type[BaseModel], values: Mapping[str, Any], option: str = "--set"
 ) -> None:
-    """Raise InputError where an assignment of the command line gives a bare spindle speed."""
+    """Raise InputError where an assignment of the command line gives a bare speed of a cut."""
     for path, value in values.items():
         try:
             steps = parse_path(path)
@@ -66,6 +70,20 @@ def _numbers(item: Any, steps: tuple[Step, ...]) -> Iterator[tuple[tuple[Step, .
         yield steps, item
 
 
-def _is_speed(kind: type[BaseModel], steps: tuple[Step, ...]) -> bool:
+def _bare_speeds(
+    kind: type[BaseModel], data: Any
+) -> Iterator[tuple[tuple[Step, ...], float, tuple[str, str]]]:
+    """Path, value and possible units of each bare speed but zero."""
+    for steps, value in _numbers(data, ()):
+        units = _OF_SPINDLE if _is_spindle_speed(kind, steps) else _OF_CUT.get(steps)
+        if value != 0 and units is not None:
+            yield steps, value, units
+
+
+def _is_spindle_speed(kind: type[BaseModel], steps: tuple[Step, ...]) -> bool:
     field = field_at(kind, steps)
-    return field is not None and field.dimension == _SPEED and not getattr(field, "others", ())
+    return (
+        field is not None
+        and field.dimension == "angular_speed"
+        and not getattr(field, "others", ())
+    )

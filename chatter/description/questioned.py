@@ -22,7 +22,7 @@ class _Usual(NamedTuple):
 _STIFFNESS = _Usual(0.05e6, 1e10, "N/um", 1e-6, "modes of tools, spindles and thin walls")
 _DAMPING = _Usual(5e-4, 0.3, "", 1.0, "damping ratios of machines and tools")
 _PRESSURE = _Usual(50e6, 1e10, "MPa", 1e-6, "metals and plastics")
-_CUTTING_SPEED = _Usual(0.01, 170.0, "m/min", 60.0, "milling")
+_CUTTING_SPEED = _Usual(0.01, 170.0, "m/min", 60.0, "milling cutters")
 #: Young's modulus of cemented carbide, the upper end, Pa; factor beyond which a tool is questioned
 _CARBIDE, _STIFFER = 650e9, 1.5
 #: growth of vibration from tooth to tooth beyond which the input is in doubt

@@ -7,6 +7,7 @@ import tokenize
 import zipfile
 import zlib
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 import scipy
@@ -25,6 +26,9 @@ _FAULTS = (
     *(zipfile.BadZipFile, zlib.error, struct.error, tokenize.TokenError),
 )
 
+#: what the file of a single array begins with
+_ARRAY = b"\x93NUMPY"
+
 
 def read_columns(path: Path) -> Table:
     """Arrays of an archive by name; a complex one as its real and imaginary part.
@@ -34,18 +38,28 @@ def read_columns(path: Path) -> Table:
     """
     try:
         # NumPy leaves a file that it opened itself open where the archive is damaged
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as content:
-            require_size(path, float(sum(one.file_size for one in content.zip.infolist())))
-            arrays = {name: content[name] for name in content.files}
+        with path.open("rb") as file:
+            _require_archive(path, file)
+            with np.load(file, allow_pickle=False) as content:
+                require_size(path, float(sum(one.file_size for one in content.zip.infolist())))
+                arrays = {name: content[name] for name in content.files}
     except MeasurementError:
         raise
     except _FAULTS as error:
         raise MeasurementError(f"{path}: cannot be read: {error}") from error
-    except (AttributeError, TypeError) as error:  # a single array, not a file of several
-        raise MeasurementError(
-            f"{path}: holds one array; save them by name with numpy.savez"
-        ) from error
     return table_of_arrays(path, arrays)
+
+
+def _require_archive(path: Path, file: BinaryIO) -> None:
+    """MeasurementError if an open file is a single array, or nothing of NumPy; at its start then.
+
+    NumPy itself takes anything else for a pickle, and says how to load that.
+    """
+    if file.read(len(_ARRAY)) == _ARRAY:
+        raise MeasurementError(f"{path}: holds one array; save them by name with numpy.savez")
+    if not zipfile.is_zipfile(file):
+        raise MeasurementError(f"{path}: cannot be read: it is no NumPy archive, or a damaged one")
+    file.seek(0)
 
 
 def read_matrices(path: Path) -> list[StoredMatrix]:

@@ -85,7 +85,7 @@ def read_variation(text: str, model: Model, count: int | None = None) -> Variati
     if len(parts) == 1 and ".." in parts[0] and kind is not None:
         return _range(path, parts[0], kind, count)
     values = {part: parse_assignments([f"{path}={part}"])[path] for part in parts}
-    _refuse_bare_speeds(path, values.values(), kind)
+    _refuse_bare_speeds(path, values.values())
     _refuse_mixed(path, values, kind)
     return _listed(path, list(values.items()), kind)
 
@@ -116,11 +116,10 @@ def _split(text: str) -> list[str]:
     return [*parts, part.strip()] if text.strip() else []
 
 
-def _refuse_bare_speeds(path: str, values: Iterable[Any], kind: QuantityField | None) -> None:
+def _refuse_bare_speeds(path: str, values: Iterable[Any]) -> None:
     """Refuse 14000, which may be meant in rpm or in rad/s."""
-    if kind is not None and kind.dimension == "angular_speed":
-        for value in values:
-            refuse_bare_speed_assignments(Case, {path: value}, "--vary")
+    for value in values:
+        refuse_bare_speed_assignments(Case, {path: value}, "--vary")
 
 
 def _refuse_mixed(path: str, values: Mapping[str, Any], kind: QuantityField | None) -> None:
@@ -195,7 +194,7 @@ def _range(path: str, text: str, kind: QuantityField, count: int | None) -> Vari
     if re.fullmatch(NUMBER, low) and unit:
         low = f"{low} {unit}"
     ends = [end if not re.fullmatch(NUMBER, end) else float(end) for end in (low, high)]
-    _refuse_bare_speeds(path, ends, kind)
+    _refuse_bare_speeds(path, ends)
     pair = _listed(path, list(zip((low, high), ends, strict=True)), kind)
     first, last = (value.number for value in pair.values)
     values = tuple(

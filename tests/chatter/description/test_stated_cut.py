@@ -1,6 +1,7 @@
 """Cuts as a shop states them: cutting speed, feed rate, lengths of the tool; slips in units."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -76,7 +77,7 @@ def test_both_of_a_pair_are_refused():
         loads(text(speed=SPEED + '\ncutting_speed = "60 m/min"'))
 
 
-@pytest.mark.parametrize("key", ["cutting_speed = 3000", 'feed_rate = "380 m/min"'])
+@pytest.mark.parametrize("key", ['cutting_speed = "3000 m/s"', 'feed_rate = "380 m/min"'])
 def test_speeds_that_nothing_has_are_refused(key):
     given = {"speed": key} if key.startswith("cutting") else {"feed": key}
     with pytest.raises(InputError, match="out of"):
@@ -93,6 +94,26 @@ def test_a_bare_spindle_speed_is_refused_with_the_units_it_could_have(tmp_path):
     varied = chatter_command(
         "whatif", tmp_path / "case.toml", "--vary", "cut.spindle_speed=1000..2000:3"
     )
+    assert varied.exit_code == 2
+    assert "has no unit" in varied.stderr
+
+
+@pytest.mark.parametrize(
+    ("key", "path", "units"),
+    [
+        ({"speed": "cutting_speed = 180"}, "cut.cutting_speed=180", '"180 m/min", or "180 m/s"'),
+        ({"feed": "feed_rate = 900"}, "cut.feed_rate=900", '"900 mm/min", or "900 m/s"'),
+    ],
+)
+def test_other_bare_speeds_of_a_cut_are_refused_as_well(tmp_path, key, path, units):
+    # 180 m/s were 10 800 m/min, and the cut stable at a speed that no spindle has
+    with pytest.raises(InputError, match=re.escape(f"has no unit; write {units}")):
+        loads(text(**key))
+    (tmp_path / "case.toml").write_text(text())
+    result = chatter_command("check", tmp_path / "case.toml", "--set", path)
+    assert result.exit_code == 2
+    assert units in result.stderr
+    varied = chatter_command("whatif", tmp_path / "case.toml", "--vary", path.replace("=", "=1,"))
     assert varied.exit_code == 2
     assert "has no unit" in varied.stderr
 

@@ -300,14 +300,21 @@ def test_an_archive_damaged_within_its_data_is_refused(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "damaged", [lambda whole: whole[:60], lambda whole: whole[:-30], lambda _: b"PK\x03\x04" * 9]
+    "damaged",
+    [
+        lambda whole: whole[:60],
+        lambda whole: whole[:-30],
+        lambda _: b"PK\x03\x04" * 9,
+        lambda _: bytes(range(200)),
+        lambda _: b"",
+    ],
 )
 def test_a_damaged_archive_is_refused_and_closed(tmp_path, damaged):
     path = tmp_path / "a.npz"
     np.savez(path, **{"time [s]": np.arange(9.0), "force [N]": np.arange(9.0)})
     path.write_bytes(damaged(path.read_bytes()))
     # an unclosed file would be a warning, and so an error
-    with pytest.raises(MeasurementError, match="cannot be read"):
+    with pytest.raises(MeasurementError, match="cannot be read: it is no NumPy archive"):
         npz.read_columns(path)
 
 
