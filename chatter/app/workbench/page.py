@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import panel as pn
+from bokeh.document import Document
 
 from chatter.app.workbench.case_view import CaseView
 from chatter.app.workbench.cut_view import CutView
@@ -22,7 +23,7 @@ _STUDIES = ("optimum", "pitch", "whatif", "uncertainty")
 
 
 class Workbench:
-    """Page of one session."""
+    """Page of one session; a browser's page is changed by way of its `document`."""
 
     def __init__(
         self,
@@ -30,8 +31,9 @@ class Workbench:
         first: str | None = None,
         method: str | None = None,
         text: str | None = None,
+        document: Document | None = None,
     ) -> None:
-        self._document = pn.state.curdoc
+        self._document = document
         self.session = Session(folder)
         files = self.session.case_names()
         self.choice = pn.widgets.Select(label="Case", options=files, width=300)

@@ -34,7 +34,7 @@ class WorkbenchServer:
         token = secrets.token_urlsafe(24)
 
         def page() -> pn.viewable.Viewable:
-            session = Workbench(folder, first, method, text)
+            session = Workbench(folder, first, method, text, pn.state.curdoc)
             pn.state.on_session_destroyed(lambda _: session.end())
             return session.__panel__()
 

@@ -10,6 +10,7 @@ import threading
 
 import panel as pn
 import pytest
+from bokeh.document import Document
 from tornado.httpclient import HTTPClientError, HTTPRequest
 from tornado.websocket import websocket_connect
 
@@ -52,6 +53,17 @@ def test_only_case_files_inside_the_folder_are_offered(folder):
     (folder / "link.toml").symlink_to(EXAMPLES / "two-degrees-of-freedom" / "case.toml")
     assert Session(folder).case_names() == ["case.toml"]
     (folder / "link.toml").unlink()
+
+
+def test_a_page_without_a_browser_changes_at_once_whatever_document_is_current(folder):
+    pn.state.curdoc = Document()
+    try:
+        page = Workbench(folder)
+        page.machine.work.show_message("said")
+        page.end()
+    finally:
+        pn.state.curdoc = None
+    assert page.machine.work.message.object == "said"
 
 
 def test_limit_is_inverse_to_the_coefficients(view):
